@@ -1,0 +1,46 @@
+"""What all tests share: the recorder of measured figures that docs/validation.md is made from."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+FIGURES = Path(__file__).parents[1] / "out" / "validation"
+
+RecordFigure = Callable[..., None]
+
+
+@pytest.fixture
+def record_figure(request: pytest.FixtureRequest) -> RecordFigure:
+    """Return `record_figure(name, value, target, unit, source)`, which keeps one measured figure.
+
+    `name` says what was measured, `value` is the number, `target` the criterion in words or a number
+    ("at most 0.3 %", 755.9), `unit` the unit of `value`, `source` where the target comes from. Each figure
+    becomes one JSON file in out/validation; `scripts/validation-page` makes docs/validation.md from them.
+    The fixture records and asserts nothing: the test does.
+    """
+
+    def record(name: str, value: float, target: float | str, unit: str, source: str) -> None:
+        test = request.node.nodeid
+        kind = Path(str(request.node.path)).relative_to(Path(__file__).parent).parts[0]
+        figure = {
+            "name": name,
+            "value": float(value),
+            "target": target,
+            "unit": unit,
+            "source": source,
+            "kind": kind,
+            "test": test,
+        }
+        FIGURES.mkdir(parents=True, exist_ok=True)
+        slug = re.sub(r"[^a-z0-9]+", "-", f"{request.node.path.stem} {name}".lower()).strip("-")
+        draft = FIGURES / f".{slug}.{os.getpid()}"
+        draft.write_text(json.dumps(figure, indent=1), encoding="utf-8")
+        draft.replace(FIGURES / f"{slug}.json")
+
+    return record
