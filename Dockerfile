@@ -1,0 +1,53 @@
+# syntax=docker/dockerfile:1
+# The service in a container. Until access keys exist it listens on loopback only, so run it on the host's network:
+#   docker build -t lineofaction . && docker run --rm --network host -v lineofaction:/data lineofaction
+ARG BASE=python:3.13-slim-trixie
+
+# ---- build: a virtual environment from the lock file -------------------------------------------------------------
+FROM ${BASE} AS build
+ENV PIP_DISABLE_PIP_VERSION_CHECK=1 PIP_NO_CACHE_DIR=1 PYTHONDONTWRITEBYTECODE=1
+RUN python -m venv /opt/lineofaction
+ENV PATH=/opt/lineofaction/bin:$PATH
+WORKDIR /source
+
+# The requirements change seldom: they make a layer of their own.
+COPY requirements.lock pyproject.toml ./
+RUN pip install -c requirements.lock setuptools \
+    && python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['dependencies'], sep='\n')" > wanted \
+    && pip install -c requirements.lock -r wanted
+
+COPY README.md LICENSE ./
+COPY fe_contact fe_contact
+COPY dynamics dynamics
+COPY service service
+RUN pip install --no-deps --no-build-isolation . && pip uninstall --yes pip setuptools
+
+# ---- run: no compiler, no package manager of Python, no root -------------------------------------------------------
+FROM ${BASE} AS run
+RUN apt-get update \
+    && apt-get install -y --no-install-recommends \
+        tini libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1 \
+    && rm -rf /var/lib/apt/lists/* \
+    && useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin lineofaction \
+    && install -d -o lineofaction -g lineofaction /data /data/cache
+COPY --from=build /opt/lineofaction /opt/lineofaction
+
+# The compiled loops are cached beside the data, so that they survive the container.
+ENV PATH=/opt/lineofaction/bin:$PATH \
+    PYTHONUNBUFFERED=1 \
+    LOA_HOST=127.0.0.1 \
+    LOA_PORT=8321 \
+    LOA_DATA_DIRECTORY=/data/service \
+    NUMBA_CACHE_DIR=/data/cache/numba \
+    XDG_CACHE_HOME=/data/cache \
+    MPLCONFIGDIR=/data/cache/matplotlib \
+    OMP_NUM_THREADS=1
+USER lineofaction
+WORKDIR /data
+VOLUME /data
+EXPOSE 8321
+STOPSIGNAL SIGTERM
+HEALTHCHECK --interval=15s --timeout=4s --start-period=30s --retries=3 \
+    CMD ["python", "-c", "import os, urllib.request; urllib.request.urlopen(f\"http://{os.environ['LOA_HOST']}:{os.environ['LOA_PORT']}/health\", timeout=3)"]
+ENTRYPOINT ["tini", "--"]
+CMD ["loa", "serve"]
