@@ -1,0 +1,1 @@
+"""Multibody dynamics of geared systems, excited by mesh-force tables."""

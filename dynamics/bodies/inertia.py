@@ -1,0 +1,62 @@
+"""Mass and moments of inertia of turned parts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from dynamics.checks import not_negative, positive
+from dynamics.errors import InputError
+
+STEEL_DENSITY = 7850.0
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """Inertia of a body of revolution about its own centre of mass.
+
+    Attributes
+    ----------
+    mass : float
+        kg, >= 0.
+    polar : float
+        Moment of inertia about the axis of rotation, kg m^2, >= 0.
+    transverse : float
+        Moment of inertia about any axis across it, through the centre of mass, kg m^2, >= 0.
+    """
+
+    mass: float = 0.0
+    polar: float = 0.0
+    transverse: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("mass", "polar", "transverse"):
+            not_negative(f"inertia.{name}", getattr(self, name))
+
+
+def hollow_cylinder(
+    outer_diameter: float, length: float, bore_diameter: float = 0.0, density: float = STEEL_DENSITY
+) -> Inertia:
+    """Return the inertia of a hollow (or, with bore 0, solid) cylinder.
+
+    Parameters
+    ----------
+    outer_diameter, length, bore_diameter : float
+        m. For a gear, reference diameter and face width are the usual stand-ins for its teeth and rim.
+    density : float
+        kg/m^3.
+
+    Raises
+    ------
+    InputError
+        If a size is not positive, or the bore is not smaller than the outer diameter.
+    """
+    outer, bore = (
+        positive("outer_diameter", outer_diameter) / 2.0,
+        not_negative("bore_diameter", bore_diameter) / 2.0,
+    )
+    if bore >= outer:
+        raise InputError("bore_diameter", bore_diameter, f"below the outer diameter {outer_diameter:g} m")
+    mass = positive("density", density) * math.pi * (outer**2 - bore**2) * positive("length", length)
+    square = outer**2 + bore**2
+    return Inertia(mass, mass * square / 2.0, mass * (3.0 * square + length**2) / 12.0)

@@ -1,0 +1,27 @@
+"""A torque that resists a shaft's rotation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dynamics.bodies.time_law import TimeLaw
+
+
+@dataclass(frozen=True)
+class LoadTorque:
+    """A resisting torque, the same at any speed.
+
+    Attributes
+    ----------
+    name : str
+        Unique among the loads.
+    shaft : str
+        The loaded shaft.
+    torque : TimeLaw
+        N m, > 0 against the sense in which the drive turns this shaft. The run starts in static
+        equilibrium with its value at t = 0, so a constant load excites nothing.
+    """
+
+    name: str
+    shaft: str
+    torque: TimeLaw

@@ -1,0 +1,72 @@
+"""The mesh-force table: all that dynamics knows of a gear contact."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from dynamics.checks import increasing
+from dynamics.errors import InputError
+from dynamics.types import FloatArray
+
+FIELDS = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
+
+
+@runtime_checkable
+class MeshTable(Protocol):
+    """Mesh force against position and deflection, as plain arrays (docs/architecture.md).
+
+    Attributes
+    ----------
+    position : (P,) array
+        Knots in transverse base pitches of the driving gear, increasing in [0, 1), period 1.
+    level : (L,) array
+        Transverse mesh force in N at the levels, increasing, ``level[0] = 0`` (lift-off).
+    misalignment, center_distance_change : (M,), (D,) arrays
+        Knots in m; length 1 = no such axis.
+    deflection : (M, D, P, L) array
+        Transmission error in m at each level, strictly increasing along the levels.
+    deflection_slope : (M, D, P, L) array
+        Its derivative in position, m per base pitch.
+    stiffness, stiffness_slope : (M, D, P, L) arrays
+        Tangent stiffness dF/d(deflection) in N/m at the knots and its derivative in position.
+    """
+
+    @property
+    def position(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def level(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def misalignment(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def center_distance_change(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def deflection(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def deflection_slope(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def stiffness(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def stiffness_slope(self) -> FloatArray: ...  # noqa: D102
+
+
+def check_table(field: str, table: MeshTable) -> None:
+    """Raise `InputError` if `table` breaks the protocol's shapes, orders or signs."""
+    if not isinstance(table, MeshTable):
+        raise InputError(field, type(table).__name__, "a mesh-force table", "Use SteDatabase.force_table().")
+    position = increasing(f"{field}.position", table.position)
+    level = increasing(f"{field}.level", table.level)
+    if position[0] < 0.0 or position[-1] >= 1.0:
+        raise InputError(f"{field}.position", (position[0], position[-1]), "in [0, 1)")
+    if level[0] != 0.0 or level.size < 2:
+        raise InputError(f"{field}.level", level.tolist(), "at least two forces, the first 0")
+    shape = (np.size(table.misalignment), np.size(table.center_distance_change), position.size, level.size)
+    for name in FIELDS:
+        values = np.asarray(getattr(table, name))
+        if values.shape != shape or not np.all(np.isfinite(values)):
+            raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {shape}")
+    if np.any(np.diff(table.deflection, axis=-1) <= 0.0):
+        raise InputError(f"{field}.deflection", "not increasing", "strictly increasing along the levels")
+    if np.any(np.asarray(table.stiffness) < 0.0) or np.any(np.asarray(table.stiffness)[..., -1] == 0.0):
+        raise InputError(f"{field}.stiffness", "negative", "0 or above, and above 0 at the last level")

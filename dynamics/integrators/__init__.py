@@ -1,0 +1,1 @@
+"""Compiled time integration with error control, and the static equilibrium a run starts from."""

@@ -1,0 +1,1 @@
+"""Results of a run: time series, status, statistics, energy audit, files."""

@@ -1,0 +1,42 @@
+"""Types that every room shares: arrays and the outcomes of the two solvers."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+BoolArray = NDArray[np.bool_]
+Json = dict[str, Any]
+
+
+class RunStatus(IntEnum):
+    """How a time integration ended, stored with its result."""
+
+    COMPLETED = 0
+    STEP_FLOOR = 1  # the step control asked for less than the smallest step allowed
+    STEP_LIMIT = 2  # the number of steps allowed was used up
+    NOT_FINITE = 3  # a state or force became infinite or NaN
+    NO_EQUILIBRIUM = 4  # the run could not start: no static equilibrium under the load at t = 0
+
+    @property
+    def usable(self) -> bool:
+        """Whether the whole asked duration was computed."""
+        return self is RunStatus.COMPLETED
+
+
+class StaticStatus(IntEnum):
+    """How the search for the static equilibrium ended."""
+
+    CONVERGED = 0
+    ITERATION_LIMIT = 1  # Newton ran out of iterations
+    UNBALANCED = 2  # no position of the bodies carries the load, e.g. a torque that nothing resists
+
+    @property
+    def usable(self) -> bool:
+        """Whether the position found is an equilibrium."""
+        return self is StaticStatus.CONVERGED
