@@ -1,0 +1,72 @@
+"""Refusal of gears that cannot exist, by the standard term for what is wrong."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fe_contact.errors import InfeasibleGeometry
+
+if TYPE_CHECKING:
+    from fe_contact.geometry.gear import Gear
+
+
+def refuse_infeasible_gear(gear: Gear) -> None:
+    """Raise `InfeasibleGeometry` if no such gear can be generated."""
+    _refuse_wide_tool(gear)
+    _refuse_bore(gear)
+    _refuse_tip_diameter(gear)
+    _refuse_undercut(gear)
+    _refuse_pointed_tooth(gear)
+
+
+def _refuse_wide_tool(gear: Gear) -> None:
+    """Refuse a tool whose tip roundings overlap."""
+    overlap = gear.trochoid.corner_distance - math.pi * gear.reference_radius / gear.teeth
+    if overlap > 1e-12 * gear.reference_radius:
+        bound = f"smaller: the roundings of a tool tooth overlap by {overlap:.3g} m"
+        advice = "Lower the root radius or the thickness allowance."
+        value = gear.root_radius_coefficient
+        raise InfeasibleGeometry("root radius", "root_radius_coefficient", value, bound, advice)
+
+
+def _refuse_bore(gear: Gear) -> None:
+    """Refuse a bore that leaves no rim under the teeth."""
+    if gear.bore_diameter >= 2.0 * gear.root_radius:
+        bound = f"below the root diameter {2.0 * gear.root_radius:.6g} m"
+        advice = "Lower the bore or add teeth."
+        raise InfeasibleGeometry("bore", "bore_diameter", gear.bore_diameter, bound, advice)
+
+
+def _refuse_tip_diameter(gear: Gear) -> None:
+    """Refuse a tip circle that leaves no tooth, or no involute, above the root."""
+    lowest = max(gear.root_radius, gear.base_radius)
+    if gear.tip_radius <= lowest:
+        bound = f"above {2.0 * lowest:.6g} m, the larger of root and base diameter"
+        advice = "Raise the tip diameter, the addendum or the profile shift."
+        raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+
+
+def _refuse_undercut(gear: Gear) -> None:
+    """Refuse a fillet that leaves no involute below the tip, or no material in the tooth's root."""
+    advice = "Raise the profile shift or the number of teeth, or lower the dedendum."
+    if gear.form_radius >= gear.tip_radius:
+        name = "undercut" if gear.form_point.undercut else "tip diameter"
+        bound = f"above the form diameter {2.0 * gear.form_radius:.6g} m, where the fillet ends"
+        raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+    angles = np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, 65)
+    if gear.form_point.undercut and np.min(gear.trochoid.point(angles)[:, 0]) <= 0.0:
+        bound = "larger: the fillets of both flanks cut the tooth off"
+        raise InfeasibleGeometry(
+            "undercut", "profile_shift_coefficient", gear.profile_shift_coefficient, bound, advice
+        )
+
+
+def _refuse_pointed_tooth(gear: Gear) -> None:
+    """Refuse a tooth whose flanks meet below the tip circle."""
+    if gear.tip_tooth_thickness <= 0.0:
+        bound = f"smaller: the transverse tip thickness is {gear.tip_tooth_thickness:.3g} m"
+        advice = "Lower the tip diameter, the addendum or the profile shift."
+        raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
