@@ -1,9 +1,9 @@
 """The exact transverse tooth profile of a gear: involute, fillet, root and tip arcs.
 
 Tooth frame: gear centre at the origin, tooth centre line on +y, the right flank (x > 0). One coordinate s
-runs over the whole flank from the tooth space's centre up to the tip: on the involute it is the arc length from
-the base circle, s = l^2 / (2 r_b); below the form point it goes on by the arc length along fillet and root
-circle, so that s may be negative there.
+runs over the whole flank from the tooth space's centre up to the tip: on the involute it is the arc length
+from the base circle, s = l^2 / (2 r_b); below the form point it goes on by the arc length along fillet and
+root circle, so that s may be negative there.
 """
 
 from __future__ import annotations

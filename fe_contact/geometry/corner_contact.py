@@ -1,0 +1,152 @@
+"""Corner contact: the tip edge of one gear on the other's flank, off the line of action.
+
+Before the path of contact begins (approach) the wheel's tip edge can touch the pinion's flank, and after it ends
+(exit) the pinion's tip edge can touch the wheel's. Rigid gears are apart there; the gap is exact.
+
+Derivation. Fix the tip gear at the roll length l its flank would touch at on the line of action, with l beyond its tip
+roll length l_a. Its involute's point of roll length l_a has its normal's foot on the base circle at the angle
+tau = alpha_wt + (l_a - l) / r_b from the line of centres, which places the tip edge; its distance rho from the
+other centre gives the roll length sqrt(rho^2 - r_b^2) of the flank point it can touch, and the polar angle there gives
+the flank gear's rotation. The gap is what that rotation lacks, times the base radius.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_contact.errors import InputError
+from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.gear_pair import GearPair
+from fe_contact.types import BoolArray, FloatArray
+
+Side = Literal["approach", "exit"]
+_ITERATIONS = 50
+
+
+@dataclass(frozen=True)
+class CornerContact:
+    """State of a tooth pair whose tip edge faces the mating flank; arrays of one shape, NaN where not `valid`.
+
+    Attributes
+    ----------
+    gap : array
+        Rigid gap in m on the line of action, >= 0: r_b2 times the lag of the driven gear that closes it, the
+        driving gear's angle held.
+    flank_roll_length : array
+        Roll length in m at which the edge touches the mating flank: of gear 1 at approach, of gear 2 at exit. The edge
+        itself stays at its own gear's tip roll length.
+    slope_angle : array
+        Angle phi in rad, >= 0, between the two flanks at the edge: they open by phi per length away from it.
+    lever_arm_ratio_pinion, lever_arm_ratio_wheel : array
+        Moment arm of the corner force about the gear's axis over its base radius. The force acts along the mating
+        flank's normal, so the ratio is 1 for the gear whose flank is touched. For the wheel it is also the rate at
+        which a lag on the line of action closes the distance along that normal.
+    valid : array of bool
+        False where the edge meets no involute: below the form point, or past the tooth's tip.
+    """
+
+    gap: FloatArray
+    flank_roll_length: FloatArray
+    slope_angle: FloatArray
+    lever_arm_ratio_pinion: FloatArray
+    lever_arm_ratio_wheel: FloatArray
+    valid: BoolArray
+
+
+class _Touch(NamedTuple):
+    """The flank gear turned until it touches the tip edge, the tip gear held."""
+
+    gap: FloatArray
+    flank_roll_length: FloatArray
+    slope_angle: FloatArray
+    lever_arm_ratio: FloatArray  # of the tip gear
+
+
+def corner_contact(pair: GearPair, side: Side, overshoot: ArrayLike) -> CornerContact:
+    """Exact rigid corner contact of one tooth pair.
+
+    Parameters
+    ----------
+    pair : GearPair
+        The gears; their modifications are not included.
+    side : {"approach", "exit"}
+        Whether the pair has not reached the path of contact yet (edge of gear 2 on flank 1), or has left it (edge of
+        gear 1 on flank 2).
+    overshoot : array_like
+        Distance in m, >= 0, of the nominal roll length l_1 given by the driving gear's angle (`GearPair.roll_lengths`)
+        from the path's end: l_A - l_1 at approach, l_1 - l_E at exit.
+
+    Returns
+    -------
+    CornerContact
+        Arrays of the shape of `overshoot`.
+
+    Raises
+    ------
+    InputError
+        An unknown side, or a negative overshoot.
+    """
+    beyond = np.asarray(overshoot, dtype=float)
+    if not np.all(beyond >= 0.0):
+        raise InputError("overshoot", overshoot, "at least 0", "Inside the path of contact there is no gap.")
+    one = np.ones_like(beyond)
+    if side == "exit":
+        touch = _touch(pair, pair.pinion, pair.wheel, pair.pinion.tip_roll_length + beyond)
+        return _masked(touch, pair.wheel, touch.lever_arm_ratio, one)
+    if side == "approach":
+        touch = _touch_by_tip_gear(pair, pair.wheel, pair.pinion, pair.wheel.tip_roll_length + beyond)
+        return _masked(touch, pair.pinion, one, touch.lever_arm_ratio)
+    raise InputError("side", side, 'one of "approach" and "exit"')
+
+
+def corner_gap(pair: GearPair, side: Side, overshoot: ArrayLike) -> FloatArray:
+    """Rigid gap of `corner_contact` in m, NaN where the edge meets no involute."""
+    return corner_contact(pair, side, overshoot).gap
+
+
+def _touch(pair: GearPair, tip: Gear, flank: Gear, roll_length: FloatArray) -> _Touch:
+    """Turn the flank gear until it touches the edge of the tip gear held at its nominal `roll_length`."""
+    working, distance = pair.working_pressure_angle, pair.center_distance
+    tip_foot = working + (tip.tip_roll_length - roll_length) / tip.base_radius
+    sine, cosine = np.sin(tip_foot), np.cos(tip_foot)
+    # the edge as seen from the flank gear's centre, the tip gear's centre lying on +x
+    x = distance - tip.base_radius * cosine - tip.tip_roll_length * sine
+    y = tip.tip_roll_length * cosine - tip.base_radius * sine
+    with np.errstate(invalid="ignore"):
+        touched = np.sqrt(x**2 + y**2 - flank.base_radius**2)
+    flank_foot = np.arctan2(y, x) + np.arctan2(touched, flank.base_radius)
+    rolled = touched - flank.base_radius * (flank_foot - working)
+    gap = rolled - pair.common_tangent + roll_length
+    arm = (distance * np.cos(flank_foot) - flank.base_radius) / tip.base_radius
+    return _Touch(gap, touched, flank_foot - tip_foot, arm)
+
+
+def _touch_by_tip_gear(pair: GearPair, tip: Gear, flank: Gear, roll_length: FloatArray) -> _Touch:
+    """Turn the tip gear until its edge touches the flank gear, held where the tip gear's nominal is `roll_length`.
+
+    The lag e of the tip gear moves it to roll_length + e; there the flank gear must need no turn beyond e, which is
+    e = gap(roll_length + e). The gap is convex, so Newton's iteration from e = 0 ascends to the root.
+    """
+    lag = np.zeros_like(roll_length)
+    for _ in range(_ITERATIONS):
+        touch = _touch(pair, tip, flank, roll_length + lag)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            step = np.where(touch.lever_arm_ratio > 0.0, (touch.gap - lag) / touch.lever_arm_ratio, np.nan)
+        lag = lag + step
+        if not np.any(np.abs(step) > 1e-16 * pair.center_distance):
+            break
+    return touch._replace(gap=lag)
+
+
+def _masked(touch: _Touch, flank: Gear, pinion_arm: FloatArray, wheel_arm: FloatArray) -> CornerContact:
+    """Blank what lies off the flank's involute."""
+    slack = 1e-9 * flank.normal_module
+    roll = touch.flank_roll_length
+    valid = (roll >= flank.form_roll_length - slack) & (roll <= flank.tip_roll_length + slack)
+    valid &= np.isfinite(touch.gap)
+    parts = (np.maximum(touch.gap, 0.0), roll, np.maximum(touch.slope_angle, 0.0), pinion_arm, wheel_arm)
+    return CornerContact(*(np.where(valid, part, np.nan) for part in parts), valid=valid)
