@@ -23,8 +23,8 @@ KINDS = {
 }
 INTRODUCTION = """# Validation
 
-What the tests measured, beside what they ask for. This page is generated: `./scripts/test` records the figures,
-`./scripts/validation-page` writes them here. The assertions are in the tests named in the last column.
+What the tests measured, beside what they ask for. This page is generated: `./scripts/test` records the
+figures, `./scripts/validation-page` writes them here. The tests named in the last column assert them.
 """
 
 

@@ -1,0 +1,114 @@
+"""What a plot shows, apart from how it is drawn: one description for plotly and matplotlib."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+Dash = Literal["solid", "dash", "dot"]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """An axis: its label with the unit, its scale, and its limits where the data should not decide."""
+
+    label: str
+    scale: Literal["linear", "log"] = "linear"
+    limits: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve. NaN breaks it. `x` and `y` have the shape (n,)."""
+
+    name: str
+    x: FloatArray
+    y: FloatArray
+    colour: str
+    dash: Dash = "solid"
+    width: float = 1.8
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A straight line across a panel at one value, with a short label beside it."""
+
+    label: str
+    value: float
+    direction: Literal["horizontal", "vertical"] = "vertical"
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One pair of axes with its curves; `title` tells it from its neighbours."""
+
+    x: Axis
+    y: Axis
+    lines: tuple[Line, ...]
+    references: tuple[Reference, ...] = ()
+    title: str = ""
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A surface z(y, x): `x` (n,), `y` (m,), `z` (m, n)."""
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+    axes: tuple[Axis, Axis, Axis]
+
+
+@dataclass(frozen=True)
+class Table:
+    """Numbers in words: what a screen reader, a printout or a spreadsheet takes instead of a plot."""
+
+    caption: str
+    head: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A plot of one or more panels, or of one surface.
+
+    Attributes
+    ----------
+    key : str
+        Name of the image file and anchor of the page.
+    title, caption : str
+        What is shown, and how to read it (signs, conventions).
+    alternative : str
+        The finding in words, for those who do not see the plot.
+    content : tuple of Panel, or Surface
+        Panels are stacked from top to bottom.
+    table : Table or None
+        The main numbers behind the plot.
+    """
+
+    key: str
+    title: str
+    caption: str
+    alternative: str
+    content: tuple[Panel, ...] | Surface
+    table: Table | None = None
+
+
+def number(value: float, digits: int = 4) -> str:
+    """Write `value` with `digits` significant digits, without an exponent where that is readable."""
+    if not np.isfinite(value):
+        return "none"
+    if value == 0.0:
+        return "0"
+    size = int(np.floor(np.log10(abs(value))))
+    return f"{value:.{digits - 1}e}" if not -4 <= size < 7 else f"{value:.{max(digits - 1 - size, 0)}f}"
+
+
+def thousands(values: Sequence[float]) -> tuple[str, ...]:
+    """Label loads: whole numbers without a decimal point, others with up to four digits."""
+    return tuple(f"{v:.0f}" if float(v).is_integer() else f"{v:.4g}" for v in values)

@@ -1,0 +1,115 @@
+"""Figure descriptions as images, by matplotlib without a display."""
+
+from __future__ import annotations
+
+from io import BytesIO
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure as Sheet
+from matplotlib.ticker import ScalarFormatter
+
+from service.report import palette
+from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface
+
+_WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
+_DASH = {"solid": "-", "dash": "--", "dot": ":"}
+
+
+def png(figure: Figure) -> bytes:
+    """Draw `figure` and return the PNG file's bytes."""
+    sheet = (
+        _surface_sheet(figure.content)
+        if isinstance(figure.content, Surface)
+        else _panel_sheet(figure.content)
+    )
+    sheet.suptitle(figure.title, x=0.01, ha="left", fontsize=12, fontweight="bold", color=palette.INK)
+    FigureCanvasAgg(sheet)
+    buffer = BytesIO()
+    sheet.savefig(
+        buffer, format="png", dpi=_DPI, metadata={"Title": figure.title, "Description": figure.alternative}
+    )
+    return buffer.getvalue()
+
+
+def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
+    """Stack panels; curves of one name share one entry in the legend on top."""
+    sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * len(panels) + 1.2), layout="constrained")
+    axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False)[:, 0])
+    handles: dict[str, Any] = {}
+    for panel, ax in zip(panels, axes, strict=True):
+        for line in panel.lines:
+            handles.setdefault(line.name, _draw(ax, line))
+        _finish(ax, panel)
+    if len(handles) > 1:
+        columns = min(len(handles), 6)
+        sheet.legend(
+            handles.values(),
+            handles.keys(),
+            loc="outside lower left",
+            ncols=columns,
+            frameon=False,
+            fontsize=9,
+        )
+    return sheet
+
+
+def _draw(ax: Axes, line: Line) -> Any:
+    """Draw one curve and return its handle."""
+    (handle,) = ax.plot(line.x, line.y, color=line.colour, ls=_DASH[line.dash], lw=line.width * 0.8)
+    return handle
+
+
+def _finish(ax: Axes, panel: Panel) -> None:
+    """Label, scale and dress one panel."""
+    for axis, name in ((panel.x, "x"), (panel.y, "y")):
+        _scale(ax, axis, name)
+    for reference in panel.references:
+        _refer(ax, reference)
+    if panel.title:
+        ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold")
+    ax.grid(color=palette.GRID, lw=0.6)
+    ax.spines[["top", "right"]].set_visible(False)
+    ax.set_axisbelow(True)
+
+
+def _scale(ax: Axes, axis: Axis, name: str) -> None:
+    """Give one axis its label, scale and limits."""
+    ax.set(**{f"{name}label": axis.label, f"{name}scale": axis.scale})
+    if axis.limits:
+        ax.set(**{f"{name}lim": axis.limits})
+    if axis.scale == "linear":
+        formatter = ScalarFormatter(useOffset=False)
+        getattr(ax, f"{name}axis").set_major_formatter(formatter)
+
+
+def _refer(ax: Axes, reference: Reference) -> None:
+    """Draw a reference line with its label."""
+    if reference.direction == "vertical":
+        ax.axvline(reference.value, color=palette.MUTED, ls="--", lw=0.8, zorder=0.5)
+        place, transform = (reference.value, 0.98), ax.get_xaxis_transform()
+        style = {"ha": "left", "va": "top"}
+    else:
+        ax.axhline(reference.value, color=palette.MUTED, ls="--", lw=0.8, zorder=0.5)
+        place, transform = (0.99, reference.value), ax.get_yaxis_transform()
+        style = {"ha": "right", "va": "bottom"}
+    ax.text(*place, f" {reference.label}", transform=transform, fontsize=8, color=palette.MUTED, **style)
+
+
+def _surface_sheet(surface: Surface) -> Sheet:
+    """Draw a surface in three dimensions."""
+    sheet = Sheet(figsize=(_WIDTH, _SURFACE_HEIGHT), layout="constrained")
+    ax: Any = sheet.add_subplot(projection="3d", box_aspect=(1.4, 1.2, 0.8))
+    colours = LinearSegmentedColormap.from_list("cividis_steps", palette.CIVIDIS)
+    x, y = np.meshgrid(surface.x, surface.y)
+    drawn = ax.plot_surface(
+        x, y, surface.z, cmap=colours, rcount=80, ccount=160, linewidth=0, antialiased=True
+    )
+    for axis, name in zip(surface.axes, "xyz", strict=True):
+        getattr(ax, f"set_{name}label")(axis.label, labelpad=8)
+    ax.view_init(elev=24, azim=-133)
+    sheet.colorbar(drawn, ax=ax, shrink=0.55, pad=0.08, label=surface.axes[2].label)
+    return sheet

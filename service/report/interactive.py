@@ -1,0 +1,160 @@
+"""Figure descriptions as plotly.js data and layout: plain JSON, made without the plotly package."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from service.report import palette
+from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Surface
+
+Json = dict[str, Any]
+
+_PANEL_HEIGHT, _SURFACE_HEIGHT, _MARGINS = 300, 560, 130
+_FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
+
+
+def plotly_figure(figure: Figure) -> Json:
+    """Return ``{"data": [...], "layout": {...}}`` for ``Plotly.newPlot``."""
+    if isinstance(figure.content, Surface):
+        return {
+            "data": [_surface(figure.content)],
+            "layout": _layout(_SURFACE_HEIGHT) | _scene(figure.content),
+        }
+    return _panels(figure.content)
+
+
+def _panels(panels: tuple[Panel, ...]) -> Json:
+    """Stack panels, each with its own axes, the first on top."""
+    layout: Json = _layout(_PANEL_HEIGHT * len(panels) + _MARGINS)
+    layout |= {"shapes": [], "annotations": []}
+    data: list[Json] = []
+    named: set[str] = set()
+    for index, panel in enumerate(panels):
+        suffix = str(index + 1) if index else ""
+        layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
+        layout["yaxis" + suffix] = _axis(panel.y) | {
+            "domain": _domain(index, len(panels)),
+            "anchor": "x" + suffix,
+        }
+        layout["annotations"] += _panel_title(panel, suffix)
+        for line in panel.lines:
+            data.append(_line(line, suffix, show=line.name not in named))
+            named.add(line.name)
+        for reference in panel.references:
+            _add_reference(layout, reference, panel, suffix)
+    layout["showlegend"] = len(named) > 1
+    return {"data": data, "layout": layout}
+
+
+def _domain(index: int, count: int) -> list[float]:
+    """Vertical extent of a panel as a fraction of the plot, with room for titles between."""
+    gap = 0.09 if count > 1 else 0.0
+    height = (1 - gap * (count - 1)) / count
+    top = 1 - index * (height + gap)
+    return [max(round(top - height, 6), 0.0), round(top, 6)]
+
+
+def _layout(height: int) -> Json:
+    """Return what all figures share."""
+    return {
+        "height": height,
+        "font": _FONT | {"color": palette.INK},
+        "margin": {"l": 76, "r": 24, "t": 56, "b": 60},
+        "paper_bgcolor": "#FFFFFF",
+        "plot_bgcolor": "#FFFFFF",
+        "hovermode": "closest",
+        "legend": {"orientation": "h", "x": 0, "y": 1, "yref": "container", "yanchor": "top"},
+    }
+
+
+def _axis(axis: Axis) -> Json:
+    """One axis of a panel."""
+    made: Json = {
+        "title": {"text": axis.label, "standoff": 10},
+        "type": axis.scale,
+        "gridcolor": palette.GRID,
+        "linecolor": palette.MUTED,
+        "zeroline": False,
+        "ticks": "outside",
+        "tickcolor": palette.MUTED,
+        "automargin": True,
+    }
+    if axis.scale == "log":
+        made |= {"exponentformat": "power", "dtick": 1}
+    if axis.limits:
+        made["range"] = [float(v) for v in (np.log10(axis.limits) if axis.scale == "log" else axis.limits)]
+    return made
+
+
+def _line(line: Line, suffix: str, show: bool) -> Json:
+    """One curve; curves of one name share a legend entry."""
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": line.name,
+        "x": _numbers(line.x),
+        "y": _numbers(line.y),
+        "xaxis": "x" + suffix,
+        "yaxis": "y" + suffix,
+        "line": {"color": line.colour, "dash": line.dash, "width": line.width},
+        "legendgroup": line.name,
+        "showlegend": show,
+    }
+
+
+def _panel_title(panel: Panel, suffix: str) -> list[Json]:
+    """Put the panel's title at its upper left, inside the plot's frame of reference."""
+    if not panel.title:
+        return []
+    place = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 0, "y": 1}
+    anchor = {"xanchor": "left", "yanchor": "bottom", "showarrow": False}
+    return [place | anchor | {"text": f"<b>{panel.title}</b>"}]
+
+
+def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str) -> None:
+    """Draw a reference line and its label."""
+    upright = reference.direction == "vertical"
+    x, y = "x" + suffix, "y" + suffix
+    along = {"xref": x, "yref": f"{y} domain"} if upright else {"xref": f"{x} domain", "yref": y}
+    ends = ("x0", "x1", "y0", "y1") if upright else ("y0", "y1", "x0", "x1")
+    extent = dict(zip(ends, (reference.value, reference.value, 0, 1), strict=True))
+    stroke = {"line": {"color": palette.MUTED, "dash": "dash", "width": 1}}
+    layout["shapes"].append({"type": "line", "layer": "below"} | along | extent | stroke)
+    scale = panel.x.scale if upright else panel.y.scale
+    value = float(np.log10(reference.value)) if scale == "log" else reference.value
+    place = {"x": value, "y": 1} if upright else {"x": 1, "y": value}
+    anchor = {"xanchor": "left" if upright else "right", "yanchor": "top" if upright else "bottom"}
+    text = {"text": reference.label, "showarrow": False, "font": {"size": 12, "color": palette.MUTED}}
+    layout["annotations"].append(along | place | anchor | text)
+
+
+def _surface(surface: Surface) -> Json:
+    """Draw a surface in the ordered palette."""
+    steps = [[i / (len(palette.CIVIDIS) - 1), colour] for i, colour in enumerate(palette.CIVIDIS)]
+    unit = surface.axes[2].label.rpartition(",")[2].strip()
+    return {
+        "type": "surface",
+        "x": _numbers(surface.x),
+        "y": _numbers(surface.y),
+        "z": [_numbers(row) for row in surface.z],
+        "colorscale": steps,
+        "colorbar": {"title": {"text": unit}, "thickness": 14, "len": 0.7},
+    }
+
+
+def _scene(surface: Surface) -> Json:
+    """Axes and point of view of a surface."""
+    names = ("xaxis", "yaxis", "zaxis")
+    axes = {
+        name: {"title": {"text": axis.label}, "type": axis.scale, "gridcolor": palette.GRID}
+        for name, axis in zip(names, surface.axes, strict=True)
+    }
+    eye = {"eye": {"x": -1.5, "y": -1.6, "z": 0.8}}
+    return {"scene": axes | {"camera": eye, "aspectratio": {"x": 1.4, "y": 1.2, "z": 0.8}}}
+
+
+def _numbers(values: FloatArray) -> list[float | None]:
+    """Numbers for JSON: seven digits, NaN as null (a gap)."""
+    return [float(f"{v:.7g}") if np.isfinite(v) else None for v in values]

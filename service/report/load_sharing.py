@@ -1,0 +1,84 @@
+"""Share of the load that each tooth pair carries as it passes through the mesh."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.ste import SteDatabase
+from service.report import palette
+from service.report.aligned import aligned_index, load_labels, middle_load, shown_loads
+from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Table, number
+from service.report.ste_curves import POSITION_AXIS
+
+_CARRIES = 1e-6  # a pair with less than this share nowhere carries load
+
+
+def load_sharing(database: SteDatabase) -> Figure:
+    """Draw the share of each pair against position at the lowest, middle and highest load."""
+    shown = shown_loads(database)
+    loads = sorted({shown[0], middle_load(database), shown[-1]})
+    return Figure(
+        key="load_sharing",
+        title="Load sharing between tooth pairs",
+        caption="One line is one pair of teeth from entering the mesh to leaving it; at every position the "
+        "shares sum to one. Pair 0 touches at the pitch point at position 0; pair +1 is one pitch ahead.",
+        alternative=_words(database, loads),
+        content=tuple(_panel(database, load) for load in loads),
+        table=_table(database),
+    )
+
+
+def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int, FloatArray]]:
+    """Follow each pair over two pitches.
+
+    The database counts pairs anew in every period: its pair j at x is the pair j + 1 seen one pitch earlier.
+    Returns the positions (2 P + 1,) and, per pair that carries load somewhere, its share there.
+    """
+    m, d = aligned_index(database)
+    share = database.load_share[:, load, m, d, :]
+    position = np.concatenate([database.position, database.position + 1.0, [2.0]])
+    column = {int(pair): share[:, k] for k, pair in enumerate(database.pair)}
+    none = np.zeros(len(share))
+    followed = {}
+    for pair in range(int(database.pair[0]) - 2, int(database.pair[-1]) + 1):
+        parts = [column.get(pair + turn, none) for turn in range(3)]
+        whole = np.concatenate([parts[0], parts[1], parts[2][:1]])
+        if np.nanmax(whole) > _CARRIES:
+            followed[pair] = whole
+    return position, followed
+
+
+def _panel(database: SteDatabase, load: int) -> Panel:
+    """One load's shares."""
+    position, followed = pair_shares(database, load)
+    lines = tuple(
+        Line(f"pair {pair:+d}" if pair else "pair 0", position, share, palette.category(pair % 6))
+        for pair, share in followed.items()
+    )
+    y = Axis("share of the load", limits=(0.0, 1.05))
+    return Panel(POSITION_AXIS, y, lines, title=load_labels(database)[load])
+
+
+def _words(database: SteDatabase, loads: list[int]) -> str:
+    """Say for how much of a pitch one pair carries everything."""
+    m, d = aligned_index(database)
+    parts = []
+    for load in loads:
+        alone = np.nanmax(database.load_share[:, load, m, d, :], axis=-1) > 1 - _CARRIES
+        parts.append(
+            f"{number(100 * float(np.mean(alone)), 2)} % of the positions at {load_labels(database)[load]}"
+        )
+    return f"One pair carries the whole load in {', '.join(parts)}; elsewhere two or more pairs share it."
+
+
+def _table(database: SteDatabase) -> Table:
+    """Shares at the middle load, eight positions in a pitch."""
+    m, d = aligned_index(database)
+    load = middle_load(database)
+    steps = np.linspace(0, len(database.position), 8, endpoint=False).astype(int)
+    rows = tuple(
+        (number(database.position[p], 3), *(number(v, 3) for v in database.load_share[p, load, m, d, :]))
+        for p in steps
+    )
+    head = ("position, base pitches", *(f"pair {int(j):+d}" if j else "pair 0" for j in database.pair))
+    return Table(f"Share of the load at {load_labels(database)[load]}", head, rows)

@@ -1,0 +1,44 @@
+"""Colours that stay apart for colour-blind readers and in grey print.
+
+Categories take the palette of Okabe and Ito (2008); ordered values take dark-to-light steps of cividis, which
+rises evenly in lightness for normal and for red-green-blind eyes (Nunez, Anderton and Renslow 2018, PLoS ONE
+13(7)).
+"""
+
+from __future__ import annotations
+
+BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+)
+CATEGORIES = (BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY)
+INK, MUTED, GRID = "#1B1F24", "#59636E", "#DDE1E6"
+
+# cividis at 0, 0.1 ... 1.0
+CIVIDIS = (
+    "#00224E", "#083370", "#35456C", "#4F576C", "#666970", "#7D7C78",
+    "#948E77", "#AEA371", "#C8B866", "#E5CF52", "#FEE838",
+)  # fmt: skip
+_DARKEST, _LIGHTEST = 0.0, 0.82  # lighter than this vanishes on white paper
+
+
+def category(index: int) -> str:
+    """Return the colour of the index-th category; after six they repeat."""
+    return CATEGORIES[index % len(CATEGORIES)]
+
+
+def ordered(index: int, count: int) -> str:
+    """Return the colour of step `index` of `count` ordered values, dark for the first."""
+    fraction = _DARKEST + (_LIGHTEST - _DARKEST) * index / max(count - 1, 1)
+    low = min(int(fraction * 10), 9)
+    return _blend(CIVIDIS[low], CIVIDIS[low + 1], fraction * 10 - low)
+
+
+def _blend(first: str, second: str, weight: float) -> str:
+    """Mix two hex colours."""
+    parts = ((int(first[i : i + 2], 16), int(second[i : i + 2], 16)) for i in (1, 3, 5))
+    return "#" + "".join(f"{round(a + (b - a) * weight):02X}" for a, b in parts)

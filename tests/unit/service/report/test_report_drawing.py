@@ -1,0 +1,101 @@
+"""Both ways of drawing one figure description agree with it."""
+
+import struct
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from service.report import palette
+from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, number
+from service.report.image import png
+from service.report.interactive import plotly_figure
+
+X = np.linspace(0.0, 2.0, 9)
+
+
+def stacked(count: int = 2) -> Figure:
+    y = np.sin(np.pi * X)
+    y[3] = np.nan
+    lines = (Line("a", X, y, palette.BLUE), Line("b", X, 2 * X, palette.GREEN, "dash"))
+    references = (Reference("first", 1.0), Reference("level", 0.5, "horizontal"))
+    panel = Panel(Axis("position, base pitches"), Axis("STE, µm"), lines, references, "100 N m")
+    return Figure("key", "Title", "Caption", "Words", (panel,) * count)
+
+
+def test_every_line_of_every_panel_is_drawn_with_its_data() -> None:
+    drawn = plotly_figure(stacked())
+    assert len(drawn["data"]) == 4
+    assert drawn["data"][3]["y"] == pytest.approx(list(2 * X))
+    assert drawn["data"][0]["y"][3] is None
+
+
+def test_a_name_stands_once_in_the_legend() -> None:
+    shown = [trace["name"] for trace in plotly_figure(stacked())["data"] if trace["showlegend"]]
+    assert shown == ["a", "b"]
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 5])
+def test_panels_share_the_height_without_overlap(count: int) -> None:
+    layout = plotly_figure(stacked(count))["layout"]
+    domains = [layout["yaxis" + (str(i + 1) if i else "")]["domain"] for i in range(count)]
+    assert domains[0][1] == 1.0
+    assert domains[-1][0] == pytest.approx(0.0, abs=1e-6)
+    for upper, lower in zip(domains, domains[1:], strict=False):
+        assert upper[0] > lower[1]
+
+
+def test_references_stand_in_their_own_panel() -> None:
+    shapes = plotly_figure(stacked())["layout"]["shapes"]
+    assert [(s["xref"], s["yref"]) for s in shapes] == [
+        ("x", "y domain"), ("x domain", "y"), ("x2", "y2 domain"), ("x2 domain", "y2"),
+    ]  # fmt: skip
+    assert shapes[0]["x0"] == shapes[0]["x1"] == 1.0
+    assert shapes[1]["y0"] == shapes[1]["y1"] == 0.5
+
+
+def test_a_logarithmic_axis_places_limits_and_labels_in_decades() -> None:
+    panel = stacked(1).content[0]  # type: ignore[index]
+    panel = replace(panel, x=Axis("frequency, Hz", "log", (10.0, 1000.0)), references=(Reference("f", 100.0),))
+    layout = plotly_figure(replace(stacked(), content=(panel,)))["layout"]
+    assert layout["xaxis"]["range"] == [1.0, 3.0]
+    note = next(a for a in layout["annotations"] if a["text"] == "f")
+    assert note["x"] == 2.0
+
+
+def test_a_surface_keeps_rows_over_columns() -> None:
+    z = np.arange(6.0).reshape(2, 3)
+    axes = (Axis("x"), Axis("force, N"), Axis("STE, µm"))
+    figure = replace(stacked(), content=Surface(np.arange(3.0), np.arange(2.0), z, axes))
+    drawn = plotly_figure(figure)
+    assert drawn["data"][0]["z"] == z.tolist()
+    assert drawn["layout"]["scene"]["yaxis"]["title"]["text"] == "force, N"
+
+
+@pytest.mark.parametrize("count", [1, 3])
+def test_an_image_grows_with_its_panels(count: int) -> None:
+    image = png(stacked(count))
+    assert image.startswith(b"\x89PNG")
+    width, height = struct.unpack(">II", image[16:24])
+    assert width == 1350
+    assert height == pytest.approx(150 * (2.7 * count + 1.2), abs=1)
+
+
+def test_ordered_colours_lighten_and_stay_visible_on_white() -> None:
+    def luminance(colour: str) -> float:
+        parts = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+        linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    values = [luminance(palette.ordered(i, 12)) for i in range(12)]
+    assert values == sorted(values)
+    assert 1.05 / (values[-1] + 0.05) > 1.7  # contrast ratio to white of the lightest
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [(6.24531, 4, "6.245"), (0.0001234, 3, "0.000123"), (2660.4, 5, "2660.4"), (1.2e-9, 2, "1.2e-09"), (0.0, 4, "0"),
+     (float("nan"), 4, "none"), (123456.0, 3, "123456")],
+)  # fmt: skip
+def test_numbers_have_their_significant_digits(value: float, digits: int, text: str) -> None:
+    assert number(value, digits) == text
