@@ -1,18 +1,26 @@
 """Involute gear geometry: one gear, its exact tooth profile, and the pair (ISO 21771-1 vocabulary)."""
 
 from fe_contact.geometry.basic_rack import BasicRack
+from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
+from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, iso6336_stiffness
 from fe_contact.geometry.modification import FlankModification
 from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 
 __all__ = [
     "BasicRack",
+    "CornerContact",
     "FlankModification",
     "Gear",
     "GearPair",
+    "Iso6336Stiffness",
     "PathOfContact",
+    "Side",
     "ToothProfile",
+    "corner_contact",
+    "corner_gap",
+    "iso6336_stiffness",
     "tooth_profile",
 ]

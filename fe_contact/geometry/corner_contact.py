@@ -1,13 +1,14 @@
 """Corner contact: the tip edge of one gear on the other's flank, off the line of action.
 
-Before the path of contact begins (approach) the wheel's tip edge can touch the pinion's flank, and after it ends
-(exit) the pinion's tip edge can touch the wheel's. Rigid gears are apart there; the gap is exact.
+Before the path of contact begins (approach) the wheel's tip edge can touch the pinion's flank, and after it
+ends (exit) the pinion's tip edge can touch the wheel's. Rigid gears are apart there; the gap is exact.
 
-Derivation. Fix the tip gear at the roll length l its flank would touch at on the line of action, with l beyond its tip
-roll length l_a. Its involute's point of roll length l_a has its normal's foot on the base circle at the angle
-tau = alpha_wt + (l_a - l) / r_b from the line of centres, which places the tip edge; its distance rho from the
-other centre gives the roll length sqrt(rho^2 - r_b^2) of the flank point it can touch, and the polar angle there gives
-the flank gear's rotation. The gap is what that rotation lacks, times the base radius.
+Derivation. Hold the tip gear at the roll length l its flank would touch at on the line of action, l beyond
+its tip roll length l_a. The normal at its tip edge touches the base circle at the angle
+tau = alpha_wt + (l_a - l) / r_b from the line of centres, which places the edge. The edge's distance rho
+from the other centre gives the roll length sqrt(rho^2 - r_b^2) of the flank point it can touch, and its
+polar angle there the rotation at which that gear touches it. The gap is what the conjugate rotation lacks
+of it, times the base radius.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ _ITERATIONS = 50
 
 @dataclass(frozen=True)
 class CornerContact:
-    """State of a tooth pair whose tip edge faces the mating flank; arrays of one shape, NaN where not `valid`.
+    """State of a tooth pair whose tip edge faces the mating flank; NaN where not `valid`.
 
     Attributes
     ----------
@@ -37,14 +38,14 @@ class CornerContact:
         Rigid gap in m on the line of action, >= 0: r_b2 times the lag of the driven gear that closes it, the
         driving gear's angle held.
     flank_roll_length : array
-        Roll length in m at which the edge touches the mating flank: of gear 1 at approach, of gear 2 at exit. The edge
-        itself stays at its own gear's tip roll length.
+        Roll length in m at which the edge touches the mating flank: of gear 1 at approach, of gear 2 at exit.
+        The edge itself stays at its own gear's tip roll length.
     slope_angle : array
         Angle phi in rad, >= 0, between the two flanks at the edge: they open by phi per length away from it.
     lever_arm_ratio_pinion, lever_arm_ratio_wheel : array
-        Moment arm of the corner force about the gear's axis over its base radius. The force acts along the mating
-        flank's normal, so the ratio is 1 for the gear whose flank is touched. For the wheel it is also the rate at
-        which a lag on the line of action closes the distance along that normal.
+        Moment arm of the corner force about the gear's axis over its base radius. The force acts along the
+        mating flank's normal, so the ratio is 1 for the gear whose flank is touched. For the wheel it is also
+        the rate at which a lag on the line of action closes the distance along that normal.
     valid : array of bool
         False where the edge meets no involute: below the form point, or past the tooth's tip.
     """
@@ -74,11 +75,11 @@ def corner_contact(pair: GearPair, side: Side, overshoot: ArrayLike) -> CornerCo
     pair : GearPair
         The gears; their modifications are not included.
     side : {"approach", "exit"}
-        Whether the pair has not reached the path of contact yet (edge of gear 2 on flank 1), or has left it (edge of
-        gear 1 on flank 2).
+        Whether the pair has not reached the path of contact yet (edge of gear 2 on flank 1), or has left it
+        (edge of gear 1 on flank 2).
     overshoot : array_like
-        Distance in m, >= 0, of the nominal roll length l_1 given by the driving gear's angle (`GearPair.roll_lengths`)
-        from the path's end: l_A - l_1 at approach, l_1 - l_E at exit.
+        Distance in m, >= 0, of the nominal roll length l_1 given by the driving gear's angle
+        (`GearPair.roll_lengths`) from the path's end: l_A - l_1 at approach, l_1 - l_E at exit.
 
     Returns
     -------
@@ -126,16 +127,17 @@ def _touch(pair: GearPair, tip: Gear, flank: Gear, roll_length: FloatArray) -> _
 
 
 def _touch_by_tip_gear(pair: GearPair, tip: Gear, flank: Gear, roll_length: FloatArray) -> _Touch:
-    """Turn the tip gear until its edge touches the flank gear, held where the tip gear's nominal is `roll_length`.
+    """Turn the tip gear until its edge touches the flank gear, held where conjugate to `roll_length`.
 
-    The lag e of the tip gear moves it to roll_length + e; there the flank gear must need no turn beyond e, which is
-    e = gap(roll_length + e). The gap is convex, so Newton's iteration from e = 0 ascends to the root.
+    A lag e brings the tip gear to roll_length + e, and it touches if the flank gear, turned instead, would
+    need just that: e = gap(roll_length + e). The gap is convex, so Newton's iteration from e = 0 ascends to
+    the root.
     """
     lag = np.zeros_like(roll_length)
     for _ in range(_ITERATIONS):
         touch = _touch(pair, tip, flank, roll_length + lag)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            step = np.where(touch.lever_arm_ratio > 0.0, (touch.gap - lag) / touch.lever_arm_ratio, np.nan)
+        reachable = touch.lever_arm_ratio > 0.0
+        step = np.where(reachable, touch.gap - lag, np.nan) / np.where(reachable, touch.lever_arm_ratio, 1.0)
         lag = lag + step
         if not np.any(np.abs(step) > 1e-16 * pair.center_distance):
             break
@@ -149,4 +151,5 @@ def _masked(touch: _Touch, flank: Gear, pinion_arm: FloatArray, wheel_arm: Float
     valid = (roll >= flank.form_roll_length - slack) & (roll <= flank.tip_roll_length + slack)
     valid &= np.isfinite(touch.gap)
     parts = (np.maximum(touch.gap, 0.0), roll, np.maximum(touch.slope_angle, 0.0), pinion_arm, wheel_arm)
-    return CornerContact(*(np.where(valid, part, np.nan) for part in parts), valid=valid)
+    gap, flank_roll_length, slope, arm_1, arm_2 = (np.where(valid, part, np.nan) for part in parts)
+    return CornerContact(gap, flank_roll_length, slope, arm_1, arm_2, valid)

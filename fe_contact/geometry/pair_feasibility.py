@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 from fe_contact.checks import positive
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.backlash import shift_sum, tight_center_distance, tight_shift_sum
+from fe_contact.geometry.fillet_interference import fillet_penetration
 
 if TYPE_CHECKING:
     from fe_contact.geometry.gear import Gear
     from fe_contact.geometry.gear_pair import GearPair
 
+_FILLET_SLACK = 1e-6  # of the normal module: the resolution of the sampled tip path
 _BACKLASH_SLACK = 1e-6  # of the normal module: what rounding a centre distance to seven digits may cost
 
 
@@ -43,6 +45,7 @@ def refuse_infeasible_pair(pair: GearPair) -> None:
     _refuse_contact_ratio(pair)
     _refuse_tip_clearance(pair)
     _refuse_interference(pair)
+    _refuse_fillet_interference(pair)
 
 
 def _refuse_jamming(pair: GearPair) -> None:
@@ -96,6 +99,19 @@ def _refuse_interference(pair: GearPair) -> None:
             largest = 2.0 * math.hypot(gear.base_radius, max(reach, 0.0))
             bound = f"at most {largest:.9g} m, where the tip meets the mating form circle"
             advice = "Lower the tip diameter or the addendum, or raise the mate's profile shift or dedendum."
+            raise InfeasibleGeometry(
+                "interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice
+            )
+
+
+def _refuse_fillet_interference(pair: GearPair) -> None:
+    """Refuse a tip that cuts the mating fillet on its way through the tooth space."""
+    gears = (("pinion", pair.pinion, pair.wheel), ("wheel", pair.wheel, pair.pinion))
+    for name, gear, mate in gears:
+        depth = fillet_penetration(pair, gear, mate)
+        if depth > _FILLET_SLACK * gear.normal_module:
+            bound = f"smaller: the tip cuts the mating fillet by {depth:.3g} m off the line of action"
+            advice = "Lower the tip diameter or the addendum, or the mate's root radius."
             raise InfeasibleGeometry(
                 "interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice
             )

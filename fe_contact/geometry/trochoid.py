@@ -4,8 +4,8 @@ The tool's rounding is a circle in the normal plane. Seen in the transverse plan
 place, it is an ellipse: distances along the pitch line grow by 1/cos(beta), heights do not. Its points are
 named by `tool_angle` theta: the angle between their normal and the pitch line in the normal plane, from the
 pressure angle (where the rounding leaves the straight flank) to pi/2 (the tool's tip, which generates the
-root circle). Every rack point generates the gear point at which its normal passes through the pitch point (law
-of gearing).
+root circle). Every rack point generates the gear point at which its normal passes through the pitch point
+(law of gearing).
 """
 
 from __future__ import annotations

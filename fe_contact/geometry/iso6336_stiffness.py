@@ -1,0 +1,89 @@
+"""Tooth stiffness of external gear pairs after ISO 6336-1, method B, in SI units."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from fe_contact.checks import positive
+from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.gear_pair import GearPair
+from fe_contact.material import STEEL
+
+_PER_MM_UM = 1e9  # N/(mm um) in N/m per m of face width
+_CORRECTION = 0.8  # C_M: measured gears against the theoretical stiffness
+_LOW_LINE_LOAD = 1e5  # N/m (100 N/mm): below it the stiffness falls with the load
+_SERIES = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
+
+
+@dataclass(frozen=True)
+class Iso6336Stiffness:
+    """Stiffness per unit face width, N/m per m.
+
+    Attributes
+    ----------
+    theoretical_single_stiffness : float
+        c'_th, of one pair of teeth with solid disc bodies.
+    single_stiffness : float
+        c': the largest stiffness of one pair of teeth, normal to the flank in the transverse plane.
+    mesh_stiffness : float
+        c_gamma_alpha: the mean over the cycle.
+    face_load_mesh_stiffness : float
+        c_gamma_beta, for face load factors.
+    """
+
+    theoretical_single_stiffness: float
+    single_stiffness: float
+    mesh_stiffness: float
+    face_load_mesh_stiffness: float
+
+
+def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336Stiffness:
+    """Tooth stiffness of `pair` (ISO 6336-1, method B, gear bodies as solid discs).
+
+    Parameters
+    ----------
+    pair : GearPair
+        External gears. The series was fitted for -0.5 <= x_1 + x_2 <= 2 and x_1 >= x_2.
+    line_load : float, optional
+        Specific load F_t K_A / b in N/m; below 1e5 N/m the stiffness falls in proportion. Default: above.
+
+    Returns
+    -------
+    Iso6336Stiffness
+        Per unit face width.
+    """
+    theoretical = _PER_MM_UM / _flexibility(pair.pinion, pair.wheel)
+    rack = 0.5 * (_rack_factor(pair.pinion) + _rack_factor(pair.wheel))
+    single = theoretical * _CORRECTION * rack * math.cos(pair.pinion.helix_angle) * _modulus_ratio(pair)
+    if line_load is not None:
+        single *= min(1.0, positive("line_load", line_load) / _LOW_LINE_LOAD)
+    mesh = single * (0.75 * pair.transverse_contact_ratio + 0.25)
+    return Iso6336Stiffness(theoretical, single, mesh, 0.85 * mesh)
+
+
+def _flexibility(pinion: Gear, wheel: Gear) -> float:
+    """Flexibility q' in mm um/N: the series of the standard."""
+    c1, c2, c3, c4, c5, c6, c7, c8, c9 = _SERIES
+    x1, x2 = pinion.profile_shift_coefficient, wheel.profile_shift_coefficient
+    z1, z2 = _virtual_teeth(pinion), _virtual_teeth(wheel)
+    linear = c1 + c2 / z1 + c3 / z2 + c4 * x1 + c5 * x1 / z1 + c6 * x2 + c7 * x2 / z2
+    return linear + c8 * x1**2 + c9 * x2**2
+
+
+def _virtual_teeth(gear: Gear) -> float:
+    """z_n: teeth of the virtual spur gear."""
+    return gear.teeth / (math.cos(gear.base_helix_angle) ** 2 * math.cos(gear.helix_angle))
+
+
+def _rack_factor(gear: Gear) -> float:
+    """C_B: basic racks other than h_fP = 1.2 m_n and alpha = 20 deg."""
+    height = 1.0 + 0.5 * (1.2 - gear.dedendum_coefficient)
+    return height * (1.0 - 0.02 * (20.0 - math.degrees(gear.normal_pressure_angle)))
+
+
+def _modulus_ratio(pair: GearPair) -> float:
+    """Harmonic mean of both moduli over steel's (the series is for steel pairs)."""
+    moduli = pair.pinion.material.youngs_modulus, pair.wheel.material.youngs_modulus
+    mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)
+    return mean / STEEL.youngs_modulus
