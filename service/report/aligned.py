@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import Curve, SteDatabase
 from service.report import palette
 from service.report.figure import FloatArray, Line, thousands
 
@@ -25,13 +25,37 @@ def aligned(database: SteDatabase) -> tuple[float, float]:
 
 
 def two_pitches(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
-    """Return positions from 0 to 2 base pitches, (n,), and STE there at every load, (n, F) in m."""
-    misalignment, change = aligned(database)
-    once = np.union1d(np.arange(POINTS_PER_PITCH) / POINTS_PER_PITCH, database.position)
-    columns = [database.ste(once, force, misalignment, change) for force in database.force]
-    values = np.stack(columns, axis=-1)
+    """Return positions from 0 to 2 base pitches, (n,), and STE there at every load, (n, F) in m.
+
+    A table with failed points cannot be interpolated: it shows its stored points with gaps.
+    """
+    once, values = _stored(database) if database.n_failed else _interpolated(database)
     position = np.concatenate([once, once + 1.0, [2.0]])
     return position, np.concatenate([values, values, values[:1]])
+
+
+def _interpolated(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
+    """One pitch, densely, as the table's users see it."""
+    misalignment, change = aligned(database)
+    once = np.union1d(np.arange(POINTS_PER_PITCH) / POINTS_PER_PITCH, database.position)
+    return once, database.ste(once[:, None], database.force, misalignment, change)
+
+
+def _stored(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
+    """One pitch at the stored positions."""
+    m, d = aligned_index(database)
+    return database.position, database.static_transmission_error[:, :, m, d]
+
+
+def load_curve(database: SteDatabase, load: int) -> Curve:
+    """Return the curve at a stored load, from the complete rows where points failed."""
+    misalignment, change = aligned(database)
+    return database.curve(
+        force=float(database.force[load]),
+        misalignment=misalignment,
+        center_distance_change=change,
+        allow_failed=True,
+    )
 
 
 def shown_loads(database: SteDatabase) -> tuple[int, ...]:

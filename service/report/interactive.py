@@ -11,7 +11,8 @@ from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Referen
 
 Json = dict[str, Any]
 
-_PANEL_HEIGHT, _SURFACE_HEIGHT, _MARGINS = 300, 560, 130
+_PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 560, 60, 76  # pixels
+_LEGEND_ROW, _NAMES_IN_ROW = 22, 8
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
 
@@ -27,33 +28,32 @@ def plotly_figure(figure: Figure) -> Json:
 
 def _panels(panels: tuple[Panel, ...]) -> Json:
     """Stack panels, each with its own axes, the first on top."""
-    layout: Json = _layout(_PANEL_HEIGHT * len(panels) + _MARGINS)
-    layout |= {"shapes": [], "annotations": []}
+    names = dict.fromkeys(line.name for panel in panels for line in panel.lines)
+    above = 44 + _LEGEND_ROW * (len(names) // (_NAMES_IN_ROW + 1))
+    inner = _PANEL_HEIGHT * len(panels) + _BETWEEN * (len(panels) - 1)
+    layout: Json = _layout(inner + above + _BELOW)
+    layout |= {"shapes": [], "annotations": [], "showlegend": len(names) > 1}
+    layout["margin"] = layout["margin"] | {"t": above}
     data: list[Json] = []
-    named: set[str] = set()
+    unnamed = set(names)
     for index, panel in enumerate(panels):
         suffix = str(index + 1) if index else ""
+        place = {"domain": _domain(index, inner), "anchor": "x" + suffix}
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
-        layout["yaxis" + suffix] = _axis(panel.y) | {
-            "domain": _domain(index, len(panels)),
-            "anchor": "x" + suffix,
-        }
+        layout["yaxis" + suffix] = _axis(panel.y) | place
         layout["annotations"] += _panel_title(panel, suffix)
         for line in panel.lines:
-            data.append(_line(line, suffix, show=line.name not in named))
-            named.add(line.name)
+            data.append(_line(line, suffix, show=line.name in unnamed))
+            unnamed.discard(line.name)
         for reference in panel.references:
             _add_reference(layout, reference, panel, suffix)
-    layout["showlegend"] = len(named) > 1
     return {"data": data, "layout": layout}
 
 
-def _domain(index: int, count: int) -> list[float]:
-    """Vertical extent of a panel as a fraction of the plot, with room for titles between."""
-    gap = 0.09 if count > 1 else 0.0
-    height = (1 - gap * (count - 1)) / count
-    top = 1 - index * (height + gap)
-    return [max(round(top - height, 6), 0.0), round(top, 6)]
+def _domain(index: int, inner: int) -> list[float]:
+    """Vertical extent of a panel as a fraction of the plot, with room for labels and titles between."""
+    top = inner - index * (_PANEL_HEIGHT + _BETWEEN)
+    return [round(max(top - _PANEL_HEIGHT, 0) / inner, 6), round(top / inner, 6)]
 
 
 def _layout(height: int) -> Json:
@@ -61,7 +61,7 @@ def _layout(height: int) -> Json:
     return {
         "height": height,
         "font": _FONT | {"color": palette.INK},
-        "margin": {"l": 76, "r": 24, "t": 56, "b": 60},
+        "margin": {"l": 76, "r": 24, "t": 16, "b": _BELOW},
         "paper_bgcolor": "#FFFFFF",
         "plot_bgcolor": "#FFFFFF",
         "hovermode": "closest",
@@ -151,8 +151,8 @@ def _scene(surface: Surface) -> Json:
         name: {"title": {"text": axis.label}, "type": axis.scale, "gridcolor": palette.GRID}
         for name, axis in zip(names, surface.axes, strict=True)
     }
-    eye = {"eye": {"x": -1.5, "y": -1.6, "z": 0.8}}
-    return {"scene": axes | {"camera": eye, "aspectratio": {"x": 1.4, "y": 1.2, "z": 0.8}}}
+    camera = {"eye": {"x": -1.35, "y": -1.6, "z": 0.85}, "center": {"x": 0, "y": 0, "z": -0.12}}
+    return {"scene": axes | {"camera": camera, "aspectratio": {"x": 1.3, "y": 1.1, "z": 0.75}}}
 
 
 def _numbers(values: FloatArray) -> list[float | None]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from service.report.pair import iso_mesh_stiffness
 
 from fe_contact.ste import SteDatabase
 from service.report.aligned import load_labels, load_lines, middle_load, two_pitches
 from service.report.figure import Axis, Figure, FloatArray, Panel, Reference, Table, number
-from service.report.pair import iso_mesh_stiffness
 from service.report.ste_curves import POSITION_AXIS
 
 _N_PER_MM_UM = 1e-9  # N/m per m of face width to N/(mm µm)
@@ -26,8 +26,8 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
     return Figure(
         key="mesh_stiffness",
         title="Mesh stiffness",
-        caption="Transverse mesh force divided by static transmission error and face width. The dashed line is the "
-        "mean mesh stiffness of ISO 6336-1 method B, which includes the correction 0.8 for measured gears.",
+        caption="Transverse mesh force over static transmission error and face width. The dashed line is "
+        "the mean mesh stiffness of ISO 6336-1 method B, which includes a correction of 0.8 for real gears.",
         alternative=_words(database, values, iso),
         content=(Panel(POSITION_AXIS, y, lines, references),),
         table=_table(database, values, iso),

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.ste import SteDatabase
-from service.report.aligned import load_labels, load_lines, shown_loads, two_pitches
-from service.report.figure import Axis, Figure, Panel, Table, number, thousands
+from service.report.aligned import load_curve, load_labels, load_lines, shown_loads, two_pitches
+from service.report.figure import Axis, Figure, Panel, Table, number
 
 POSITION_AXIS = Axis(
     "position of the driving gear, base pitches (0 = reference pair at the pitch point)", limits=(0, 2)
 )
+_TONES = 3
 
 
 def ste_curves(database: SteDatabase) -> Figure:
@@ -33,7 +34,7 @@ def _words(database: SteDatabase) -> str:
     """Say what the plot shows at its ends."""
     labels, loads = load_labels(database), shown_loads(database)
     ends = [
-        f"{number(database.peak_to_peak(torque=float(database.torque[k])).value * 1e6, 3)} µm at {labels[k]}"
+        f"{_um(load_curve(database, k).peak_to_peak.value, 3)} µm at {labels[k]}"
         for k in (loads[0], loads[-1])
     ]
     return f"{len(loads)} periodic curves rise with load; peak to peak from {ends[0]} to {ends[1]}."
@@ -42,13 +43,16 @@ def _words(database: SteDatabase) -> str:
 def _table(database: SteDatabase) -> Table:
     """Mean, peak to peak and the first harmonics with their error estimates at every load."""
     rows = []
-    loads = [float(t) for t in database.torque]
-    for torque, force, name in zip(loads, database.force, thousands(loads), strict=True):
-        mean, swing = database.mean(torque=torque), database.peak_to_peak(torque=torque)
-        tones = database.harmonics(torque=torque)[:3]
-        cells = [f"{number(e.value * 1e6)} ± {number(e.error * 1e6, 2)}" for e in (mean, swing)]
-        cells += [number(e.value * 1e6, 3) for e in tones]
-        rows.append((name, number(force, 5), *cells))
-    head = ("torque, N m", "normal force, N", "mean, µm", "peak to peak, µm")
-    orders = tuple(f"harmonic {k}, µm" for k in range(1, len(rows[0]) - len(head) + 1))
+    for load, label in enumerate(load_labels(database)):
+        curve = load_curve(database, load)
+        band = [f"{_um(e.value)} ± {_um(e.error, 2)}" for e in (curve.mean, curve.peak_to_peak)]
+        tones = [_um(e.value, 3) for e in curve.harmonics[:_TONES]]
+        rows.append((label, number(float(database.force[load]), 5), *band, *tones))
+    head = ("torque", "normal force, N", "mean, µm", "peak to peak, µm")
+    orders = tuple(f"harmonic {k}, µm" for k in range(1, _TONES + 1))
     return Table("Static transmission error by load", head + orders, tuple(rows))
+
+
+def _um(value: float, digits: int = 4) -> str:
+    """Write metres as micrometres."""
+    return number(value * 1e6, digits)

@@ -1,0 +1,111 @@
+"""Laws that the figures of an STE database obey."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact.ste import Metadata, SteDatabase
+from service.report.aligned import shown_loads, two_pitches
+from service.report.database_surface import database_surface
+from service.report.figure import Surface
+from service.report.load_sharing import load_sharing, pair_shares
+from service.report.mesh_stiffness import mesh_stiffness, secant_stiffness
+from service.report.pair import iso_mesh_stiffness
+from service.report.ste_curves import ste_curves
+
+
+def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
+    position, values = two_pitches(database)
+    first = position < 1.0
+    second = (position >= 1.0) & (position < 2.0)
+    assert position[0] == 0.0
+    assert position[-1] == 2.0
+    np.testing.assert_array_equal(position[first] + 1.0, position[second])
+    np.testing.assert_array_equal(values[first], values[second])
+    np.testing.assert_array_equal(values[0], values[-1])
+
+
+def test_stored_points_are_on_the_curve(database: SteDatabase) -> None:
+    position, values = two_pitches(database)
+    at = np.searchsorted(position, database.position)
+    stored = database.static_transmission_error[:, :, 0, 0]
+    np.testing.assert_allclose(values[at], stored, rtol=1e-9)
+
+
+def test_curves_are_drawn_in_micrometres_for_the_loads_asked_for(database: SteDatabase) -> None:
+    (panel,) = ste_curves(database).content  # type: ignore[misc]
+    assert [line.name for line in panel.lines] == ["10 N m", "100 N m", "400 N m"]
+    stored = database.static_transmission_error[0, 2, 0, 0]
+    assert panel.lines[1].y[0] == pytest.approx(1e6 * stored)
+
+
+def test_the_table_has_every_load_with_its_error(database: SteDatabase) -> None:
+    table = ste_curves(database).table
+    assert table is not None
+    assert [row[0] for row in table.rows] == ["0.4 N m", "10 N m", "100 N m", "400 N m"]
+    assert table.rows[2][2] == "5.978 ± 0.012"
+
+
+def test_the_load_that_serves_lift_off_is_not_drawn(database: SteDatabase) -> None:
+    assert shown_loads(database) == (1, 2, 3)
+
+
+def test_shares_sum_to_one_wherever_a_pair_is(database: SteDatabase) -> None:
+    position, followed = pair_shares(database, 2)
+    total = np.sum(list(followed.values()), axis=0)
+    assert position[-1] == 2.0
+    np.testing.assert_allclose(total, 1.0, atol=1e-12)
+
+
+def test_each_pair_passes_as_the_one_before_did_a_pitch_earlier(database: SteDatabase) -> None:
+    position, followed = pair_shares(database, 2)
+    pitch = len(database.position)
+    np.testing.assert_array_equal(followed[-1][pitch:], followed[0][: pitch + 1])
+    carried = position[followed[-1] > 0]
+    assert 0.28 < carried[0] < 0.31  # enters
+    assert 1.69 < carried[-1] < 1.72  # leaves
+    assert np.all(np.diff(carried) < 0.02)  # without a gap
+
+
+def test_load_sharing_shows_three_loads(database: SteDatabase) -> None:
+    titles = [panel.title for panel in load_sharing(database).content]  # type: ignore[union-attr]
+    assert titles == ["10 N m", "100 N m", "400 N m"]
+
+
+def test_secant_stiffness_is_force_over_ste_and_width(database: SteDatabase) -> None:
+    _, values = secant_stiffness(database)
+    ste = database.static_transmission_error[0, 2, 0, 0]
+    assert values[0, 2] == pytest.approx(100.0 / 0.0375877 / ste / 0.025)
+
+
+def test_the_iso_line_has_the_standard_s_value(database: SteDatabase) -> None:
+    (panel,) = mesh_stiffness(database).content  # type: ignore[misc]
+    (reference,) = panel.references
+    assert reference.value == pytest.approx(16.28, abs=0.005)  # method B for this pair
+    assert reference.direction == "horizontal"
+
+
+def test_a_database_without_a_case_has_no_iso_line(database: SteDatabase) -> None:
+    from dataclasses import replace
+
+    bare = replace(database, metadata=Metadata())
+    assert iso_mesh_stiffness(bare) is None
+    assert mesh_stiffness(bare).content[0].references == ()  # type: ignore[index]
+
+
+def test_the_surface_stands_over_position_and_force(database: SteDatabase) -> None:
+    surface = database_surface(database).content
+    assert isinstance(surface, Surface)
+    assert surface.z.shape == (len(surface.y), len(surface.x))
+    np.testing.assert_array_equal(surface.y, database.force)
+    assert np.all(np.diff(surface.z, axis=0) > 0)
+
+
+def test_failed_points_are_gaps_and_the_rest_is_drawn(damaged: SteDatabase) -> None:
+    position, values = two_pitches(damaged)
+    assert math.isnan(values[5, 2])
+    assert np.count_nonzero(np.isnan(values)) == 2
+    assert len(position) == 129
+    for figure in (ste_curves, load_sharing, mesh_stiffness, database_surface):
+        assert figure(damaged).alternative
