@@ -1,0 +1,131 @@
+"""One transmission-error curve over position, with its mean, peak-to-peak and harmonics."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fe_contact.errors import InputError
+from fe_contact.ste.fields import SteFields
+from fe_contact.ste.load_sharing import error_band, load_share, pairs_seen
+from fe_contact.ste.loads import OperatingPoint
+from fe_contact.ste.mesh_force import MeshForce
+from fe_contact.types import Estimate, FloatArray
+
+HARMONICS = 20
+_SAMPLES = 4096
+_FARTHEST = 1000.0  # base pitches from the reference; load shares get a column per pair passed on the way
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Transmission error over position at one load and alignment.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+        Normal force in N, misalignment and centre-distance change in m.
+    torque : float
+        The load as torque on gear 1, N m.
+    position : (Q,) array
+        Base pitches, as asked (not wrapped).
+    ste : (Q,) array
+        Static transmission error, m.
+    error : (Q,) array
+        Half-width of its error band, m.
+    pair : (N,) array
+        Pair index of each column of `load_share`; the stored pairs if all positions lie in [0, 1).
+    load_share : (Q, N) array
+        Part of the load on each pair.
+    mean, peak_to_peak : Estimate
+        Over one pitch, whatever `position` holds.
+    harmonics : tuple of Estimate
+        Amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20.
+    harmonic_phases : (20,) array
+        phi_n in rad.
+    """
+
+    point: OperatingPoint
+    torque: float
+    position: FloatArray
+    ste: FloatArray
+    error: FloatArray
+    pair: NDArray[np.int64]
+    load_share: FloatArray
+    mean: Estimate
+    peak_to_peak: Estimate
+    harmonics: tuple[Estimate, ...]
+    harmonic_phases: FloatArray
+
+
+def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: ArrayLike | None) -> Curve:
+    """Evaluate the curve at positions `at` (the stored ones if None).
+
+    The error of the mean is the mean of the pointwise band, that of peak-to-peak the sum of the bands at
+    the two extremes, that of a harmonic twice the mean band: bounds for any error inside the pointwise
+    bands, so errors common to all positions make the true ones smaller.
+
+    Raises
+    ------
+    InputError
+        If `at` is no list of finite positions within 1000 pitches.
+    """
+    position = database.position if at is None else _positions(at)
+    pitch = np.arange(_SAMPLES) / _SAMPLES
+    everywhere = np.concatenate([pitch, database.position])  # extremes of a stored load lie on knots
+    ste, error = _evaluate(database, force, point, everywhere)
+    sizes, phases = amplitudes(ste[:_SAMPLES], HARMONICS)
+    mean_error = float(np.mean(error[:_SAMPLES]))
+    lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
+    asked, asked_error = _evaluate(database, force, point, position)
+    return Curve(
+        point=point,
+        torque=point.force * database.facts.base_radius[0] * math.cos(database.facts.base_helix_angle),
+        position=position,
+        ste=asked,
+        error=asked_error,
+        pair=pairs_seen(database, position),
+        load_share=load_share(database, position, point),
+        mean=Estimate(float(np.mean(ste[:_SAMPLES])), mean_error, "m"),
+        peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), float(error[highest] + error[lowest]), "m"),
+        harmonics=tuple(Estimate(float(size), 2.0 * mean_error, "m") for size in sizes),
+        harmonic_phases=phases,
+    )
+
+
+def _evaluate(
+    database: SteFields, force: MeshForce, point: OperatingPoint, position: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Transmission error and its band at the positions."""
+    alignment = (point.misalignment, point.center_distance_change)
+    transverse = math.cos(database.facts.base_helix_angle)
+    ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
+    error = error_band(database, position, point)
+    if point.force >= database.force[0]:
+        return ste, error
+    # below the smallest load the law is a convention; the truth lies between lift-off and that load
+    lift_off, _ = force.deflection_at(position, 0.0, *alignment)
+    smallest, _ = force.deflection_at(position, database.force[0] * transverse, *alignment)
+    return ste, error + np.maximum(ste - lift_off, smallest - ste)
+
+
+def _positions(at: ArrayLike) -> FloatArray:
+    """Positions as a finite 1-D array of moderate reach."""
+    position = np.atleast_1d(np.asarray(at, dtype=float))
+    if position.ndim != 1 or position.size == 0 or not np.all(np.abs(position) <= _FARTHEST):
+        raise InputError(
+            "at", at, f"a non-empty list of positions from {-_FARTHEST:g} to {_FARTHEST:g} base pitches"
+        )
+    return position
+
+
+def amplitudes(samples: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """Amplitudes A_n and phases phi_n (rad), n = 1 .. count, of uniform samples over one period.
+
+    samples(x) = mean + sum A_n cos(2 pi n x + phi_n), x from 0.
+    """
+    spectrum = np.fft.rfft(samples)[1 : count + 1] * (2.0 / len(samples))
+    return np.abs(spectrum), np.angle(spectrum) % (2.0 * math.pi)

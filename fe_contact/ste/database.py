@@ -1,0 +1,191 @@
+"""The STE database: stored arrays with the questions they answer."""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
+
+from fe_contact.ste import curve as curves
+from fe_contact.ste import extraction, netcdf, repair
+from fe_contact.ste.curve import Curve
+from fe_contact.ste.fields import SteFields
+from fe_contact.ste.force_table import ForceTable
+from fe_contact.ste.loads import default_value, operating_point
+from fe_contact.ste.mesh_force import ForceSample, MeshForce
+from fe_contact.types import Estimate, FloatArray
+
+if TYPE_CHECKING:
+    import xarray
+
+
+class SteDatabase(SteFields):
+    """Static transmission error over position, load, misalignment and centre distance.
+
+    The attributes are those of `SteFields`. Arguments left at None mean: perfect alignment, or the only
+    stored value of an axis of length 1. A table with failed points answers only with ``allow_failed=True``,
+    from the rows that are complete.
+    """
+
+    def ste(
+        self,
+        position: ArrayLike,
+        force: ArrayLike,
+        misalignment: ArrayLike | None = None,
+        center_distance_change: ArrayLike | None = None,
+    ) -> FloatArray:
+        """Transmission error in m at normal forces F_bn in N: the exact inverse of `force_at`.
+
+        The arguments broadcast. Stored loads give the stored values at the knots. Below the smallest load
+        the law of the first interval holds, above the highest the curve goes on straight; misalignment and
+        centre-distance change are held at the ends of their axes (`force_at` flags all three).
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite, or a force is below zero.
+        SolveError
+            If any stored point failed.
+        """
+        return self._mesh_force.deflection_at(
+            position,
+            force,
+            *self._alignment(misalignment, center_distance_change),
+            to_transverse=self._to_transverse,
+        )[0]
+
+    def force_at(
+        self,
+        position: ArrayLike,
+        deflection: ArrayLike,
+        misalignment: ArrayLike | None = None,
+        center_distance_change: ArrayLike | None = None,
+    ) -> ForceSample:
+        """Transverse mesh force F_bt with its tangent at a transmission error `deflection` in m.
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite.
+        SolveError
+            If any stored point failed.
+        """
+        return self._mesh_force.force_at(
+            position, deflection, *self._alignment(misalignment, center_distance_change)
+        )
+
+    def curve(
+        self,
+        *,
+        torque: float | None = None,
+        force: float | None = None,
+        at: ArrayLike | None = None,
+        misalignment: float | None = None,
+        center_distance_change: float | None = None,
+        allow_failed: bool = False,
+    ) -> Curve:
+        """One curve at a torque on gear 1 in N m or a normal force in N.
+
+        Raises
+        ------
+        InputError
+            If the load or the alignment lies outside what is stored.
+        SolveError
+            If any stored point failed, unless `allow_failed`.
+        """
+        table = repair.without_failed(self) if allow_failed else self
+        point = operating_point(table, torque, force, misalignment, center_distance_change)
+        return curves.curve(table, table._mesh_force, point, at)
+
+    def mean(
+        self,
+        *,
+        torque: float | None = None,
+        force: float | None = None,
+        misalignment: float | None = None,
+        center_distance_change: float | None = None,
+    ) -> Estimate:
+        """Mean transmission error over one pitch, m; raises as `curve`."""
+        return self.curve(
+            torque=torque,
+            force=force,
+            misalignment=misalignment,
+            center_distance_change=center_distance_change,
+        ).mean
+
+    def peak_to_peak(
+        self,
+        *,
+        torque: float | None = None,
+        force: float | None = None,
+        misalignment: float | None = None,
+        center_distance_change: float | None = None,
+    ) -> Estimate:
+        """Peak-to-peak transmission error over one pitch, m; raises as `curve`."""
+        return self.curve(
+            torque=torque,
+            force=force,
+            misalignment=misalignment,
+            center_distance_change=center_distance_change,
+        ).peak_to_peak
+
+    def harmonics(
+        self,
+        *,
+        torque: float | None = None,
+        force: float | None = None,
+        misalignment: float | None = None,
+        center_distance_change: float | None = None,
+    ) -> tuple[Estimate, ...]:
+        """Amplitudes of the mesh harmonics, first one first, m; raises as `curve`."""
+        return self.curve(
+            torque=torque,
+            force=force,
+            misalignment=misalignment,
+            center_distance_change=center_distance_change,
+        ).harmonics
+
+    def force_table(self, *, allow_failed: bool = False) -> ForceTable:
+        """Return the table of plain arrays that dynamics takes; raises as `extraction.force_table`."""
+        return extraction.force_table(repair.without_failed(self)) if allow_failed else self._mesh_force.table
+
+    def monotone_repaired(self) -> tuple[SteDatabase, repair.Repair]:
+        """Return a table whose transmission error increases with load, and what had to change."""
+        return repair.monotone_repaired(self)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write one netCDF-4 file, atomically; a reader never sees half of it."""
+        netcdf.write(self, Path(path))
+
+    @classmethod
+    def from_netcdf(cls, path: str | Path) -> SteDatabase:
+        """Read what `to_netcdf` wrote; `DatabaseError` says why a file is not one."""
+        return cls(**netcdf.read(Path(path)))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the same content with names, units and coordinates."""
+        return netcdf.to_dataset(self)
+
+    @cached_property
+    def _mesh_force(self) -> MeshForce:
+        """The extraction, built at the first question."""
+        return MeshForce(extraction.force_table(self))
+
+    @property
+    def _to_transverse(self) -> float:
+        """F_bt / F_bn."""
+        return math.cos(self.facts.base_helix_angle)
+
+    def _alignment(
+        self, misalignment: ArrayLike | None, center_distance_change: ArrayLike | None
+    ) -> tuple[ArrayLike, ArrayLike]:
+        """Misalignment and centre-distance change with their defaults."""
+        return (
+            default_value(None, self.misalignment) if misalignment is None else misalignment,
+            default_value(None, self.center_distance_change)
+            if center_distance_change is None
+            else center_distance_change,
+        )

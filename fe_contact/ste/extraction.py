@@ -1,0 +1,92 @@
+"""The mesh-force table of an STE database."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fe_contact.errors import DatabaseError
+from fe_contact.ste.fields import SteFields
+from fe_contact.ste.force_table import ForceTable
+from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
+from fe_contact.ste.level_grid import LevelGrid, deflection_grid, monotone_stiffness, stiffness_grid
+from fe_contact.types import FloatArray
+
+
+def force_table(database: SteFields) -> ForceTable:
+    """Turn curves of STE over position at constant force into levels of a mesh force.
+
+    Level 0 is lift-off: the no-load transmission error with zero stiffness. Level k is the k-th load, with
+    the inverse of the stored tangent compliance as stiffness. Both turn from the normal force to the
+    transverse one, F_bt = F_bn cos(beta_b).
+
+    Raises
+    ------
+    SolveError
+        If any point of the database failed.
+    DatabaseError
+        If the transmission error does not increase with load everywhere.
+    """
+    database.require_complete()
+    to_transverse = math.cos(database.facts.base_helix_angle)
+    deflection = deflection_levels(database)
+    _require_increasing(database, deflection)
+    tangent = np.moveaxis(to_transverse / database.tangent_compliance, 1, -1)
+    stiffness = np.concatenate([np.zeros_like(tangent[..., :1]), tangent], axis=-1)
+    level = np.concatenate([[0.0], database.force * to_transverse])
+    stiffness = np.minimum(stiffness, _knot_limit(deflection, level))
+    axes = (Axis(database.position, 1.0),)
+    levels = deflection_grid(axes, deflection, (ordered_slopes(axes[0], deflection),))
+    limited = monotone_stiffness(_stiffness_levels(axes, stiffness), levels, level)
+    return ForceTable(
+        position=database.position,
+        level=level,
+        misalignment=database.misalignment,
+        center_distance_change=database.center_distance_change,
+        deflection=_position_third(levels.nodal[(0,)]),
+        deflection_slope=_position_third(levels.nodal[(1,)]),
+        stiffness=_position_third(limited.nodal[(0,)]),
+        stiffness_slope=_position_third(limited.nodal[(1,)]),
+    )
+
+
+def deflection_levels(database: SteFields) -> FloatArray:
+    """Lift-off and the loads as one stack of deflections (P, M, D, F + 1) in m."""
+    loaded = np.moveaxis(database.static_transmission_error, 1, -1)
+    return np.concatenate([database.no_load_transmission_error[..., None], loaded], axis=-1)
+
+
+def _require_increasing(database: SteFields, deflection: FloatArray) -> None:
+    """Refuse noise that breaks the order of the levels, naming where it is worst."""
+    gaps = np.diff(deflection, axis=-1)
+    if np.all(gaps > 0.0):
+        return
+    i, m, c, k = np.unravel_index(np.argmin(gaps), gaps.shape)
+    lower = f"force {database.force[k - 1]:g} N" if k else "no load"
+    falling = np.count_nonzero(gaps <= 0.0)
+    raise DatabaseError(
+        f"the transmission error falls with load at {falling} of {gaps.size} steps, worst from "
+        f"{lower} to {database.force[k]:g} N at position {database.position[i]:.6g}, misalignment "
+        f"{database.misalignment[m]:g} m, center-distance change {database.center_distance_change[c]:g} m: "
+        f"{gaps[i, m, c, k]:.3g} m. monotone_repaired() mends it by isotonic regression and says by how much."
+    )
+
+
+def _stiffness_levels(axes: tuple[Axis, ...], stiffness: FloatArray) -> LevelGrid:
+    """Stiffness at the levels with its slopes in position."""
+    return stiffness_grid(axes, stiffness, (monotone_slopes(axes[0], stiffness),))
+
+
+def _knot_limit(deflection: FloatArray, level: FloatArray) -> FloatArray:
+    """Three times the smaller of the secants below and above each level, at the knots."""
+    secant = np.diff(level) / np.diff(deflection, axis=-1)
+    beyond = np.full_like(secant[..., :1], np.inf)
+    return np.asarray(
+        3.0 * np.minimum(np.concatenate([beyond, secant], -1), np.concatenate([secant, beyond], -1))
+    )
+
+
+def _position_third(entry: FloatArray) -> FloatArray:
+    """(P, M, D, L) to (M, D, P, L)."""
+    return np.moveaxis(entry, 0, 2)

@@ -1,0 +1,124 @@
+"""What an STE database says about its gear pair and about its own making."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any
+
+from fe_contact.errors import DatabaseError
+from fe_contact.types import Json
+
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True)
+class PairFacts:
+    """The closed-form facts of a gear pair that a user of its table needs; SI units.
+
+    Attributes
+    ----------
+    teeth : tuple of int
+        Numbers of teeth, driving gear first.
+    base_radius : tuple of float
+        r_b1, r_b2 in m.
+    base_pitch : float
+        Transverse base pitch p_bt in m.
+    base_helix_angle : float
+        beta_b in rad, >= 0.
+    center_distance : float
+        a in m.
+    working_pressure_angle : float
+        Transverse working pressure angle alpha_wt in rad.
+    face_width : float
+        Common face width in m.
+    helix_hand : int
+        Hand of gear 1: 1 right, -1 left, 0 spur.
+    """
+
+    teeth: tuple[int, int]
+    base_radius: tuple[float, float]
+    base_pitch: float
+    base_helix_angle: float
+    center_distance: float
+    working_pressure_angle: float
+    face_width: float
+    helix_hand: int
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "teeth", (int(self.teeth[0]), int(self.teeth[1])))
+        object.__setattr__(self, "base_radius", (float(self.base_radius[0]), float(self.base_radius[1])))
+        for name in ("base_pitch", "center_distance", "face_width"):
+            _require(name, getattr(self, name), lambda value: value > 0.0, "above 0")
+        for radius in self.base_radius:
+            _require("base_radius", radius, lambda value: value > 0.0, "above 0")
+        _require(
+            "base_helix_angle",
+            self.base_helix_angle,
+            lambda angle: 0.0 <= angle < math.pi / 2,
+            "in [0, pi/2)",
+        )
+        _require("helix_hand", self.helix_hand, lambda hand: hand in (-1, 0, 1), "-1, 0 or 1")
+
+    def normal_force(self, torque: float) -> float:
+        """Total normal tooth force F_bn in N that carries `torque` in N m on gear 1."""
+        return torque / (self.base_radius[0] * math.cos(self.base_helix_angle))
+
+    def to_json(self) -> Json:
+        """Plain JSON with the same names."""
+        return asdict(self)
+
+    @classmethod
+    def from_json(cls, content: Json) -> PairFacts:
+        """Read back what `to_json` wrote; `DatabaseError` if a fact is missing or foreign."""
+        try:
+            return cls(**content)
+        except (TypeError, ValueError, IndexError) as error:
+            raise DatabaseError(f"the pair facts are not readable: {error}") from error
+
+
+@dataclass(frozen=True)
+class Metadata:
+    """How a database came to be: plain JSON throughout, copied on construction.
+
+    Attributes
+    ----------
+    case : dict
+        The case with all defaults echoed.
+    effect_ledger : dict or list
+        For each registered effect: on or off, why, worth and cost.
+    receipt : dict
+        Time and memory by stage, error estimate by source.
+    content_hash : str
+        RFC 8785 hash of the validated input with the solver and schema version.
+    software_versions : dict
+        Version by package name.
+    schema_version : int
+        Version of the file layout.
+    """
+
+    case: Json = field(default_factory=dict)
+    effect_ledger: Json | list[Any] = field(default_factory=dict)
+    receipt: Json = field(default_factory=dict)
+    content_hash: str = ""
+    software_versions: dict[str, str] = field(default_factory=dict)
+    schema_version: int = SCHEMA_VERSION
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            object.__setattr__(self, entry.name, _plain_json(entry.name, getattr(self, entry.name)))
+
+
+def _plain_json(name: str, content: Any) -> Any:
+    """Return a deep copy of `content` made of JSON types only."""
+    try:
+        return json.loads(json.dumps(content, allow_nan=False))
+    except (TypeError, ValueError) as error:
+        raise DatabaseError(f"metadata.{name} is not plain JSON: {error}") from error
+
+
+def _require(name: str, value: Any, holds: Any, bound: str) -> None:
+    """Raise `DatabaseError` unless the fact is a finite number that `holds`."""
+    if not isinstance(value, int | float) or not math.isfinite(value) or not holds(value):
+        raise DatabaseError(f"pair fact {name} = {value!r}: must be {bound}")

@@ -1,0 +1,243 @@
+"""The stored arrays of an STE database, and what they must satisfy."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.errors import DatabaseError, SolveError
+from fe_contact.ste.facts import Metadata, PairFacts
+from fe_contact.types import BoolArray, FloatArray, Status
+
+GRID = ("position", "force", "misalignment", "center_distance_change")
+RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
+
+# dimensions of every stored array, in order
+DIMENSIONS: dict[str, tuple[str, ...]] = {
+    "position": ("position",),
+    "force": ("force",),
+    "torque": ("force",),
+    "misalignment": ("misalignment",),
+    "center_distance_change": ("center_distance_change",),
+    "pair": ("pair",),
+    "static_transmission_error": GRID,
+    "tangent_compliance": GRID,
+    "no_load_transmission_error": ("position", "misalignment", "center_distance_change"),
+    "load_share": (*GRID, "pair"),
+    "face_centroid": GRID,
+    "max_pressure": GRID,
+    "pairs_in_contact": GRID,
+    "status": GRID,
+    "error_estimate": GRID,
+    "residuals": (*GRID, "residual"),
+}
+INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
+    "pair": np.int64,
+    "pairs_in_contact": np.int16,
+    "status": np.int8,
+}
+
+
+@dataclass(frozen=True, eq=False)
+class SteFields:
+    """Arrays on the grid position P x force F x misalignment M x center-distance change D; all read-only.
+
+    Attributes
+    ----------
+    position : (P,) array
+        Phase of the driving gear in transverse base pitches, increasing in [0, 1), period 1.
+    force : (F,) array
+        Total normal tooth force F_bn in N, increasing, > 0.
+    torque : (F,) array
+        The same loads as torque on gear 1 in N m.
+    misalignment : (M,) array
+        Gap growth over the common face width in the plane of action, m; zero at mid-face.
+    center_distance_change : (D,) array
+        Deviation from the nominal centre distance, m.
+    pair : (N,) array
+        Consecutive indices of the tooth pairs; pair j touches at phase `position` + j.
+    static_transmission_error : (P, F, M, D) array
+        m along the transverse line of action, positive = the driven gear lags; NaN where the solve failed.
+    tangent_compliance : (P, F, M, D) array
+        d STE / d F_bn in m/N, > 0.
+    no_load_transmission_error : (P, M, D) array
+        Transmission error at first contact, m.
+    load_share : (P, F, M, D, N) array
+        Part of the load on each pair, >= 0, sums to 1.
+    face_centroid : (P, F, M, D) array
+        Offset of the load's centroid from mid-face, m.
+    max_pressure : (P, F, M, D) array
+        Largest contact pressure, Pa.
+    pairs_in_contact, status : (P, F, M, D) integer arrays
+        Number of pairs that carry load; `fe_contact.types.Status` of the solve.
+    error_estimate : (P, F, M, D) array
+        Half-width of the error band of the transmission error, m, >= 0.
+    residuals : (P, F, M, D, 4) array
+        Equilibrium, penetration, tension, complementarity of the contact solution.
+    facts : PairFacts
+    metadata : Metadata
+
+    Raises
+    ------
+    DatabaseError
+        If shapes, order, signs or magnitudes contradict the above.
+    """
+
+    position: FloatArray
+    force: FloatArray
+    torque: FloatArray
+    misalignment: FloatArray
+    center_distance_change: FloatArray
+    pair: NDArray[np.int64]
+    static_transmission_error: FloatArray
+    tangent_compliance: FloatArray
+    no_load_transmission_error: FloatArray
+    load_share: FloatArray
+    face_centroid: FloatArray
+    max_pressure: FloatArray
+    pairs_in_contact: NDArray[np.int16]
+    status: NDArray[np.int8]
+    error_estimate: FloatArray
+    residuals: FloatArray
+    facts: PairFacts
+    metadata: Metadata
+
+    def __post_init__(self) -> None:
+        for name in DIMENSIONS:
+            object.__setattr__(self, name, _frozen_copy(name, getattr(self, name)))
+        _check_shapes(self)
+        _check_axes(self)
+        _check_values(self)
+
+    @property
+    def failed(self) -> BoolArray:
+        """Grid points (P, F, M, D) without a usable solution."""
+        return np.asarray(self.status != Status.CONVERGED)
+
+    @property
+    def n_failed(self) -> int:
+        """Number of grid points without a usable solution."""
+        return int(np.count_nonzero(self.failed))
+
+    def summary(self) -> str:
+        """One or two lines: extent of the table, and loudly what failed in it."""
+        extent = " x ".join(f"{getattr(self, name).size} {name}" for name in GRID)
+        text = f"STE database: {extent}; force {self.force[0]:g} to {self.force[-1]:g} N"
+        return (
+            f"{text}\nWARNING: {self.failure_message()}" if self.n_failed else f"{text}; all points converged"
+        )
+
+    def failure_message(self, shown: int = 5) -> str:
+        """How many points failed, why, and which (the first `shown`)."""
+        points = np.argwhere(self.failed)
+        listed = "; ".join(self._describe(tuple(point)) for point in points[:shown])
+        more = f"; and {len(points) - shown} more" if len(points) > shown else ""
+        return f"{len(points)} of {self.status.size} points FAILED ({listed}{more})"
+
+    def _describe(self, point: tuple[int, ...]) -> str:
+        """Coordinates and status of one grid point."""
+        units = ("", " N", " m", " m")
+        coordinates = (
+            f"{name} {getattr(self, name)[i]:.6g}{unit}"
+            for name, i, unit in zip(GRID, point, units, strict=True)
+        )
+        return f"{', '.join(coordinates)}: {_status_name(int(self.status[point]))}"
+
+    def require_complete(self) -> None:
+        """Raise `SolveError`, with the table as its partial result, if any point failed."""
+        if self.n_failed:
+            raise SolveError(f"{self.failure_message()}. allow_failed=True leaves their rows out.", self)
+
+    def identical(self, other: SteFields) -> bool:
+        """Whether every stored bit (NaN payloads included), fact and metadata entry agrees."""
+        return (
+            self.facts == other.facts
+            and self.metadata == other.metadata
+            and all(_same_bits(getattr(self, name), getattr(other, name)) for name in DIMENSIONS)
+        )
+
+
+def _frozen_copy(name: str, values: Any) -> NDArray[Any]:
+    """Return a read-only, C-ordered copy in the stored type."""
+    try:
+        array = np.array(values, dtype=INTEGER_TYPES.get(name, np.float64), order="C")
+    except (TypeError, ValueError) as error:
+        raise DatabaseError(f"{name} is no array of numbers: {error}") from error
+    array.flags.writeable = False
+    return array
+
+
+def _check_shapes(table: SteFields) -> None:
+    """Every array has the shape its dimensions say."""
+    sizes = {name: getattr(table, name).size for name in (*GRID, "pair")} | {"residual": len(RESIDUALS)}
+    for name, dimensions in DIMENSIONS.items():
+        expected = tuple(sizes[dimension] for dimension in dimensions)
+        actual = getattr(table, name).shape
+        if actual != expected:
+            raise DatabaseError(f"{name} has shape {actual}; ({', '.join(dimensions)}) needs {expected}")
+
+
+def _check_axes(table: SteFields) -> None:
+    """Axes are finite and increasing, inside their domain, and loads are the torques."""
+    for name in (*GRID, "pair"):
+        axis = getattr(table, name)
+        _refuse(axis.size == 0 or not np.all(np.isfinite(axis)), name, "be non-empty and finite")
+        _refuse(bool(np.any(np.diff(axis) <= 0)), name, "be strictly increasing")
+    _refuse(table.position[0] < 0.0 or table.position[-1] >= 1.0, "position", "lie in [0, 1)")
+    _refuse(table.force[0] <= 0.0, "force", "be above 0 N")
+    _refuse(bool(np.any(np.diff(table.pair) != 1)), "pair", "be consecutive")
+    carried = table.force * (table.facts.base_radius[0] * math.cos(table.facts.base_helix_angle))
+    _refuse(
+        not np.allclose(table.torque, carried, rtol=1e-9, atol=0.0),
+        "torque",
+        "equal F_bn cos(beta_b) r_b1 in N m",
+    )
+
+
+def _check_values(table: SteFields) -> None:
+    """Converged points hold numbers of plausible size and sign; failed points hold NaN."""
+    good = ~table.failed
+    ste, compliance = table.static_transmission_error, table.tangent_compliance
+    _refuse(
+        not np.all(np.isfinite(ste) == good), "static_transmission_error", "be finite exactly where converged"
+    )
+    for name in ("static_transmission_error", "no_load_transmission_error"):
+        # micrometres passed as metres are larger than the gear
+        too_large = np.abs(getattr(table, name)) > table.facts.base_radius[0]
+        _refuse(bool(np.any(too_large)), name, "be in m (it exceeds the base radius)")
+    _refuse(
+        not np.all(np.isfinite(table.no_load_transmission_error)), "no_load_transmission_error", "be finite"
+    )
+    _refuse(not np.all(compliance[good] > 0.0), "tangent_compliance", "be above 0 m/N where converged")
+    _refuse(not np.all(np.isfinite(compliance[good])), "tangent_compliance", "be finite where converged")
+    share = table.load_share[good]
+    _refuse(not np.all(share >= 0.0), "load_share", "be >= 0 where converged")
+    _refuse(
+        not np.allclose(share.sum(axis=-1), 1.0, rtol=0.0, atol=1e-6),
+        "load_share",
+        "sum to 1 where converged",
+    )
+    _refuse(not np.all(table.error_estimate[good] >= 0.0), "error_estimate", "be >= 0 m where converged")
+
+
+def _refuse(wrong: bool, name: str, demand: str) -> None:
+    """Raise `DatabaseError` if `wrong`."""
+    if wrong:
+        raise DatabaseError(f"{name} must {demand}")
+
+
+def _status_name(code: int) -> str:
+    """Name of a status code; unknown codes keep their number."""
+    return Status(code).name if code in set(Status) else f"status {code}"
+
+
+def _same_bits(first: NDArray[Any], second: NDArray[Any]) -> bool:
+    """Whether two arrays have the same type, shape and bytes."""
+    return first.dtype == second.dtype and first.shape == second.shape and first.tobytes() == second.tobytes()
+
+
+STORED = tuple(entry.name for entry in fields(SteFields))

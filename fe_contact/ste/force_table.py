@@ -1,0 +1,49 @@
+"""The mesh-force table: plain arrays, all that dynamics needs of an STE database."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+
+from fe_contact.types import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class ForceTable:
+    """Levels of constant mesh force over position; read-only arrays.
+
+    Attributes
+    ----------
+    position : (P,) array
+        Knots in transverse base pitches, increasing in [0, 1), period 1.
+    level : (L,) array
+        Transverse mesh force F_bt in N at the levels, increasing, level[0] = 0 (lift-off).
+    misalignment : (M,) array
+        m; length 1 = no such axis.
+    center_distance_change : (D,) array
+        m; length 1 = no such axis.
+    deflection : (M, D, P, L) array
+        Transmission error at level k in m, increasing in k.
+    deflection_slope : (M, D, P, L) array
+        Its derivative in position, m per base pitch.
+    stiffness : (M, D, P, L) array
+        dF_bt / d(deflection) in N/m, limited so that the force is monotone; 0 at lift-off.
+    stiffness_slope : (M, D, P, L) array
+        Its derivative in position, N/m per base pitch.
+    """
+
+    position: FloatArray
+    level: FloatArray
+    misalignment: FloatArray
+    center_distance_change: FloatArray
+    deflection: FloatArray
+    deflection_slope: FloatArray
+    stiffness: FloatArray
+    stiffness_slope: FloatArray
+
+    def __post_init__(self) -> None:
+        for entry in fields(self):
+            array = np.array(getattr(self, entry.name), dtype=float, order="C")
+            array.flags.writeable = False
+            object.__setattr__(self, entry.name, array)

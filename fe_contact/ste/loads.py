@@ -1,0 +1,81 @@
+"""Which load, misalignment and centre distance a question means."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.checks import positive, within
+from fe_contact.errors import InputError
+from fe_contact.ste.fields import SteFields
+from fe_contact.types import FloatArray
+
+
+@dataclass(frozen=True)
+class OperatingPoint:
+    """One load and one alignment inside a table.
+
+    Attributes
+    ----------
+    force : float
+        Total normal tooth force F_bn, N.
+    misalignment, center_distance_change : float
+        m.
+    """
+
+    force: float
+    misalignment: float
+    center_distance_change: float
+
+
+def operating_point(
+    database: SteFields,
+    torque: float | None,
+    force: float | None,
+    misalignment: float | None,
+    center_distance_change: float | None,
+) -> OperatingPoint:
+    """Resolve a question to one point inside the table.
+
+    Raises
+    ------
+    InputError
+        If not exactly one of `torque` and `force` is given, or a value lies outside what is stored.
+    """
+    return OperatingPoint(
+        _normal_force(database, torque, force),
+        _inside("misalignment", misalignment, database.misalignment),
+        _inside("center_distance_change", center_distance_change, database.center_distance_change),
+    )
+
+
+def default_value(asked: float | None, axis: FloatArray) -> float:
+    """Return what is asked; else zero, or the only value of an axis of length 1."""
+    if asked is not None:
+        return asked
+    return float(axis[0]) if axis.size == 1 else 0.0
+
+
+def _normal_force(database: SteFields, torque: float | None, force: float | None) -> float:
+    """Return the load as F_bn in N; a stored torque gives exactly its stored force."""
+    if (torque is None) == (force is None):
+        raise InputError("torque, force", (torque, force), "exactly one of the two")
+    if torque is not None:
+        name, unit, stored, asked = "torque", "N m", database.torque, positive("torque", torque)
+    else:
+        name, unit, stored, asked = "force", "N", database.force, positive("force", force or 0.0)
+    known = np.flatnonzero(np.isclose(stored, asked, rtol=1e-12, atol=0.0))
+    if known.size:
+        return float(database.force[known[0]])
+    if asked > stored[-1]:
+        raise InputError(
+            name, asked, f"at most {stored[-1]:g} {unit}, the highest load stored", "Add it to the case."
+        )
+    return asked if torque is None else database.facts.normal_force(asked)
+
+
+def _inside(name: str, asked: float | None, axis: FloatArray) -> float:
+    """Return a value inside the ends of its axis."""
+    hint = "The table has no such axis; add values to the case." if axis.size == 1 else "Add it to the case."
+    return within(name, default_value(asked, axis), float(axis[0]), float(axis[-1]), hint)

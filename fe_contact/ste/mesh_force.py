@@ -1,0 +1,199 @@
+"""Mesh force as a function of position and deflection, C1 in both, and its exact inverse.
+
+Between two levels the force is a cubic in the deflection with the stored force and tangent stiffness at
+both ends; levels and stiffnesses follow position (and misalignment and centre distance) by C1 monotone
+interpolation. Below the lift-off level the force is zero, above the top level it goes on straight.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntFlag
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from fe_contact.errors import InputError
+from fe_contact.ste.force_cubic import ForceCubic
+from fe_contact.ste.force_table import ForceTable
+from fe_contact.ste.interpolation import Axis, Stencil, monotone_slopes, ordered_slopes
+from fe_contact.ste.level_grid import LevelGrid, deflection_grid, monotone_stiffness, stiffness_grid
+from fe_contact.types import FloatArray
+
+SlopeRule = Callable[[Axis, FloatArray], FloatArray]
+
+
+class Validity(IntFlag):
+    """What a force sample rests on; flags add up."""
+
+    INSIDE = 0  # between lift-off and the highest stored load
+    LIFTED_OFF = 1  # no contact; the zero force is right
+    ABOVE_TABLE = 2  # beyond the highest stored load: straight continuation
+    OUTSIDE_MISALIGNMENT = 4  # value of the nearest stored misalignment
+    OUTSIDE_CENTER_DISTANCE = 8  # value of the nearest stored centre-distance change
+
+
+@dataclass(frozen=True, eq=False)
+class ForceSample:
+    """Mesh forces, in the broadcast shape of the query.
+
+    Attributes
+    ----------
+    force : array
+        Transverse mesh force F_bt in N, >= 0.
+    stiffness : array
+        dF/d(deflection) in N/m, >= 0.
+    position_slope : array
+        dF/d(position) at constant deflection, N per base pitch.
+    validity : integer array
+        Sum of `Validity` flags.
+    """
+
+    force: FloatArray
+    stiffness: FloatArray
+    position_slope: FloatArray
+    validity: NDArray[np.int8]
+
+
+@dataclass(frozen=True)
+class MeshForce:
+    """Evaluation of a `ForceTable`."""
+
+    table: ForceTable
+
+    @cached_property
+    def axes(self) -> tuple[Axis, Axis, Axis]:
+        """Position (periodic), misalignment, centre-distance change."""
+        table = self.table
+        return Axis(table.position, 1.0), Axis(table.misalignment), Axis(table.center_distance_change)
+
+    @cached_property
+    def levels(self) -> LevelGrid:
+        """Deflection of the levels over the three axes."""
+        values = _position_first(self.table.deflection)
+        across = [_along(axis, k, ordered_slopes, values) for k, axis in enumerate(self.axes[1:], start=1)]
+        return deflection_grid(self.axes, values, (_position_first(self.table.deflection_slope), *across))
+
+    @cached_property
+    def stiffnesses(self) -> LevelGrid:
+        """Stiffness at the levels over the three axes."""
+        values = _position_first(self.table.stiffness)
+        across = [_along(axis, k, monotone_slopes, values) for k, axis in enumerate(self.axes[1:], start=1)]
+        grid = stiffness_grid(self.axes, values, (_position_first(self.table.stiffness_slope), *across))
+        return monotone_stiffness(grid, self.levels, self.table.level)
+
+    def force_at(
+        self,
+        position: ArrayLike,
+        deflection: ArrayLike,
+        misalignment: ArrayLike,
+        center_distance_change: ArrayLike,
+    ) -> ForceSample:
+        """Force, stiffness, position slope and validity; the arguments broadcast.
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite.
+        """
+        shape, (x, d, m, c) = _queries(
+            position=position,
+            deflection=deflection,
+            misalignment=misalignment,
+            center_distance_change=center_distance_change,
+        )
+        at = self._stencils(x, m, c)
+        levels, level_slopes = self.levels.evaluate(at)
+        top = levels.shape[1] - 1
+        below = np.count_nonzero(levels <= d[:, None], axis=1) - 1
+        cell = _cell(self, at, levels, level_slopes, np.clip(below, 0, top - 1))
+        force, stiffness, position_slope = cell.sample(d, below < 0, below == top)
+        validity = (
+            _outside(at) + Validity.LIFTED_OFF * (below < 0) + Validity.ABOVE_TABLE * (d > levels[:, -1])
+        )
+        return ForceSample(
+            force.reshape(shape),
+            stiffness.reshape(shape),
+            position_slope.reshape(shape),
+            validity.astype(np.int8).reshape(shape),
+        )
+
+    def deflection_at(
+        self,
+        position: ArrayLike,
+        force: ArrayLike,
+        misalignment: ArrayLike,
+        center_distance_change: ArrayLike,
+        to_transverse: float = 1.0,
+    ) -> tuple[FloatArray, NDArray[np.int8]]:
+        """Deflection in m that gives the transverse force `force` * `to_transverse` in N, and validity.
+
+        The exact inverse of `force_at`.
+
+        Raises
+        ------
+        InputError
+            If an argument is not finite, or a force is below zero.
+        """
+        shape, (x, f, m, c) = _queries(
+            position=position,
+            force=force,
+            misalignment=misalignment,
+            center_distance_change=center_distance_change,
+        )
+        if np.any(f < 0.0):
+            raise InputError("force", float(f.min()), "0 N or more", "Teeth do not pull.")
+        f = f * to_transverse
+        at = self._stencils(x, m, c)
+        levels, level_slopes = self.levels.evaluate(at)
+        top = levels.shape[1] - 1
+        below = np.searchsorted(self.table.level, f, side="right") - 1
+        cell = _cell(self, at, levels, level_slopes, np.clip(below, 0, top - 1))
+        deflection = cell.deflection(f, below == top)
+        validity = _outside(at) + Validity.ABOVE_TABLE * (f > self.table.level[-1])
+        return deflection.reshape(shape), validity.astype(np.int8).reshape(shape)
+
+    def _stencils(self, x: FloatArray, m: FloatArray, c: FloatArray) -> tuple[Stencil, Stencil, Stencil]:
+        """Where the queries fall on the three axes."""
+        first, second, third = self.axes
+        return first.stencil(x), second.stencil(m), third.stencil(c)
+
+
+def _cell(
+    force: MeshForce, at: tuple[Stencil, ...], levels: FloatArray, slopes: FloatArray, lower: NDArray[np.intp]
+) -> ForceCubic:
+    """Gather the two levels that bound each query."""
+    columns = lower[:, None] + np.arange(2)
+    rows = np.arange(len(lower))[:, None]
+    stiffness, stiffness_slopes = force.stiffnesses.evaluate(at, columns)
+    return ForceCubic(
+        levels[rows, columns], slopes[rows, columns], force.table.level[columns], stiffness, stiffness_slopes
+    )
+
+
+def _outside(at: tuple[Stencil, ...]) -> NDArray[np.int64]:
+    """Flag the axes a query leaves."""
+    misaligned = Validity.OUTSIDE_MISALIGNMENT * at[1].outside
+    return np.asarray(misaligned + Validity.OUTSIDE_CENTER_DISTANCE * at[2].outside)
+
+
+def _queries(**arguments: ArrayLike) -> tuple[tuple[int, ...], list[FloatArray]]:
+    """Broadcast the arguments and flatten them; refuse what is not finite."""
+    arrays = np.broadcast_arrays(*(np.asarray(value, dtype=float) for value in arguments.values()))
+    for name, array in zip(arguments, arrays, strict=True):
+        bad = array[~np.isfinite(array)]
+        if bad.size:
+            raise InputError(name, float(bad[0]), "finite")
+    return arrays[0].shape, [array.ravel() for array in arrays]
+
+
+def _position_first(entry: FloatArray) -> FloatArray:
+    """(M, D, P, L) to (P, M, D, L)."""
+    return np.moveaxis(entry, 2, 0)
+
+
+def _along(axis: Axis, number: int, rule: SlopeRule, values: FloatArray) -> FloatArray:
+    """Slopes by `rule` along one array axis."""
+    return np.moveaxis(rule(axis, np.moveaxis(values, number, 0)), 0, number)

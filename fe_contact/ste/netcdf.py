@@ -1,0 +1,192 @@
+"""STE databases as netCDF-4 files. xarray and h5netcdf are imported only here, and only when used."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import tempfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fe_contact.errors import DatabaseError
+from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
+from fe_contact.ste.fields import DIMENSIONS, RESIDUALS, SteFields
+from fe_contact.types import Json, Status
+
+if TYPE_CHECKING:
+    import xarray
+
+FORMAT = "lineofaction STE database"
+_COORDINATES = ("position", "force", "misalignment", "center_distance_change", "pair")
+_JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
+
+# units and long names; "1" is CF's dimensionless
+ATTRIBUTES: dict[str, tuple[str, str]] = {
+    "position": (
+        "1",
+        "phase of the driving gear in transverse base pitches, 0 = reference pair at the pitch point",
+    ),
+    "force": ("N", "total normal tooth force"),
+    "torque": ("N m", "torque on the driving gear"),
+    "misalignment": ("m", "gap growth over the common face width in the plane of action"),
+    "center_distance_change": ("m", "deviation from the nominal centre distance"),
+    "pair": ("1", "index of the tooth pair, 0 = reference pair"),
+    "static_transmission_error": (
+        "m",
+        "static transmission error on the line of action, driven gear lags > 0",
+    ),
+    "tangent_compliance": ("m N-1", "derivative of the static transmission error in the normal tooth force"),
+    "no_load_transmission_error": ("m", "transmission error at first contact"),
+    "load_share": ("1", "part of the load carried by the tooth pair"),
+    "face_centroid": ("m", "offset of the centroid of the load from mid-face"),
+    "max_pressure": ("Pa", "largest contact pressure"),
+    "pairs_in_contact": ("1", "number of tooth pairs that carry load"),
+    "status": ("1", "outcome of the contact solve"),
+    "error_estimate": ("m", "half-width of the error band of the static transmission error"),
+    "residuals": ("1", "residuals of the contact solution: " + ", ".join(RESIDUALS)),
+}
+
+
+def to_dataset(database: SteFields) -> xarray.Dataset:
+    """Return the database as an xarray Dataset with CF-style names, units and coordinates."""
+    import xarray  # noqa: PLC0415 - half a second, and not needed to evaluate a table
+
+    variables = {
+        name: (DIMENSIONS[name], getattr(database, name), _variable_attributes(name)) for name in DIMENSIONS
+    }
+    coordinates = {name: variables.pop(name) for name in _COORDINATES}
+    coordinates["torque"] = variables.pop("torque")
+    return xarray.Dataset(variables, coordinates, _global_attributes(database))
+
+
+def write(database: SteFields, path: Path) -> None:
+    """Write the database to `path`: into a temporary file beside it, then renamed over it."""
+    dataset = to_dataset(database)
+    # no _FillValue: xarray would replace NaN by its own on the way back
+    encoding: dict[Any, Json] = {name: {"_FillValue": None} for name in dataset.variables}
+    for name in dataset.data_vars:
+        encoding[name] |= {"zlib": True, "complevel": 4, "shuffle": True}
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    os.close(handle)
+    try:
+        dataset.to_netcdf(temporary, engine="h5netcdf", format="NETCDF4", encoding=encoding)
+        _publish(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Read the arrays, facts and metadata of a file, by the names of `SteFields`.
+
+    Raises
+    ------
+    DatabaseError
+        If the file is missing, no netCDF-4, no STE database, of a newer schema, or damaged.
+    """
+    arrays, attributes = _load(path)
+    if attributes.get("format") != FORMAT:
+        raise DatabaseError(f"{path}: a netCDF file, but no STE database")
+    version = attributes.get("schema_version")
+    if not isinstance(version, int | np.integer) or version > SCHEMA_VERSION or version < 1:
+        raise DatabaseError(
+            f"{path}: schema version {version}, but this release reads 1 to {SCHEMA_VERSION}: update it"
+        )
+    missing = sorted(set(DIMENSIONS) - set(arrays))
+    if missing:
+        raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
+    content = {name: arrays[name] for name in DIMENSIONS}
+    if attributes.get("data_sha256") != _digest(content):
+        raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
+    return content | {"facts": _facts(path, attributes), "metadata": _metadata(path, attributes)}
+
+
+def _load(path: Path) -> tuple[dict[str, Any], Json]:
+    """All variables and global attributes of a netCDF-4 file, undecoded."""
+    import xarray  # noqa: PLC0415
+
+    if not path.is_file():
+        raise DatabaseError(f"{path}: no such file")
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf", decode_cf=False) as dataset:
+            arrays = {str(name): variable.values for name, variable in dataset.variables.items()}
+            return arrays, dict(dataset.attrs)
+    # what HDF5 raises on damaged bytes is not one class
+    except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
+        raise DatabaseError(f"{path}: not a readable netCDF-4 file ({error})") from error
+
+
+def _variable_attributes(name: str) -> Json:
+    """CF-style attributes of one variable."""
+    units, long_name = ATTRIBUTES[name]
+    attributes: Json = {"units": units, "long_name": long_name}
+    if name == "status":
+        attributes["flag_values"] = np.array([status.value for status in Status], dtype=np.int8)
+        attributes["flag_meanings"] = " ".join(status.name.lower() for status in Status)
+    return attributes
+
+
+def _global_attributes(database: SteFields) -> Json:
+    """Format, schema, the JSON documents, and a checksum of the arrays."""
+    metadata = asdict(database.metadata)
+    return {
+        "Conventions": "CF-1.11",
+        "title": "Static transmission error of a gear pair",
+        "summary": database.summary(),
+        "format": FORMAT,
+        "schema_version": np.int64(database.metadata.schema_version),
+        "content_hash": database.metadata.content_hash,
+        "facts": json.dumps(database.facts.to_json()),
+        **{name: json.dumps(metadata[name]) for name in _JSON_ATTRIBUTES},
+        "data_sha256": _digest({name: getattr(database, name) for name in DIMENSIONS}),
+    }
+
+
+def _digest(arrays: dict[str, Any]) -> str:
+    """SHA-256 over names, types, shapes and bytes of the arrays."""
+    digest = hashlib.sha256()
+    for name in DIMENSIONS:
+        array = np.ascontiguousarray(arrays[name])
+        digest.update(f"{name} {array.dtype.newbyteorder('<').str} {array.shape};".encode())
+        digest.update(array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes())
+    return digest.hexdigest()
+
+
+def _facts(path: Path, attributes: Json) -> PairFacts:
+    """Read the pair facts of a file."""
+    content = _document(path, attributes, "facts")
+    if not isinstance(content, dict):
+        raise DatabaseError(f"{path}: damaged, its facts are no JSON object")
+    return PairFacts.from_json(content)
+
+
+def _metadata(path: Path, attributes: Json) -> Metadata:
+    """Read the metadata of a file."""
+    documents = {name: _document(path, attributes, name) for name in _JSON_ATTRIBUTES}
+    return Metadata(
+        content_hash=str(attributes.get("content_hash", "")),
+        schema_version=int(attributes["schema_version"]),
+        **documents,
+    )
+
+
+def _document(path: Path, attributes: Json, name: str) -> Any:
+    """One JSON attribute."""
+    try:
+        return json.loads(attributes[name])
+    except (KeyError, TypeError, ValueError) as error:
+        raise DatabaseError(f"{path}: damaged, its {name} is not readable JSON ({error})") from error
+
+
+def _publish(temporary: str, path: Path) -> None:
+    """Flush to disk and rename; ordinary file permissions instead of the temporary file's private ones."""
+    mask = os.umask(0)
+    os.umask(mask)
+    Path(temporary).chmod(0o666 & ~mask)
+    with Path(temporary).open("rb") as written:
+        os.fsync(written.fileno())
+    Path(temporary).replace(path)
