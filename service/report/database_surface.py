@@ -5,21 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.ste import SteDatabase
-from service.report.aligned import two_pitches
-from service.report.figure import Axis, Figure, Surface, number
+from service.report.aligned import aligned, two_pitches
+from service.report.figure import Axis, Figure, FloatArray, Surface, number
 
-_COLUMNS = 160
+_COLUMNS, _ROWS = 160, 60
 
 
 def database_surface(database: SteDatabase) -> Figure:
     """Draw STE over position and normal force."""
-    position, values = two_pitches(database)
-    step = max(len(position) // _COLUMNS, 1)
     axes = (Axis("position, base pitches"), Axis("normal force, N"), Axis("STE, µm"))
-    surface = Surface(position[::step], database.force, values[::step].T * 1e6, axes)
-    top = number(float(np.nanmax(values)) * 1e6, 3)
-    load = number(float(database.force[-1]), 5)
-    load = number(float(database.force[-1]), 5)
+    position, force, values = surface(database)
+    top, load = number(1e6 * float(np.nanmax(values)), 3), number(float(force[-1]), 5)
     return Figure(
         key="database",
         title="The STE database",
@@ -27,5 +23,16 @@ def database_surface(database: SteDatabase) -> Figure:
         "tooth force. The mesh force at a deflection is read from this surface.",
         alternative=f"A surface that rises with force, from zero to {top} µm at {load} N, "
         "with a step at each change between single and double contact.",
-        content=surface,
+        content=Surface(position, force, 1e6 * values, axes),
     )
+
+
+def surface(database: SteDatabase) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return positions (n,), normal forces (m,) and STE (m, n) in m; with failed points, as stored."""
+    position, values = two_pitches(database)
+    step = max(len(position) // _COLUMNS, 1)
+    if database.n_failed:
+        return position[::step], database.force, values[::step].T
+    force = np.linspace(float(database.force[0]), float(database.force[-1]), _ROWS)
+    misalignment, change = aligned(database)
+    return position[::step], force, database.ste(position[::step], force[:, None], misalignment, change)

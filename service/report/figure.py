@@ -99,6 +99,11 @@ class Figure:
     table: Table | None = None
 
 
+def repeats_below(panels: Sequence[Panel], index: int) -> bool:
+    """Whether the next panel has the same horizontal axis, so that one label serves both."""
+    return index + 1 < len(panels) and panels[index + 1].x == panels[index].x
+
+
 def number(value: float, digits: int = 4) -> str:
     """Write `value` with `digits` significant digits, without an exponent where that is readable."""
     if not np.isfinite(value):

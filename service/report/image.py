@@ -13,7 +13,7 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.ticker import ScalarFormatter
 
 from service.report import palette
-from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface
+from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, repeats_below
 
 _WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
@@ -40,10 +40,12 @@ def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
     sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * len(panels) + 1.2), layout="constrained")
     axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False)[:, 0])
     handles: dict[str, Any] = {}
-    for panel, ax in zip(panels, axes, strict=True):
+    for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
         for line in panel.lines:
             handles.setdefault(line.name, _draw(ax, line))
         _finish(ax, panel)
+        if repeats_below(panels, index):
+            ax.set_xlabel("")
     if len(handles) > 1:
         columns = min(len(handles), 6)
         sheet.legend(
@@ -88,28 +90,33 @@ def _scale(ax: Axes, axis: Axis, name: str) -> None:
 
 def _refer(ax: Axes, reference: Reference) -> None:
     """Draw a reference line with its label."""
+    text = f" {reference.label}"
+    stroke: dict[str, Any] = {"color": palette.MUTED, "ls": "--", "lw": 0.8, "zorder": 0.5}
     if reference.direction == "vertical":
-        ax.axvline(reference.value, color=palette.MUTED, ls="--", lw=0.8, zorder=0.5)
-        place, transform = (reference.value, 0.98), ax.get_xaxis_transform()
-        style = {"ha": "left", "va": "top"}
+        ax.axvline(reference.value, **stroke)
+        written = ax.text(
+            reference.value, 0.98, text, ha="left", va="top", transform=ax.get_xaxis_transform()
+        )
     else:
-        ax.axhline(reference.value, color=palette.MUTED, ls="--", lw=0.8, zorder=0.5)
-        place, transform = (0.99, reference.value), ax.get_yaxis_transform()
-        style = {"ha": "right", "va": "bottom"}
-    ax.text(*place, f" {reference.label}", transform=transform, fontsize=8, color=palette.MUTED, **style)
+        ax.axhline(reference.value, **stroke)
+        written = ax.text(
+            0.99, reference.value, text, ha="right", va="bottom", transform=ax.get_yaxis_transform()
+        )
+    written.set(fontsize=8, color=palette.MUTED)
 
 
 def _surface_sheet(surface: Surface) -> Sheet:
     """Draw a surface in three dimensions."""
     sheet = Sheet(figsize=(_WIDTH, _SURFACE_HEIGHT), layout="constrained")
-    ax: Any = sheet.add_subplot(projection="3d", box_aspect=(1.4, 1.2, 0.8))
+    ax: Any = sheet.add_subplot(projection="3d")
+    ax.set_box_aspect((1.4, 1.2, 0.8), zoom=1.05)
     colours = LinearSegmentedColormap.from_list("cividis_steps", palette.CIVIDIS)
     x, y = np.meshgrid(surface.x, surface.y)
     drawn = ax.plot_surface(
-        x, y, surface.z, cmap=colours, rcount=80, ccount=160, linewidth=0, antialiased=True
+        x, y, surface.z, cmap=colours, rcount=60, ccount=160, linewidth=0, antialiased=True
     )
     for axis, name in zip(surface.axes, "xyz", strict=True):
         getattr(ax, f"set_{name}label")(axis.label, labelpad=8)
     ax.view_init(elev=24, azim=-133)
-    sheet.colorbar(drawn, ax=ax, shrink=0.55, pad=0.08, label=surface.axes[2].label)
+    sheet.colorbar(drawn, ax=ax, shrink=0.5, pad=0.04, label=surface.axes[2].label)
     return sheet

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from service.report import palette
-from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Surface
+from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Surface, repeats_below
 
 Json = dict[str, Any]
 
-_PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 560, 60, 76  # pixels
+_PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 520, 60, 62  # pixels
 _LEGEND_ROW, _NAMES_IN_ROW = 22, 8
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
@@ -29,7 +29,7 @@ def plotly_figure(figure: Figure) -> Json:
 def _panels(panels: tuple[Panel, ...]) -> Json:
     """Stack panels, each with its own axes, the first on top."""
     names = dict.fromkeys(line.name for panel in panels for line in panel.lines)
-    above = 44 + _LEGEND_ROW * (len(names) // (_NAMES_IN_ROW + 1))
+    above = (62 if panels[0].title else 44) + _LEGEND_ROW * (len(names) // (_NAMES_IN_ROW + 1))
     inner = _PANEL_HEIGHT * len(panels) + _BETWEEN * (len(panels) - 1)
     layout: Json = _layout(inner + above + _BELOW)
     layout |= {"shapes": [], "annotations": [], "showlegend": len(names) > 1}
@@ -40,6 +40,8 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
         suffix = str(index + 1) if index else ""
         place = {"domain": _domain(index, inner), "anchor": "x" + suffix}
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
+        if repeats_below(panels, index):
+            layout["xaxis" + suffix] |= {"title": {"text": ""}}
         layout["yaxis" + suffix] = _axis(panel.y) | place
         layout["annotations"] += _panel_title(panel, suffix)
         for line in panel.lines:
@@ -72,7 +74,7 @@ def _layout(height: int) -> Json:
 def _axis(axis: Axis) -> Json:
     """One axis of a panel."""
     made: Json = {
-        "title": {"text": axis.label, "standoff": 10},
+        "title": {"text": axis.label, "standoff": 10, "font": {"size": 14}},
         "type": axis.scale,
         "gridcolor": palette.GRID,
         "linecolor": palette.MUTED,
@@ -148,10 +150,14 @@ def _scene(surface: Surface) -> Json:
     """Axes and point of view of a surface."""
     names = ("xaxis", "yaxis", "zaxis")
     axes = {
-        name: {"title": {"text": axis.label}, "type": axis.scale, "gridcolor": palette.GRID}
+        name: {
+            "title": {"text": axis.label, "font": {"size": 13}},
+            "type": axis.scale,
+            "gridcolor": palette.GRID,
+        }
         for name, axis in zip(names, surface.axes, strict=True)
     }
-    camera = {"eye": {"x": -1.35, "y": -1.6, "z": 0.85}, "center": {"x": 0, "y": 0, "z": -0.12}}
+    camera = {"eye": {"x": -1.15, "y": -1.4, "z": 0.7}, "center": {"x": 0, "y": 0, "z": -0.12}}
     return {"scene": axes | {"camera": camera, "aspectratio": {"x": 1.3, "y": 1.1, "z": 0.75}}}
 
 

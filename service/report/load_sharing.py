@@ -49,14 +49,21 @@ def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int,
 
 
 def _panel(database: SteDatabase, load: int) -> Panel:
-    """One load's shares."""
+    """One load's shares, the pair that is ahead first."""
     position, followed = pair_shares(database, load)
     lines = tuple(
-        Line(f"pair {pair:+d}" if pair else "pair 0", position, share, palette.category(pair % 6))
-        for pair, share in followed.items()
+        Line(f"pair {pair:+d}" if pair else "pair 0", position, _in_mesh(share), palette.category(-pair % 6))
+        for pair, share in sorted(followed.items(), reverse=True)
     )
     y = Axis("share of the load", limits=(0.0, 1.05))
     return Panel(POSITION_AXIS, y, lines, title=load_labels(database)[load])
+
+
+def _in_mesh(share: FloatArray) -> FloatArray:
+    """Leave out where the pair is far from carrying load; its line starts and ends at zero."""
+    carries = np.concatenate([[False], share > 0.0, [False]])
+    near = carries[:-2] | carries[1:-1] | carries[2:]
+    return np.where(near, share, np.nan)
 
 
 def _words(database: SteDatabase, loads: list[int]) -> str:

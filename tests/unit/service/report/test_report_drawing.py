@@ -2,6 +2,7 @@
 
 import struct
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -41,7 +42,7 @@ def test_panels_share_the_height_without_overlap(count: int) -> None:
     domains = [layout["yaxis" + (str(i + 1) if i else "")]["domain"] for i in range(count)]
     assert domains[0][1] == 1.0
     assert domains[-1][0] == pytest.approx(0.0, abs=1e-6)
-    for upper, lower in zip(domains, domains[1:], strict=False):
+    for upper, lower in pairwise(domains):
         assert upper[0] > lower[1]
 
 
@@ -56,7 +57,9 @@ def test_references_stand_in_their_own_panel() -> None:
 
 def test_a_logarithmic_axis_places_limits_and_labels_in_decades() -> None:
     panel = stacked(1).content[0]  # type: ignore[index]
-    panel = replace(panel, x=Axis("frequency, Hz", "log", (10.0, 1000.0)), references=(Reference("f", 100.0),))
+    panel = replace(
+        panel, x=Axis("frequency, Hz", "log", (10.0, 1000.0)), references=(Reference("f", 100.0),)
+    )
     layout = plotly_figure(replace(stacked(), content=(panel,)))["layout"]
     assert layout["xaxis"]["range"] == [1.0, 3.0]
     note = next(a for a in layout["annotations"] if a["text"] == "f")
@@ -94,8 +97,8 @@ def test_ordered_colours_lighten_and_stay_visible_on_white() -> None:
 
 @pytest.mark.parametrize(
     ("value", "digits", "text"),
-    [(6.24531, 4, "6.245"), (0.0001234, 3, "0.000123"), (2660.4, 5, "2660.4"), (1.2e-9, 2, "1.2e-09"), (0.0, 4, "0"),
-     (float("nan"), 4, "none"), (123456.0, 3, "123456")],
+    [(6.24531, 4, "6.245"), (0.0001234, 3, "0.000123"), (2660.4, 5, "2660.4"), (1.2e-9, 2, "1.2e-09"),
+     (0.0, 4, "0"), (float("nan"), 4, "none"), (123456.0, 3, "123456")],
 )  # fmt: skip
 def test_numbers_have_their_significant_digits(value: float, digits: int, text: str) -> None:
     assert number(value, digits) == text

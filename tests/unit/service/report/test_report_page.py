@@ -3,6 +3,7 @@
 import json
 import re
 from html.parser import HTMLParser
+from itertools import pairwise
 
 import numpy as np
 
@@ -90,7 +91,7 @@ def test_headings_descend_one_level_at_a_time() -> None:
     levels = [int(tag[1]) for tag, _ in outline(html(page(), {"ste": PNG})) if re.fullmatch("h[1-6]", tag)]
     assert levels[0] == 1
     assert levels.count(1) == 1
-    assert all(b - a <= 1 for a, b in zip(levels, levels[1:], strict=False))
+    assert all(b - a <= 1 for a, b in pairwise(levels))
 
 
 def test_the_contents_lead_to_every_section() -> None:
@@ -103,7 +104,9 @@ def test_the_contents_lead_to_every_section() -> None:
 
 
 def test_settings_become_rows_with_units() -> None:
-    table = facts("Case", {"pair": {"normal_module_mm": 4.0, "pinion": {"teeth": 20}}, "none": None, "on": True})
+    table = facts(
+        "Case", {"pair": {"normal_module_mm": 4.0, "pinion": {"teeth": 20}}, "none": None, "on": True}
+    )
     assert table.rows == (("pair · normal module, mm", "4"), ("pair · pinion · teeth", "20"), ("on", "yes"))
 
 
