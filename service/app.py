@@ -1,0 +1,78 @@
+"""The web application."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+from fastapi import FastAPI
+
+from service.jobs import Claims, Registry, Scheduler, Submissions, solver_version
+from service.jobs.catalogue import default_registry
+from service.routes import effects, health, jobs, landing, results
+from service.routes.context import Context
+from service.routes.errors import install_error_handlers
+from service.routes.metrics import Metrics
+from service.routes.middleware import Guard
+from service.routes.processes import processes_router
+from service.settings import Settings
+from service.store import DATABASE_FILE, RESULTS_DIRECTORY, DirectoryLock, ResultStore, open_database
+
+_DESCRIPTION = (
+    "Contact analysis of gear pairs and the dynamics it excites. Jobs follow OGC API - Processes 1.0; "
+    "errors are problem details (RFC 9457). Units are in the names of the fields."
+)
+
+
+def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
+    """Return the application; it opens its data directory and starts its scheduler when it is started.
+
+    Parameters
+    ----------
+    settings : Settings
+    registry : Registry, optional
+        The processes it offers; default: analyze and simulate.
+
+    Raises
+    ------
+    BadInput
+        Another service works in the data directory, or it cannot be written.
+    """
+    lock = DirectoryLock(settings.data_directory)
+    lock.acquire()
+    offered = registry or default_registry()
+    context = _context(settings, offered)
+
+    @asynccontextmanager
+    async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
+        context.scheduler.start()
+        try:
+            yield
+        finally:
+            context.scheduler.stop()
+            lock.release()
+
+    app = FastAPI(
+        title="lineofaction",
+        version=solver_version(),
+        description=_DESCRIPTION,
+        lifespan=lifespan,
+        docs_url=None,
+        redoc_url=None,
+    )
+    app.state.context = context
+    app.state.metrics = Metrics(context.submissions)
+    install_error_handlers(app)
+    app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
+    for router in (landing.router, processes_router(offered), jobs.router, results.router, effects.router):
+        app.include_router(router, prefix="/v1")
+    app.include_router(health.router)
+    return app
+
+
+def _context(settings: Settings, registry: Registry) -> Context:
+    """Open the store and put the parts together."""
+    engine = open_database(settings.data_directory / DATABASE_FILE)
+    store = ResultStore(engine, settings.data_directory / RESULTS_DIRECTORY)
+    scheduler = Scheduler(settings, registry, Claims(engine), store)
+    return Context(settings, registry, Submissions(engine, settings.queue_limit), scheduler, store)

@@ -1,0 +1,151 @@
+"""Answers of an STE database in boundary units: curves, summaries, batches of forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from fe_contact.ste import Curve, SteDatabase, Validity
+from fe_contact.types import Estimate
+from service.convert.case import boundary_errors
+from service.convert.units import MM, N_PER_UM, UM
+from service.problems import JobFailed
+from service.schemas.query import QueryInput, QueryOutput
+
+Json = dict[str, Any]
+
+
+def curve_json(
+    database: SteDatabase,
+    *,
+    torque_n_m: float | None = None,
+    force_n: float | None = None,
+    at: Sequence[float] | None = None,
+    misalignment_um: float | None = None,
+    center_distance_change_mm: float | None = None,
+) -> Json:
+    """Return one curve: position in base pitches by the driving gear, 0 = reference pair at the pitch point.
+
+    Raises
+    ------
+    BadInput
+        The load or the alignment is outside what is stored.
+    JobFailed
+        The table has failed points.
+    """
+    with boundary_errors():
+        curve = database.curve(
+            torque=torque_n_m,
+            force=force_n,
+            at=None if at is None else np.asarray(at, dtype=float),
+            misalignment=None if misalignment_um is None else misalignment_um * UM,
+            center_distance_change=None
+            if center_distance_change_mm is None
+            else center_distance_change_mm * MM,
+        )
+    return _curve(curve)
+
+
+def _curve(curve: Curve) -> Json:
+    """Return a curve as plain JSON; a value that is no number is refused rather than written as null."""
+    answer = {
+        "torque_n_m": curve.torque,
+        "normal_force_n": curve.point.force,
+        "misalignment_um": curve.point.misalignment / UM,
+        "center_distance_change_mm": curve.point.center_distance_change / MM,
+        "position": curve.position.tolist(),
+        "ste_um": (curve.ste / UM).tolist(),
+        "pair": curve.pair.tolist(),
+        "load_share": curve.load_share.tolist(),
+        **_figures(curve),
+    }
+    if not all(np.all(np.isfinite(answer[name])) for name in ("ste_um", "load_share")):
+        raise JobFailed(
+            "The curve has points without a solution. Compute the table again with other settings."
+        )
+    return answer
+
+
+def _figures(curve: Curve) -> Json:
+    """Mean, peak-to-peak and harmonics with their error bands."""
+    return {
+        "mean_um": _um(curve.mean)[0],
+        "mean_error_um": _um(curve.mean)[1],
+        "peak_to_peak_um": _um(curve.peak_to_peak)[0],
+        "peak_to_peak_error_um": _um(curve.peak_to_peak)[1],
+        "harmonics_um": [_um(item)[0] for item in curve.harmonics],
+        "harmonics_error_um": [_um(item)[1] for item in curve.harmonics],
+    }
+
+
+def _um(estimate: Estimate) -> tuple[float, float]:
+    """Return value and error in um."""
+    return estimate.value / UM, estimate.error / UM
+
+
+def summary_json(database: SteDatabase) -> Json:
+    """Return what `loa analyze` prints: figures for every load, effect ledger, receipt, failed points."""
+    with boundary_errors():
+        curves = [database.curve(force=float(force), allow_failed=True) for force in database.force]
+    return {
+        "content_hash": database.metadata.content_hash,
+        "points": int(database.status.size),
+        "failed_points": database.n_failed,
+        "loads": [
+            {"torque_n_m": curve.torque, "normal_force_n": curve.point.force, **_figures(curve)}
+            for curve in curves
+        ],
+        "effect_ledger": database.metadata.effect_ledger,
+        "receipt": database.metadata.receipt,
+    }
+
+
+def metadata_json(database: SteDatabase) -> Json:
+    """Return what a database says about itself, with its axes."""
+    return {
+        "schema_version": database.metadata.schema_version,
+        "content_hash": database.metadata.content_hash,
+        "case": database.metadata.case,
+        "effect_ledger": database.metadata.effect_ledger,
+        "receipt": database.metadata.receipt,
+        "software_versions": database.metadata.software_versions,
+        "failed_points": database.n_failed,
+        "position": database.position.tolist(),
+        "torque_n_m": database.torque.tolist(),
+        "normal_force_n": database.force.tolist(),
+        "misalignment_um": (database.misalignment / UM).tolist(),
+        "center_distance_change_mm": (database.center_distance_change / MM).tolist(),
+    }
+
+
+def force_answer(database: SteDatabase, query: QueryInput) -> QueryOutput:
+    """Return force, tangent stiffness and validity at the points of a query."""
+    with boundary_errors():
+        sample = database.force_at(
+            np.asarray(query.position),
+            np.asarray(query.deflection_um) * UM,
+            query.misalignment_um * UM,
+            query.center_distance_change_mm * MM,
+        )
+    flags = [_validity(int(flag)) for flag in np.atleast_1d(sample.validity).ravel()]
+    return QueryOutput(
+        force_n=_numbers(sample.force),
+        stiffness_n_per_um=_numbers(np.asarray(sample.stiffness) / N_PER_UM),
+        validity=flags,
+    )
+
+
+def _numbers(values: Any) -> list[float]:
+    """Return finite numbers as a list; anything else is a defect of the table."""
+    array = np.atleast_1d(np.asarray(values, dtype=float)).ravel()
+    if not np.all(np.isfinite(array)):
+        raise JobFailed("The table gives no number at some of these points. Compute it again.")
+    return [float(value) for value in array]
+
+
+def _validity(flag: int) -> str:
+    """Return flags in words, such as inside or above_table+outside_misalignment."""
+    words = [known.name.lower() for known in Validity if known and known & flag and known.name]
+    return "+".join(words) or "inside"

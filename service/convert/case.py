@@ -1,0 +1,119 @@
+"""From a case to a gear pair and the arguments of `fe_contact.analyze`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from fe_contact.errors import FeContactError, InputError
+from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.material import Material
+from service.convert.errors import translated
+from service.convert.units import DEGREE, GPA, MM, UM
+from service.problems import BadInput
+from service.schemas import Case, GearInput, MaterialInput, PairInput
+
+Json = dict[str, Any]
+
+_AMOUNTS = (
+    "tip_relief",
+    "root_relief",
+    "end_relief",
+    "profile_crowning",
+    "profile_slope",
+    "helix_crowning",
+    "helix_slope",
+)
+_RELIEFS = ("tip_relief", "root_relief", "end_relief")
+_COEFFICIENTS = (
+    "profile_shift_coefficient",
+    "addendum_coefficient",
+    "dedendum_coefficient",
+    "root_radius_coefficient",
+)
+
+
+def gear_pair(case: Case) -> GearPair:
+    """Return the gear pair of a case.
+
+    Raises
+    ------
+    BadInput
+        No such pair exists; named by the case's fields, in its units.
+    """
+    with boundary_errors():
+        pinion = _gear("pinion", case.pair, case.material, +1.0)
+        wheel = _gear("wheel", case.pair, case.material, -1.0)
+        return GearPair(pinion, wheel, case.pair.center_distance_mm * MM)
+
+
+@contextmanager
+def boundary_errors(prefix: str = "") -> Iterator[None]:
+    """Turn errors of the libraries into the boundary's."""
+    try:
+        yield
+    except FeContactError as error:
+        known = translated(error)
+        if isinstance(known, BadInput) and prefix:
+            known = known.within(prefix)
+        raise known or error from None
+
+
+def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> Gear:
+    """One gear of the pair; mating external gears have opposite hands."""
+    given: GearInput = getattr(pair, name)
+    tip = given.tip_diameter_mm
+    try:
+        return Gear(
+            teeth=given.teeth,
+            normal_module=pair.normal_module_mm * MM,
+            face_width=given.face_width_mm * MM,
+            bore_diameter=given.bore_diameter_mm * MM,
+            normal_pressure_angle=pair.normal_pressure_angle_deg * DEGREE,
+            helix_angle=hand * pair.helix_angle_deg * DEGREE if pair.helix_angle_deg else 0.0,
+            tip_diameter=None if tip is None else tip * MM,
+            thickness_allowance=given.thickness_allowance_um * UM,
+            modification=_modification(given),
+            material=_material(given.material or material),
+            **{coefficient: getattr(given, coefficient) for coefficient in _COEFFICIENTS},
+        )
+    except InputError as error:
+        raise error.within(name) from None
+
+
+def _modification(given: GearInput) -> FlankModification:
+    """Return the flank modification of a gear."""
+    facts: Json = {name: getattr(given, f"{name}_um") * UM for name in _AMOUNTS}
+    for name in _RELIEFS:
+        facts[f"{name}_length"] = getattr(given, f"{name}_length_mm") * MM
+        facts[f"{name}_shape"] = getattr(given, f"{name}_shape")
+    return FlankModification(**facts)
+
+
+def _material(given: MaterialInput) -> Material:
+    """Return the material of a gear."""
+    return Material(youngs_modulus=given.youngs_modulus_gpa * GPA, poissons_ratio=given.poissons_ratio)
+
+
+def analysis_arguments(case: Case) -> Json:
+    """Return the keyword arguments of `fe_contact.analyze` for a case, in SI."""
+    accuracy, load, errors = case.accuracy, case.load, case.errors
+    return {
+        "torques": None if load.torque_n_m is None else list(load.torque_n_m),
+        "normal_forces": None if load.normal_force_n is None else list(load.normal_force_n),
+        "misalignments": tuple(value * UM for value in errors.misalignment_um),
+        "center_distance_changes": tuple(value * MM for value in errors.center_distance_change_mm),
+        "tolerance": accuracy.tolerance,
+        "time_budget": accuracy.time_budget_s,
+        "level": accuracy.level,
+        "model": accuracy.model,
+        "positions": accuracy.positions,
+        "effects": dict(case.effects),
+        "case": case_json(case),
+    }
+
+
+def case_json(case: Case) -> Json:
+    """Return the case with all defaults, as JSON: what is hashed and echoed."""
+    return case.model_dump(mode="json")

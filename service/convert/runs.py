@@ -1,0 +1,42 @@
+"""What a run's file says about itself."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+
+
+def run_json(file: Path) -> dict[str, Any]:
+    """Return attributes, dimensions and variables (with units) of a run, without its data."""
+    with xarray.open_dataset(file, engine="h5netcdf", decode_times=False) as run:
+        return {
+            "attributes": {str(name): _plain(value) for name, value in run.attrs.items()},
+            "dimensions": {str(name): int(size) for name, size in run.sizes.items()},
+            "variables": {
+                str(name): {
+                    "dimensions": [str(d) for d in variable.dims],
+                    "units": variable.attrs.get("units", ""),
+                }
+                for name, variable in run.variables.items()
+            },
+        }
+
+
+def _plain(value: object) -> object:
+    """Attribute as JSON; a number that JSON cannot hold is shown as text, and JSON in a text is unfolded."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, float) and not np.isfinite(value):
+        return str(value)
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    if isinstance(value, str) and value[:1] in "[{":
+        try:
+            return json.loads(value)
+        except json.JSONDecodeError:
+            return value
+    return value

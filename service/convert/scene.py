@@ -1,0 +1,186 @@
+"""From a scene file and its STE databases to the scene of dynamics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
+from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw, hollow_cylinder
+from dynamics.errors import InputError
+from dynamics.forces import GearMesh, LoadTorque
+from dynamics.joints import Bushing, ImposedRotation
+from dynamics.system import Integration, Outputs, Scene
+from fe_contact.ste import PairFacts, SteDatabase
+from service.convert.case import boundary_errors
+from service.convert.errors import translated
+from service.convert.topology import Teeth, check_center_distances, teeth_of
+from service.convert.units import MM, NM, RPM, UM
+from service.schemas.scene import (
+    BushingInput,
+    DriveInput,
+    GearBodyInput,
+    InertiaInput,
+    LoadTorqueInput,
+    MeshInput,
+    SceneInput,
+    ShaftInput,
+)
+
+_SMALLEST_STEP_S = 1e-12
+
+
+def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Scene:
+    """Return the scene in SI.
+
+    Parameters
+    ----------
+    scene : SceneInput
+    databases : mapping of str to SteDatabase
+        By name of the mesh.
+
+    Raises
+    ------
+    BadInput
+        No such system; named by the scene file's fields, in its units.
+    JobFailed
+        A database has failed points.
+    """
+    facts = {name: database.facts for name, database in databases.items()}
+    with boundary_errors():
+        meshes = tuple(_mesh(i, mesh, databases[mesh.name]) for i, mesh in enumerate(scene.meshes))
+    return _assembled(scene, facts, meshes)
+
+
+def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
+    """Raise `BadInput` if no such system exists, by the facts of the pairs (by name of the mesh) alone."""
+    _assembled(scene, facts, ())
+
+
+def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[GearMesh, ...]) -> Scene:
+    """Return the scene with its parts checked one by one and together."""
+    teeth = teeth_of(scene, facts)
+    check_center_distances(scene, facts)
+    gears = tuple(_gear(i, gear, teeth[gear.name]) for i, gear in enumerate(scene.gears))
+    with _named(""):
+        return Scene(
+            shafts=tuple(_shaft(i, shaft) for i, shaft in enumerate(scene.shafts)),
+            gears=gears,
+            bushings=tuple(_bushing(i, bushing) for i, bushing in enumerate(scene.bushings)),
+            meshes=meshes,
+            drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),
+            loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
+            duration=scene.run.duration_s,
+            effects=dict(scene.effects),
+            outputs=_outputs(scene),
+            integration=_integration(scene),
+        )
+
+
+@contextmanager
+def _named(part: str) -> Iterator[None]:
+    """Turn input errors of dynamics into the boundary's, named inside `part`."""
+    try:
+        yield
+    except InputError as error:
+        raise translated(error.within(part) if part else error) or error from None
+
+
+def _shaft(index: int, given: ShaftInput) -> Shaft:
+    """Return a shaft."""
+    x, y, z = given.origin_mm
+    with _named(f"shafts[{index}]"):
+        if given.inertia is None:
+            inertia = hollow_cylinder((given.diameter_mm or 0.0) * MM, given.length_mm * MM)
+        else:
+            inertia = _inertia(given.inertia)
+        return Shaft(given.name, given.length_mm * MM, (x * MM, y * MM, z * MM), inertia)
+
+
+def _inertia(given: InertiaInput) -> Inertia:
+    """Inertia as given."""
+    return Inertia(given.mass_kg, given.polar_kg_m2, given.transverse_kg_m2)
+
+
+def _gear(index: int, given: GearBodyInput, teeth: Teeth) -> GearBody:
+    """Return a gear with the teeth of its mesh."""
+    with _named(f"gears[{index}]"):
+        if given.inertia is None:
+            inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, given.bore_diameter_mm * MM)
+        else:
+            inertia = _inertia(given.inertia)
+        return GearBody(
+            name=given.name,
+            shaft=given.shaft,
+            position=given.position_mm * MM,
+            teeth=teeth.teeth,
+            base_radius=teeth.base_radius,
+            face_width=teeth.face_width,
+            base_helix_angle=teeth.base_helix_angle,
+            inertia=inertia,
+        )
+
+
+def _bushing(index: int, given: BushingInput) -> Bushing:
+    """Return a bushing."""
+    with _named(f"bushings[{index}]"):
+        return Bushing(
+            name=given.name,
+            shaft=given.shaft,
+            position=given.position_mm * MM,
+            radial_stiffness=given.radial_stiffness_n_per_m,
+            axial_stiffness=given.axial_stiffness_n_per_m,
+            radial_damping=given.radial_damping_n_s_per_m,
+            axial_damping=given.axial_damping_n_s_per_m,
+            damping_ratio=given.damping_ratio,
+        )
+
+
+def _mesh(index: int, given: MeshInput, database: SteDatabase) -> GearMesh:
+    """Return a mesh with the force table of its database."""
+    with _named(f"meshes[{index}]"):
+        return GearMesh(
+            name=given.name,
+            driver=given.driver,
+            driven=given.driven,
+            table=database.force_table(),
+            technique=given.technique,
+            damping=given.damping_n_s_per_m,
+            damping_ratio=given.damping_ratio,
+            nominal_force=given.nominal_force_n,
+            position_offset=given.position_offset,
+            misalignment=given.misalignment_um * UM,
+            center_distance_change=given.center_distance_change_mm * MM,
+        )
+
+
+def _drive(index: int, given: DriveInput) -> ImposedRotation:
+    """Return a drive."""
+    with _named(f"drives[{index}]"):
+        speed = tuple(value * RPM for value in given.speed_rpm)
+        return ImposedRotation(given.name, given.shaft, TimeLaw(given.time_s, speed, given.course))
+
+
+def _load(index: int, given: LoadTorqueInput) -> LoadTorque:
+    """Return a load."""
+    with _named(f"loads[{index}]"):
+        return LoadTorque(given.name, given.shaft, TimeLaw(given.time_s, given.torque_n_m, given.course))
+
+
+def _outputs(scene: SceneInput) -> Outputs:
+    """Return what to store."""
+    given = scene.outputs
+    with _named("outputs"):
+        return Outputs(given.sample_rate_hz, given.bearing_forces, given.displacements)
+
+
+def _integration(scene: SceneInput) -> Integration:
+    """Return how to integrate."""
+    given = scene.integration
+    with _named("integration"):
+        return Integration(
+            method=given.method,
+            tolerance=given.tolerance_nm * NM,
+            fixed_step=given.fixed_step_s,
+            smallest_step=_SMALLEST_STEP_S,
+            largest_step=given.largest_step_s,
+        )

@@ -1,0 +1,86 @@
+"""What a scene's meshes say about its gears and axes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from fe_contact.geometry import GearPair
+from fe_contact.ste import PairFacts
+from service.convert.units import MM
+from service.problems import BadInput
+from service.schemas.scene import SceneInput
+
+_SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
+
+
+@dataclass(frozen=True)
+class Teeth:
+    """What a mesh says about one of its gears; SI units, the helix angle with the hand's sign."""
+
+    teeth: int
+    base_radius: float
+    base_helix_angle: float
+    pitch_diameter: float
+    face_width: float
+
+
+def facts_of(pair: GearPair) -> PairFacts:
+    """Return the facts that a database of `pair` will carry."""
+    pinion, wheel = pair.pinion, pair.wheel
+    return PairFacts(
+        teeth=(pinion.teeth, wheel.teeth),
+        base_radius=(pinion.base_radius, wheel.base_radius),
+        base_pitch=pair.base_pitch,
+        base_helix_angle=abs(pair.base_helix_angle),
+        center_distance=pair.center_distance,
+        working_pressure_angle=pair.working_pressure_angle,
+        face_width=min(pinion.face_width, wheel.face_width),
+        helix_hand=(pair.base_helix_angle > 0.0) - (pair.base_helix_angle < 0.0),
+    )
+
+
+def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Teeth]:
+    """Teeth of every gear, by name; a gear in two meshes must be the same in both."""
+    found: dict[str, Teeth] = {}
+    for index, mesh in enumerate(scene.meshes):
+        for side, role in enumerate(("driver", "driven")):
+            name, teeth = getattr(mesh, role), _side(facts[mesh.name], side)
+            known = found.setdefault(name, teeth)
+            if known.teeth != teeth.teeth or not math.isclose(
+                known.base_radius, teeth.base_radius, rel_tol=_SAME
+            ):
+                bound = f"the gear of {known.teeth} teeth that its other mesh has ({teeth.teeth} teeth here)"
+                raise BadInput.of(f"meshes[{index}].{role}", name, bound, "Check the cases of both meshes.")
+    for index, gear in enumerate(scene.gears):
+        if gear.name not in found:
+            raise BadInput.of(
+                f"gears[{index}].name", gear.name, "part of a mesh", "Add it to a mesh or remove it."
+            )
+    return found
+
+
+def _side(facts: PairFacts, side: int) -> Teeth:
+    """Return one gear of a pair; the hands of external gears are opposite."""
+    radius = facts.base_radius[side]
+    hand = facts.helix_hand if side == 0 else -facts.helix_hand
+    pitch_diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
+    return Teeth(facts.teeth[side], radius, hand * facts.base_helix_angle, pitch_diameter, facts.face_width)
+
+
+def check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
+    """Refuse axes of meshing gears that are not as far apart as their database says."""
+    origin = {shaft.name: shaft.origin_mm for shaft in scene.shafts}
+    carrier = {gear.name: gear.shaft for gear in scene.gears}
+    place = {shaft.name: index for index, shaft in enumerate(scene.shafts)}
+    for mesh in scene.meshes:
+        one, other = origin[carrier[mesh.driver]], origin[carrier[mesh.driven]]
+        distance = math.hypot(other[0] - one[0], other[1] - one[1])
+        wanted = facts[mesh.name].center_distance / MM
+        if not math.isclose(distance, wanted, rel_tol=_SAME):
+            field = f"shafts[{place[carrier[mesh.driven]]}].origin_mm"
+            bound = (
+                f"{wanted:.7g} mm across the axis from shaft {carrier[mesh.driver]}, not {distance:.7g} mm"
+            )
+            raise BadInput.of(field, list(other), bound, f"That is the centre distance of mesh {mesh.name}.")

@@ -1,0 +1,32 @@
+"""Units at the boundary: what one of each is in SI."""
+
+from __future__ import annotations
+
+import math
+
+MM = 1e-3
+UM = 1e-6
+NM = 1e-9
+GPA = 1e9
+DEGREE = math.pi / 180.0
+RPM = 2.0 * math.pi / 60.0
+N_PER_UM = 1e6
+
+BY_SUFFIX: dict[str, float] = {
+    "_mm": MM,
+    "_um": UM,
+    "_nm": NM,
+    "_gpa": GPA,
+    "_deg": DEGREE,
+    "_rpm": RPM,
+}
+
+
+def factor(name: str) -> float:
+    """Return the SI value of one unit of the boundary field `name`, 1 for a name without such a unit."""
+    return next((value for suffix, value in BY_SUFFIX.items() if name.endswith(suffix)), 1.0)
+
+
+def boundary_text(value: float) -> str:
+    """Return a number as users write it."""
+    return f"{value:.6g}"

@@ -1,0 +1,92 @@
+"""The libraries' field names and the boundary's, which carry units."""
+
+from __future__ import annotations
+
+import re
+
+# Fields of a case, by the library's name (see fe_contact.geometry and fe_contact.planning).
+_CASE = {
+    "normal_module": "pair.normal_module_mm",
+    "normal_pressure_angle": "pair.normal_pressure_angle_deg",
+    "helix_angle": "pair.helix_angle_deg",
+    "center_distance": "pair.center_distance_mm",
+    "torques": "load.torque_n_m",
+    "normal_forces": "load.normal_force_n",
+    "misalignments": "errors.misalignment_um",
+    "center_distance_changes": "errors.center_distance_change_mm",
+    "tolerance": "accuracy.tolerance",
+    "time_budget": "accuracy.time_budget_s",
+    "level": "accuracy.level",
+    "model": "accuracy.model",
+    "positions": "accuracy.positions",
+}
+
+_LAST = {
+    # gear
+    "face_width": "face_width_mm",
+    "bore_diameter": "bore_diameter_mm",
+    "tip_diameter": "tip_diameter_mm",
+    "thickness_allowance": "thickness_allowance_um",
+    "tip_relief": "tip_relief_um",
+    "tip_relief_length": "tip_relief_length_mm",
+    "root_relief": "root_relief_um",
+    "root_relief_length": "root_relief_length_mm",
+    "profile_crowning": "profile_crowning_um",
+    "profile_slope": "profile_slope_um",
+    "helix_crowning": "helix_crowning_um",
+    "helix_slope": "helix_slope_um",
+    "end_relief": "end_relief_um",
+    "end_relief_length": "end_relief_length_mm",
+    "youngs_modulus": "youngs_modulus_gpa",
+    # scene
+    "duration": "duration_s",
+    "length": "length_mm",
+    "position": "position_mm",
+    "outer_diameter": "diameter_mm",
+    "radial_stiffness": "radial_stiffness_n_per_m",
+    "axial_stiffness": "axial_stiffness_n_per_m",
+    "radial_damping": "radial_damping_n_s_per_m",
+    "axial_damping": "axial_damping_n_s_per_m",
+    "damping": "damping_n_s_per_m",
+    "nominal_force": "nominal_force_n",
+    "misalignment": "misalignment_um",
+    "center_distance_change": "center_distance_change_mm",
+    "mass": "mass_kg",
+    "polar": "polar_kg_m2",
+    "transverse": "transverse_kg_m2",
+    "speed": "speed_rpm",
+    "torque": "torque_n_m",
+    "sample_rate": "sample_rate_hz",
+    "fixed_step": "fixed_step_s",
+    "smallest_step": "smallest_step_s",
+    "largest_step": "largest_step_s",
+}
+
+# What both gears share lies in [pair], whichever gear reports it.
+_SHARED = ("normal_module", "normal_pressure_angle", "helix_angle")
+
+
+def case_field(name: str) -> str:
+    """Return the case file's name of a field of fe_contact, e.g. ``pair.pinion.bore_diameter_mm``."""
+    parts = [part for part in name.split(".") if part != "modification"]
+    head, index = _split_index(parts[-1])
+    if len(parts) == 1 or head in _SHARED:
+        return _CASE.get(head, _LAST.get(head, head)) + index
+    parts[-1] = _LAST.get(head, head) + index
+    return ".".join(["pair", *parts] if parts[0] in ("pinion", "wheel") else parts)
+
+
+def scene_field(name: str) -> str:
+    """Return the scene file's name of a field of dynamics, e.g. ``bushings[0].radial_stiffness_n_per_m``."""
+    parts = name.split(".")
+    head, index = _split_index(parts[-1])
+    if len(parts) == 1 and head == "duration":
+        return "run.duration_s"
+    parts[-1] = _LAST.get(head, head) + index
+    return ".".join(parts)
+
+
+def _split_index(part: str) -> tuple[str, str]:
+    """Split ``torques[2]`` into the name and the index."""
+    match = re.fullmatch(r"([^\[]*)(\[.*\])?", part)
+    return (match.group(1), match.group(2) or "") if match else (part, "")

@@ -1,0 +1,102 @@
+"""The processes of the service: analyze and simulate."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import Field
+
+from fe_contact.ste import PairFacts, SteDatabase
+from service.convert.checks import check_case
+from service.convert.scene import check_scene
+from service.convert.topology import facts_of
+from service.jobs.process import Process, Registry, Stage
+from service.problems import BadInput
+from service.schemas import Case
+from service.schemas.model import BoundaryModel
+from service.schemas.scene import MeshInput, SceneInput
+from service.store import ResultStore
+
+Json = dict[str, Any]
+
+
+class AnalyzeInputs(BoundaryModel):
+    """Inputs of the process analyze."""
+
+    case: Case = Field(description="The case, as in a case file")
+
+
+class SimulateInputs(BoundaryModel):
+    """Inputs of the process simulate."""
+
+    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
+
+
+def _prepare_analyze(inputs: BoundaryModel, _store: ResultStore) -> Json:
+    """Check that the pair exists; return the case with all defaults."""
+    assert isinstance(inputs, AnalyzeInputs)
+    check_case(inputs.case)
+    return inputs.model_dump(mode="json")
+
+
+def _prepare_simulate(inputs: BoundaryModel, store: ResultStore) -> Json:
+    """Check the scene and the sources of its tables; return it with all defaults."""
+    assert isinstance(inputs, SimulateInputs)
+    facts = {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in enumerate(inputs.scene.meshes)}
+    check_scene(inputs.scene, facts)
+    return inputs.model_dump(mode="json")
+
+
+def _facts(place: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
+    """Return the facts of a mesh's pair, from its case or its stored database."""
+    _check_source(place, mesh.database_hash, mesh.case_file or mesh.database_file, store)
+    if mesh.case is not None:
+        try:
+            return facts_of(check_case(mesh.case))
+        except BadInput as error:
+            raise error.within(f"{place}.case") from None
+    return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts
+
+
+def _check_source(mesh: str, key: str | None, path: str | None, store: ResultStore) -> None:
+    """Refuse files of the callers, which a service does not read, and hashes it does not hold."""
+    if path is not None:
+        advice = "Write the case out, or submit it and give database_hash; the client does this for you."
+        raise BadInput.of(
+            f"{mesh}.case_file", path, "left out: the service reads no files of its callers", advice
+        )
+    if key is not None and store.find(key, "database") is None:
+        raise BadInput.of(
+            f"{mesh}.database_hash", key, "the hash of a stored database", "Submit its case first."
+        )
+
+
+ANALYZE = Process(
+    id="analyze",
+    title="STE database of a gear pair",
+    description="Contact analysis of a gear pair over positions and loads; makes an STE database.",
+    version="1",
+    inputs=AnalyzeInputs,
+    output="database",
+    kind="database",
+    prepare=_prepare_analyze,
+    entry="service.jobs.work:analyze_case",
+    stages=(Stage("mesh", 0.4), Stage("compliance", 0.4), Stage("contact", 0.2)),
+)
+SIMULATE = Process(
+    id="simulate",
+    title="Dynamics of a geared system",
+    description="Time integration of shafts, gears and bearings excited by STE databases; makes a run.",
+    version="1",
+    inputs=SimulateInputs,
+    output="run",
+    kind="run",
+    prepare=_prepare_simulate,
+    entry="service.jobs.work:simulate_scene",
+    stages=(Stage("analysis", 0.5), Stage("integration", 0.5)),
+)
+
+
+def default_registry() -> Registry:
+    """Return the processes every service offers."""
+    return Registry(ANALYZE, SIMULATE)

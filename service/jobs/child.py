@@ -1,0 +1,95 @@
+"""The worker process: one order in, progress and one outcome out, then the end.
+
+Started as ``python -m service.jobs.child DESCRIPTOR`` in a session of its own. The order is the first line of
+standard input, which then stays open and silent: when it closes, the service is gone, and the whole process
+group (gmsh's process included) is killed. Progress and outcome are lines of JSON on DESCRIPTOR. Standard
+error is the log.
+"""
+
+from __future__ import annotations
+
+import importlib
+import json
+import os
+import signal
+import sys
+import threading
+import time
+import traceback
+from typing import Any, TextIO
+
+from service.convert.errors import translated
+from service.jobs.order import Product, WorkOrder
+from service.problems import ServiceError
+
+_NICENESS = 10
+_SHORTEST_INTERVAL_S = 0.1
+
+
+def main() -> None:
+    """Run one order."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
+    order = WorkOrder.from_line(_first_line())
+    threading.Thread(target=_watch_parent, daemon=True).start()
+    os.nice(_NICENESS)
+    with os.fdopen(int(sys.argv[1]), "w", buffering=1) as channel:
+        _send(channel, _outcome(order, _Reporter(channel)))
+
+
+def _first_line() -> bytes:
+    """Read the order without taking anything beyond it."""
+    line = b""
+    while not line.endswith(b"\n"):
+        piece = os.read(0, 65536)
+        if not piece:
+            sys.exit("The service closed the channel before it gave an order.")
+        line += piece
+    return line
+
+
+def _watch_parent() -> None:
+    """Kill the process group when the service is gone."""
+    while os.read(0, 1):
+        pass
+    os.killpg(os.getpgrp(), signal.SIGKILL)
+
+
+class _Reporter:
+    """Progress of the work, thinned out in time; stages' starts and ends always pass."""
+
+    def __init__(self, channel: TextIO) -> None:
+        self._channel, self._stage, self._sent = channel, "", 0.0
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        """Report the fraction done of a stage."""
+        instant = time.monotonic()
+        recent = instant - self._sent < _SHORTEST_INTERVAL_S
+        if stage == self._stage and recent and fraction < 1.0:
+            return
+        self._stage, self._sent = stage, instant
+        _send(self._channel, {"stage": stage, "fraction": min(max(float(fraction), 0.0), 1.0)})
+
+
+def _send(channel: TextIO, message: dict[str, Any]) -> None:
+    """Write one line."""
+    channel.write(json.dumps(message) + "\n")
+
+
+def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
+    """Do the work; every exception becomes an outcome, its text withheld unless it was raised on purpose."""
+    try:
+        module, _, name = order.entry.partition(":")
+        products: tuple[Product, ...] = getattr(importlib.import_module(module), name)(order, progress)
+    except MemoryError:
+        return {"failure": "The computation ran out of memory. Ask for a coarser level."}
+    except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
+        known = error if isinstance(error, ServiceError) else translated(error)
+        if known is None:
+            traceback.print_exc(file=sys.stderr)
+            return {"failure": "unexpected", "unexpected": True}
+        return {"failure": str(known), "faults": [fault.as_json() for fault in known.faults]}
+    return {"products": [{"key": p.key, "kind": p.kind, "file": str(p.file)} for p in products]}
+
+
+if __name__ == "__main__":
+    main()

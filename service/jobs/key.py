@@ -1,0 +1,28 @@
+"""Names of results: the hash of what decides them."""
+
+from __future__ import annotations
+
+import hashlib
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import rfc8785
+
+
+def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> str:
+    """Return the SHA-256 of the RFC 8785 form of the normalised inputs and the versions, hexadecimal."""
+    facts: dict[str, Any] = {
+        "process": process,
+        "process_version": process_version,
+        "solver_version": solver_version(),
+        "inputs": inputs,
+    }
+    return hashlib.sha256(rfc8785.dumps(facts)).hexdigest()
+
+
+def solver_version() -> str:
+    """Return the version of the installed project; code that runs uninstalled says so."""
+    try:
+        return version("lineofaction")
+    except PackageNotFoundError:
+        return "uninstalled"

@@ -1,0 +1,82 @@
+"""What passes between the service and a worker: the order, the progress, the outcome."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True)
+class WorkOrder:
+    """One computation for one child process.
+
+    Attributes
+    ----------
+    entry : str
+        ``"module:function"`` to call.
+    inputs : dict
+        Normalised inputs.
+    key : str
+        Name of the result.
+    workspace : Path
+        Directory of this computation alone; removed afterwards.
+    data_directory : Path
+        Where results and the compliance cache are, to read.
+    """
+
+    entry: str
+    inputs: dict[str, Any]
+    key: str
+    workspace: Path
+    data_directory: Path
+
+    def line(self) -> bytes:
+        """Return the order as one line of JSON."""
+        facts = asdict(self) | {"workspace": str(self.workspace), "data_directory": str(self.data_directory)}
+        return json.dumps(facts).encode() + b"\n"
+
+    @classmethod
+    def from_line(cls, line: bytes) -> WorkOrder:
+        """Read the line of an order."""
+        facts = json.loads(line)
+        facts["workspace"], facts["data_directory"] = Path(facts["workspace"]), Path(facts["data_directory"])
+        return cls(**facts)
+
+
+@dataclass(frozen=True)
+class Product:
+    """A file the work made, to be moved into the store under `key`."""
+
+    key: str
+    kind: str
+    file: Path
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a worker ended.
+
+    Attributes
+    ----------
+    products : tuple[Product, ...]
+        What it made; empty if it failed.
+    failure : str
+        Why there is none, in words for the user; empty if there are products.
+    faults : tuple[dict, ...]
+        What was wrong with the input, if that was the cause.
+    unexpected : bool
+        A defect: the text of the exception is in the log only.
+    died : bool
+        The process ended without an outcome; worth another attempt.
+    """
+
+    products: tuple[Product, ...] = ()
+    failure: str = ""
+    faults: tuple[dict[str, Any], ...] = ()
+    unexpected: bool = False
+    died: bool = False

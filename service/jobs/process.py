@@ -1,0 +1,89 @@
+"""What can be run: a process, and the registry of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from service.problems import NoSuchProcess
+from service.schemas.model import BoundaryModel
+from service.store import ResultStore
+
+Json = dict[str, Any]
+Prepare = Callable[[BoundaryModel, ResultStore], Json]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A stage of the work and its share of the time (the shares of a process sum to 1)."""
+
+    name: str
+    share: float
+
+
+@dataclass(frozen=True)
+class Process:
+    """A kind of job.
+
+    Attributes
+    ----------
+    id, title, description, version : str
+        As in OGC API - Processes.
+    inputs : type[BoundaryModel]
+        Model of the execute request's ``inputs``.
+    output : str
+        Name of the one output.
+    kind : str
+        Kind of the result in the store, "database" or "run".
+    prepare : callable
+        ``prepare(inputs, store)`` checks what a schema cannot (raises `BadInput`) and returns the normalised
+        inputs: what is hashed, stored and handed to the worker. Cheap: it runs in the request.
+    entry : str
+        ``"module:function"`` of the work, called as ``function(order, progress)`` in a process of its own.
+    stages : tuple[Stage, ...]
+        What the work reports, in order.
+    """
+
+    id: str
+    title: str
+    description: str
+    version: str
+    inputs: type[BoundaryModel]
+    output: str
+    kind: str
+    prepare: Prepare
+    entry: str
+    stages: tuple[Stage, ...]
+
+    def overall(self, stage: str, fraction: float) -> float | None:
+        """Return the fraction of the whole job, None for a stage that was not declared."""
+        done = 0.0
+        for known in self.stages:
+            if known.name == stage:
+                return min(1.0, done + known.share * fraction)
+            done += known.share
+        return None
+
+
+class Registry(Mapping[str, Process]):
+    """The processes of a service, by id."""
+
+    def __init__(self, *processes: Process) -> None:
+        self._processes = {process.id: process for process in processes}
+
+    def __getitem__(self, name: str) -> Process:
+        try:
+            return self._processes[name]
+        except KeyError:
+            known = ", ".join(self._processes)
+            raise NoSuchProcess(f"There is no process {name!r}. Known: {known}.") from None
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._processes
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._processes)
+
+    def __len__(self) -> int:
+        return len(self._processes)

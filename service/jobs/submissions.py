@@ -1,0 +1,181 @@
+"""The callers' side of the job table: submit, look, list, dismiss."""
+
+from __future__ import annotations
+
+import json
+import uuid
+from dataclasses import dataclass
+from typing import Any
+
+from sqlalchemy import Connection, Engine, func, insert, select, tuple_, update
+
+from service.jobs.tables import computations, jobs
+from service.problems import NoSuchJob, QueueFull
+from service.store import now, reading, writing
+
+_ENDED = ("successful", "failed", "dismissed")
+
+
+@dataclass(frozen=True)
+class Job:
+    """A job with the state of its computation; times are RFC 3339 in UTC."""
+
+    id: str
+    process: str
+    key: str
+    status: str
+    message: str
+    stage: str
+    stage_fraction: float
+    fraction: float
+    attempts: int
+    created: str
+    started: str | None
+    finished: str | None
+    updated: str
+    faults: tuple[dict[str, Any], ...]
+    reference: str
+
+    @property
+    def ended(self) -> bool:
+        """Whether nothing more will happen to it."""
+        return self.status in _ENDED
+
+
+class Submissions:
+    """Jobs as their callers see them."""
+
+    def __init__(self, engine: Engine, queue_limit: int) -> None:
+        self._engine = engine
+        self._queue_limit = queue_limit
+
+    def submit(self, process: str, key: str, inputs: dict[str, Any], *, stored: bool) -> Job:
+        """Enter a job; equal work that waits, runs or is `stored` already is shared.
+
+        Raises
+        ------
+        QueueFull
+            New work, and as many computations wait as the limit allows.
+        """
+        with writing(self._engine) as connection:
+            computation = _shared(connection, key, stored)
+            if computation is None:
+                if not stored:
+                    self._refuse_if_full(connection)
+                computation = _enter(connection, process, key, inputs, stored)
+            identifier = str(uuid.uuid4())
+            row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
+            connection.execute(insert(jobs).values(**row))
+        return self.find(identifier)
+
+    def _refuse_if_full(self, connection: Connection) -> None:
+        """Raise if the queue is at its limit."""
+        count = select(func.count()).select_from(computations).where(computations.c.state == "accepted")
+        if connection.execute(count).scalar_one() >= self._queue_limit:
+            raise QueueFull(f"{self._queue_limit} computations wait already. Try again in a while.")
+
+    def find(self, identifier: str) -> Job:
+        """Return a job.
+
+        Raises
+        ------
+        NoSuchJob
+            There is none of this identifier.
+        """
+        with reading(self._engine) as connection:
+            row = connection.execute(_jobs().where(jobs.c.id == identifier)).one_or_none()
+        if row is None:
+            raise NoSuchJob(f"There is no job {identifier!r}.")
+        return _job(row)
+
+    def page(self, limit: int, after: str | None = None) -> list[Job]:
+        """Return up to `limit` jobs, the newest first, those older than the job `after`."""
+        statement = _jobs().order_by(jobs.c.created.desc(), jobs.c.id.desc()).limit(limit)
+        if after is not None:
+            created = select(jobs.c.created).where(jobs.c.id == after).scalar_subquery()
+            statement = statement.where(tuple_(jobs.c.created, jobs.c.id) < tuple_(created, after))
+        with reading(self._engine) as connection:
+            return [_job(row) for row in connection.execute(statement)]
+
+    def dismiss(self, identifier: str) -> Job:
+        """Dismiss one caller's job, unless it ended; the work goes on while other jobs share it."""
+        job = self.find(identifier)
+        if job.ended:
+            return job
+        with writing(self._engine) as connection:
+            mine = jobs.c.id == identifier
+            connection.execute(update(jobs).where(mine).values(dismissed=now()))
+            owner = select(jobs.c.computation_id).where(mine).scalar_subquery()
+            others = select(jobs.c.id).where(jobs.c.computation_id == owner, jobs.c.dismissed.is_(None))
+            if connection.execute(others.limit(1)).first() is None:
+                _abandon(connection, owner)
+        return self.find(identifier)
+
+    def counts(self) -> dict[str, int]:
+        """Return how many computations are in each state."""
+        statement = select(computations.c.state, func.count()).group_by(computations.c.state)
+        with reading(self._engine) as connection:
+            return {row[0]: row[1] for row in connection.execute(statement)}
+
+
+def _shared(connection: Connection, key: str, stored: bool) -> str | None:
+    """Return the computation of `key` that waits, runs or, if its result is stored, has succeeded."""
+    states = ["accepted", "running", *(["successful"] if stored else [])]
+    statement = select(computations.c.id).where(computations.c.key == key, computations.c.state.in_(states))
+    return connection.execute(statement.order_by(computations.c.created.desc()).limit(1)).scalar()
+
+
+def _enter(connection: Connection, process: str, key: str, inputs: dict[str, Any], stored: bool) -> str:
+    """Enter a computation, ended at once if its result is stored."""
+    identifier, instant = str(uuid.uuid4()), now()
+    row: dict[str, Any] = {
+        "id": identifier,
+        "process": process,
+        "key": key,
+        "inputs": json.dumps(inputs),
+        "state": "successful" if stored else "accepted",
+        "message": "Taken from the store." if stored else "Waits for a worker.",
+        "fraction": 1.0 if stored else 0.0,
+        "created": instant,
+        "updated": instant,
+    }
+    if stored:
+        row |= {"started": instant, "finished": instant}
+    connection.execute(insert(computations).values(**row))
+    return identifier
+
+
+def _abandon(connection: Connection, owner: Any) -> None:
+    """End a computation that nobody wants; the scheduler kills its worker."""
+    live = computations.c.state.in_(("accepted", "running"))
+    values = {"state": "dismissed", "message": "Cancelled.", "finished": now(), "updated": now()}
+    connection.execute(update(computations).where(computations.c.id == owner, live).values(**values))
+
+
+def _jobs() -> Any:
+    """Select jobs with their computations."""
+    return select(
+        jobs.c.id.label("job_id"), jobs.c.created.label("job_created"), jobs.c.dismissed, computations
+    ).join(computations, jobs.c.computation_id == computations.c.id)
+
+
+def _job(row: Any) -> Job:
+    """Return a row as a job: a caller who dismissed sees that, whatever became of the shared work."""
+    dismissed = row.dismissed is not None
+    return Job(
+        id=row.job_id,
+        process=row.process,
+        key=row.key,
+        status="dismissed" if dismissed else row.state,
+        message="Cancelled." if dismissed else row.message,
+        stage=row.stage,
+        stage_fraction=row.stage_fraction,
+        fraction=row.fraction,
+        attempts=row.attempts,
+        created=row.job_created,
+        started=row.started,
+        finished=row.dismissed or row.finished,
+        updated=row.dismissed or row.updated,
+        faults=tuple(json.loads(row.faults)),
+        reference=row.reference,
+    )

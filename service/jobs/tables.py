@@ -1,0 +1,48 @@
+"""Tables of jobs: a job is one caller's wish, a computation is the work that several jobs may share."""
+
+from __future__ import annotations
+
+from sqlalchemy import Column, Float, ForeignKey, Index, Integer, String, Table, Text, text
+
+from service.store.database import metadata
+
+computations = Table(
+    "computation",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("process", String, nullable=False),
+    Column("key", String, nullable=False),
+    Column("inputs", Text, nullable=False),
+    Column("state", String, nullable=False),
+    Column("stage", String, nullable=False, default=""),
+    Column("stage_fraction", Float, nullable=False, default=0.0),
+    Column("fraction", Float, nullable=False, default=0.0),
+    Column("message", Text, nullable=False, default=""),
+    Column("faults", Text, nullable=False, default="[]"),
+    Column("reference", String, nullable=False, default=""),
+    Column("attempts", Integer, nullable=False, default=0),
+    Column("created", String, nullable=False),
+    Column("started", String),
+    Column("finished", String),
+    Column("updated", String, nullable=False),
+)
+
+# Single flight: at most one computation of a key waits or runs.
+Index(
+    "computation_in_flight",
+    computations.c.key,
+    unique=True,
+    sqlite_where=text("state IN ('accepted', 'running')"),
+)
+Index("computation_by_state", computations.c.state, computations.c.created)
+
+jobs = Table(
+    "job",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("computation_id", String, ForeignKey("computation.id"), nullable=False),
+    Column("created", String, nullable=False),
+    Column("dismissed", String),
+)
+Index("job_by_computation", jobs.c.computation_id)
+Index("job_by_time", jobs.c.created)

@@ -1,0 +1,70 @@
+"""The work of the processes, done in a child process of its own."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from dynamics.simulate import simulate
+
+from fe_contact.analysis import analyze
+from fe_contact.ste import SteDatabase
+from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
+from service.convert.scene import dynamic_scene
+from service.jobs.catalogue import ANALYZE
+from service.jobs.key import content_key
+from service.jobs.order import Product, Progress, WorkOrder
+from service.problems import BadInput
+from service.schemas import Case
+from service.schemas.scene import MeshInput, SceneInput
+from service.store import stored_results
+
+
+def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Compute the STE database of a case."""
+    case = Case.model_validate_json(json.dumps(order.inputs["case"]))
+    file = order.workspace / "database.nc"
+    database_of(case, order.data_directory / "compliance", progress).to_netcdf(file)
+    return (Product(order.key, "database", file),)
+
+
+def database_of(case: Case, cache: Path, progress: Progress) -> SteDatabase:
+    """Return the STE database of a case; condensed gears are kept in `cache`."""
+    with boundary_errors():
+        return analyze(gear_pair(case), **analysis_arguments(case), cache=cache, progress=progress)
+
+
+def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Run a scene; tables come from the store, those missing are computed and kept."""
+    scene = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
+    products: list[Product] = []
+    databases: dict[str, SteDatabase] = {}
+    for index, mesh in enumerate(scene.meshes):
+        databases[mesh.name] = _table(order, index, mesh, products, progress)
+    file = order.workspace / "run.nc"
+    simulate(dynamic_scene(scene, databases), progress=progress).to_netcdf(file)
+    return (*products, Product(order.key, "run", file))
+
+
+def _table(
+    order: WorkOrder, index: int, mesh: MeshInput, products: list[Product], progress: Progress
+) -> SteDatabase:
+    """Return the database of a mesh, from the store or computed now; what is computed joins `products`."""
+    store = stored_results(order.data_directory)
+    if mesh.case is None:
+        return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path)
+    key = content_key(ANALYZE.id, ANALYZE.version, {"case": case_json(mesh.case)})
+    if store.find(key, "database") is not None:
+        return SteDatabase.from_netcdf(store.verified(key, "database").path)
+
+    def part(stage: str, fraction: float) -> None:
+        progress("analysis", ANALYZE.overall(stage, fraction) or 0.0)
+
+    try:
+        database = database_of(mesh.case, order.data_directory / "compliance", part)
+    except BadInput as error:
+        raise error.within(f"meshes[{index}].case") from None
+    file = order.workspace / f"database_{index}.nc"
+    database.to_netcdf(file)
+    products.append(Product(key, "database", file))
+    return database

@@ -1,0 +1,139 @@
+"""A worker process seen from the service: start, listen, end."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from service.jobs.order import Outcome, Product, WorkOrder
+
+_ONE_THREAD = dict.fromkeys(
+    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
+)
+_LEAVING_S = 2.0
+_ROOT = str(Path(__file__).resolve().parents[2])
+
+
+def _environment() -> dict[str, str]:
+    """Environment of the child: one thread, and the code we run ourselves, installed or not."""
+    path = os.pathsep.join(part for part in (_ROOT, os.environ.get("PYTHONPATH", "")) if part)
+    return {**os.environ, **_ONE_THREAD, "PYTHONPATH": path}
+
+
+class Worker:
+    """One child process for one order, leader of a session of its own."""
+
+    def __init__(self, order: WorkOrder, log: Path) -> None:
+        self.started = time.monotonic()
+        self._outcome: Outcome | None = None
+        self._rest = b""
+        self.channel, theirs = os.pipe()
+        os.set_blocking(self.channel, False)
+        try:
+            with log.open("wb") as stream:
+                self._process = subprocess.Popen(
+                    [sys.executable, "-m", "service.jobs.child", str(theirs)],
+                    stdin=subprocess.PIPE,
+                    stdout=stream,
+                    stderr=stream,
+                    pass_fds=(theirs,),
+                    start_new_session=True,
+                    env=_environment(),
+                    cwd=order.workspace,
+                )
+        except OSError:
+            os.close(self.channel)
+            raise
+        finally:
+            os.close(theirs)
+        self._give(order)
+
+    def _give(self, order: WorkOrder) -> None:
+        """Write the order; a child that died before reading it shows when its channel ends."""
+        stream = self._process.stdin
+        assert stream is not None
+        with contextlib.suppress(BrokenPipeError):
+            stream.write(order.line())
+            stream.flush()
+
+    @property
+    def pid(self) -> int:
+        """Process id, also of its group and session."""
+        return self._process.pid
+
+    @property
+    def age(self) -> float:
+        """Seconds since the start."""
+        return time.monotonic() - self.started
+
+    def listen(self) -> tuple[list[tuple[str, float]], bool]:
+        """Return the progress since the last call, and whether the child closed its channel."""
+        piece = b""
+        ended = False
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                part = os.read(self.channel, 65536)
+                if not part:
+                    ended = True
+                    break
+                piece += part
+        *lines, self._rest = (self._rest + piece).split(b"\n")
+        messages = [json.loads(line) for line in lines]
+        return [step for message in messages if (step := self._taken(message)) is not None], ended
+
+    def _taken(self, message: dict[str, Any]) -> tuple[str, float] | None:
+        """Return a message as progress, or keep it as the outcome."""
+        if "stage" in message:
+            return message["stage"], message["fraction"]
+        products = tuple(Product(p["key"], p["kind"], Path(p["file"])) for p in message.get("products", ()))
+        facts = {name: message[name] for name in ("failure", "unexpected") if name in message}
+        self._outcome = Outcome(products=products, faults=tuple(message.get("faults", ())), **facts)
+        return None
+
+    def finish(self) -> Outcome:
+        """End the process group, reap the child and return how it ended."""
+        self._await_exit()
+        self.kill()
+        if self._outcome is not None:
+            return self._outcome
+        return Outcome(failure=_cause(self._process.returncode), died=True)
+
+    def _await_exit(self) -> None:
+        """Give a child that closed its channel a moment to leave by itself; do not reap it yet.
+
+        Until it is reaped its process id, which is also its group's, cannot be given to another.
+        """
+        deadline = time.monotonic() + _LEAVING_S
+        while time.monotonic() < deadline:
+            if os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None:
+                return
+            time.sleep(0.005)
+
+    def kill(self) -> None:
+        """Kill the group (gmsh's process included), reap the child, close the pipes. Idempotent."""
+        if self._process.returncode is None:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(self.pid, signal.SIGKILL)
+            self._process.wait()
+        if self._process.stdin is not None:
+            with contextlib.suppress(BrokenPipeError):
+                self._process.stdin.close()
+        if self.channel >= 0:
+            os.close(self.channel)
+            self.channel = -1
+
+
+def _cause(code: int) -> str:
+    """Why a worker ended without an outcome."""
+    if code < 0:
+        name = signal.Signals(-code).name
+        hint = " (the system may have run out of memory)" if -code == signal.SIGKILL else ""
+        return f"The worker was ended by {name}{hint}."
+    return f"The worker ended early with exit code {code}."

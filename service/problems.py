@@ -1,0 +1,232 @@
+"""What can go wrong at the boundary, in one tree and one shape.
+
+::
+
+    ServiceError
+    |- BadInput          the caller's: a list of faults (field, value, bound, suggestion)
+    |- NotFound          no such process, job, result
+    |- ResultNotReady    the job has not ended
+    |- JobFailed         the job ended without a result; says at what
+    |- JobDismissed      the job was cancelled
+    |- TooLarge          the request body is beyond the limit
+    |- QueueFull         the queue is at its limit; try again later
+    |- DamagedFile       a file does not hold what its digest says
+    |- Unreachable       no service at the address
+    `- Unexpected        a defect; carries a reference number, never the text of the exception
+
+Each carries the HTTP status, the problem type (RFC 9457) and the exit code of the command line.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+EXIT_BAD_INPUT = 2
+EXIT_FAILED = 3
+EXIT_UNREACHABLE = 4
+EXIT_UNEXPECTED = 5
+EXIT_INTERRUPTED = 130
+
+_LONGEST_VALUE = 200
+_OGC = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong with the input.
+
+    Attributes
+    ----------
+    field : str
+        Dotted name as the user wrote it, e.g. ``"pair.pinion.teeth"``.
+    value : object
+        What was given; None if nothing was.
+    bound : str
+        What would be accepted, to be read after "must be".
+    suggestion : str
+        What to try.
+    """
+
+    field: str
+    value: object
+    bound: str
+    suggestion: str = ""
+
+    def __str__(self) -> str:
+        text = f"{self.field} = {_shown(self.value)}: must be {self.bound}"
+        return f"{text}. {self.suggestion}" if self.suggestion else text
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the four facts as plain JSON; a value that JSON cannot hold is shown as text."""
+        return {
+            "field": self.field,
+            "value": _plain(self.value),
+            "bound": self.bound,
+            "suggestion": self.suggestion,
+        }
+
+
+def _shown(value: object) -> str:
+    """Value as a short text."""
+    text = "nothing" if value is None else repr(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}..."
+
+
+def _plain(value: object) -> object:
+    """Value as JSON can hold it: short, finite, printable."""
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, int) and abs(value) < 2**53:
+        return value
+    if isinstance(value, float) and math.isfinite(value):
+        return value
+    if isinstance(value, str):
+        return value[:_LONGEST_VALUE].encode("utf-8", "replace").decode()
+    return _shown(value).encode("utf-8", "replace").decode()
+
+
+class ServiceError(Exception):
+    """Anything the service, its client or its command line raises on purpose."""
+
+    status: ClassVar[int] = 500
+    type: ClassVar[str] = "urn:lineofaction:problem:unexpected"
+    title: ClassVar[str] = "Unexpected failure"
+    exit_code: ClassVar[int] = EXIT_UNEXPECTED
+    faults: tuple[Fault, ...] = ()
+    retry_after_s: int | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the problem details object of RFC 9457."""
+        return {
+            "type": self.type,
+            "title": self.title,
+            "status": self.status,
+            "detail": str(self).encode("utf-8", "replace").decode(),
+            "errors": [fault.as_json() for fault in self.faults],
+        }
+
+
+class BadInput(ServiceError):
+    """The caller's input cannot be used."""
+
+    status = 422
+    type = "urn:lineofaction:problem:bad-input"
+    title = "The input cannot be used"
+    exit_code = EXIT_BAD_INPUT
+
+    def __init__(self, faults: Iterable[Fault]) -> None:
+        self.faults = tuple(faults)
+        super().__init__("; ".join(str(fault) for fault in self.faults))
+
+    @classmethod
+    def of(cls, field: str, value: object, bound: str, suggestion: str = "") -> BadInput:
+        """Return the error of a single fault."""
+        return cls([Fault(field, value, bound, suggestion)])
+
+    def within(self, prefix: str) -> BadInput:
+        """Return the same error with its fields named inside `prefix`."""
+        return BadInput(Fault(f"{prefix}.{f.field}", f.value, f.bound, f.suggestion) for f in self.faults)
+
+
+class NotFound(ServiceError):
+    """No such process, job or result."""
+
+    status = 404
+    type = "urn:lineofaction:problem:not-found"
+    title = "Not found"
+    exit_code = EXIT_BAD_INPUT
+
+
+class NoSuchProcess(NotFound):
+    """No process of this name."""
+
+    type = f"{_OGC}no-such-process"
+    title = "No such process"
+
+
+class NoSuchJob(NotFound):
+    """No job of this identifier."""
+
+    type = f"{_OGC}no-such-job"
+    title = "No such job"
+
+
+class ResultNotReady(NotFound):
+    """The job has not ended."""
+
+    type = f"{_OGC}result-not-ready"
+    title = "The result is not ready"
+
+
+class JobDismissed(ServiceError):
+    """The job was cancelled and has no result."""
+
+    status = 410
+    type = "urn:lineofaction:problem:job-dismissed"
+    title = "The job was cancelled"
+    exit_code = EXIT_FAILED
+
+
+class JobFailed(ServiceError):
+    """The job ended without a result: mesh, solve, worker or deadline."""
+
+    status = 500
+    type = "urn:lineofaction:problem:job-failed"
+    title = "The job failed"
+    exit_code = EXIT_FAILED
+
+    def __init__(self, message: str, faults: Iterable[Fault] = ()) -> None:
+        super().__init__(message)
+        self.faults = tuple(faults)
+
+
+class TooLarge(ServiceError):
+    """The request body is beyond the limit."""
+
+    status = 413
+    type = "urn:lineofaction:problem:too-large"
+    title = "The request is too large"
+    exit_code = EXIT_BAD_INPUT
+
+
+class QueueFull(ServiceError):
+    """The queue is at its limit."""
+
+    status = 429
+    type = "urn:lineofaction:problem:queue-full"
+    title = "The queue is full"
+    exit_code = EXIT_FAILED
+    retry_after_s = 10
+
+
+class DamagedFile(ServiceError):
+    """A stored file does not hold what its digest says."""
+
+    status = 500
+    type = "urn:lineofaction:problem:damaged-file"
+    title = "A stored file is damaged"
+    exit_code = EXIT_FAILED
+
+
+class Unreachable(ServiceError):
+    """No service answers at the address."""
+
+    status = 503
+    type = "urn:lineofaction:problem:unreachable"
+    title = "The service cannot be reached"
+    exit_code = EXIT_UNREACHABLE
+
+
+class Unexpected(ServiceError):
+    """A defect: the log holds the details under the reference."""
+
+    def __init__(self, reference: str) -> None:
+        self.reference = reference
+        super().__init__(f"Something failed that should not. The log has the details under {reference}.")
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the problem with its reference number."""
+        return {**super().as_json(), "reference": self.reference}

@@ -1,0 +1,1 @@
+"""HTTP: handlers validate and enqueue; they solve nothing."""

@@ -1,0 +1,93 @@
+"""Every error leaves as problem+json (RFC 9457), in one shape."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from service.problems import BadInput, Fault, ServiceError
+from service.schemas.faults import fault_of
+from service.schemas.problem import ProblemBody
+
+MEDIA_TYPE = "application/problem+json"
+
+
+def problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
+    """Return a problem; the text is ASCII, so that nothing a caller sent can break it."""
+    body = json.dumps(facts, allow_nan=False, ensure_ascii=True).encode()
+    return Response(body, int(facts["status"]), headers, media_type=MEDIA_TYPE)
+
+
+def problem_of(error: ServiceError) -> Response:
+    """Return the response to an error raised on purpose."""
+    retry = {} if error.retry_after_s is None else {"Retry-After": str(error.retry_after_s)}
+    return problem_response(error.as_json(), retry)
+
+
+def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Return the OpenAPI entries of the problems a route can answer with."""
+    content = {
+        MEDIA_TYPE: {"schema": ProblemBody.model_json_schema(ref_template="#/components/schemas/{model}")}
+    }
+    return {status: {"description": HTTPStatus(status).phrase, "content": content} for status in statuses}
+
+
+def install_error_handlers(app: FastAPI) -> None:
+    """Let `app` answer every error with a problem."""
+    app.add_exception_handler(ServiceError, _raised_on_purpose)
+    app.add_exception_handler(RequestValidationError, _invalid_request)
+    app.add_exception_handler(HTTPException, _refused_by_framework)
+
+
+def _raised_on_purpose(_request: Request, error: Exception) -> Response:
+    """Answer an error of our own tree."""
+    assert isinstance(error, ServiceError)
+    return problem_of(error)
+
+
+def _invalid_request(request: Request, error: Exception) -> Response:
+    """Answer a body or parameter that its model refuses."""
+    assert isinstance(error, RequestValidationError)
+    model = getattr(request.scope.get("endpoint"), "body_model", None)
+    return problem_of(BadInput(_request_fault(item, model) for item in error.errors()))
+
+
+def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:
+    """One fault, named as in the case or scene file where it lies inside one."""
+    place, *loc = item["loc"]
+    if place != "body":
+        return fault_of(item, None, loc)
+    if item["type"] == "json_invalid":
+        return Fault("body", None, "valid JSON", f"{item.get('ctx', {}).get('error', '')}.")
+    if loc[:1] == ["inputs"] and len(loc) > 2 and model is not None:
+        inner = model.model_fields["inputs"].annotation
+        named = (
+            inner.model_fields.get(loc[1])
+            if isinstance(inner, type) and issubclass(inner, BaseModel)
+            else None
+        )
+        if named is not None and isinstance(named.annotation, type):
+            return fault_of(item, named.annotation, loc[2:])
+    return fault_of(item, model, loc or ["body"])
+
+
+def _refused_by_framework(_request: Request, error: Exception) -> Response:
+    """Answer what routing refuses: unknown path, wrong method, unreadable body."""
+    assert isinstance(error, HTTPException)
+    phrase = HTTPStatus(error.status_code).phrase
+    facts = {
+        "type": "about:blank",
+        "title": phrase,
+        "status": error.status_code,
+        "detail": str(error.detail),
+        "errors": [],
+    }
+    return problem_response(facts, error.headers)

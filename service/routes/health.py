@@ -1,0 +1,43 @@
+"""Is it alive, can it work, what are its figures."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter, Request, Response
+
+from service.problems import ServiceError
+from service.routes.context import Ctx
+from service.routes.errors import documented
+
+router = APIRouter(tags=["operations"])
+
+
+class NotReady(ServiceError):
+    """The service runs but cannot work."""
+
+    status = 503
+    type = "urn:lineofaction:problem:not-ready"
+    title = "Not ready"
+    retry_after_s = 5
+
+
+@router.get("/health", summary="Alive?")
+def health() -> dict[str, Any]:
+    """Answer that the process serves requests."""
+    return {"status": "ok"}
+
+
+@router.get("/ready", summary="Ready for jobs?", responses=documented(503))
+def ready(context: Ctx) -> dict[str, Any]:
+    """Answer that the table can be read and the scheduler runs."""
+    counts = context.submissions.counts()
+    if not context.scheduler.alive:
+        raise NotReady("The scheduler does not run. Restart the service.")
+    return {"status": "ready", "computations": counts}
+
+
+@router.get("/metrics", summary="Figures for Prometheus", response_class=Response)
+def metrics(request: Request) -> Response:
+    """Return the figures in the text exposition format."""
+    return Response(request.app.state.metrics.text(), media_type="text/plain; version=0.0.4; charset=utf-8")

@@ -1,0 +1,91 @@
+"""Jobs: list, status, results, dismissal (OGC API - Processes 1.0, clauses 7.12, 7.13, 11, 13)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from service.jobs import Job, Registry
+from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
+from service.routes.context import Ctx
+from service.routes.errors import documented
+from service.schemas.ogc import JobList, JobStatus, Link, ResultReference, StatusInfo
+
+NETCDF = "application/x-netcdf"
+RESULT_PATHS = {"database": "/v1/databases", "run": "/v1/runs"}
+
+router = APIRouter(prefix="/jobs", tags=["jobs"])
+
+
+@router.get("", summary="Jobs", responses=documented(422))
+def jobs(
+    context: Ctx,
+    limit: Annotated[int, Query(ge=1, le=1000, description="Most jobs on the page")] = 100,
+    after: Annotated[str | None, Query(max_length=64, description="Last job of the page before")] = None,
+) -> JobList:
+    """Jobs, the newest first."""
+    page = context.submissions.page(limit, after)
+    links = [Link(href="/v1/jobs", rel="self")]
+    if len(page) == limit:
+        links.append(Link(href=f"/v1/jobs?limit={limit}&after={page[-1].id}", rel="next"))
+    return JobList(jobs=[status_info(job, context.registry) for job in page], links=links)
+
+
+@router.get("/{job_id}", summary="Status of a job", responses=documented(404))
+def job(job_id: str, context: Ctx) -> StatusInfo:
+    """How far the job is."""
+    return status_info(context.submissions.find(job_id), context.registry)
+
+
+@router.get("/{job_id}/results", summary="Results of a job", responses=documented(404, 410, 422, 500))
+def results(job_id: str, context: Ctx) -> dict[str, ResultReference]:
+    """Where the result is; why there is none."""
+    job = context.submissions.find(job_id)
+    _refuse_without_result(job)
+    process = context.registry[job.process]
+    href = f"{RESULT_PATHS[process.kind]}/{job.key}"
+    return {process.output: ResultReference(href=href, type=NETCDF, hash=job.key)}
+
+
+@router.delete("/{job_id}", summary="Dismiss a job", responses=documented(404))
+def dismiss(job_id: str, context: Ctx) -> StatusInfo:
+    """Cancel: the work ends unless other jobs share it. A job that has ended stays as it is."""
+    job = context.submissions.dismiss(job_id)
+    context.scheduler.wake()
+    return status_info(job, context.registry)
+
+
+def _refuse_without_result(job: Job) -> None:
+    """Raise what says why a job has no result."""
+    if job.status == "failed":
+        raise JobFailed(job.message, [Fault(**fault) for fault in job.faults])
+    if job.status == "dismissed":
+        raise JobDismissed(f"Job {job.id} was cancelled.")
+    if job.status != "successful":
+        raise ResultNotReady(f"Job {job.id} is {job.status}: {job.message}")
+
+
+def status_info(job: Job, registry: Registry) -> StatusInfo:
+    """Return a job as the standard's status document."""
+    path = f"/v1/jobs/{job.id}"
+    links = [Link(href=path, rel="self", title="Status")]
+    if job.status == "successful":
+        relation = "http://www.opengis.net/def/rel/ogc/1.0/results"
+        links.append(Link(href=f"{path}/results", rel=relation, title="Results"))
+    status: JobStatus = job.status  # type: ignore[assignment]  # the table holds no others
+    return StatusInfo(
+        processID=job.process,
+        jobID=job.id,
+        status=status,
+        message=job.message,
+        created=job.created,
+        started=job.started,
+        finished=job.finished,
+        updated=job.updated,
+        progress=int(100 * job.fraction),
+        stage=job.stage,
+        stage_progress=int(100 * job.stage_fraction),
+        attempts=job.attempts,
+        links=links,
+    )

@@ -1,0 +1,90 @@
+"""Around every request: identifier, body limit, log line, figures, a net under unknown exceptions."""
+
+from __future__ import annotations
+
+import time
+import uuid
+
+import structlog
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.problems import ServiceError, TooLarge, Unexpected
+from service.routes.errors import problem_of
+from service.routes.metrics import Metrics
+
+logger = structlog.get_logger(__name__)
+
+
+class Guard:
+    """Outermost layer of the app."""
+
+    def __init__(self, app: ASGIApp, body_limit: int, metrics: Metrics) -> None:
+        self._app, self._body_limit, self._metrics = app, body_limit, metrics
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        exchange = _Exchange(receive, send, self._body_limit)
+        begin = time.perf_counter()
+        try:
+            exchange.refuse_announced(scope)
+            await self._app(scope, exchange.receive, exchange.send)
+        except ServiceError as error:
+            await self._answer(error, exchange, scope)
+        except Exception:
+            logger.exception("unexpected failure", reference=exchange.identifier, path=scope["path"])
+            await self._answer(Unexpected(exchange.identifier), exchange, scope)
+        finally:
+            self._note(scope, exchange, time.perf_counter() - begin)
+
+    @staticmethod
+    async def _answer(error: ServiceError, exchange: _Exchange, scope: Scope) -> None:
+        """Send a problem, unless part of an answer is on its way already."""
+        if exchange.status is None:
+            await problem_of(error)(scope, exchange.receive, exchange.send)
+
+    def _note(self, scope: Scope, exchange: _Exchange, seconds: float) -> None:
+        """Count and log; a route is named by its template, so that figures stay few."""
+        route = getattr(scope.get("route"), "path", "unknown")
+        status = exchange.status or 0
+        self._metrics.observe(scope["method"], route, status, seconds)
+        facts = {"method": scope["method"], "route": route, "status": status, "seconds": round(seconds, 6)}
+        logger.info("request", request_id=exchange.identifier, **facts)
+
+
+class _Exchange:
+    """One request and its answer, watched."""
+
+    def __init__(self, receive: Receive, send: Send, body_limit: int) -> None:
+        self._receive, self._send, self._body_limit = receive, send, body_limit
+        self._received = 0
+        self.status: int | None = None
+        self.identifier = uuid.uuid4().hex[:12]
+
+    def refuse_announced(self, scope: Scope) -> None:
+        """Refuse a body that says itself that it is too long."""
+        announced = dict(scope["headers"]).get(b"content-length", b"0")
+        if announced.isdigit() and int(announced) > self._body_limit:
+            raise self._too_large()
+
+    def _too_large(self) -> TooLarge:
+        """Return the error of a body beyond the limit."""
+        return TooLarge(f"The body has more than {self._body_limit} bytes, the limit of this service.")
+
+    async def receive(self) -> Message:
+        """Pass on a piece of the body, counting."""
+        message = await self._receive()
+        self._received += len(message.get("body", b""))
+        if self._received > self._body_limit:
+            raise self._too_large()
+        return message
+
+    async def send(self, message: Message) -> None:
+        """Pass on a piece of the answer, with the request's identifier in its headers."""
+        if message["type"] == "http.response.start":
+            self.status = message["status"]
+            headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode())]
+            message = {**message, "headers": headers}
+        await self._send(message)

@@ -1,0 +1,137 @@
+"""Processes and their execution (OGC API - Processes 1.0, clauses 7.8 to 7.11)."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, cast
+
+from fastapi import APIRouter, Response
+from pydantic import BaseModel, Field, create_model
+
+from service.jobs import Process, Registry, content_key
+from service.routes.context import Context, Ctx
+from service.routes.errors import documented
+from service.routes.jobs import status_info
+from service.schemas.model import BoundaryModel
+from service.schemas.ogc import Link, ProcessDescription, ProcessList, ProcessSummary, StatusInfo
+
+NETCDF = "application/x-netcdf"
+
+
+def processes_router(registry: Registry) -> APIRouter:
+    """Return the routes, one execution route per process, so that each body has its own schema."""
+    router = APIRouter(prefix="/processes", tags=["processes"])
+
+    @router.get("", summary="Processes")
+    def processes() -> ProcessList:
+        """All that can be run."""
+        links = [Link(href="/v1/processes", rel="self")]
+        return ProcessList(processes=[ProcessSummary(**_summary(p)) for p in registry.values()], links=links)
+
+    @router.get("/{process_id}", summary="One process", responses=documented(404))
+    def process(process_id: str) -> ProcessDescription:
+        """Describe a process with the schemas of its inputs and outputs."""
+        return _description(registry[process_id])
+
+    for offered in registry.values():
+        _add_execution(router, offered)
+    router.add_api_route(
+        "/{process_id}/execution",
+        _unknown(registry),
+        methods=["POST"],
+        include_in_schema=False,
+        status_code=201,
+    )
+    return router
+
+
+def _unknown(registry: Registry) -> Any:
+    """Return the handler of executions of processes that do not exist."""
+
+    def execute_unknown(process_id: str) -> None:
+        registry[process_id]
+
+    return execute_unknown
+
+
+def _add_execution(router: APIRouter, process: Process) -> None:
+    """Add the execution route of one process."""
+    body = _execute_model(process)
+
+    def execute(request: BaseModel, response: Response, context: Ctx) -> StatusInfo:
+        """Check the inputs and enter a job; equal work is shared, stored results are used."""
+        inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)  # type: ignore[attr-defined]
+        status = _submit(context, process, inputs)
+        response.headers["Location"] = f"/v1/jobs/{status.jobID}"
+        return status
+
+    execute.__annotations__["request"] = body
+    execute.body_model = body  # type: ignore[attr-defined]
+    router.add_api_route(
+        f"/{process.id}/execution",
+        execute,
+        methods=["POST"],
+        status_code=201,
+        name=f"execute_{process.id}",
+        summary=f"Run {process.id}",
+        responses=documented(400, 413, 422, 429)
+        | {201: {"headers": {"Location": {"description": "The job", "schema": {"type": "string"}}}}},
+    )
+
+
+def _submit(context: Context, process: Process, inputs: dict[str, Any]) -> StatusInfo:
+    """Enter a job and wake the scheduler."""
+    key = content_key(process.id, process.version, inputs)
+    stored = context.store.find(key, process.kind) is not None
+    job = context.submissions.submit(process.id, key, inputs, stored=stored)
+    context.scheduler.wake()
+    return status_info(job, context.registry)
+
+
+def _execute_model(process: Process) -> type[BaseModel]:
+    """Return the model of a process' execute request (only documents with references are offered)."""
+    fields: dict[str, Any] = {
+        "inputs": (process.inputs, Field(description="Inputs of the process")),
+        "outputs": (
+            dict[str, Any],
+            Field({}, description="Outputs wanted; there is one, always by reference"),
+        ),
+        "response": (Literal["document"], Field("document", description="Form of the results")),
+    }
+    return create_model(f"Execute{process.id.capitalize()}", __base__=BoundaryModel, **fields)
+
+
+def _summary(process: Process) -> dict[str, Any]:
+    """Facts of a process summary."""
+    path = f"/v1/processes/{process.id}"
+    return {
+        "id": process.id,
+        "title": process.title,
+        "description": process.description,
+        "version": process.version,
+        "jobControlOptions": ["async-execute", "dismiss"],
+        "outputTransmission": ["reference"],
+        "links": [
+            Link(href=path, rel="self", title="Description"),
+            Link(
+                href=f"{path}/execution",
+                rel="http://www.opengis.net/def/rel/ogc/1.0/execute",
+                title="Execution",
+            ),
+        ],
+    }
+
+
+def _description(process: Process) -> ProcessDescription:
+    """Return a process description."""
+    schema = process.inputs.model_json_schema()
+    inputs = {
+        name: {
+            "title": name,
+            "description": field.description or name,
+            "schema": {**schema["properties"][name], "$defs": schema.get("$defs", {})},
+        }
+        for name, field in process.inputs.model_fields.items()
+    }
+    output = {"type": "string", "contentMediaType": NETCDF}
+    outputs = {process.output: {"title": process.output, "description": process.title, "schema": output}}
+    return ProcessDescription(**_summary(process), inputs=inputs, outputs=outputs)

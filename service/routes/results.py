@@ -1,0 +1,102 @@
+"""Stored results: databases and runs, as metadata or netCDF, and batches of forces."""
+
+from __future__ import annotations
+
+import base64
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Header, Path, Request
+from starlette.responses import FileResponse, JSONResponse, Response
+
+from service.convert.answers import force_answer, metadata_json
+from service.convert.runs import run_json
+from service.routes.context import Ctx
+from service.routes.errors import documented
+from service.schemas.query import QueryInput, QueryOutput
+from service.store import StoredResult
+
+NETCDF = "application/x-netcdf"
+_IMMUTABLE = "public, max-age=31536000, immutable"
+_BINARY = {NETCDF: {"schema": {"type": "string", "format": "binary"}}, "application/json": {}}
+
+Key = Annotated[str, Path(pattern="^[0-9a-f]{64}$", description="Content hash of the input")]
+Accept = Annotated[str, Header(description=f"{NETCDF} for the file, application/json for its metadata")]
+
+router = APIRouter(tags=["results"])
+
+
+def _answers() -> dict[int | str, dict[str, Any]]:
+    """Return the OpenAPI entries of a stored result."""
+    found: dict[int | str, dict[str, Any]] = {
+        200: {"description": "The result", "content": _BINARY},
+        304: {"description": "Not modified"},
+    }
+    return found | documented(404, 422, 500)
+
+
+@router.get("/databases/{key}", summary="An STE database", response_class=Response, responses=_answers())
+def database(key: Key, request: Request, context: Ctx, accept: Accept = "application/json") -> Response:
+    """Metadata or the file, by Accept."""
+    stored = context.store.verified(key, "database")
+    if _wants_file(accept):
+        return _file(stored, request)
+    return _metadata(stored, request, metadata_json(context.databases.get(context.store, key)))
+
+
+@router.get("/runs/{key}", summary="A run", response_class=Response, responses=_answers())
+def run(key: Key, request: Request, context: Ctx, accept: Accept = "application/json") -> Response:
+    """Metadata or the file, by Accept."""
+    stored = context.store.verified(key, "run")
+    return (
+        _file(stored, request) if _wants_file(accept) else _metadata(stored, request, run_json(stored.path))
+    )
+
+
+@router.post("/databases/{key}/query", summary="Mesh forces", responses=documented(400, 404, 413, 422, 500))
+def query(key: Key, body: QueryInput, context: Ctx) -> QueryOutput:
+    """Force, tangent stiffness and validity at positions and deflections."""
+    return force_answer(context.databases.get(context.store, key), body)
+
+
+query.body_model = QueryInput  # type: ignore[attr-defined]  # for the suggestions of refused fields
+
+
+def _wants_file(accept: str) -> bool:
+    """Whether the caller prefers the file: the first of both types that the header names decides."""
+    order = [part.partition(";")[0].strip().lower() for part in accept.split(",")]
+    return next((part == NETCDF for part in order if part in (NETCDF, "application/json")), False)
+
+
+def _file(stored: StoredResult, request: Request) -> Response:
+    """Return the file with its digest (RFC 9530), or 304."""
+    headers = _headers(f'"{stored.sha256}"')
+    digest = base64.b64encode(bytes.fromhex(stored.sha256)).decode()
+    if _known(request, headers["ETag"]):
+        return Response(status_code=304, headers=headers)
+    return FileResponse(
+        stored.path,
+        media_type=NETCDF,
+        filename=f"{stored.kind}_{stored.key[:12]}.nc",
+        headers=headers | {"Content-Digest": f"sha-256=:{digest}:"},
+    )
+
+
+def _metadata(stored: StoredResult, request: Request, facts: dict[str, Any]) -> Response:
+    """Return the metadata, or 304."""
+    headers = _headers(f'"{stored.sha256}-json"')
+    if _known(request, headers["ETag"]):
+        return Response(status_code=304, headers=headers)
+    return JSONResponse(
+        {"hash": stored.key, "sha256": stored.sha256, "size": stored.size, **facts}, headers=headers
+    )
+
+
+def _headers(tag: str) -> dict[str, str]:
+    """Headers of something that never changes."""
+    return {"ETag": tag, "Cache-Control": _IMMUTABLE, "Vary": "Accept"}
+
+
+def _known(request: Request, tag: str) -> bool:
+    """Whether the caller has this version already."""
+    known = request.headers.get("if-none-match", "")
+    return known.strip() == "*" or tag in (part.strip().removeprefix("W/") for part in known.split(","))

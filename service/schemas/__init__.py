@@ -1,0 +1,18 @@
+"""Boundary models: the case and scene files and every JSON body, strict and with units in the names."""
+
+from service.schemas.case import AccuracyInput, Case, ErrorsInput, LoadInput, PairInput
+from service.schemas.gear import GearInput, MaterialInput
+from service.schemas.reading import read_model, read_table, validated
+
+__all__ = [
+    "AccuracyInput",
+    "Case",
+    "ErrorsInput",
+    "GearInput",
+    "LoadInput",
+    "MaterialInput",
+    "PairInput",
+    "read_model",
+    "read_table",
+    "validated",
+]

@@ -1,0 +1,164 @@
+"""The case file: a gear pair, its material, loads, errors, accuracy and effects."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, Strict, model_validator
+
+from service.schemas.gear import GearInput, MaterialInput
+from service.schemas.model import BoundaryModel, refuse
+
+Load = Annotated[float, Field(gt=0.0, le=1e9)]
+Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
+CenterDistanceChange = Annotated[float, Field(ge=-100.0, le=100.0)]
+Loads = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=256)]
+Misalignments = Annotated[tuple[Misalignment, ...], Strict(False), Field(min_length=1, max_length=64)]
+CenterDistanceChanges = Annotated[
+    tuple[CenterDistanceChange, ...], Strict(False), Field(min_length=1, max_length=64)
+]
+_WISHES = ("tolerance", "time_budget_s", "level")
+Switch = Literal["on", "off", "auto"]
+EffectName = Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]{0,63}$")]
+
+
+def _increasing(field: str, values: tuple[float, ...] | None) -> None:
+    """Refuse a list that is not strictly increasing."""
+    if values is not None and any(b <= a for a, b in pairwise(values)):
+        refuse(field, list(values), "strictly increasing", "Sort the list and drop repeats.")
+
+
+class PairInput(BoundaryModel):
+    """Two external gears of one basic rack and their centre distance."""
+
+    normal_module_mm: float = Field(gt=0.0, le=100.0, description="Normal module in mm", examples=[4.0])
+    normal_pressure_angle_deg: float = Field(
+        default=20.0, ge=5.0, le=35.0, description="Normal pressure angle in degrees", examples=[20.0]
+    )
+    helix_angle_deg: float = Field(
+        default=0.0,
+        ge=-45.0,
+        le=45.0,
+        description="Helix angle in degrees; > 0: pinion right hand",
+        examples=[0.0],
+    )
+    center_distance_mm: float = Field(
+        gt=0.0, le=50_000.0, description="Centre distance in mm", examples=[80.0]
+    )
+    pinion: GearInput = Field(description="The driving gear")
+    wheel: GearInput = Field(description="The driven gear")
+
+
+class LoadInput(BoundaryModel):
+    """Loads of the table: torques on the driving gear or normal forces."""
+
+    torque_n_m: Loads | None = Field(
+        default=None,
+        description="Torques on the driving gear in N m, increasing",
+        examples=[[10.0, 100.0, 400.0]],
+    )
+    normal_force_n: Loads | None = Field(
+        default=None, description="Normal tooth forces in N, increasing", examples=[[266.0, 2660.0]]
+    )
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Self:
+        """Exactly one kind of load."""
+        if (self.torque_n_m is None) == (self.normal_force_n is None):
+            given = None if self.torque_n_m is None else list(self.torque_n_m)
+            refuse(
+                "torque_n_m",
+                given,
+                "given, or normal_force_n instead, but not both",
+                "For example torque_n_m = [10, 100, 400].",
+            )
+        _increasing("torque_n_m", self.torque_n_m)
+        _increasing("normal_force_n", self.normal_force_n)
+        return self
+
+
+class ErrorsInput(BoundaryModel):
+    """Errors of assembly: axes of the table when they hold more than one value."""
+
+    misalignment_um: Misalignments = Field(
+        default=(0.0,),
+        description="Gap growth in um over the common face width in the plane of action, zero at mid-face",
+        examples=[[0.0, 30.0]],
+    )
+    center_distance_change_mm: CenterDistanceChanges = Field(
+        default=(0.0,), description="Changes of the centre distance in mm", examples=[[0.0]]
+    )
+
+    @model_validator(mode="after")
+    def _axes_increase(self) -> Self:
+        """Both are axes of a table."""
+        _increasing("misalignment_um", self.misalignment_um)
+        _increasing("center_distance_change_mm", self.center_distance_change_mm)
+        return self
+
+
+class AccuracyInput(BoundaryModel):
+    """What the planner is asked for: an accuracy, a time or a level; nothing given means tolerance 0.01."""
+
+    tolerance: float | None = Field(
+        default=None, gt=0.0, le=0.5, description="Relative, on mean and peak-to-peak STE", examples=[0.01]
+    )
+    time_budget_s: float | None = Field(
+        default=None, gt=0.0, le=1e6, description="CPU seconds that may be spent", examples=[10.0]
+    )
+    level: Literal["draft", "standard", "fine"] | None = Field(
+        default=None, description="A named rung", examples=["standard"]
+    )
+    model: Literal["auto", "plane_strain", "plane_stress", "3d"] = Field(
+        default="auto", description="The body model; auto lets the planner choose", examples=["auto"]
+    )
+    positions: int | None = Field(
+        default=None,
+        ge=8,
+        le=4096,
+        description="Positions in one base pitch; left out: the planner's",
+        examples=[64],
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _default_wish(cls, data: Any) -> Any:
+        """Ask for the default tolerance when nothing is asked for, so that the echo says so."""
+        if isinstance(data, dict) and all(data.get(name) is None for name in _WISHES):
+            return {**data, "tolerance": 0.01}
+        return data
+
+    @model_validator(mode="after")
+    def _one_wish(self) -> Self:
+        """At most one of tolerance, time budget and level."""
+        given = [name for name in _WISHES if getattr(self, name) is not None]
+        if len(given) > 1:
+            refuse(
+                given[1],
+                getattr(self, given[1]),
+                f"left out when {given[0]} is given",
+                "Ask for a tolerance, a time budget or a level.",
+            )
+        return self
+
+
+class Case(BoundaryModel):
+    """A gear pair and what is to be computed for it."""
+
+    pair: PairInput = Field(description="The gear pair")
+    material: MaterialInput = Field(
+        default=MaterialInput(),
+        description="Material of both gears",
+        examples=[{"youngs_modulus_gpa": 210.0}],
+    )
+    load: LoadInput = Field(description="The loads", examples=[{"torque_n_m": [10, 100, 400]}])
+    errors: ErrorsInput = Field(default=ErrorsInput(), description="Errors of assembly", examples=[{}])
+    accuracy: AccuracyInput = Field(
+        default=AccuracyInput(), description="The accuracy asked for", examples=[{}]
+    )
+    effects: dict[EffectName, Switch] = Field(
+        default={},
+        description="Switches of optional physics; left out = auto",
+        examples=[{"corner_contact": "auto"}],
+    )

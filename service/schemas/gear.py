@@ -1,0 +1,135 @@
+"""Gear and material of the case file (ISO 21771 names, units in the names)."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from service.schemas.model import BoundaryModel, refuse
+
+Relief = Annotated[float, Field(ge=0.0, le=1000.0)]
+Length = Annotated[float, Field(ge=0.0, le=10_000.0)]
+Shape = Literal["linear", "parabolic"]
+
+
+class MaterialInput(BoundaryModel):
+    """Linear elastic, isotropic material."""
+
+    youngs_modulus_gpa: float = Field(
+        default=210.0, gt=0.0, le=2000.0, description="Young's modulus in GPa; steel is 210", examples=[210.0]
+    )
+    poissons_ratio: float = Field(
+        default=0.3, ge=0.0, le=0.499, description="Poisson's ratio; steel is 0.3", examples=[0.3]
+    )
+
+
+class GearInput(BoundaryModel):
+    """One gear. Modifications: > 0 is material removed, normal to the involute in the transverse plane."""
+
+    teeth: int = Field(ge=5, le=1000, description="Number of teeth", examples=[20])
+    face_width_mm: float = Field(gt=0.0, le=5000.0, description="Face width in mm", examples=[25.0])
+    bore_diameter_mm: float = Field(
+        gt=0.0, le=20_000.0, description="Bore diameter in mm; the bore is taken as rigid", examples=[40.0]
+    )
+    profile_shift_coefficient: float = Field(
+        default=0.0, ge=-5.0, le=5.0, description="Profile shift in normal modules", examples=[0.2]
+    )
+    addendum_coefficient: float = Field(
+        default=1.0,
+        gt=0.0,
+        le=3.0,
+        description="Addendum of the basic rack in normal modules",
+        examples=[1.0],
+    )
+    dedendum_coefficient: float = Field(
+        default=1.25,
+        gt=0.0,
+        le=3.0,
+        description="Dedendum of the basic rack in normal modules",
+        examples=[1.25],
+    )
+    root_radius_coefficient: float = Field(
+        default=0.38,
+        ge=0.0,
+        le=1.0,
+        description="Root fillet radius of the basic rack in normal modules",
+        examples=[0.38],
+    )
+    tip_diameter_mm: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=50_000.0,
+        description="Tip diameter in mm; left out: d + 2 m_n (h_aP + x)",
+        examples=[88.0],
+    )
+    thickness_allowance_um: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=10_000.0,
+        description="Normal tooth thickness removed at the reference circle in um (backlash)",
+        examples=[50.0],
+    )
+    tip_relief_um: Relief = Field(
+        default=0.0, description="Tip relief in um at the tip diameter", examples=[20.0]
+    )
+    tip_relief_length_mm: Length = Field(
+        default=0.0, description="Length of the tip relief in mm along the radius", examples=[1.5]
+    )
+    tip_relief_shape: Shape = Field(
+        default="linear", description="Tip relief over its length", examples=["linear"]
+    )
+    root_relief_um: Relief = Field(
+        default=0.0, description="Root relief in um at the start of the involute", examples=[10.0]
+    )
+    root_relief_length_mm: Length = Field(
+        default=0.0, description="Length of the root relief in mm along the radius", examples=[1.0]
+    )
+    root_relief_shape: Shape = Field(
+        default="linear", description="Root relief over its length", examples=["linear"]
+    )
+    profile_crowning_um: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1000.0,
+        description="Profile crowning in um at both ends of the profile",
+        examples=[5.0],
+    )
+    profile_slope_um: float = Field(
+        default=0.0, ge=-1000.0, le=1000.0, description="Profile slope in um from root to tip", examples=[5.0]
+    )
+    helix_crowning_um: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1000.0,
+        description="Lead crowning in um at both ends of the face",
+        examples=[5.0],
+    )
+    helix_slope_um: float = Field(
+        default=0.0,
+        ge=-1000.0,
+        le=1000.0,
+        description="Helix slope in um over the face width",
+        examples=[5.0],
+    )
+    end_relief_um: Relief = Field(default=0.0, description="End relief in um at both faces", examples=[10.0])
+    end_relief_length_mm: Length = Field(
+        default=0.0, description="Length of the end relief in mm along the face", examples=[2.0]
+    )
+    end_relief_shape: Shape = Field(
+        default="linear", description="End relief over its length", examples=["linear"]
+    )
+    material: MaterialInput | None = Field(
+        default=None,
+        description="Material of this gear; left out: the case's",
+        examples=[{"youngs_modulus_gpa": 210.0}],
+    )
+
+    @model_validator(mode="after")
+    def _relief_has_length(self) -> Self:
+        """Refuse a relief over no length: it would be a step."""
+        for name in ("tip_relief", "root_relief", "end_relief"):
+            length = f"{name}_length_mm"
+            if getattr(self, f"{name}_um") > 0.0 and getattr(self, length) == 0.0:
+                refuse(length, 0.0, f"above 0 when {name}_um is given", f"Give {length}, for example 1.5.")
+        return self

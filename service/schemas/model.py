@@ -1,0 +1,23 @@
+"""What all boundary models share: strict, closed, finite, frozen."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+from pydantic import BaseModel, ConfigDict
+from pydantic_core import PydanticCustomError
+
+
+class BoundaryModel(BaseModel):
+    """A table of the case or scene file, or a JSON body: unknown fields and NaN are refused."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def refuse(field: str, value: object, bound: str, suggestion: str = "") -> NoReturn:
+    """Raise the fault of `field` (relative to the model) from a validator over several fields."""
+    raise PydanticCustomError(
+        "refused",
+        "must be {bound}",
+        {"field": field, "value": value, "bound": bound, "suggestion": suggestion},
+    )

@@ -1,0 +1,102 @@
+"""Bodies of OGC API - Processes 1.0 (OGC 18-062r2): links, processes, execution, status."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+JobStatus = Literal["accepted", "running", "successful", "failed", "dismissed"]
+
+CONFORMANCE = (
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/core",
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/ogc-process-description",
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/json",
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/job-list",
+    "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/dismiss",
+)
+
+
+class Link(BaseModel):
+    """A link of RFC 8288."""
+
+    href: str
+    rel: str
+    type: str = "application/json"
+    title: str = ""
+
+
+class Landing(BaseModel):
+    """The landing page."""
+
+    title: str
+    description: str
+    links: list[Link]
+
+
+class Conformance(BaseModel):
+    """The conformance classes met."""
+
+    conformsTo: list[str]  # noqa: N815 (name of the standard)
+
+
+class ProcessSummary(BaseModel):
+    """What a process is."""
+
+    id: str
+    title: str
+    description: str
+    version: str
+    jobControlOptions: list[str]  # noqa: N815
+    outputTransmission: list[str]  # noqa: N815
+    links: list[Link]
+
+
+class ProcessList(BaseModel):
+    """All processes."""
+
+    processes: list[ProcessSummary]
+    links: list[Link]
+
+
+class ProcessDescription(ProcessSummary):
+    """A process with the schemas of its inputs and outputs."""
+
+    inputs: dict[str, Any]
+    outputs: dict[str, Any]
+
+
+class StatusInfo(BaseModel):
+    """The state of a job."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    processID: str  # noqa: N815
+    type: Literal["process"] = "process"
+    jobID: str  # noqa: N815
+    status: JobStatus
+    message: str = Field(description="What happens or happened, in words")
+    created: str = Field(description="RFC 3339, UTC")
+    started: str | None = None
+    finished: str | None = None
+    updated: str
+    progress: int = Field(ge=0, le=100, description="Per cent of the whole job")
+    stage: str = Field(description="The stage the job is in")
+    stage_progress: int = Field(ge=0, le=100, description="Per cent of the stage")
+    attempts: int = Field(ge=0, description="How often the work was started")
+    links: list[Link]
+
+
+class JobList(BaseModel):
+    """A page of jobs, the newest first."""
+
+    jobs: list[StatusInfo]
+    links: list[Link]
+
+
+class ResultReference(BaseModel):
+    """Where a result is."""
+
+    href: str
+    type: str
+    hash: str = Field(description="Content hash of the input: the resource's name")

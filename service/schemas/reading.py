@@ -1,0 +1,74 @@
+"""Case and scene files from disk: TOML, or JSON of the same shape."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+
+from service.problems import BadInput
+from service.schemas.faults import faults_of
+
+M = TypeVar("M", bound=BaseModel)
+
+_LARGEST_FILE = 16_000_000
+
+
+def validated(model: type[M], data: object) -> M:
+    """Return `data` as `model`.
+
+    Raises
+    ------
+    BadInput
+        With every fault of the data.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        raise BadInput(faults_of(error, model)) from None
+
+
+def read_table(path: Path) -> dict[str, Any]:
+    """Return the table a TOML or JSON file holds.
+
+    Raises
+    ------
+    BadInput
+        The file is missing, too large, no text, or not well formed.
+    """
+    text = _text(path)
+    try:
+        table = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
+    except (tomllib.TOMLDecodeError, json.JSONDecodeError) as error:
+        kind = "JSON" if path.suffix == ".json" else "TOML"
+        raise BadInput.of(str(path), None, f"well-formed {kind}", f"{error}.") from None
+    if not isinstance(table, dict):
+        raise BadInput.of(str(path), table, "a table of fields", "See docs/case-file.md.")
+    return table
+
+
+def _text(path: Path) -> str:
+    """Text of a file that can be read."""
+    try:
+        if path.stat().st_size > _LARGEST_FILE:
+            raise BadInput.of("file", str(path), f"at most {_LARGEST_FILE} bytes", "Is this the right file?")
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise BadInput.of("file", str(path), "a text file in UTF-8", "Is this the right file?") from None
+    except OSError as error:
+        reason = error.strerror or "unreadable"
+        raise BadInput.of("file", str(path), "a readable file", f"{reason}. Check the path.") from None
+
+
+def read_model(model: type[M], path: Path) -> M:
+    """Return the file at `path` as `model`.
+
+    Raises
+    ------
+    BadInput
+        The file cannot be read, or with every fault of its contents.
+    """
+    return validated(model, read_table(path))

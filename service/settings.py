@@ -1,0 +1,98 @@
+"""Settings of the service: from the environment (``LOA_...``) or the command line."""
+
+from __future__ import annotations
+
+import ipaddress
+import os
+from pathlib import Path
+
+from pydantic import Field, ValidationError, field_validator
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+from service.problems import BadInput, Fault
+
+_LOOPBACK = (
+    "The service has no keys, so only this machine may reach it. Use 127.0.0.1, and a proxy with access "
+    "control in front of it if others need it."
+)
+
+
+def data_home() -> Path:
+    """Return the directory for results and jobs (XDG base directory specification)."""
+    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "lineofaction"
+
+
+def cache_home() -> Path:
+    """Return the directory for what can be computed or fetched again."""
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "lineofaction"
+
+
+class Settings(BaseSettings):
+    """What the service is started with.
+
+    Attributes
+    ----------
+    host, port : str, int
+        Where it listens; loopback only.
+    data_directory : Path
+        Jobs, results and the compliance cache.
+    workers : int
+        Jobs that run at the same time.
+    queue_limit : int
+        Computations that may wait; beyond it a submission is answered with 429.
+    body_limit : int
+        Bytes of a request body; beyond it 413.
+    deadline_s : float
+        Longest run of one computation.
+    attempts : int
+        How often a computation whose worker died is started.
+    """
+
+    model_config = SettingsConfigDict(env_prefix="LOA_", frozen=True, extra="forbid")
+
+    host: str = "127.0.0.1"
+    port: int = Field(8321, ge=0, le=65535)
+    data_directory: Path = Field(default_factory=data_home)
+    workers: int = Field(1, ge=1, le=256)
+    queue_limit: int = Field(100, ge=1, le=100_000)
+    body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)
+    deadline_s: float = Field(3600.0, gt=0.0, le=1e6)
+    attempts: int = Field(2, ge=1, le=10)
+
+    @field_validator("host")
+    @classmethod
+    def _loopback(cls, host: str) -> str:
+        """Refuse an address that others can reach."""
+        if host == "localhost":
+            return host
+        try:
+            loopback = ipaddress.ip_address(host).is_loopback
+        except ValueError:
+            loopback = False
+        if not loopback:
+            raise ValueError("not a loopback address")
+        return host
+
+
+def load_settings(**given: object) -> Settings:
+    """Return the settings: `given` values that are not None, then the environment, then defaults.
+
+    Raises
+    ------
+    BadInput
+        A value is out of bounds, or the address is not loopback.
+    """
+    chosen = {name: value for name, value in given.items() if value is not None}
+    try:
+        return Settings(**chosen)  # type: ignore[arg-type]
+    except ValidationError as error:
+        raise BadInput(_fault(dict(item)) for item in error.errors(include_url=False)) from None
+
+
+def _fault(item: dict[str, object]) -> Fault:
+    """One wrong setting."""
+    location = item["loc"]
+    name = str(location[0]) if isinstance(location, tuple) and location else "settings"
+    if name == "host":
+        return Fault(name, item.get("input"), "a loopback address such as 127.0.0.1 or ::1", _LOOPBACK)
+    return Fault(name, item.get("input"), f"valid ({item['msg']})", f"It is read from LOA_{name.upper()}.")

@@ -1,0 +1,53 @@
+"""One service per data directory."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from pathlib import Path
+
+from service.problems import BadInput
+
+
+class DirectoryLock:
+    """An advisory lock on a data directory; the system lifts it when the process dies, however it dies."""
+
+    def __init__(self, directory: Path) -> None:
+        self._directory = directory
+        self._descriptor: int | None = None
+
+    def acquire(self) -> None:
+        """Take the lock.
+
+        Raises
+        ------
+        BadInput
+            The directory cannot be written, or another service works in it.
+        """
+        try:
+            self._directory.mkdir(parents=True, exist_ok=True)
+            descriptor = os.open(
+                self._directory / "service.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600
+            )
+        except OSError as error:
+            suggestion = f"{error.strerror}. Choose another with --data-directory."
+            raise BadInput.of(
+                "data_directory", str(self._directory), "a directory we may write to", suggestion
+            ) from None
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(descriptor)
+            raise BadInput.of(
+                "data_directory",
+                str(self._directory),
+                "free: another service works in it",
+                "Stop that service or choose another directory with --data-directory.",
+            ) from None
+        self._descriptor = descriptor
+
+    def release(self) -> None:
+        """Lift the lock."""
+        if self._descriptor is not None:
+            os.close(self._descriptor)
+            self._descriptor = None

@@ -1,0 +1,142 @@
+"""Result files named by the hash of their input, verified by the digest of their contents."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from sqlalchemy import Column, Engine, Integer, String, Table, delete, select
+from sqlalchemy.dialects.sqlite import insert
+
+from service.problems import DamagedFile, NotFound
+from service.store.database import metadata, now, open_database, reading, writing
+
+DATABASE_FILE = "service.sqlite3"
+RESULTS_DIRECTORY = "results"
+
+results = Table(
+    "result",
+    metadata,
+    Column("key", String, primary_key=True),
+    Column("kind", String, primary_key=True),
+    Column("sha256", String, nullable=False),
+    Column("size", Integer, nullable=False),
+    Column("created", String, nullable=False),
+)
+
+
+@dataclass(frozen=True)
+class StoredResult:
+    """One line of the index.
+
+    Attributes
+    ----------
+    key : str
+        Hash of the input: the resource's name.
+    kind : str
+        "database" or "run".
+    sha256 : str
+        Digest of the file's bytes, hexadecimal.
+    size : int
+        Bytes.
+    path : Path
+        The file.
+    """
+
+    key: str
+    kind: str
+    sha256: str
+    size: int
+    path: Path
+
+
+class ResultStore:
+    """Write once, read verified."""
+
+    def __init__(self, engine: Engine, directory: Path) -> None:
+        self._engine = engine
+        self._directory = directory
+
+    def put(self, key: str, kind: str, file: Path) -> StoredResult:
+        """Move `file` (on the same file system) into the store: first the bytes, then the index."""
+        stored = StoredResult(key, kind, digest_of(file), file.stat().st_size, self._path(key, kind))
+        stored.path.parent.mkdir(parents=True, exist_ok=True)
+        _sync(file)
+        file.replace(stored.path)
+        _sync(stored.path.parent)
+        row = {"key": key, "kind": kind, "sha256": stored.sha256, "size": stored.size, "created": now()}
+        with writing(self._engine) as connection:
+            statement = insert(results).values(**row)
+            connection.execute(
+                statement.on_conflict_do_update(
+                    index_elements=["key", "kind"], set_={**row, "created": now()}
+                )
+            )
+        return stored
+
+    def find(self, key: str, kind: str) -> StoredResult | None:
+        """Return the index's line, None if there is none or its file is gone."""
+        with reading(self._engine) as connection:
+            statement = select(results).where(results.c.key == key, results.c.kind == kind)
+            row = connection.execute(statement).one_or_none()
+        path = self._path(key, kind)
+        return StoredResult(key, kind, row.sha256, row.size, path) if row and path.is_file() else None
+
+    def verified(self, key: str, kind: str) -> StoredResult:
+        """Return the result after comparing its bytes with its digest.
+
+        Raises
+        ------
+        NotFound
+            No such result.
+        DamagedFile
+            The bytes changed; the file is set aside, so that a new job computes it again.
+        """
+        stored = self.find(key, kind)
+        if stored is None:
+            raise NotFound(f"There is no {kind} {key!r}. Submit its case again to compute it.")
+        if digest_of(stored.path) != stored.sha256:
+            self._set_aside(stored)
+            raise DamagedFile(
+                f"The file of {kind} {key} was damaged and is set aside. Submit its case again."
+            )
+        return stored
+
+    def _set_aside(self, stored: StoredResult) -> None:
+        """Take a damaged file out of service."""
+        with writing(self._engine) as connection:
+            connection.execute(
+                delete(results).where(results.c.key == stored.key, results.c.kind == stored.kind)
+            )
+        stored.path.replace(stored.path.with_suffix(".damaged"))
+
+    def _path(self, key: str, kind: str) -> Path:
+        """File of a key; a key that is no hexadecimal digest names no file."""
+        name = (
+            key
+            if len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
+            else "none"
+        )
+        return self._directory / kind / name[:2] / f"{name}.nc"
+
+
+def stored_results(data_directory: Path) -> ResultStore:
+    """Return the store in a data directory."""
+    return ResultStore(open_database(data_directory / DATABASE_FILE), data_directory / RESULTS_DIRECTORY)
+
+
+def digest_of(file: Path) -> str:
+    """Return the SHA-256 of a file's bytes, hexadecimal."""
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def _sync(path: Path) -> None:
+    """Force a file or a directory to disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
