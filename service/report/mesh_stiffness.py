@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from service.report.pair import iso_mesh_stiffness
 
 from fe_contact.ste import SteDatabase
 from service.report.aligned import load_labels, load_lines, middle_load, two_pitches
 from service.report.figure import Axis, Figure, FloatArray, Panel, Reference, Table, number
+from service.report.pair import iso_mesh_stiffness
 from service.report.ste_curves import POSITION_AXIS
 
 _N_PER_MM_UM = 1e-9  # N/m per m of face width to N/(mm µm)

@@ -1,11 +1,12 @@
 """Laws that the figures of an STE database obey."""
 
 import math
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 
+from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
 from service.report.aligned import shown_loads, two_pitches
 from service.report.database_surface import database_surface
@@ -108,3 +109,10 @@ def test_failed_points_are_gaps_and_the_rest_is_drawn(damaged: SteDatabase) -> N
     assert len(position) == 129
     for figure in (ste_curves, load_sharing, mesh_stiffness, database_surface):
         assert figure(damaged).alternative
+
+
+def test_a_request_made_from_python_has_the_same_iso_line(database: SteDatabase) -> None:
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    request = {"pair": asdict(GearPair(gear, gear, 80e-3)), "normal_force": [2660.0]}
+    from_python = replace(database, metadata=Metadata(case=request))
+    assert iso_mesh_stiffness(from_python) == pytest.approx(iso_mesh_stiffness(database))
