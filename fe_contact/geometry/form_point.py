@@ -69,8 +69,10 @@ def find_form_point(
         return float(trochoid.polar_angle(np.array(tool_angle))) - involute
 
     low, high = normal_pressure_angle, 0.5 * math.pi
+    if radius(low) <= base_radius:  # an undercut below rounding error
+        return FormPoint(0.0, low, undercut=False)
     at_base = brentq(lambda angle: radius(angle) - base_radius, low, high, xtol=1e-15, rtol=1e-15)
-    if outside(low) <= 0.0 or outside(at_base) >= 0.0:  # an undercut below rounding error
+    if outside(low) <= 0.0 or outside(at_base) >= 0.0:  # likewise
         return FormPoint(0.0, at_base, undercut=True)
     cut = brentq(outside, low, at_base, xtol=1e-15, rtol=1e-15)
     return FormPoint(roll_length_at_radius(base_radius, max(base_radius, radius(cut))), cut, undercut=True)

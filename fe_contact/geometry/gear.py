@@ -218,7 +218,6 @@ class Gear:
         The addendum coefficient is absent, since it acts only through the tip diameter.
         """
         names = (
-            "teeth",
             "normal_module",
             "face_width",
             "bore_diameter",
@@ -229,4 +228,5 @@ class Gear:
             "root_radius_coefficient",
             "thickness_allowance",
         )
-        return {name: getattr(self, name) for name in names} | {"tip_diameter": 2.0 * self.tip_radius}
+        lengths_and_angles = {name: float(getattr(self, name)) + 0.0 for name in names}  # -0.0 becomes 0.0
+        return {"teeth": int(self.teeth), "tip_diameter": 2.0 * self.tip_radius} | lengths_and_angles

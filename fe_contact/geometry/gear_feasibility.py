@@ -15,21 +15,10 @@ if TYPE_CHECKING:
 
 def refuse_infeasible_gear(gear: Gear) -> None:
     """Raise `InfeasibleGeometry` if no such gear can be generated."""
-    _refuse_wide_tool(gear)
     _refuse_bore(gear)
     _refuse_tip_diameter(gear)
     _refuse_undercut(gear)
     _refuse_pointed_tooth(gear)
-
-
-def _refuse_wide_tool(gear: Gear) -> None:
-    """Refuse a tool whose tip roundings overlap."""
-    overlap = gear.trochoid.corner_distance - math.pi * gear.reference_radius / gear.teeth
-    if overlap > 1e-12 * gear.reference_radius:
-        bound = f"smaller: the roundings of a tool tooth overlap by {overlap:.3g} m"
-        advice = "Lower the root radius or the thickness allowance."
-        value = gear.root_radius_coefficient
-        raise InfeasibleGeometry("root radius", "root_radius_coefficient", value, bound, advice)
 
 
 def _refuse_bore(gear: Gear) -> None:
