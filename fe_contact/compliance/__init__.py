@@ -1,0 +1,20 @@
+"""Flank compliance by finite elements: assembly, condensation to the flanks, checks, disk cache."""
+
+from fe_contact.compliance.cache import default_cache_directory
+from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
+from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
+from fe_contact.compliance.plane import PlaneHypothesis
+from fe_contact.compliance.solvers import Pardiso, Solver, SuperLuColamd, SuperLuMetis
+
+__all__ = [
+    "ComplianceChecks",
+    "FlankCompliance",
+    "Pardiso",
+    "PlaneHypothesis",
+    "Solver",
+    "SuperLuColamd",
+    "SuperLuMetis",
+    "default_cache_directory",
+    "flank_compliance",
+    "flank_compliances",
+]

@@ -1,0 +1,99 @@
+"""Disk cache of flank compliances, by the hash of everything that decides them."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sys
+import tempfile
+import zipfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
+from fe_contact.types import Json
+
+ENVIRONMENT = "LINEOFACTION_CACHE"
+OFF = ("", "0", "off", "none")
+ARRAYS = ("s", "teeth", "matrix")
+
+
+def default_cache_directory() -> Path | None:
+    """Return where compliances are kept.
+
+    ``$LINEOFACTION_CACHE`` if set ("off": nowhere, None), else the platform's cache directory.
+    """
+    given = os.environ.get(ENVIRONMENT)
+    if given is not None:
+        return None if given.strip().lower() in OFF else Path(given)
+    if sys.platform == "win32":
+        root = Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local")
+    elif sys.platform == "darwin":
+        root = Path.home() / "Library" / "Caches"
+    else:
+        root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    return root / "lineofaction"
+
+
+def content_hash(content: Json) -> str:
+    """Return the SHA-256 of plain JSON, hexadecimal, independent of the order of keys."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def read_compliance(directory: Path, key: str) -> FlankCompliance | None:
+    """Return the compliance kept under `key`, or None if there is none or its file is damaged."""
+    try:
+        with np.load(_file(directory, key), allow_pickle=False) as file:
+            arrays = {name: file[name] for name in ARRAYS}
+            facts = str(file["facts"])
+            intact = str(file["checksum"]) == _checksum(arrays, facts)
+        return _restored(arrays, json.loads(facts)) if intact else None
+    # What a truncated, overwritten or foreign file makes NumPy, zipfile, json and the constructors raise.
+    except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+        return None
+
+
+def write_compliance(directory: Path, key: str, compliance: FlankCompliance) -> None:
+    """Keep a compliance under `key`; a reader sees the whole file or none.
+
+    A directory that cannot be written is no reason to lose the result: it is left as it is.
+    """
+    arrays = {name: np.asarray(getattr(compliance, name)) for name in ARRAYS}
+    facts = json.dumps({k: v for k, v in asdict(compliance).items() if k not in (*ARRAYS, "from_cache")})
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=directory, suffix=".partial")
+    except OSError:
+        return
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            np.savez(stream, allow_pickle=False, facts=facts, checksum=_checksum(arrays, facts), **arrays)
+        Path(name).replace(_file(directory, key))
+    except OSError:
+        Path(name).unlink(missing_ok=True)
+
+
+def _file(directory: Path, key: str) -> Path:
+    """Return the file of a key."""
+    return directory / f"compliance-{key}.npz"
+
+
+def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
+    """Return the SHA-256 of what a file holds."""
+    digest = hashlib.sha256(facts.encode())
+    for name in ARRAYS:
+        array = np.ascontiguousarray(arrays[name])
+        digest.update(f"{name} {array.dtype.str} {array.shape}".encode())
+        digest.update(array.tobytes())
+    return digest.hexdigest()
+
+
+def _restored(arrays: dict[str, np.ndarray[Any, Any]], facts: Json) -> FlankCompliance:
+    """Build the compliance again."""
+    checks = ComplianceChecks(**facts.pop("checks"))
+    fields: dict[str, Any] = arrays | facts | {"checks": checks, "from_cache": True}
+    return FlankCompliance(**fields)

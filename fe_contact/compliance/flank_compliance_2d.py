@@ -1,0 +1,201 @@
+"""From a gear to its flank compliance in the transverse plane: mesh, assemble, condense, check."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Sequence
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.checks import integer
+from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
+from fe_contact.compliance.checks_2d import ring_checks, uniform_pressure
+from fe_contact.compliance.flank import FlankCompliance, refuse_broken_laws
+from fe_contact.compliance.plane import PlaneHypothesis
+from fe_contact.compliance.ring_2d import Ring, assemble_ring, flank_matrix
+from fe_contact.compliance.sector_2d import condense_sector
+from fe_contact.compliance.solvers import Solver, SuperLuMetis
+from fe_contact.errors import InputError
+from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
+from fe_contact.types import IntArray, Json
+
+MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found
+USUAL_TEETH = 5
+
+
+def flank_compliance(
+    gear: Gear,
+    recipe: MeshRecipe | None = None,
+    hypothesis: PlaneHypothesis = PlaneHypothesis.PLANE_STRAIN,
+    *,
+    teeth: int | None = None,
+    solver: Solver | None = None,
+    cache: Path | None = None,
+) -> FlankCompliance:
+    """Return the compliance of the right flanks of a gear, transverse section, per unit face width.
+
+    Parameters
+    ----------
+    gear : Gear
+        Modification and face width play no part.
+    recipe : MeshRecipe, optional
+        Default `MeshRecipe.standard(gear)`.
+    hypothesis : PlaneHypothesis
+        Plane strain or plane stress.
+    teeth : int, optional
+        Number of condensed teeth, odd, centred on tooth 0, at most the real ones; default 5, or as many as
+        there are.
+    solver : Solver, optional
+        Default `SuperLuMetis()`.
+    cache : Path, optional
+        Directory of kept results (see `default_cache_directory`); None: neither read nor written.
+
+    Raises
+    ------
+    InputError
+        `teeth` is even or exceeds the real teeth.
+    MeshError
+        No acceptable mesh.
+    SolveError
+        The matrix is singular, or the result breaks a law.
+    """
+    recipe, solver = recipe or MeshRecipe.standard(gear), solver or SuperLuMetis()
+    count = condensed_teeth(gear, recipe, teeth)
+    key = compliance_key(gear, recipe, hypothesis, count, solver)
+    kept = read_compliance(cache, key) if cache is not None else None
+    if kept is not None:
+        return kept
+    result = compute_flank_compliance(gear, recipe, hypothesis, count, solver)
+    if cache is not None:
+        write_compliance(cache, key, result)
+    return result
+
+
+def flank_compliances(
+    gears: Sequence[Gear],
+    recipes: Sequence[MeshRecipe] | None = None,
+    hypothesis: PlaneHypothesis = PlaneHypothesis.PLANE_STRAIN,
+    *,
+    teeth: int | None = None,
+    solver: Solver | None = None,
+    cache: Path | None = None,
+) -> tuple[FlankCompliance, ...]:
+    """Return the compliance of each gear; gears of the same section, material and recipe share one object.
+
+    Parameters are those of `flank_compliance`, with one recipe per gear.
+    """
+    recipes = recipes or [MeshRecipe.standard(gear) for gear in gears]
+    solver = solver or SuperLuMetis()
+    found: dict[str, FlankCompliance] = {}
+    keys = []
+    for gear, recipe in zip(gears, recipes, strict=True):
+        count = condensed_teeth(gear, recipe, teeth)
+        keys.append(compliance_key(gear, recipe, hypothesis, count, solver))
+        if keys[-1] not in found:
+            found[keys[-1]] = flank_compliance(
+                gear, recipe, hypothesis, teeth=count, solver=solver, cache=cache
+            )
+    return tuple(found[key] for key in keys)
+
+
+def condensed_teeth(gear: Gear, recipe: MeshRecipe, teeth: int | None) -> int:
+    """Return the number of condensed teeth, checked against the real ones."""
+    real = min(gear.teeth, recipe.real_teeth or gear.teeth)
+    most = real - 1 + real % 2
+    if teeth is None:
+        return min(USUAL_TEETH, most)
+    count = integer("teeth", teeth, 1, most, "Condensed teeth must be real ones; see MeshRecipe.real_teeth.")
+    if count % 2 == 0:
+        raise InputError("teeth", teeth, "odd", "The teeth are centred on tooth 0.")
+    return count
+
+
+def compliance_key(
+    gear: Gear, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
+) -> str:
+    """Return the hash of all that decides a compliance of the transverse section."""
+    section = {name: value for name, value in gear.macro_geometry().items() if name != "face_width"}
+    content: Json = {
+        "model": ["transverse section", MODEL_VERSION],
+        "gmsh": version("gmsh"),
+        "section": section,
+        "material": [gear.material.youngs_modulus, gear.material.poissons_ratio],
+        "recipe": recipe.content(),
+        "hypothesis": hypothesis.value,
+        "teeth": teeth,
+        "solver": solver.name,
+    }
+    return content_hash(content)
+
+
+def compute_flank_compliance(
+    gear: Gear, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
+) -> FlankCompliance:
+    """Mesh, assemble, condense and check; no cache."""
+    clock = StageClock()
+    mesh = mesh_gear(gear, recipe)
+    clock.finish("mesh")
+    ring = condensed_ring(gear, mesh, hypothesis, solver)
+    clock.finish("factorisation")
+    index = tooth_indices(mesh, teeth)
+    matrix = flank_matrix(ring, index)
+    clock.finish("condensation")
+    profile = tooth_profile(gear)
+    load = uniform_pressure(mesh.sector.s, profile.s_form, gear.base_radius)
+    checks = ring_checks(ring, int(index[(teeth - 1) // 2]), load, matrix)
+    clock.finish("checks")
+    result = FlankCompliance(
+        s=mesh.sector.s,
+        teeth=mesh.teeth[index],
+        matrix=0.5 * (matrix + matrix.T),
+        s_form=profile.s_form,
+        s_tip=profile.s_tip,
+        contact_modulus=hypothesis.contact_modulus(gear.material),
+        checks=checks,
+        unknowns=2 * (len(mesh.points) - len(mesh.bore_nodes)),
+        condensed_unknowns=ring.matrix.shape[0],
+        seconds=clock.seconds,
+        solver=solver.name,
+    )
+    return refuse_broken_laws(result)
+
+
+def condensed_ring(gear: Gear, mesh: GearMesh, hypothesis: PlaneHypothesis, solver: Solver) -> Ring:
+    """Assemble sector and hub, condense the sector, assemble and factorise the ring."""
+    from fe_contact.compliance.elasticity_2d import stiffness_matrix  # noqa: PLC0415 - a cached result needs no skfem
+
+    lame = hypothesis.lame_parameters(gear.material)
+    normals = tooth_profile(gear).normal(mesh.sector.s)
+    sector = condense_sector(
+        mesh, stiffness_matrix(mesh.sector.points, mesh.sector.triangles, lame), normals, solver
+    )
+    hub = None if mesh.hub is None else stiffness_matrix(mesh.hub.points, mesh.hub.triangles, lame)
+    return assemble_ring(mesh, sector, hub, solver)
+
+
+def tooth_indices(mesh: GearMesh, teeth: int) -> IntArray:
+    """Return where the `teeth` teeth around tooth 0 stand in `mesh.teeth`."""
+    centre = int(np.flatnonzero(mesh.teeth == 0)[0])
+    return centre + np.arange(teeth) - (teeth - 1) // 2
+
+
+class StageClock:
+    """CPU seconds of this process and its finished children, stage by stage."""
+
+    def __init__(self) -> None:
+        self.seconds: dict[str, float] = {}
+        self._last = self._now()
+
+    def finish(self, stage: str) -> None:
+        """Book the time since the last stage."""
+        now = self._now()
+        self.seconds[stage], self._last = now - self._last, now
+
+    @staticmethod
+    def _now() -> float:
+        times = os.times()
+        return time.process_time() + times.children_user + times.children_system

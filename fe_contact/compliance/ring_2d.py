@@ -1,0 +1,112 @@
+"""The whole gear on the freedoms that its tooth sectors share: assembly, solution, flank compliance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+
+from fe_contact.compliance.sector_2d import CondensedSector, freedoms
+from fe_contact.compliance.solvers import Solve, Solver
+from fe_contact.mesh.gear_mesh import GearMesh
+from fe_contact.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class Ring:
+    """Condensed stiffness of one gear, bore clamped, per unit face width.
+
+    Attributes
+    ----------
+    mesh : GearMesh
+        Its mesh.
+    sector : CondensedSector
+        One tooth.
+    hub_matrix : sparse array or None
+        Stiffness of the hub on its own freedoms.
+    matrix : (n, n) sparse array
+        Condensed stiffness of the whole gear.
+    position : (2 N,) int array
+        Row in `matrix` of each freedom of the gear mesh, or -1.
+    solve : callable
+        Inverse of `matrix`.
+    """
+
+    mesh: GearMesh
+    sector: CondensedSector
+    hub_matrix: sp.csc_array | None
+    matrix: sp.csc_array
+    position: IntArray
+    solve: Solve
+
+    def rows(self, tooth_index: int) -> IntArray:
+        """Return the rows of the boundary freedoms of one sector."""
+        return self.position[freedoms(self.mesh.sector_nodes[tooth_index, self.sector.boundary])]
+
+    def turned(self, tooth_index: int, values: FloatArray) -> FloatArray:
+        """Turn boundary vectors (2 nb, m) from the tooth frame of one sector into that of the gear."""
+        c_s = rotation(self.mesh.teeth[tooth_index] * self.mesh.pitch_angle)
+        return np.asarray(
+            np.einsum("cd,ndm->ncm", c_s, values.reshape(-1, 2, values.shape[1])).reshape(values.shape)
+        )
+
+
+def rotation(angle: float) -> FloatArray:
+    """Return the matrix that turns vectors counter-clockwise by `angle`."""
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def assemble_ring(
+    mesh: GearMesh, sector: CondensedSector, hub_matrix: sp.csc_array | None, solver: Solver
+) -> Ring:
+    """Add up the condensed sectors and the hub, clamp the bore, factorise."""
+    kept = np.unique(np.concatenate([mesh.sector_nodes[:, sector.boundary].ravel(), mesh.hub_nodes]))
+    kept = np.setdiff1d(kept, mesh.bore_nodes)
+    position = np.full(2 * len(mesh.points), -1)
+    position[freedoms(kept)] = np.arange(2 * len(kept))
+    rows, columns, values = [], [], []
+    for i in range(len(mesh.teeth)):
+        turned = _turned_matrix(sector.stiffness, mesh.teeth[i] * mesh.pitch_angle)
+        at = position[freedoms(mesh.sector_nodes[i, sector.boundary])]
+        rows.append(np.repeat(at, len(at)))
+        columns.append(np.tile(at, len(at)))
+        values.append(turned.ravel())
+    if hub_matrix is not None:
+        coo = hub_matrix.tocoo()
+        at = position[freedoms(mesh.hub_nodes)]
+        free = (at[coo.row] >= 0) & (at[coo.col] >= 0)
+        rows.append(at[coo.row[free]])
+        columns.append(at[coo.col[free]])
+        values.append(coo.data[free])
+    entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+    matrix = sp.csc_array(sp.coo_array(entries, shape=(2 * len(kept), 2 * len(kept))))
+    return Ring(mesh, sector, hub_matrix, matrix, position, solver.factorise(matrix, block=2))
+
+
+def _turned_matrix(matrix: FloatArray, angle: float) -> FloatArray:
+    """Return R K R' with R turning every node's vector."""
+    r = rotation(angle)
+    n = len(matrix) // 2
+    return np.asarray(
+        np.einsum("ab,ibjd,cd->iajc", r, matrix.reshape(n, 2, n, 2), r, optimize=True).reshape(2 * n, 2 * n)
+    )
+
+
+def flank_matrix(ring: Ring, teeth: IntArray) -> FloatArray:
+    """Return the flank compliance of the teeth with indices `teeth`, (t k, t k) in 1/Pa.
+
+    It is symmetric up to rounding. Only rows that the loaded sectors touch are solved for.
+    """
+    sector, k, count = ring.sector, ring.sector.flank.shape[0], len(teeth)
+    blocks = [(ring.rows(i), ring.turned(i, sector.transmitted)) for i in teeth]
+    used, inverse = np.unique(np.concatenate([rows for rows, _ in blocks]), return_inverse=True)
+    transmitted = np.zeros((len(used), count * k))
+    for n, ((_, block), at) in enumerate(zip(blocks, np.split(inverse, count), strict=True)):
+        transmitted[at, n * k : (n + 1) * k] = block
+    unit = np.zeros((ring.matrix.shape[0], len(used)))
+    unit[used, np.arange(len(used))] = 1.0
+    matrix = transmitted.T @ (ring.solve(unit)[used] @ transmitted)
+    for n in range(count):
+        matrix[n * k : (n + 1) * k, n * k : (n + 1) * k] += sector.flank
+    return np.asarray(matrix)

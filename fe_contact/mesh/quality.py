@@ -1,0 +1,104 @@
+"""Quality of six-node triangles, and the limits a mesh must keep."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.errors import MeshError
+from fe_contact.types import FloatArray, IntArray
+
+_NODES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]])
+
+
+@dataclass(frozen=True)
+class QualityLimits:
+    """Least acceptable quality.
+
+    Attributes
+    ----------
+    angle : float
+        Least angle between straight sides, rad.
+    scaled_jacobian : float
+        Least ratio of the smallest to the largest Jacobian determinant within an element.
+    """
+
+    angle: float = math.radians(12.0)
+    scaled_jacobian: float = 0.2
+
+
+@dataclass(frozen=True)
+class MeshQuality:
+    """Quality of every element of a mesh.
+
+    Attributes
+    ----------
+    angle : (m,) array
+        Least angle between straight sides, rad.
+    scaled_jacobian : (m,) array
+        Lower bound of the smallest over the largest Jacobian determinant; below zero it may be folded.
+    """
+
+    angle: FloatArray
+    scaled_jacobian: FloatArray
+
+
+def mesh_quality(points: FloatArray, triangles: IntArray) -> MeshQuality:
+    """Return the quality of six-node triangles (m, 6) on points (n, 2)."""
+    nodes = points[triangles]
+    return MeshQuality(least_angle(nodes[:, :3]), scaled_jacobian(nodes))
+
+
+def least_angle(corners: FloatArray) -> FloatArray:
+    """Return the least angle of straight triangles (m, 3, 2), rad."""
+    sides = np.roll(corners, -1, axis=1) - corners
+    sides /= np.linalg.norm(sides, axis=2, keepdims=True)
+    cosines = -np.sum(sides * np.roll(sides, 1, axis=1), axis=2)
+    return np.asarray(np.arccos(np.clip(cosines, -1.0, 1.0)).min(axis=1))
+
+
+def scaled_jacobian(nodes: FloatArray) -> FloatArray:
+    """Return a lower bound of min det J / max det J over each element (m, 6, 2).
+
+    The determinant is a quadratic polynomial, hence between its least and largest Bernstein coefficients:
+    the corner values, and 2 det(middle) - (det(corner) + det(corner)) / 2 for each side.
+    """
+    gradients = np.einsum("qdk,mkx->mqdx", _shape_derivatives(_NODES), nodes)
+    determinant = gradients[..., 0, 0] * gradients[..., 1, 1] - gradients[..., 0, 1] * gradients[..., 1, 0]
+    corner, middle = determinant[:, :3], determinant[:, 3:]
+    bernstein = np.concatenate([corner, 2.0 * middle - 0.5 * (corner + np.roll(corner, -1, axis=1))], axis=1)
+    largest = np.abs(bernstein).max(axis=1)
+    return np.asarray(bernstein.min(axis=1) / largest)
+
+
+def _shape_derivatives(at: FloatArray) -> FloatArray:
+    """Return the derivatives (n, 2, 6) of the quadratic shape functions at reference points (n, 2)."""
+    x, y = at.T
+    z, zero = 1.0 - x - y, np.zeros(len(at))
+    in_x = [1.0 - 4.0 * z, 4.0 * x - 1.0, zero, 4.0 * (z - x), 4.0 * y, -4.0 * y]
+    in_y = [1.0 - 4.0 * z, zero, 4.0 * y - 1.0, -4.0 * x, 4.0 * x, 4.0 * (z - y)]
+    return np.stack([np.stack(in_x, axis=-1), np.stack(in_y, axis=-1)], axis=1)
+
+
+def refuse_poor_elements(part: str, points: FloatArray, triangles: IntArray, limits: QualityLimits) -> None:
+    """Refuse a mesh that misses its limits; `part` names it.
+
+    Raises
+    ------
+    MeshError
+        Naming the worst element, where it is, its value and the limit.
+    """
+    quality = mesh_quality(points, triangles)
+    for name, values, limit, unit, factor in (
+        ("scaled Jacobian", quality.scaled_jacobian, limits.scaled_jacobian, "", 1.0),
+        ("least angle", quality.angle, limits.angle, " deg", math.degrees(1.0)),
+    ):
+        worst = int(np.argmin(values))
+        if not values[worst] >= limit:
+            x, y = 1e3 * points[triangles[worst, :3]].mean(axis=0)
+            raise MeshError(
+                f"{part}: element {worst} at ({x:.4g}, {y:.4g}) mm: {name} "
+                f"{factor * values[worst]:.3g}{unit} is below {factor * limit:.3g}{unit}. Try other element sizes in the mesh recipe."
+            )

@@ -1,0 +1,100 @@
+"""What a gear's mesh shall look like: element sizes, real teeth, limits."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import asdict, dataclass, replace
+from typing import Protocol
+
+from fe_contact.checks import integer, positive, within
+from fe_contact.errors import InputError
+from fe_contact.types import Json
+
+
+class HasNormalModule(Protocol):
+    """Anything that knows its normal module in m."""
+
+    @property
+    def normal_module(self) -> float:
+        """Normal module in m."""
+
+
+@dataclass(frozen=True)
+class MeshRecipe:
+    """Element sizes of the transverse section of one gear.
+
+    Sizes are lengths of element edges; away from the boundary they grow with distance at the rate `growth`.
+
+    Attributes
+    ----------
+    flank_size : float
+        Along the involute and `flank_margin` below it, m.
+    tip_size : float
+        At the tip edge, m. The size grows from there to `flank_size`.
+    fillet_size : float
+        Largest along the fillet and the root land, m.
+    body_size : float
+        Largest inside the ring next to the teeth, m. Deeper in the body it keeps growing.
+    flank_margin : float
+        Length below the form point that is divided as finely as the flank and carries load freedoms, m.
+    growth : float
+        Growth of the element size per unit distance, 0.05 to 1.
+    real_teeth : int or None
+        Number of generated teeth, odd, centred on tooth 0; elsewhere the ring is plain, of root radius.
+        None, or no fewer than the gear has: all teeth.
+    """
+
+    flank_size: float
+    tip_size: float
+    fillet_size: float
+    body_size: float
+    flank_margin: float
+    growth: float = 0.3
+    real_teeth: int | None = None
+
+    def __post_init__(self) -> None:
+        for field in ("flank_size", "tip_size", "fillet_size", "body_size", "flank_margin"):
+            positive(field, getattr(self, field))
+        within("growth", self.growth, 0.05, 1.0, "0.3 is usual.")
+        if self.tip_size > self.flank_size:
+            raise InputError("tip_size", self.tip_size, f"at most flank_size = {self.flank_size:g}")
+        if self.real_teeth is not None:
+            integer("real_teeth", self.real_teeth, 1, 100_001)
+            if self.real_teeth % 2 == 0:
+                raise InputError("real_teeth", self.real_teeth, "odd", "The teeth are centred on tooth 0.")
+
+    @classmethod
+    def standard(cls, gear: HasNormalModule) -> MeshRecipe:
+        """Return the recipe of everyday use: sizes in proportion to the normal module of `gear`."""
+        m = gear.normal_module
+        return cls(
+            flank_size=0.05 * m,
+            tip_size=0.005 * m,
+            fillet_size=0.1 * m,
+            body_size=0.75 * m,
+            flank_margin=0.3 * m,
+        )
+
+    def refined(self, factor: float = 2.0) -> MeshRecipe:
+        """Return the recipe with every element size and the growth divided by `factor` > 0.
+
+        Teeth and margin stay, so that recipes of one family differ by their discretisation only.
+        """
+        positive("factor", factor)
+        return replace(
+            self,
+            flank_size=self.flank_size / factor,
+            tip_size=self.tip_size / factor,
+            fillet_size=self.fillet_size / factor,
+            body_size=self.body_size / factor,
+            growth=min(1.0, max(0.05, self.growth / factor)),
+        )
+
+    def content(self) -> Json:
+        """Return all fields as plain JSON."""
+        return asdict(self)
+
+    def content_hash(self) -> str:
+        """Return the SHA-256 of the fields, hexadecimal: equal for equal recipes in every process."""
+        return hashlib.sha256(json.dumps(self.content(), sort_keys=True).encode()).hexdigest()

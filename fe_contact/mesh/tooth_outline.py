@@ -1,0 +1,135 @@
+"""Outline of the right half of one tooth with the ring below it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.geometry import ToothProfile
+from fe_contact.mesh.grading import divide, middles, spread
+from fe_contact.mesh.outline import Outline, Piece, arc, piece, radial_line
+from fe_contact.mesh.recipe import MeshRecipe
+from fe_contact.types import FloatArray
+
+LARGEST_ARC = math.radians(
+    12.0
+)  # of one quadratic edge: it leaves its circle by less than 1e-5 of the radius
+COARSE = 201  # samples of the size inside the material, where it changes slowly
+TINY = 1e-6  # rounding of a root land that is not there, in parts of the fillet size
+SNAP = 0.25  # a root land shorter than this part of the fillet size is left to the fillet
+
+
+@dataclass(frozen=True)
+class ToothOutline:
+    """Right half of the sector of one tooth.
+
+    Pieces, counter-clockwise: ``bottom`` (from the centre line to the side), ``side`` (up to the root),
+    ``land`` (root circle) and ``fillet`` where they exist, ``flank`` (from the margin below the form point),
+    ``tip``, ``centre``.
+
+    Attributes
+    ----------
+    outline : Outline
+        The loop.
+    s : (k,) array
+        Flank coordinates of the nodes of the piece ``flank``, root to tip, m.
+    """
+
+    outline: Outline
+    s: FloatArray
+
+
+def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe) -> ToothOutline:
+    """Divide the boundary of half a tooth sector.
+
+    Parameters
+    ----------
+    profile : ToothProfile
+        The exact right flank.
+    bottom_radius : float
+        Radius of the sector's lower end, m.
+    recipe : MeshRecipe
+        Element sizes.
+    """
+    s_low = max(profile.s_root, profile.s_form - recipe.flank_margin)
+    ends = flank_divisions(profile, s_low, recipe)
+    flank = piece("flank", profile.flank, ends)
+    surface = [*root_pieces(profile, s_low, recipe), flank, tip_piece(profile, recipe)]
+    inner = inner_pieces(surface, 0.5 * profile.pitch_angle, bottom_radius, recipe)
+    s = np.empty(2 * len(ends) - 1)
+    s[::2], s[1::2] = ends, middles(ends)
+    return ToothOutline(Outline((*inner[:2], *surface, inner[2])), s)
+
+
+def flank_divisions(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> FloatArray:
+    """Divide the flank from `s_low` to the tip edge; a corner is on the form point, where curvature jumps."""
+
+    def size(s: FloatArray) -> FloatArray:
+        return np.minimum(recipe.flank_size, recipe.tip_size + recipe.growth * (profile.s_tip - s))
+
+    involute = divide(profile.s_form, profile.s_tip, size)
+    if s_low >= profile.s_form:
+        return involute
+    return np.concatenate([divide(s_low, profile.s_form, size)[:-1], involute])
+
+
+def root_pieces(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> list[Piece]:
+    """Return the surface from the middle of the tooth space up to `s_low`: root land and fillet."""
+
+    def size(s: FloatArray) -> FloatArray:
+        return np.minimum(recipe.fillet_size, recipe.flank_size + recipe.growth * (s_low - s))
+
+    land = profile.s_root - profile.s_space
+    if s_low <= profile.s_root:
+        return [land_piece(profile, recipe)] if land > TINY * recipe.fillet_size else []
+    fillet = piece("fillet", profile.flank, divide(s_low, profile.s_root, size)[::-1])
+    if land > SNAP * recipe.fillet_size:
+        return [land_piece(profile, recipe), fillet]
+    fillet.nodes[0] = profile.flank(np.array([profile.s_space]))[0]
+    return [fillet]
+
+
+def land_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
+    """Return the root circle from the middle of the tooth space to the fillet."""
+    largest = min(recipe.body_size, LARGEST_ARC * profile.gear.root_radius)
+
+    def size(s: FloatArray) -> FloatArray:
+        return np.minimum(recipe.fillet_size + recipe.growth * (profile.s_root - s), largest)
+
+    return piece("land", profile.flank, divide(profile.s_root, profile.s_space, size)[::-1])
+
+
+def tip_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
+    """Return the tip circle from the tip edge to the centre line."""
+    radius, edge = profile.gear.tip_radius, profile.tip_angle
+    largest = min(recipe.body_size / radius, LARGEST_ARC)
+
+    def size(angle: FloatArray) -> FloatArray:
+        return np.minimum(recipe.tip_size / radius + recipe.growth * (edge - angle), largest)
+
+    tip = piece("tip", arc(radius), divide(edge, 0.0, size))
+    tip.nodes[0] = profile.flank(np.array([profile.s_tip]))[0]
+    return tip
+
+
+def inner_pieces(
+    surface: list[Piece], half_pitch_angle: float, bottom_radius: float, recipe: MeshRecipe
+) -> list[Piece]:
+    """Return bottom, side and centre, which lie inside the material, sized by the distance to the surface."""
+    sources = np.concatenate([p.nodes[1::2] for p in surface])
+    lengths = np.concatenate([p.edge_lengths for p in surface])
+    width = half_pitch_angle * bottom_radius
+    size = spread(sources, lengths, recipe.growth, max(recipe.body_size, width))
+    root, tip = np.linalg.norm(surface[0].nodes[0]), np.linalg.norm(surface[-1].nodes[-1])
+    side, centre, bottom = radial_line(half_pitch_angle), radial_line(0.0), arc(bottom_radius)
+
+    def bottom_size(angle: FloatArray) -> FloatArray:
+        return np.minimum(size(bottom(angle)) / bottom_radius, LARGEST_ARC)
+
+    return [
+        piece("bottom", bottom, divide(0.0, half_pitch_angle, bottom_size, COARSE)),
+        piece("side", side, divide(bottom_radius, float(root), lambda r: size(side(r)), COARSE)),
+        piece("centre", centre, divide(float(tip), bottom_radius, lambda r: size(centre(r)), COARSE)),
+    ]

@@ -1,0 +1,77 @@
+"""Mesh of one pitch of the gear: a tooth, mirror-symmetric, with the ring below it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.mesh.quadratic import QuadraticMesh
+from fe_contact.mesh.tooth_outline import ToothOutline
+from fe_contact.types import FloatArray, IntArray
+
+MIRRORED = [0, 2, 1, 5, 4, 3]  # node order of a triangle after reflection, counter-clockwise again
+
+
+@dataclass(frozen=True)
+class ToothSector:
+    """One pitch of the gear in the tooth frame, identical for all teeth.
+
+    Node lists run along the boundary, corner, mid-side, corner ...
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        Nodes, m; symmetric about x = 0.
+    triangles : (m, 6) array
+        Six-node triangles.
+    right_side, left_side : int arrays
+        Nodes shared with the neighbours, from the bottom to the root. The left side turned clockwise by one
+        pitch is the right one.
+    bottom : int array
+        Nodes of the lower arc from left to right, both corners included.
+    flank, coast_flank : (k,) int arrays
+        Nodes of the right and left flank, root to tip.
+    s : (k,) array
+        Flank coordinate of both, m.
+    """
+
+    points: FloatArray
+    triangles: IntArray
+    right_side: IntArray
+    left_side: IntArray
+    bottom: IntArray
+    flank: IntArray
+    coast_flank: IntArray
+    s: FloatArray
+
+
+def tooth_sector(half: QuadraticMesh, outline: ToothOutline) -> ToothSector:
+    """Join the mesh of the right half of a sector with its mirror image."""
+    (boundary,) = half.boundary
+    centre = boundary[outline.outline.positions("centre")]
+    points = half.points.copy()
+    points[centre, 0] = 0.0
+    image = mirror_image(len(points), centre)
+    others = np.setdiff1d(np.arange(len(points)), centre)
+    flank = boundary[outline.outline.positions("flank")]
+    side = boundary[outline.outline.positions("side")]
+    right_bottom = boundary[outline.outline.positions("bottom")]
+    return ToothSector(
+        points=np.concatenate([points, points[others] * [-1.0, 1.0]]),
+        triangles=np.concatenate([half.triangles, image[half.triangles][:, MIRRORED]]),
+        right_side=side,
+        left_side=image[side],
+        bottom=np.concatenate([image[right_bottom][:0:-1], right_bottom]),
+        flank=flank,
+        coast_flank=image[flank],
+        s=outline.s,
+    )
+
+
+def mirror_image(count: int, centre: IntArray) -> IntArray:
+    """Return the number of each node's mirror image; nodes on the centre line are their own."""
+    image = np.arange(count)
+    others = np.setdiff1d(image, centre)
+    image[others] = count + np.arange(len(others))
+    return image

@@ -1,0 +1,138 @@
+"""Triangulation of polygonal regions by gmsh in a child process of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fe_contact.errors import MeshError
+from fe_contact.types import FloatArray, IntArray
+
+WORKER = Path(__file__).with_name("gmsh_worker.py")
+
+
+@dataclass(frozen=True)
+class Region:
+    """Polygon with holes: `loops[0]` is the outer boundary, each loop (n, 2), first point not repeated."""
+
+    loops: tuple[FloatArray, ...]
+
+
+@dataclass(frozen=True)
+class Triangulation:
+    """Straight triangles.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        The points of the region's loops first, bit for bit and in their order, then the inner ones.
+    triangles : (m, 3) array
+        Corner indices, counter-clockwise.
+    """
+
+    points: FloatArray
+    triangles: IntArray
+
+
+def triangulate(
+    regions: Sequence[Region],
+    scale: float,
+    growth: float = 0.3,
+    seconds: float = 60.0,
+    command: Sequence[str] | None = None,
+) -> list[Triangulation]:
+    """Fill each region with triangles that keep the edges of its loops undivided.
+
+    The size of the triangles grows from that of the boundary edges.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        Meshed one by one in the same child process.
+    scale : float
+        Length of the size of the regions, m: gmsh works in multiples of it (its tolerances are absolute).
+    growth : float
+        Growth of the element size per unit distance from the boundary.
+    seconds : float
+        Time limit; the child is killed after it.
+    command : sequence of str, optional
+        Program to run in place of the gmsh worker.
+
+    Raises
+    ------
+    MeshError
+        The child failed, was killed, ran out of time or answered nonsense; the message says which.
+    """
+    loops = [[(loop / scale).tolist() for loop in r.loops] for r in regions]
+    request = {"regions": loops, "growth": growth, "seconds": seconds}
+    answer = _ask(json.dumps(request), seconds, command or (sys.executable, "-P", str(WORKER)))
+    if "error" in answer:
+        raise MeshError(f"gmsh: {answer['error']}")
+    try:
+        return [_received(r, found, scale) for r, found in zip(regions, answer["regions"], strict=True)]
+    except (KeyError, ValueError, TypeError) as error:
+        raise MeshError(f"gmsh worker: unusable answer ({error})") from error
+
+
+def _ask(request: str, seconds: float, command: Sequence[str]) -> dict[str, Any]:
+    """Run the child on one request and return its answer."""
+    # The child may find gmsh only where this process does, e.g. in a path added at run time.
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    try:
+        child = subprocess.run(
+            command,
+            input=request,
+            capture_output=True,
+            text=True,
+            timeout=seconds,
+            env=environment,
+            check=False,
+        )
+    except subprocess.TimeoutExpired as error:
+        raise MeshError(f"gmsh worker: no mesh within {seconds:g} s") from error
+    except OSError as error:
+        raise MeshError(f"gmsh worker: cannot be started ({error})") from error
+    if child.returncode != 0:
+        raise MeshError(f"gmsh worker: {_cause(child.returncode)}. {_last_line(child.stderr)}".rstrip(" ."))
+    try:
+        answer = json.loads(child.stdout)
+    except json.JSONDecodeError as error:
+        raise MeshError(f"gmsh worker: unusable answer ({error})") from error
+    return answer if isinstance(answer, dict) else {}
+
+
+def _cause(returncode: int) -> str:
+    """Say how a child ended."""
+    if returncode >= 0:
+        return f"ended with exit code {returncode}"
+    return f"killed by {signal.Signals(-returncode).name}"
+
+
+def _last_line(text: str) -> str:
+    """Return the last line a child complained with."""
+    lines = text.strip().splitlines()
+    return lines[-1] if lines else ""
+
+
+def _received(region: Region, found: dict[str, Any], scale: float) -> Triangulation:
+    """Convert one answer, with the boundary points as they were given and triangles counter-clockwise."""
+    points = np.array(found["points"], dtype=float).reshape(-1, 2) * scale
+    given = np.concatenate(region.loops)
+    points[: len(given)] = given
+    triangles = np.array(found["triangles"], dtype=np.int64).reshape(-1, 3)
+    if len(triangles) == 0:
+        raise ValueError("no triangles")
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    ab, ac = b - a, c - a
+    clockwise = ab[:, 0] * ac[:, 1] < ab[:, 1] * ac[:, 0]
+    triangles[clockwise] = triangles[clockwise][:, [0, 2, 1]]
+    return Triangulation(points, triangles)
