@@ -1,0 +1,1 @@
+"""Times and errors of the main job; `scripts/bench` runs them all."""

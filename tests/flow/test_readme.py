@@ -1,0 +1,62 @@
+"""What the README shows runs as shown."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from fe_contact.ste import SteDatabase
+from service.schemas import Case
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    """Return the code blocks of a language."""
+    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+
+
+def test_the_python_example_runs_and_writes_a_database(tmp_path: Path) -> None:
+    (code,) = blocks("python")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code],
+        cwd=tmp_path,
+        env=os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(tmp_path / "cache")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("Estimate(value=") == 2
+    database = SteDatabase.from_netcdf(tmp_path / "spur_20_20.nc")
+    assert database.peak_to_peak(torque=100).value == pytest.approx(2.8e-6, rel=0.02)
+
+
+def test_the_http_example_is_a_case() -> None:
+    (shell,) = [block for block in blocks("sh") if "curl" in block]
+    body = json.loads(re.search(r"-d '(.*)'", shell, re.DOTALL).group(1))  # type: ignore[union-attr]
+    case = Case.model_validate_json(json.dumps(body["inputs"]["case"]))
+    example = tomllib.loads((ROOT / "examples" / "palermo_spur_20_20.toml").read_text(encoding="utf-8"))
+    assert case.pair == Case.model_validate_json(json.dumps(example)).pair
+
+
+def test_links_and_pictures_lead_somewhere() -> None:
+    targets = re.findall(r"\]\(([^)#]+)\)", README)
+    assert len(targets) > 5
+    missing = [t for t in targets if not t.startswith("https://") and not (ROOT / t).exists()]
+    assert missing == []
+
+
+def test_commands_named_in_the_readme_exist() -> None:
+    scripts = set(re.findall(r"\./(scripts/[a-z-]+)", README))
+    assert scripts >= {"scripts/run", "scripts/test", "scripts/bench"}
+    for script in scripts:
+        assert os.access(ROOT / script, os.X_OK), script
