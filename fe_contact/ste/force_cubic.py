@@ -12,7 +12,7 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class ForceCubic:
-    """One cubic per query, between two levels: ends (Q, 2) of deflection, force and stiffness, and their slopes in position."""
+    """One cubic per query, between two levels: deflection, force and stiffness at its ends, each (Q, 2)."""
 
     deflection_ends: FloatArray
     deflection_slopes: FloatArray

@@ -50,7 +50,9 @@ class Axis:
         """Locate every query; periodic axes wrap it, open ones hold it inside their ends."""
         first = self.knots[0]
         if self.period:
-            inside = first + np.mod(query - first, self.period)
+            wrapped = first + np.mod(query - first, self.period)
+            # a query on a knot stays on it to the last bit
+            inside = np.where((query >= first) & (query < first + self.period), query, wrapped)
         else:
             inside = np.clip(query, first, self.knots[-1])
         left = np.clip(

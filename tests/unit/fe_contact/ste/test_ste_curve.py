@@ -1,0 +1,190 @@
+"""Curves: mean, peak-to-peak, harmonics, load shares, and their error bands."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fe_contact.errors import InputError, SolveError
+from fe_contact.types import Status
+
+AMPLITUDES = np.array([2e-6, 5e-7, 3e-7])
+PHASES = np.array([0.4, 2.0, 5.0])
+MEAN = 1e-5
+
+
+def wave(position):
+    """A transmission error of three known harmonics."""
+    n = np.arange(1, 4)
+    return MEAN + (AMPLITUDES * np.cos(2 * np.pi * n * position[:, None] + PHASES)).sum(axis=1)
+
+
+@pytest.fixture(scope="module")
+def harmonic(make):
+    """The wave on uneven knots, at two loads in proportion."""
+    rng = np.random.default_rng(5)
+    position = (np.arange(400) + rng.uniform(-0.3, 0.3, 400) + 0.4) / 400
+    force = np.array([1000.0, 2000.0])
+    ste = wave(position)[:, None, None, None] * force[:, None, None] / 2000.0
+    return make(
+        position=position,
+        force=force,
+        static_transmission_error=ste,
+        tangent_compliance=np.broadcast_to(ste / force[:, None, None], ste.shape),
+        no_load_transmission_error=np.zeros((400, 1, 1)),
+        error_estimate=np.full(ste.shape, 2e-9),
+    )
+
+
+def test_mean_and_harmonics_of_a_known_wave_on_uneven_knots(harmonic):
+    curve = harmonic.curve(force=2000.0)
+    sizes = [float(estimate) for estimate in curve.harmonics]
+    assert float(curve.mean) == pytest.approx(MEAN, rel=1e-6)
+    assert sizes[:3] == pytest.approx(AMPLITUDES, rel=3e-4)
+    assert curve.harmonic_phases[:3] == pytest.approx(PHASES, abs=1e-3)
+    assert max(sizes[3:]) < 1e-4 * AMPLITUDES[0]
+    assert len(sizes) >= 10
+
+
+def test_peak_to_peak_is_that_of_the_knots(harmonic):
+    stored = harmonic.static_transmission_error[:, 1, 0, 0]
+    assert float(harmonic.peak_to_peak(force=2000.0)) == pytest.approx(np.ptp(stored), rel=1e-12)
+
+
+@pytest.mark.parametrize("n", [1, 2, 7])
+def test_harmonics_are_fourier_integrals_of_the_curve(spur, n):
+    """Against Gauss quadrature of the interpolant, piece by piece."""
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    edges = np.r_[spur.position, 1.0]
+    half = np.diff(edges) / 2
+    x = edges[:-1, None] + half[:, None] * (1.0 + nodes)
+    turned = spur.ste(x, 2660.0) * np.exp(2j * np.pi * n * x)
+    expected = 2.0 * abs((half[:, None] * weights * turned).sum())
+    assert float(spur.harmonics(force=2660.0)[n - 1]) == pytest.approx(expected, rel=2e-5)
+
+
+def test_error_bands(harmonic):
+    """A constant band e bounds: mean e, peak-to-peak 2 e, each harmonic 2 e."""
+    curve = harmonic.curve(torque=float(harmonic.torque[1]))
+    assert curve.error == pytest.approx(np.full(400, 2e-9))
+    assert curve.mean.error == pytest.approx(2e-9)
+    assert curve.peak_to_peak.error == pytest.approx(4e-9)
+    assert {estimate.unit for estimate in (curve.mean, curve.peak_to_peak, *curve.harmonics)} == {"m"}
+    assert all(estimate.error == pytest.approx(4e-9) for estimate in curve.harmonics)
+
+
+def test_the_bands_hold_for_any_error_inside_the_pointwise_band(make):
+    """Change every stored value within its band: no figure moves by more than it says."""
+    database = make(error=5e-9)
+    rng = np.random.default_rng(3)
+    before = database.curve(force=2660.0)
+    for _ in range(10):
+        moved = database.static_transmission_error + rng.choice([-5e-9, 5e-9], (64, 5, 1, 1))
+        after = make(static_transmission_error=moved).curve(force=2660.0)
+        assert abs(float(after.mean) - float(before.mean)) <= before.mean.error * 1.05
+        assert (
+            abs(float(after.peak_to_peak) - float(before.peak_to_peak)) <= before.peak_to_peak.error * 1.0001
+        )
+        for one, other in zip(before.harmonics, after.harmonics, strict=True):
+            assert abs(float(other) - float(one)) <= one.error * 1.05
+
+
+def test_below_the_smallest_load_the_band_holds_the_true_curve(make):
+    """There the law is a convention; the band says so."""
+    sparse, truth = make(error=0.0), make(force=[26.6, 133.0, 266.0], error=0.0)
+    for force in (26.6, 133.0):
+        guess = sparse.curve(force=force)
+        exact = truth.curve(force=force)
+        assert np.all(np.abs(guess.ste - exact.ste) <= guess.error)
+        assert abs(float(guess.mean) - float(exact.mean)) <= guess.mean.error
+        assert abs(float(guess.peak_to_peak) - float(exact.peak_to_peak)) <= guess.peak_to_peak.error
+
+
+def test_torque_and_force_name_the_same_curve(helical):
+    by_torque = helical.curve(torque=float(helical.torque[2]))
+    by_force = helical.curve(force=float(helical.force[2]))
+    assert np.array_equal(by_torque.ste, by_force.ste)
+    assert by_torque.torque == pytest.approx(helical.torque[2], rel=1e-14)
+    assert np.array_equal(by_torque.ste, helical.static_transmission_error[:, 2, 0, 0])
+
+
+def test_a_torque_between_the_loads_is_converted(helical):
+    curve = helical.curve(torque=200.0)
+    expected = helical.ste(helical.position, 200.0 / (60.3e-3 * np.cos(np.radians(24.0))))
+    assert curve.ste == pytest.approx(expected, rel=1e-13)
+
+
+def test_mean_peak_to_peak_harmonics_are_those_of_the_curve(spur):
+    curve = spur.curve(force=3000.0)
+    assert spur.mean(force=3000.0) == curve.mean
+    assert spur.peak_to_peak(force=3000.0) == curve.peak_to_peak
+    assert spur.harmonics(force=3000.0) == curve.harmonics
+
+
+def test_summary_figures_do_not_depend_on_where_the_curve_is_asked(spur):
+    everywhere, somewhere = spur.curve(force=2660.0), spur.curve(force=2660.0, at=[0.1, 0.2])
+    assert somewhere.ste.shape == (2,)
+    assert (somewhere.mean, somewhere.peak_to_peak) == (everywhere.mean, everywhere.peak_to_peak)
+
+
+class TestLoadShare:
+    @pytest.mark.parametrize("force", [100.0, 266.0, 4000.0, 10640.0])
+    def test_shares_sum_to_one(self, spur, force):
+        curve = spur.curve(force=force, at=np.linspace(-1.5, 2.5, 777))
+        assert np.all(curve.load_share >= 0.0)
+        assert curve.load_share.sum(axis=1) == pytest.approx(np.ones(777), abs=1e-14)
+
+    def test_stored_shares_come_back(self, spur):
+        curve = spur.curve(force=2660.0)
+        assert curve.pair.tolist() == spur.pair.tolist()
+        assert curve.load_share == pytest.approx(spur.load_share[:, 2, 0, 0], abs=1e-14)
+
+    def test_a_column_follows_one_pair_of_teeth_across_the_seam(self, spur):
+        """Pair j at position 1 is pair j + 1 at position 0."""
+        curve = spur.curve(force=2660.0, at=[-0.3, 0.7])
+        column = {int(pair): curve.load_share[:, i] for i, pair in enumerate(curve.pair)}
+        assert column[0][0] == pytest.approx(column[-1][1], abs=1e-14)
+        assert column[1][0] == pytest.approx(column[0][1], abs=1e-14)
+        assert column[0][0] > 0.4
+
+    def test_shares_are_continuous_across_the_seam(self, spur):
+        curve = spur.curve(force=2660.0, at=np.linspace(0.9, 1.1, 2001))
+        assert np.abs(np.diff(curve.load_share, axis=0)).max() < 5e-3
+
+    def test_the_middle_of_double_contact_is_shared_evenly(self, spur):
+        curve = spur.curve(force=2660.0, at=[0.5])
+        assert curve.load_share[0, curve.pair == 0] == pytest.approx(0.5, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({}, "exactly one of the two"),
+        ({"torque": 10.0, "force": 10.0}, "exactly one of the two"),
+        ({"torque": 1000.0}, "torque = 1000.0: must be at most 399.936 N m"),
+        ({"force": 2e4}, "force = 20000.0: must be at most 10640 N"),
+        ({"force": 0.0}, "force = 0.0: must be above 0"),
+        ({"torque": -5.0}, "torque = -5.0: must be above 0"),
+        ({"torque": np.nan}, "torque = nan: must be a finite number"),
+        ({"force": 266.0, "misalignment": 1e-6}, "misalignment = 1e-06.*no such axis"),
+        ({"force": 266.0, "center_distance_change": 1e-6}, "center_distance_change"),
+        ({"force": 266.0, "at": []}, "at = "),
+        ({"force": 266.0, "at": [0.0, np.nan]}, "at = "),
+        ({"force": 266.0, "at": [1e9]}, "at = "),
+    ],
+)
+def test_questions_outside_the_table_are_refused(spur, asked, message):
+    with pytest.raises(InputError, match=message):
+        spur.curve(**asked)
+
+
+def test_a_table_with_failed_points_answers_only_on_request(make):
+    whole = make()
+    ste, status = whole.static_transmission_error.copy(), whole.status.copy()
+    ste[10, 2], status[10, 2] = np.nan, Status.SINGULAR
+    failed = make(static_transmission_error=ste, status=status)
+    with pytest.raises(SolveError, match="1 of 320 points FAILED"):
+        failed.curve(force=2660.0)
+    curve = failed.curve(force=2660.0, allow_failed=True)
+    assert curve.position.size == 63
+    assert float(curve.mean) == pytest.approx(float(whole.mean(force=2660.0)), rel=1e-3)
