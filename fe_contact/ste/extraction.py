@@ -10,7 +10,7 @@ from fe_contact.errors import DatabaseError
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
-from fe_contact.ste.level_grid import LevelGrid, deflection_grid, monotone_stiffness, stiffness_grid
+from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiffness_grid
 from fe_contact.types import FloatArray
 
 
@@ -36,18 +36,20 @@ def force_table(database: SteFields) -> ForceTable:
     stiffness = np.concatenate([np.zeros_like(tangent[..., :1]), tangent], axis=-1)
     level = np.concatenate([[0.0], database.force * to_transverse])
     stiffness = np.minimum(stiffness, _knot_limit(deflection, level))
-    axes = (Axis(database.position, 1.0),)
-    levels = deflection_grid(axes, deflection, (ordered_slopes(axes[0], deflection),))
-    limited = monotone_stiffness(_stiffness_levels(axes, stiffness), levels, level)
+    axis = Axis(database.position, 1.0)
+    levels = deflection_grid((axis,), deflection, (ordered_slopes(axis, deflection),))
+    unlimited = stiffness_grid((axis,), stiffness, (monotone_slopes(axis, stiffness),))
+    limited = monotone_stiffness(unlimited, levels, level)
+    flat = np.zeros_like(deflection)  # the slopes of a table of one position
     return ForceTable(
         position=database.position,
         level=level,
         misalignment=database.misalignment,
         center_distance_change=database.center_distance_change,
         deflection=_position_third(levels.nodal[(0,)]),
-        deflection_slope=_position_third(levels.nodal[(1,)]),
+        deflection_slope=_position_third(levels.nodal.get((1,), flat)),
         stiffness=_position_third(limited.nodal[(0,)]),
-        stiffness_slope=_position_third(limited.nodal[(1,)]),
+        stiffness_slope=_position_third(limited.nodal.get((1,), flat)),
     )
 
 
@@ -71,11 +73,6 @@ def _require_increasing(database: SteFields, deflection: FloatArray) -> None:
         f"{database.misalignment[m]:g} m, center-distance change {database.center_distance_change[c]:g} m: "
         f"{gaps[i, m, c, k]:.3g} m. monotone_repaired() mends it by isotonic regression and says by how much."
     )
-
-
-def _stiffness_levels(axes: tuple[Axis, ...], stiffness: FloatArray) -> LevelGrid:
-    """Stiffness at the levels with its slopes in position."""
-    return stiffness_grid(axes, stiffness, (monotone_slopes(axes[0], stiffness),))
 
 
 def _knot_limit(deflection: FloatArray, level: FloatArray) -> FloatArray:

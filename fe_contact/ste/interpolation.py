@@ -49,7 +49,7 @@ class Axis:
     def stencil(self, query: FloatArray) -> Stencil:
         """Locate every query; periodic axes wrap it, open ones hold it inside their ends."""
         first = self.knots[0]
-        if self.period:
+        if self.period and len(self.knots) > 1:
             wrapped = first + np.mod(query - first, self.period)
             # a query on a knot stays on it to the last bit
             inside = np.where((query >= first) & (query < first + self.period), query, wrapped)
