@@ -101,6 +101,8 @@ class Trochoid:
 
     def angle_at_arc(self, start: float, arc: FloatArray) -> FloatArray:
         """Tool angles at which the arc length from `start` equals `arc` (Newton from a table)."""
+        if arc.size == 0:
+            return arc
         table = np.linspace(start, 0.5 * np.pi, 257)
         angle = np.interp(arc, self.arc_length(start, table), table)
         for _ in range(4):

@@ -1,0 +1,115 @@
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact.errors import InputError
+from fe_contact.geometry import Gear, GearPair, corner_contact, corner_gap
+from fe_contact.geometry.corner_contact import Side
+
+SIDES: tuple[Side, Side] = ("approach", "exit")
+sides = pytest.mark.parametrize("side", SIDES)
+
+
+@pytest.fixture
+def pair(make_gear: Callable[..., Gear]) -> GearPair:
+    return GearPair(make_gear(teeth=17, profile_shift_coefficient=0.3), make_gear(teeth=43))
+
+
+@sides
+def test_gap_starts_at_zero_with_zero_slope_on_the_line_of_action(pair: GearPair, side: Side) -> None:
+    start = corner_contact(pair, side, 0.0)
+    on_path = (
+        pair.path_of_contact.start if side == "approach" else pair.common_tangent - pair.path_of_contact.end
+    )
+    assert start.valid
+    assert start.gap == pytest.approx(0.0, abs=1e-17)
+    assert start.slope_angle == pytest.approx(0.0, abs=1e-14)
+    assert start.flank_roll_length == pytest.approx(on_path, rel=1e-12)
+    assert start.lever_arm_ratio_pinion == pytest.approx(1.0, rel=1e-14)
+    assert start.lever_arm_ratio_wheel == pytest.approx(1.0, rel=1e-14)
+
+
+@sides
+def test_gap_and_slope_grow_with_the_overshoot(pair: GearPair, side: Side) -> None:
+    state = corner_contact(pair, side, np.linspace(0.0, 3e-3, 200))
+    assert np.all(state.valid)
+    assert np.all(np.diff(state.gap) > 0.0)
+    assert np.all(np.diff(state.slope_angle) > 0.0)
+
+
+@sides
+def test_near_the_path_the_gap_is_quadratic(pair: GearPair, side: Side) -> None:
+    gap = corner_gap(pair, side, np.array([1e-5, 2e-5]))
+    assert gap[1] / gap[0] == pytest.approx(4.0, rel=1e-2)
+
+
+def test_lever_arm_at_exit_is_the_rate_of_the_gap(pair: GearPair) -> None:
+    # virtual work: F (arm_1 dtheta_1 - r_b2 dtheta_2) = 0 along the closed contact
+    over, step = np.linspace(1e-4, 6e-3, 20), 1e-7
+    rate = (corner_gap(pair, "exit", over + step) - corner_gap(pair, "exit", over - step)) / (2.0 * step)
+    state = corner_contact(pair, "exit", over)
+    assert 1.0 - rate == pytest.approx(state.lever_arm_ratio_pinion, rel=1e-8)
+    assert np.all(state.lever_arm_ratio_wheel == 1.0)
+
+
+def test_lever_arm_at_approach_is_the_rate_of_the_gap(pair: GearPair) -> None:
+    # virtual work again: r_b1 dtheta_1 = arm_2 dtheta_2, now with the overshoot falling as gear 1 turns
+    over, step = np.linspace(1e-4, 3e-3, 20), 1e-7
+    rate = (corner_gap(pair, "approach", over + step) - corner_gap(pair, "approach", over - step)) / (
+        2.0 * step
+    )
+    state = corner_contact(pair, "approach", over)
+    assert 1.0 / (1.0 + rate) == pytest.approx(state.lever_arm_ratio_wheel, rel=1e-8)
+    assert np.all(state.lever_arm_ratio_pinion == 1.0)
+
+
+def test_swapping_the_gears_swaps_the_sides_to_first_order(pair: GearPair) -> None:
+    # the driving gear is held in both cases, so they differ by the gap itself over the overshoot only
+    over = np.array([1e-6, 1e-5])
+    exit_gap, approach_gap = corner_gap(pair, "exit", over), corner_gap(pair.swapped(), "approach", over)
+    assert approach_gap == pytest.approx(exit_gap, rel=1e-2)
+    # exactly: a lag e of the tip gear is an overshoot larger by e
+    assert corner_gap(pair, "exit", over + approach_gap) == pytest.approx(approach_gap, rel=1e-9)
+
+
+@sides
+def test_lengths_scale(make_gear: Callable[..., Gear], side: Side) -> None:
+    large: dict[str, Any] = {"normal_module": 12e-3}
+    one = GearPair(make_gear(teeth=25), make_gear(teeth=31))
+    three = GearPair(make_gear(teeth=25, **large), make_gear(teeth=31, **large))
+    over = np.linspace(0.0, 3e-3, 9)
+    assert corner_gap(three, side, 3.0 * over) == pytest.approx(
+        3.0 * corner_gap(one, side, over), rel=1e-9, abs=1e-16
+    )
+
+
+@sides
+def test_edge_that_has_left_the_flank_is_masked(pair: GearPair, side: Side) -> None:
+    over = np.linspace(0.0, 0.05, 300)
+    state = corner_contact(pair, side, over)
+    assert state.valid[0]
+    assert not state.valid[-1]
+    assert np.count_nonzero(np.diff(state.valid.astype(int))) == 1  # valid up to a limit, then never again
+    for part in (state.gap, state.flank_roll_length, state.slope_angle, state.lever_arm_ratio_pinion):
+        assert np.array_equal(np.isnan(part), ~state.valid)
+    flank = pair.pinion if side == "approach" else pair.wheel
+    inside = state.flank_roll_length[state.valid]
+    assert np.all((inside >= flank.form_roll_length) & (inside <= flank.tip_roll_length))
+
+
+@sides
+def test_shapes_follow_the_overshoot(pair: GearPair, side: Side) -> None:
+    assert corner_gap(pair, side, 1e-4).shape == ()
+    assert corner_gap(pair, side, np.full((2, 3), 1e-4)).shape == (2, 3)
+
+
+def test_bad_arguments_are_refused(pair: GearPair) -> None:
+    for overshoot in (-1e-9, np.nan):
+        with pytest.raises(InputError, match="overshoot"):
+            corner_gap(pair, "exit", overshoot)
+    with pytest.raises(InputError, match="side"):
+        corner_gap(pair, "middle", 0.0)  # type: ignore[arg-type]

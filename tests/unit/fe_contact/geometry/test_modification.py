@@ -1,0 +1,123 @@
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact.errors import InputError
+from fe_contact.geometry import FlankModification, Gear
+
+
+def over_profile(gear: Gear, count: int = 201) -> np.ndarray:
+    return np.linspace(gear.form_roll_length, gear.tip_roll_length, count)
+
+
+def test_neutral_modification_is_exactly_zero(make_gear: Callable[..., Gear]) -> None:
+    gear = make_gear()
+    assert FlankModification().neutral
+    removed = FlankModification().material_removed(gear, over_profile(gear), 0.01)
+    assert removed.tobytes() == np.zeros(201).tobytes()
+    # a length without an amount is neutral as well
+    assert FlankModification(tip_relief_length=1e-3).neutral
+    lengths = FlankModification(tip_relief_length=1e-3, root_relief_length=1e-3, end_relief_length=1e-3)
+    assert not np.any(lengths.material_removed(gear, over_profile(gear), 0.0125))
+
+
+@pytest.mark.parametrize("shape", ["linear", "parabolic"])
+def test_tip_relief_starts_at_its_radius_and_reaches_its_amount_at_the_tip(
+    make_gear: Callable[..., Gear], shape: Any
+) -> None:
+    gear = make_gear()
+    relief = FlankModification(tip_relief=20e-6, tip_relief_length=1.5e-3, tip_relief_shape=shape)
+    start, tip = gear.roll_length(gear.tip_radius - 1.5e-3), gear.tip_roll_length
+    removed = relief.material_removed(gear, [gear.form_roll_length, start, 0.5 * (start + tip), tip])
+    middle = 10e-6 if shape == "linear" else 5e-6
+    assert removed == pytest.approx([0.0, 0.0, middle, 20e-6], rel=1e-12, abs=1e-18)
+
+
+@pytest.mark.parametrize("shape", ["linear", "parabolic"])
+def test_root_relief_is_the_mirror_of_tip_relief(make_gear: Callable[..., Gear], shape: Any) -> None:
+    gear = make_gear()
+    relief = FlankModification(root_relief=8e-6, root_relief_length=1e-3, root_relief_shape=shape)
+    start, form = gear.roll_length(gear.form_radius + 1e-3), gear.form_roll_length
+    removed = relief.material_removed(gear, [form, 0.5 * (start + form), start, gear.tip_roll_length])
+    middle = 4e-6 if shape == "linear" else 2e-6
+    assert removed == pytest.approx([8e-6, middle, 0.0, 0.0], rel=1e-12, abs=1e-18)
+
+
+def test_profile_crowning_is_a_parabola_with_zero_in_the_middle(make_gear: Callable[..., Gear]) -> None:
+    gear = make_gear()
+    removed = FlankModification(profile_crowning=6e-6).material_removed(gear, over_profile(gear, 5))
+    assert removed == pytest.approx([6e-6, 1.5e-6, 0.0, 1.5e-6, 6e-6], abs=1e-18)
+
+
+def test_profile_slope_removes_at_the_tip_and_adds_at_the_form_point(make_gear: Callable[..., Gear]) -> None:
+    gear = make_gear()
+    removed = FlankModification(profile_slope=10e-6).material_removed(gear, over_profile(gear, 5))
+    assert removed == pytest.approx([-5e-6, -2.5e-6, 0.0, 2.5e-6, 5e-6], abs=1e-18)
+
+
+def test_helix_crowning_and_slope_over_the_face(make_gear: Callable[..., Gear]) -> None:
+    gear, roll = make_gear(), 0.012
+    face = np.array([-12.5e-3, -6.25e-3, 0.0, 6.25e-3, 12.5e-3])
+    crowned = FlankModification(helix_crowning=8e-6).material_removed(gear, roll, face)
+    assert crowned == pytest.approx([8e-6, 2e-6, 0.0, 2e-6, 8e-6], abs=1e-18)
+    sloped = FlankModification(helix_slope=8e-6).material_removed(gear, roll, face)
+    assert sloped == pytest.approx([-4e-6, -2e-6, 0.0, 2e-6, 4e-6], abs=1e-18)
+
+
+@pytest.mark.parametrize("shape", ["linear", "parabolic"])
+def test_end_relief_acts_at_both_ends_only(make_gear: Callable[..., Gear], shape: Any) -> None:
+    relief = FlankModification(end_relief=12e-6, end_relief_length=2e-3, end_relief_shape=shape)
+    face = np.array([-12.5e-3, -11.5e-3, -10.5e-3, 0.0, 10.5e-3, 11.5e-3, 12.5e-3])
+    middle = 6e-6 if shape == "linear" else 3e-6
+    removed = relief.material_removed(make_gear(), 0.012, face)
+    assert removed == pytest.approx([12e-6, middle, 0.0, 0.0, 0.0, middle, 12e-6], rel=1e-9, abs=1e-18)
+
+
+def test_effects_add_and_broadcast(make_gear: Callable[..., Gear]) -> None:
+    gear = make_gear()
+    tip = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
+    lead = FlankModification(helix_crowning=5e-6)
+    both = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3, helix_crowning=5e-6)
+    roll, face = over_profile(gear, 7)[:, None], np.linspace(-12.5e-3, 12.5e-3, 3)
+    total = tip.material_removed(gear, roll, face) + lead.material_removed(gear, roll, face)
+    assert both.material_removed(gear, roll, face) == pytest.approx(total, abs=1e-20)
+    assert total.shape == (7, 3)
+    assert both.varies_along_face
+    assert not tip.varies_along_face
+
+
+def test_beyond_the_involute_the_end_value_holds(make_gear: Callable[..., Gear]) -> None:
+    gear = make_gear()
+    relief = FlankModification(
+        tip_relief=20e-6, tip_relief_length=1e-3, root_relief=5e-6, root_relief_length=1e-3
+    )
+    removed = relief.material_removed(gear, [0.0, 2.0 * gear.tip_roll_length])
+    assert removed == pytest.approx([5e-6, 20e-6])
+
+
+@pytest.mark.parametrize(
+    ("fields", "named"),
+    [
+        ({"tip_relief": 2e-5}, "tip_relief_length"),
+        ({"root_relief": 2e-5}, "root_relief_length"),
+        ({"end_relief": 2e-5}, "end_relief_length"),
+        ({"tip_relief": 20.0, "tip_relief_length": 1e-3}, "tip_relief"),
+        ({"tip_relief": -1e-6, "tip_relief_length": 1e-3}, "tip_relief"),
+        ({"tip_relief_length": -1e-3}, "tip_relief_length"),
+        ({"tip_relief_length": math.nan}, "tip_relief_length"),
+        ({"tip_relief_shape": "cubic"}, "tip_relief_shape"),
+        ({"profile_crowning": -1e-6}, "profile_crowning"),
+        ({"profile_slope": math.nan}, "profile_slope"),
+        ({"helix_crowning": 5.0}, "helix_crowning"),
+        ({"helix_slope": -5.0}, "helix_slope"),
+    ],
+)
+def test_unusable_modification_names_its_field(fields: dict[str, Any], named: str) -> None:
+    with pytest.raises(InputError) as caught:
+        FlankModification(**fields)
+    assert caught.value.field == named

@@ -1,0 +1,155 @@
+"""Corner contact against brute force: exact profiles in place, the driven gear turned until they touch."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from fe_contact.geometry import Gear, GearPair, corner_contact, tooth_profile
+from fe_contact.geometry.corner_contact import Side
+
+
+def gear(teeth: int, **fields: Any) -> Gear:
+    defaults: dict[str, Any] = {"normal_module": 4e-3, "face_width": 25e-3, "bore_diameter": 5e-3}
+    return Gear(teeth=teeth, **(defaults | fields))
+
+
+PAIRS = {
+    "20/20": GearPair(gear(20), gear(20)),
+    "17/43 shifted": GearPair(
+        gear(17, profile_shift_coefficient=0.4), gear(43, profile_shift_coefficient=0.2), 0.1225
+    ),
+    "43/17 shifted": GearPair(
+        gear(43, profile_shift_coefficient=0.2), gear(17, profile_shift_coefficient=0.4), 0.1225
+    ),
+    "40/80": GearPair(gear(40), gear(80)),
+    "25/31 helical": GearPair(gear(25, helix_angle=0.35), gear(31, helix_angle=-0.35)),
+}
+
+
+class Assembly:
+    """Both right flanks in one plane: gear 1's centre at the origin, gear 2's on +y, its tooth down."""
+
+    def __init__(self, pair: GearPair) -> None:
+        self.pair = pair
+        self.flanks = tuple(_sampled_flank(each) for each in (pair.pinion, pair.wheel))
+        first, second = (np.array([radius]) for radius in pair.operating_pitch_radii)
+        self.start = -_polar_angle(pair.pinion, first)[0], _polar_angle(pair.wheel, second)[0]
+
+    def turns(self, roll_length: float, lag: float) -> tuple[float, float]:
+        """Clockwise turn of gear 1 and counter-clockwise turn of gear 2."""
+        rolled = roll_length - self.pair.path_of_contact.pitch_point
+        first = self.start[0] + rolled / self.pair.pinion.base_radius
+        return first, self.start[1] + (rolled - lag) / self.pair.wheel.base_radius
+
+    def clearance(self, roll_length: float, lag: float) -> float:
+        """Smallest clearance (arc in m) of all flank points, each against the other flank at its radius."""
+        first, second = self.turns(roll_length, lag)
+        up = np.array([0.0, self.pair.center_distance])
+        on_first = _clockwise(self.flanks[0], first)
+        on_second = _clockwise(self.flanks[1], math.pi - second) + up
+        against_second = _angle_past(on_first - up, self.pair.wheel, math.pi - second)
+        against_first = _angle_past(on_second, self.pair.pinion, first)
+        return min(against_first, against_second)
+
+
+def _sampled_flank(each: Gear) -> np.ndarray:
+    roll = np.linspace(each.form_roll_length, each.tip_roll_length, 41)
+    return tooth_profile(each).flank(roll**2 / (2.0 * each.base_radius))
+
+
+def _clockwise(points: np.ndarray, angle: float) -> np.ndarray:
+    sine, cosine = math.sin(angle), math.cos(angle)
+    return points @ np.array([[cosine, -sine], [sine, cosine]])
+
+
+def _polar_angle(each: Gear, radius: np.ndarray) -> np.ndarray:
+    """Angle from the tooth's centre line at which the flank has a radius, by bisection on the profile."""
+    profile = tooth_profile(each)
+    low, high = np.full(radius.shape, profile.s_form), np.full(radius.shape, profile.s_tip)
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        below = np.hypot(*profile.flank(middle).T) < radius
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    x, y = profile.flank(0.5 * (low + high)).T
+    return np.arctan2(x, y)
+
+
+def _angle_past(points: np.ndarray, each: Gear, turn: float) -> float:
+    radius = np.hypot(*points.T)
+    within = (radius >= each.form_radius) & (radius <= each.tip_radius)
+    if not np.any(within):
+        return 1.0
+    x, y = points[within].T
+    past = np.arctan2(x, y) - turn - _polar_angle(each, radius[within])
+    past = (past + math.pi) % (2.0 * math.pi) - math.pi
+    return float(np.min(past * radius[within]))
+
+
+def _overshoots(pair: GearPair, side: Side) -> np.ndarray:
+    """Four overshoots up to where the edge leaves the flank."""
+    candidates = np.linspace(0.0, 0.02, 2001)
+    limit = candidates[corner_contact(pair, side, candidates).valid][-1]
+    return np.array([0.002, 0.1, 0.5, 0.99]) * limit
+
+
+@pytest.mark.parametrize("side", ["approach", "exit"])
+@pytest.mark.parametrize("name", PAIRS)
+def test_gap_is_the_lag_that_makes_rigid_flanks_touch(name: str, side: Side, record_figure: Any) -> None:
+    pair = PAIRS[name]
+    assembly, path = Assembly(pair), pair.path_of_contact
+    over = _overshoots(pair, side)
+    roll = path.end + over if side == "exit" else path.start - over
+    gap = corner_contact(pair, side, over).gap
+    turned = [brentq(lambda lag, at=at: assembly.clearance(at, lag), -1e-4, 6e-3, xtol=1e-13) for at in roll]
+    worst = float(np.max(np.abs(gap - turned)))
+    record_figure(
+        f"corner gap {side} {name}", worst, "at most 1e-12 m", "m", "rigid rotation of exact profiles"
+    )
+    assert worst < 1e-12
+
+
+@pytest.mark.parametrize("side", ["approach", "exit"])
+@pytest.mark.parametrize("name", PAIRS)
+def test_touching_point_slope_and_lever_arms_are_those_of_the_placed_gears(name: str, side: Side) -> None:
+    pair = PAIRS[name]
+    assembly, path = Assembly(pair), pair.path_of_contact
+    for over in _overshoots(pair, side):
+        state = corner_contact(pair, side, over)
+        roll = (path.end if side == "exit" else path.start) + (over if side == "exit" else -over)
+        first, second = assembly.turns(float(roll), float(state.gap))
+        up = np.array([0.0, pair.center_distance])
+        rolls = [pair.pinion.tip_roll_length, float(state.flank_roll_length)]
+        if side == "approach":
+            rolls = [float(state.flank_roll_length), pair.wheel.tip_roll_length]
+        profiles = tooth_profile(pair.pinion), tooth_profile(pair.wheel)
+        s = [0.5 * length**2 / each.gear.base_radius for length, each in zip(rolls, profiles, strict=True)]
+        point = _clockwise(profiles[0].flank([s[0]]), first)[0]
+        mate = _clockwise(profiles[1].flank([s[1]]), math.pi - second)[0] + up
+        assert mate == pytest.approx(point, abs=1e-12)
+        normals = (
+            _clockwise(profiles[0].normal([s[0]]), first)[0],
+            -_clockwise(profiles[1].normal([s[1]]), math.pi - second)[0],
+        )
+        cross = normals[0][0] * normals[1][1] - normals[0][1] * normals[1][0]
+        assert abs(math.asin(cross)) == pytest.approx(float(state.slope_angle), abs=1e-9)
+        force = normals[1] if side == "exit" else normals[0]  # along the mating flank's normal
+        arm_1 = abs(point[0] * force[1] - point[1] * force[0]) / pair.pinion.base_radius
+        from_2 = point - up
+        arm_2 = abs(from_2[0] * force[1] - from_2[1] * force[0]) / pair.wheel.base_radius
+        assert arm_1 == pytest.approx(float(state.lever_arm_ratio_pinion), abs=1e-9)
+        assert arm_2 == pytest.approx(float(state.lever_arm_ratio_wheel), abs=1e-9)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_conjugate_flanks_touch_without_gap_inside_the_path(name: str) -> None:
+    pair = PAIRS[name]
+    assembly, path = Assembly(pair), pair.path_of_contact
+    for roll in np.linspace(path.start, path.end, 7)[1:-1]:
+        # sampled flanks stand clear by the sagitta of their spacing at most
+        assert assembly.clearance(float(roll), 0.0) == pytest.approx(0.0, abs=1e-5)
+        assert assembly.clearance(float(roll), 2e-5) < 0.0
