@@ -80,8 +80,8 @@ ANALYZE = Process(
     output="database",
     kind="database",
     prepare=_prepare_analyze,
-    entry="service.jobs.work:analyze_case",
-    stages=(Stage("mesh", 0.4), Stage("compliance", 0.4), Stage("contact", 0.2)),
+    entry="service.jobs.analysis_work:analyze_case",
+    stages=(Stage("compliance", 0.6), Stage("contact", 0.15), Stage("error estimate", 0.25)),
 )
 SIMULATE = Process(
     id="simulate",
@@ -92,7 +92,7 @@ SIMULATE = Process(
     output="run",
     kind="run",
     prepare=_prepare_simulate,
-    entry="service.jobs.work:simulate_scene",
+    entry="service.jobs.simulation_work:simulate_scene",
     stages=(Stage("analysis", 0.5), Stage("integration", 0.5)),
 )
 

@@ -1,37 +1,21 @@
-"""The work of the processes, done in a child process of its own."""
+"""The work of the process simulate, done in a child process of its own."""
 
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 from dynamics.simulate import simulate
 
-from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
-from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
+from service.convert.case import case_json
 from service.convert.scene import dynamic_scene
+from service.jobs.analysis_work import database_of
 from service.jobs.catalogue import ANALYZE
 from service.jobs.key import content_key
 from service.jobs.order import Product, Progress, WorkOrder
 from service.problems import BadInput
-from service.schemas import Case
 from service.schemas.scene import MeshInput, SceneInput
 from service.store import stored_results
-
-
-def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
-    """Compute the STE database of a case."""
-    case = Case.model_validate_json(json.dumps(order.inputs["case"]))
-    file = order.workspace / "database.nc"
-    database_of(case, order.data_directory / "compliance", progress).to_netcdf(file)
-    return (Product(order.key, "database", file),)
-
-
-def database_of(case: Case, cache: Path, progress: Progress) -> SteDatabase:
-    """Return the STE database of a case; condensed gears are kept in `cache`."""
-    with boundary_errors():
-        return analyze(gear_pair(case), **analysis_arguments(case), cache=cache, progress=progress)
 
 
 def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:

@@ -1,0 +1,69 @@
+"""``loa analyze``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from fe_contact.analysis import analyze
+from fe_contact.ste import SteDatabase
+from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
+from service.convert.answers import summary_json
+from service.convert.case import analysis_arguments, boundary_errors
+from service.convert.checks import check_case
+from service.problems import JobFailed
+from service.schemas import Case, read_model
+from service.settings import cache_home
+
+_SHOWN_HARMONICS = 3
+
+
+def run_analyze(file: Path, output: Path, *, as_json: bool) -> None:
+    """Compute, write, print."""
+    case = read_model(Case, file)
+    check_writable(output)
+    with progress_bar() as report:
+        database = analyzed(case, report)
+    database.to_netcdf(output)
+    summary = {"file": str(output), **summary_json(database)}
+    if as_json:
+        print_json(summary)
+    else:
+        _show(summary)
+    if database.n_failed:
+        raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
+
+
+def analyzed(case: Case, report: Report) -> SteDatabase:
+    """Return the database of a case, computed here; condensed gears are kept in the user's cache."""
+    pair = check_case(case)
+    with boundary_errors():
+        return analyze(pair, **analysis_arguments(case), cache=cache_home() / "compliance", progress=report)
+
+
+def _show(summary: dict[str, Any]) -> None:
+    """Print a summary for people."""
+    out = console()
+    names = [f"harmonic {n} um" for n in range(1, _SHOWN_HARMONICS + 1)]
+    rows = [_row(load) for load in summary["loads"]]
+    out.print(
+        table(["torque N m", "force N", "mean um", "peak-to-peak um", *names], rows, "Transmission error")
+    )
+    out.print()
+    for entry in summary["effect_ledger"]:
+        state = "on " if entry["on"] else "off"
+        out.print(f"effect {entry['name']}: {state} ({entry['choice']}); {entry['reason']}", highlight=False)
+    out.print(f"points {summary['points']}, failed {summary['failed_points']}", highlight=False)
+    out.print(f"content hash {summary['content_hash']}", highlight=False)
+    out.print(f"written to {summary['file']}", highlight=False)
+
+
+def _row(load: dict[str, Any]) -> list[str]:
+    """One load of the table, each figure with its error."""
+    pairs = [
+        (load["mean_um"], load["mean_error_um"]),
+        (load["peak_to_peak_um"], load["peak_to_peak_error_um"]),
+        *zip(load["harmonics_um"], load["harmonics_error_um"], strict=True),
+    ]
+    figures = [f"{value:.4g} ±{error:.1g}" for value, error in pairs[: 2 + _SHOWN_HARMONICS]]
+    return [f"{load['torque_n_m']:.6g}", f"{load['normal_force_n']:.6g}", *figures]

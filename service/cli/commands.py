@@ -1,0 +1,167 @@
+"""The verbs of ``loa``: arguments, help and examples; the module that does the work is loaded when asked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.cli.guard import guarded
+
+_EPILOG = (
+    "Exit codes: 0 done; 2 bad input; 3 a mesh, a solve or a job failed; 4 no service answers; "
+    "5 a defect (a log is named); 130 interrupted."
+)
+DEFAULT_SERVICE = "http://127.0.0.1:8321"
+
+app = typer.Typer(
+    name="loa",
+    help="Open contact analysis for gear noise: STE databases of gear pairs, and the dynamics they excite.",
+    epilog=_EPILOG,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+AsJson = Annotated[bool, typer.Option("--json", help="Print JSON on standard output and nothing else.")]
+Service = Annotated[str, typer.Option("--service", envvar="LOA_SERVICE", help="Address of the service.")]
+
+
+def main() -> None:
+    """Run the command line."""
+    app()
+
+
+def _version(asked: bool) -> None:
+    """Print the version and end."""
+    if asked:
+        from service.jobs.key import solver_version  # noqa: PLC0415 (start-up time)
+
+        typer.echo(f"loa {solver_version()}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Hold the options of all verbs."""
+
+
+@app.command(epilog="Example: loa analyze examples/palermo_spur_20_20.toml -o ste.nc")
+@guarded
+def analyze(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML, or JSON of the same shape).")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="STE database to write (netCDF).")],
+    json: AsJson = False,
+) -> None:
+    """Compute the STE database of a case."""
+    from service.cli.analyze import run_analyze  # noqa: PLC0415 (start-up time)
+
+    run_analyze(case, output, as_json=json)
+
+
+@app.command(epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
+@guarded
+def ste(
+    database: Annotated[Path, typer.Argument(help="STE database (netCDF).")],
+    torque: Annotated[float | None, typer.Option(help="Torque on the driving gear in N m.")] = None,
+    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(help="Positions by the driving gear in base pitches, 0 = pitch point: 0,0.25,0.5"),
+    ] = None,
+    misalignment_um: Annotated[float | None, typer.Option(help="Misalignment in um.")] = None,
+    center_distance_change_mm: Annotated[
+        float | None, typer.Option(help="Change of the centre distance in mm.")
+    ] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False,
+    json: AsJson = False,
+) -> None:
+    """Print one STE curve of a database, with load sharing, mean, peak-to-peak and harmonics."""
+    from service.cli.ste import CurveRequest, run_ste  # noqa: PLC0415 (start-up time)
+
+    request = CurveRequest(torque, force, at, misalignment_um, center_distance_change_mm)
+    run_ste(database, request, as_csv=csv, as_json=json)
+
+
+@app.command(epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
+@guarded
+def simulate(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Run to write (netCDF).")],
+    service: Annotated[
+        str | None,
+        typer.Option("--service", help="Take the tables from this service instead of computing them here."),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Run the dynamics of a scene."""
+    from service.cli.simulate import run_simulate  # noqa: PLC0415 (start-up time)
+
+    run_simulate(scene, output, service, as_json=json)
+
+
+@app.command(epilog="Example: loa report ste.nc -o report.html")
+@guarded
+def report(
+    file: Annotated[Path, typer.Argument(help="STE database or run (netCDF).")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
+    json: AsJson = False,
+) -> None:
+    """Write one HTML page with the plots of a database or a run."""
+    from service.cli.report import run_report  # noqa: PLC0415 (start-up time)
+
+    run_report(file, output, as_json=json)
+
+
+@app.command(epilog="Example: loa serve --port 8321 --workers 2")
+@guarded
+def serve(
+    host: Annotated[str | None, typer.Option(help="Loopback address to listen on [LOA_HOST].")] = None,
+    port: Annotated[int | None, typer.Option(help="Port; 0 takes a free one [LOA_PORT].")] = None,
+    data_directory: Annotated[
+        Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
+) -> None:
+    """Serve jobs and results over HTTP on this machine, until stopped."""
+    from service.cli.serve import run_serve  # noqa: PLC0415 (start-up time)
+
+    run_serve(host=host, port=port, data_directory=data_directory, workers=workers)
+
+
+@app.command(epilog="Example: loa submit examples/palermo_spur_20_20.toml --wait -o ste.nc")
+@guarded
+def submit(
+    file: Annotated[Path, typer.Argument(help="Case or scene file.")],
+    service: Service = DEFAULT_SERVICE,
+    wait: Annotated[bool, typer.Option("--wait", help="Wait for the result.")] = False,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Wait, and write the result here.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Submit a case or a scene to a service."""
+    from service.cli.remote import run_submit  # noqa: PLC0415 (start-up time)
+
+    run_submit(file, service, wait=wait, output=output, as_json=json)
+
+
+@app.command(epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc")
+@guarded
+def fetch(
+    name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="File to write (netCDF).")],
+    service: Service = DEFAULT_SERVICE,
+    json: AsJson = False,
+) -> None:
+    """Fetch the result of a job, or a result by its hash, from a service or the cache."""
+    from service.cli.remote import run_fetch  # noqa: PLC0415 (start-up time)
+
+    run_fetch(name, output, service, as_json=json)

@@ -1,0 +1,75 @@
+"""One way out of every verb: results on standard output, one clear error on standard error, an exit code."""
+
+from __future__ import annotations
+
+import functools
+import importlib
+import os
+import sys
+import traceback
+import uuid
+from collections.abc import Callable
+from typing import NoReturn, ParamSpec, TypeVar
+
+import typer
+
+from service.problems import EXIT_INTERRUPTED, ServiceError, Unexpected
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def guarded(verb: Callable[P, R]) -> Callable[P, R]:
+    """Let `verb` end with an exit code and a message, never with a traceback."""
+
+    @functools.wraps(verb)
+    def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        try:
+            return verb(*args, **kwargs)
+        except (typer.Exit, typer.Abort):
+            raise
+        except KeyboardInterrupt:
+            _leave("interrupted", EXIT_INTERRUPTED)
+        except BrokenPipeError:
+            _close_pipe()
+        except Exception as error:  # noqa: BLE001 (the last line of defence: logged by number below)
+            known = _known(error)
+            _leave(_text(known), known.exit_code)
+
+    return run
+
+
+def _known(error: Exception) -> ServiceError:
+    """Return the error as one of our tree; a defect is written to a log under its reference."""
+    if isinstance(error, ServiceError):
+        return error
+    translated = importlib.import_module("service.convert.errors").translated(error)
+    return translated if isinstance(translated, ServiceError) else _logged(error)
+
+
+def _logged(error: Exception) -> Unexpected:
+    """Write a defect to a log and return it by number."""
+    directory = importlib.import_module("service.settings").cache_home() / "log"
+    reference = uuid.uuid4().hex[:12]
+    directory.mkdir(parents=True, exist_ok=True)
+    file = directory / f"{reference}.log"
+    file.write_text("".join(traceback.format_exception(error)), encoding="utf-8", errors="backslashreplace")
+    return Unexpected(str(file))
+
+
+def _text(error: ServiceError) -> str:
+    """Return an error as lines: each fault on its own."""
+    return "\n".join(f"error: {line}" for line in (error.faults or (str(error),)))
+
+
+def _leave(text: str, code: int) -> NoReturn:
+    """Say why, and end."""
+    sys.stdout.flush()
+    print(text, file=sys.stderr, flush=True)  # noqa: T201 (this is the command line)
+    raise typer.Exit(code)
+
+
+def _close_pipe() -> NoReturn:
+    """End quietly when the reader of our output has gone (``loa ste ... | head``)."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    raise typer.Exit(0)

@@ -1,0 +1,75 @@
+"""What the verbs print: JSON or tables on standard output, progress on standard error."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from service.problems import BadInput
+
+Report = Callable[[str, float], None]
+
+
+def print_json(facts: dict[str, Any]) -> None:
+    """Print one JSON object; a number that is none is an error, never null."""
+    sys.stdout.write(json.dumps(facts, allow_nan=False) + "\n")
+    sys.stdout.flush()
+
+
+def console() -> Console:
+    """Return the console of standard output; piped, it is as wide as its tables need."""
+    return Console() if sys.stdout.isatty() else Console(width=200, no_color=True)
+
+
+def table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> Table:
+    """Return a table of right-aligned numbers."""
+    found = Table(title=title or None, box=None, pad_edge=False, title_justify="left")
+    for column in columns:
+        found.add_column(column, justify="right")
+    for row in rows:
+        found.add_row(*row)
+    return found
+
+
+@contextmanager
+def progress_bar() -> Iterator[Report]:
+    """Yield ``report(stage, fraction)``; it draws on standard error if that is a terminal, else nothing."""
+    if not sys.stderr.isatty():
+        yield _silent
+        return
+    columns = (TextColumn("{task.description:<14}"), BarColumn(), TextColumn("{task.percentage:>3.0f} %"))
+    with Progress(*columns, TimeElapsedColumn(), console=Console(stderr=True)) as bars:
+        tasks: dict[str, TaskID] = {}
+
+        def report(stage: str, fraction: float) -> None:
+            if stage not in tasks:
+                tasks[stage] = bars.add_task(stage, total=1.0)
+            bars.update(tasks[stage], completed=min(max(fraction, 0.0), 1.0))
+
+        yield report
+
+
+def _silent(_stage: str, _fraction: float) -> None:
+    """Report nothing."""
+
+
+def check_writable(output: Path) -> None:
+    """Refuse an output that cannot be written, before the work is done rather than after it.
+
+    Raises
+    ------
+    BadInput
+        Its folder does not exist, or it is a folder itself.
+    """
+    if not output.parent.is_dir():
+        raise BadInput.of("output", str(output), "in a folder that exists", "Make the folder first.")
+    if output.is_dir():
+        raise BadInput.of("output", str(output), "a file", "Add a file name.")

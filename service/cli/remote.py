@@ -1,0 +1,102 @@
+"""``loa submit`` and ``loa fetch``: the client on the command line."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from service.cli.output import Report, check_writable, console, print_json, progress_bar
+from service.client import JobState, LineOfActionClient, Result
+from service.problems import BadInput, NotFound, ResultNotReady
+from service.schemas import Case, read_table, validated
+
+_KINDS = ("database", "run")
+
+
+def run_submit(file: Path, service: str, *, wait: bool, output: Path | None, as_json: bool) -> None:
+    """Submit; wait and write if asked."""
+    if output is not None:
+        check_writable(output)
+    with LineOfActionClient(service) as client:
+        state = _submitted(client, file)
+        facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
+        if wait or output is not None:
+            result = _waited(client, state)
+            facts |= {"status": "successful", "hash": result.key, "kind": result.kind}
+        if output is not None:
+            shutil.copyfile(client.fetch_file(result.key, result.kind), output)
+            facts["file"] = str(output)
+    _show(facts, as_json)
+
+
+def _submitted(client: LineOfActionClient, file: Path) -> JobState:
+    """Submit a file as what it holds."""
+    content = read_table(file)
+    if "shafts" in content:
+        return client.submit_scene(file)
+    if "pair" in content:
+        return client.submit_case(validated(Case, content))
+    raise BadInput.of(
+        "file", str(file), "a case (with [pair]) or a scene (with [[shafts]])", "See docs/case-file.md."
+    )
+
+
+def _waited(client: LineOfActionClient, state: JobState) -> Result:
+    """Wait with a bar."""
+    with progress_bar() as report:
+        return client.wait(state.id, watching(report))
+
+
+def watching(report: Report) -> Callable[[JobState], None]:
+    """Return the client's progress callback that feeds a bar."""
+
+    def watch(state: JobState) -> None:
+        if state.stage:
+            report(state.stage, state.stage_progress / 100.0)
+
+    return watch
+
+
+def run_fetch(name: str, output: Path, service: str, *, as_json: bool) -> None:
+    """Fetch by hash or by job."""
+    check_writable(output)
+    with LineOfActionClient(service) as client:
+        if re.fullmatch("[0-9a-f]{64}", name):
+            file, key, kind = _by_hash(client, name)
+        else:
+            found = _ended(client, name)
+            file, key, kind = client.fetch_file(found.key, found.kind), found.key, found.kind
+    shutil.copyfile(file, output)
+    _show({"hash": key, "kind": kind, "file": str(output)}, as_json)
+
+
+def _by_hash(client: LineOfActionClient, key: str) -> tuple[Path, str, str]:
+    """Return the result of a hash, whichever kind it is."""
+    for kind in _KINDS:
+        try:
+            return client.fetch_file(key, kind), key, kind
+        except NotFound:
+            continue
+    raise NotFound(f"The service has no result {key}. Submit its case or scene again.")
+
+
+def _ended(client: LineOfActionClient, job: str) -> Result:
+    """Return the result of a job that has ended."""
+    if not re.fullmatch(r"[0-9a-fA-F-]{1,64}", job):
+        raise BadInput.of("name", job, "the identifier of a job or a content hash", "loa submit prints both.")
+    try:
+        return client.result(job)
+    except ResultNotReady as error:
+        raise ResultNotReady(f"{error} Wait for it with: loa submit FILE --wait") from None
+
+
+def _show(facts: dict[str, object], as_json: bool) -> None:
+    """Print what was done."""
+    if as_json:
+        print_json(facts)
+        return
+    out = console()
+    for name, value in facts.items():
+        out.print(f"{name} {value}", highlight=False)

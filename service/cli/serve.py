@@ -1,0 +1,71 @@
+"""``loa serve``."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import socket
+import sys
+from types import FrameType
+from typing import NoReturn
+
+import structlog
+import uvicorn
+
+from service.app import create_app
+from service.problems import BadInput
+from service.settings import Settings, load_settings
+
+_STOPPING_S = 2
+
+
+def run_serve(**given: object) -> None:
+    """Serve until stopped by SIGTERM or SIGINT; workers end with the service."""
+    settings = load_settings(**given)
+    _log_to_standard_error()
+    listener = _listener(settings)
+    app = create_app(settings)
+    host, port = listener.getsockname()[:2]
+    name = f"[{host}]" if ":" in host else host
+    print(f"lineofaction serves at http://{name}:{port}", flush=True)  # noqa: T201 (this is the command line)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _stopped)
+    config = uvicorn.Config(
+        app, log_config=None, access_log=False, timeout_graceful_shutdown=_STOPPING_S, lifespan="on"
+    )
+    uvicorn.Server(config).run(sockets=[listener])
+
+
+def _stopped(_number: int, _frame: FrameType | None) -> NoReturn:
+    """End with success: uvicorn raises the signal again after it has shut everything down."""
+    sys.exit(0)
+
+
+def _listener(settings: Settings) -> socket.socket:
+    """Return a socket bound to the address, so that a port in use is told before anything starts."""
+    family, kind, protocol, _, address = socket.getaddrinfo(
+        settings.host, settings.port, type=socket.SOCK_STREAM
+    )[0]
+    listener = socket.socket(family, kind, protocol)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind(address)
+    except OSError as error:
+        listener.close()
+        suggestion = f"{error.strerror}. Choose another with --port, or 0 for a free one."
+        raise BadInput.of("port", settings.port, "a free port", suggestion) from None
+    return listener
+
+
+def _log_to_standard_error() -> None:
+    """Write one line of JSON per event to standard error."""
+    structlog.configure(
+        processors=[
+            structlog.processors.add_log_level,
+            structlog.processors.TimeStamper(fmt="iso", utc=True),
+            structlog.processors.format_exc_info,
+            structlog.processors.JSONRenderer(),
+        ],
+        logger_factory=structlog.PrintLoggerFactory(sys.stderr),
+    )
+    logging.basicConfig(level=logging.WARNING, stream=sys.stderr)

@@ -1,0 +1,94 @@
+"""``loa simulate``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from dynamics.simulate import simulate
+
+from fe_contact.ste import SteDatabase
+from service.cli.analyze import analyzed
+from service.cli.output import Report, check_writable, console, print_json, progress_bar
+from service.cli.remote import watching
+from service.cli.ste import open_ste
+from service.client import LineOfActionClient
+from service.client.portable import case_of_mesh, scene_of
+from service.convert.runs import run_json
+from service.convert.scene import dynamic_scene
+from service.problems import BadInput
+from service.schemas import Case
+from service.schemas.scene import MeshInput
+
+_ADVICE = "Name the service that holds it: --service http://127.0.0.1:8321"
+
+
+def run_simulate(file: Path, output: Path, service: str | None, *, as_json: bool) -> None:
+    """Gather the tables, integrate here, write, print."""
+    scene, folder = scene_of(file)
+    check_writable(output)
+    client = None if service is None else LineOfActionClient(service)
+    try:
+        with progress_bar() as report:
+            tables = _Tables(folder, client, report)
+            databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
+            run = simulate(dynamic_scene(scene, databases), progress=report)
+    finally:
+        if client is not None:
+            client.close()
+    run.to_netcdf(output)
+    facts = {"file": str(output), **run_json(output)}
+    if as_json:
+        print_json(facts)
+    else:
+        _show(facts)
+
+
+class _Tables:
+    """Where the STE databases of the meshes come from; equal cases are computed once."""
+
+    def __init__(self, folder: Path, client: LineOfActionClient | None, report: Report) -> None:
+        self._folder, self._client, self._report = folder, client, report
+        self._computed: list[tuple[Case, SteDatabase]] = []
+
+    def of(self, index: int, mesh: MeshInput) -> SteDatabase:
+        """Return the database of a mesh."""
+        place = f"meshes[{index}]"
+        if mesh.database_file is not None:
+            return open_ste(self._folder / mesh.database_file)
+        if mesh.database_hash is not None:
+            return self._by_hash(place, mesh.database_hash)
+        case = case_of_mesh(mesh, place, self._folder)
+        assert case is not None
+        try:
+            return self._of_case(case)
+        except BadInput as error:
+            raise error.within(f"{place}.case") from None
+
+    def _by_hash(self, place: str, key: str) -> SteDatabase:
+        """Return a database that a service holds."""
+        if self._client is None:
+            raise BadInput.of(f"{place}.database_hash", key, "used together with a service", _ADVICE)
+        return self._client.fetch(key)
+
+    def _of_case(self, case: Case) -> SteDatabase:
+        """Return the database of a case, from the service or computed here."""
+        known = next((database for other, database in self._computed if other == case), None)
+        if known is not None:
+            return known
+        if self._client is None:
+            database = analyzed(case, self._report)
+        else:
+            database = self._client.analyze(case, watching(self._report))
+        self._computed.append((case, database))
+        return database
+
+
+def _show(facts: dict[str, object]) -> None:
+    """Print a run for people."""
+    out = console()
+    attributes = facts["attributes"]
+    assert isinstance(attributes, dict)
+    for name, value in attributes.items():
+        if isinstance(value, str | int | float) and len(str(value)) < 80:
+            out.print(f"{name} {value}", highlight=False)
+    out.print(f"written to {facts['file']}", highlight=False)

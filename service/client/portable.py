@@ -1,0 +1,59 @@
+"""Cases and scenes made ready to be sent: files of the caller written out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from service.problems import BadInput
+from service.schemas import Case, read_model, validated
+from service.schemas.scene import MeshInput, SceneInput
+
+CaseLike = Case | Mapping[str, Any] | Path
+SceneLike = SceneInput | Mapping[str, Any] | Path
+
+
+def case_of(given: CaseLike) -> Case:
+    """Return a case from a model, a table or a file; raises `BadInput`."""
+    if isinstance(given, Case):
+        return given
+    return read_model(Case, given) if isinstance(given, Path) else validated(Case, dict(given))
+
+
+def scene_of(given: SceneLike) -> tuple[SceneInput, Path]:
+    """Return a scene and the folder its files are relative to; raises `BadInput`."""
+    if isinstance(given, SceneInput):
+        return given, Path()
+    if isinstance(given, Path):
+        return read_model(SceneInput, given), given.parent
+    return validated(SceneInput, dict(given)), Path()
+
+
+def case_of_mesh(mesh: MeshInput, place: str, folder: Path) -> Case | None:
+    """Return the case of a mesh, from the scene or its file; None if the mesh names a database."""
+    if mesh.case_file is None:
+        return mesh.case
+    try:
+        return read_model(Case, folder / mesh.case_file)
+    except BadInput as error:
+        raise error.within(f"{place}.case_file") from None
+
+
+def portable_scene(scene: SceneInput, folder: Path) -> SceneInput:
+    """Return the scene with its case files written out.
+
+    Raises
+    ------
+    BadInput
+        A case file cannot be used, or a mesh takes a database file, which a service does not read.
+    """
+    meshes = []
+    for index, mesh in enumerate(scene.meshes):
+        place = f"meshes[{index}]"
+        if mesh.database_file is not None:
+            advice = "Give case_file or database_hash, or run the scene here without a service."
+            raise BadInput.of(f"{place}.database_file", mesh.database_file, "left out for a service", advice)
+        case = case_of_mesh(mesh, place, folder)
+        meshes.append(mesh.model_copy(update={"case": case, "case_file": None}))
+    return scene.model_copy(update={"meshes": tuple(meshes)})

@@ -1,0 +1,26 @@
+"""The work of the process analyze, done in a child process of its own."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from fe_contact.analysis import analyze
+from fe_contact.ste import SteDatabase
+from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.jobs.order import Product, Progress, WorkOrder
+from service.schemas import Case
+
+
+def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Compute the STE database of a case."""
+    case = Case.model_validate_json(json.dumps(order.inputs["case"]))
+    file = order.workspace / "database.nc"
+    database_of(case, order.data_directory / "compliance", progress).to_netcdf(file)
+    return (Product(order.key, "database", file),)
+
+
+def database_of(case: Case, cache: Path, progress: Progress) -> SteDatabase:
+    """Return the STE database of a case; condensed gears are kept in `cache`."""
+    with boundary_errors():
+        return analyze(gear_pair(case), **analysis_arguments(case), cache=cache, progress=progress)
