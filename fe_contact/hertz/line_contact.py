@@ -1,0 +1,89 @@
+"""Hertz line contact of two cylinders in plane strain.
+
+All functions broadcast over arrays. Symbols: p line load in N/m, R relative radius in m, E* contact modulus in Pa.
+
+References
+----------
+.. [1] K. L. Johnson, Contact Mechanics, Cambridge University Press 1985, sections 4.2 and 5.6.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_contact.material import Material
+from fe_contact.types import FloatArray
+
+
+def contact_modulus(first: Material, second: Material) -> float:
+    """Contact modulus E* in Pa, 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 [1]_."""
+    return 1.0 / (1.0 / first.plane_strain_modulus + 1.0 / second.plane_strain_modulus)
+
+
+def relative_radius(first: ArrayLike, second: ArrayLike) -> FloatArray:
+    """Relative radius of curvature R in m, 1/R = 1/R1 + 1/R2 (R2 infinite: a plane, R2 < 0: a concave partner)."""
+    with np.errstate(
+        divide="ignore"
+    ):  # a radius of zero has infinite curvature, conforming bodies an infinite R
+        curvature = 1.0 / np.asarray(first, dtype=float) + 1.0 / np.asarray(second, dtype=float)
+        return np.asarray(1.0 / curvature, dtype=float)
+
+
+def half_width(line_load: ArrayLike, radius: ArrayLike, modulus: float) -> FloatArray:
+    """Half-width b in m of the contact strip, b^2 = 4 p R / (pi E*) [1]_."""
+    return np.sqrt(4.0 * np.asarray(line_load, dtype=float) * radius / (math.pi * modulus))
+
+
+def line_load_at_half_width(width: ArrayLike, radius: ArrayLike, modulus: float) -> FloatArray:
+    """Line load p in N/m at which the half-width is `width` (inverse of `half_width`)."""
+    return np.asarray(math.pi * modulus * np.asarray(width, dtype=float) ** 2 / (4.0 * np.asarray(radius)))
+
+
+def peak_pressure(line_load: ArrayLike, radius: ArrayLike, modulus: float) -> FloatArray:
+    """Peak pressure p0 in Pa, p0^2 = p E* / (pi R) [1]_."""
+    return np.sqrt(np.asarray(line_load, dtype=float) * modulus / (math.pi * np.asarray(radius)))
+
+
+def local_approach(
+    line_load: ArrayLike, patch: ArrayLike, width: ArrayLike, material: Material
+) -> FloatArray:
+    """What one body's surface moves more under Hertz pressure than under the patch of the finite-element model.
+
+    Two half-plane solutions with the same resultant are subtracted, so the far field cancels and no reference depth
+    appears: k p [ln(a/b) + 1/4] with k = 2 (1 - nu^2)/(pi E). The surface under a semi-elliptic pressure of half-width a
+    falls off as x^2/a^2, whose mean weighted by that pressure is the 1/4; under the Hertz strip the centre point counts.
+
+    Parameters
+    ----------
+    line_load : array_like
+        p in N/m.
+    patch : array_like
+        Half-width a in m of the semi-elliptic load and displacement weight in the finite-element model.
+    width : array_like
+        Hertz half-width b in m (or the equivalent half-width of an edge contact).
+    material : Material
+        The body.
+
+    Returns
+    -------
+    ndarray
+        Approach in m, positive = bodies come closer; zero where p = 0.
+    """
+    p = np.asarray(line_load, dtype=float)
+    k = 2.0 / (math.pi * material.plane_strain_modulus)
+    safe = np.where(p > 0.0, width, 1.0)
+    return np.where(p > 0.0, k * p * (np.log(np.asarray(patch) / safe) + 0.25), 0.0)
+
+
+def two_cylinder_approach(
+    line_load: float, radii: tuple[float, float], materials: tuple[Material, Material]
+) -> float:
+    """Approach in m of the centres of two solid cylinders pressed together: sum of p (1 - nu^2)/(pi E) [2 ln(4 R_i/b) - 1] [1]_."""
+    b = float(half_width(line_load, relative_radius(*radii), contact_modulus(*materials)))
+    return sum(
+        line_load / (math.pi * m.plane_strain_modulus) * (2.0 * math.log(4.0 * r / b) - 1.0)
+        for r, m in zip(radii, materials, strict=True)
+    )
