@@ -100,5 +100,6 @@ def refuse_poor_elements(part: str, points: FloatArray, triangles: IntArray, lim
             x, y = 1e3 * points[triangles[worst, :3]].mean(axis=0)
             raise MeshError(
                 f"{part}: element {worst} at ({x:.4g}, {y:.4g}) mm: {name} "
-                f"{factor * values[worst]:.3g}{unit} is below {factor * limit:.3g}{unit}. Try other element sizes in the mesh recipe."
+                f"{factor * values[worst]:.3g}{unit} is below {factor * limit:.3g}{unit}. "
+                "Try other element sizes in the mesh recipe."
             )

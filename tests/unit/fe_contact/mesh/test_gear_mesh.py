@@ -1,0 +1,150 @@
+"""Laws of the mesh of a gear."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from fe_contact.geometry import Gear, ToothProfile, tooth_profile
+from fe_contact.mesh import GearMesh, mesh_gear, mesh_quality
+from fe_contact.mesh.quadratic import rotated
+
+GearAndMesh = tuple[Gear, GearMesh]
+
+
+def element_area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Area of six-node triangles by the exact integral of x dy - y dx along their curved sides."""
+    total = np.zeros(len(triangles))
+    for first, middle, last in ((0, 3, 1), (1, 4, 2), (2, 5, 0)):
+        a, m, b = (points[triangles[:, i]] for i in (first, middle, last))
+        for p, q, weight in ((a, m, 4.0), (m, b, 4.0), (a, b, -1.0)):
+            total += weight / 6.0 * (p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0])
+    return total
+
+
+def tooth_area(profile: ToothProfile) -> float:
+    """Area between one tooth's outline and the gear's axis, by the exact profile."""
+    edges = [profile.s_space, profile.s_root, profile.s_form, profile.s_tip]
+    s = np.unique(np.concatenate([np.linspace(a, b, 4001) for a, b in pairwise(edges)]))
+    x, y = profile.flank(s).T
+    flank = -0.5 * np.sum(x[:-1] * y[1:] - y[:-1] * x[1:])
+    return float(2.0 * -flank + profile.tip_angle * profile.gear.tip_radius**2)
+
+
+def sides(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """All sides as sorted corner pairs, with how often each occurs."""
+    pairs = np.sort(
+        np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1
+    )
+    return np.unique(pairs, axis=0, return_counts=True)
+
+
+def test_area_is_that_of_the_exact_section(gear_and_mesh: GearAndMesh) -> None:
+    gear, mesh = gear_and_mesh
+    plain = (gear.teeth - len(mesh.teeth)) * np.pi / gear.teeth * gear.root_radius**2
+    bore = np.pi * (0.5 * gear.bore_diameter) ** 2
+    exact = len(mesh.teeth) * tooth_area(tooth_profile(gear)) + plain - bore
+    # Quadratic edges of up to 12 degrees on the plain rim and the bore miss their segment by a few 1e-6.
+    assert element_area(mesh.points, mesh.triangles).sum() == pytest.approx(exact, rel=4e-6)
+
+
+def test_every_inner_side_is_shared_by_two_elements_and_the_rest_close_two_loops(
+    gear_and_mesh: GearAndMesh,
+) -> None:
+    _, mesh = gear_and_mesh
+    pairs, counts = sides(mesh.triangles)
+    assert counts.max() == 2
+    free = pairs[counts == 1]
+    _, uses = np.unique(free, return_counts=True)
+    assert np.all(uses == 2)
+    vertices, elements = len(np.unique(mesh.triangles[:, :3])), len(mesh.triangles)
+    assert vertices - len(pairs) + elements == 0  # Euler characteristic of a ring
+
+
+def test_no_node_is_unused_and_none_lies_on_another(gear_and_mesh: GearAndMesh) -> None:
+    gear, mesh = gear_and_mesh
+    assert np.array_equal(np.unique(mesh.triangles), np.arange(len(mesh.points)))
+    rounded = np.round(mesh.points / (1e-7 * gear.normal_module)).astype(int)
+    assert len(np.unique(rounded, axis=0)) == len(mesh.points)
+
+
+def test_flank_nodes_lie_on_the_exact_profile_with_exact_middles(gear_and_mesh: GearAndMesh) -> None:
+    gear, mesh = gear_and_mesh
+    profile = tooth_profile(gear)
+    for flank in mesh.flanks:
+        turn = flank.tooth * 2.0 * np.pi / gear.teeth
+        assert mesh.points[flank.nodes] == pytest.approx(rotated(profile.flank(flank.s), turn), abs=1e-16)
+        assert flank.normals == pytest.approx(rotated(profile.normal(flank.s), turn), abs=1e-14)
+        assert np.array_equal(flank.s, mesh.flanks[0].s)
+    s = mesh.flanks[0].s
+    assert s[1::2] == pytest.approx(0.5 * (s[:-2:2] + s[2::2]), abs=1e-18)
+    assert np.all(np.diff(s) > 0.0)
+    assert s[-1] == profile.s_tip
+    assert profile.s_form in s[::2]
+    assert s[0] <= profile.s_form - 0.25 * gear.normal_module
+
+
+def test_the_whole_surface_of_a_tooth_is_exact(gear_and_mesh: GearAndMesh) -> None:
+    gear, mesh = gear_and_mesh
+    profile, sector = tooth_profile(gear), mesh.sector
+    pairs, counts = sides(sector.triangles)
+    corners = np.unique(pairs[counts == 1])
+    boundary = np.unique(np.concatenate([corners, boundary_middles(sector.triangles, pairs[counts == 1])]))
+    x, y = sector.points[boundary].T
+    radius, angle = np.hypot(x, y), np.abs(np.arctan2(x, y))
+    between = (radius > gear.root_radius + 0.05 * gear.normal_module) & (radius < 0.9999 * gear.tip_radius)
+    between &= angle < 0.999 * 0.5 * profile.pitch_angle
+    s = np.linspace(profile.s_root, profile.s_tip, 20_001)
+    fx, fy = profile.flank(s).T
+    exact = np.interp(radius[between], np.hypot(fx, fy), np.arctan2(fx, fy))
+    assert between.sum() > 100
+    assert angle[between] * radius[between] == pytest.approx(exact * radius[between], abs=1e-10)
+
+
+def boundary_middles(triangles: np.ndarray, free: np.ndarray) -> np.ndarray:
+    """Mid-side nodes of the sides `free`."""
+    wanted = {tuple(pair) for pair in free.tolist()}
+    found = [
+        t[3 + i]
+        for t in triangles.tolist()
+        for i in range(3)
+        if tuple(sorted((t[i], t[(i + 1) % 3]))) in wanted
+    ]
+    return np.array(found)
+
+
+def test_bore_nodes_are_all_on_the_bore(gear_and_mesh: GearAndMesh) -> None:
+    gear, mesh = gear_and_mesh
+    radius = np.linalg.norm(mesh.points, axis=1)
+    on_bore = np.flatnonzero(radius < 0.5 * gear.bore_diameter + 1e-9)
+    assert np.array_equal(np.sort(mesh.bore_nodes), on_bore)
+    assert radius[on_bore] == pytest.approx(0.5 * gear.bore_diameter, rel=1e-12)
+
+
+def test_teeth_are_copies_and_each_tooth_its_own_mirror_image(gear_and_mesh: GearAndMesh) -> None:
+    gear, mesh = gear_and_mesh
+    sector = mesh.sector
+    for nodes, tooth in zip(mesh.sector_nodes, mesh.teeth, strict=True):
+        expected = rotated(sector.points, tooth * 2.0 * np.pi / gear.teeth)
+        assert mesh.points[nodes] == pytest.approx(expected, abs=1e-15)
+    assert sector.points[sector.coast_flank] == pytest.approx(sector.points[sector.flank] * [-1.0, 1.0])
+    assert 0 in mesh.teeth
+    assert np.all(np.diff(mesh.teeth) == 1)
+
+
+def test_quality_is_within_limits_and_element_sizes_follow_the_recipe(gear_and_mesh: GearAndMesh) -> None:
+    _, mesh = gear_and_mesh
+    quality = mesh_quality(mesh.points, mesh.triangles)
+    assert quality.angle.min() > np.radians(20.0)
+    assert quality.scaled_jacobian.min() > 0.6
+    lengths = np.diff(mesh.flanks[0].s[::2])
+    assert lengths.max() <= 0.4e-3 * (1.0 + 1e-12)
+    assert lengths[-1] <= 1.5 * 0.02e-3
+
+
+def test_a_gear_with_fewer_teeth_than_wanted_has_all_of_them() -> None:
+    gear = Gear(teeth=6, normal_module=4e-3, face_width=25e-3, bore_diameter=6e-3, tip_diameter=29e-3)
+    mesh = mesh_gear(gear)
+    assert mesh.teeth.tolist() == [-2, -1, 0, 1, 2, 3]

@@ -1,0 +1,33 @@
+"""Exported meshes come back as they were."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from fe_contact.errors import InputError
+from fe_contact.geometry import Gear
+from fe_contact.mesh import GearMesh
+from fe_contact.mesh.export import HUB, write_mesh
+
+
+@pytest.mark.parametrize("name", ["gear.vtu", "gear.msh"])
+def test_round_trip(tmp_path: Path, name: str, gear_and_mesh: tuple[Gear, GearMesh]) -> None:
+    _, mesh = gear_and_mesh
+    height = mesh.points[:, 1].copy()
+    write_mesh(mesh, tmp_path / name, point_data={"height": height})
+    back = meshio.read(tmp_path / name)
+    assert np.array_equal(back.points[:, :2], mesh.points)
+    assert np.array_equal(back.cells_dict["triangle6"], mesh.triangles)
+    assert np.array_equal(back.point_data["height"], height)
+    assert np.flatnonzero(back.point_data["bore"]).tolist() == sorted(mesh.bore_nodes.tolist())
+    teeth = set(np.unique(back.cell_data["tooth"][0]).astype(int).tolist())
+    assert teeth == set(mesh.teeth.tolist()) | ({HUB} if mesh.hub is not None else set())
+
+
+def test_another_suffix_is_refused(tmp_path: Path, gear_and_mesh: tuple[Gear, GearMesh]) -> None:
+    with pytest.raises(InputError, match=r"\.vtu or \.msh"):
+        write_mesh(gear_and_mesh[1], tmp_path / "gear.stl")

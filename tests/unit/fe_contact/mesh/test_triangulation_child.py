@@ -1,0 +1,129 @@
+"""The gmsh child: what it returns, and what its failures become."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fe_contact.errors import MeshError
+from fe_contact.mesh.triangulation import WORKER, Region, triangulate
+
+SQUARE = Region((np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),))
+RING = Region(
+    tuple(
+        radius * np.stack([np.cos(t), np.sin(t)], axis=-1)
+        for radius, t in (
+            (2.0, np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False)),
+            (1.0, np.linspace(0.0, -2.0 * np.pi, 20, endpoint=False)),
+        )
+    )
+)
+
+
+SQUARE_SIDES = [
+    (np.array(a), np.array(b))
+    for a, b in (
+        ((0.0, 0.0), (1.0, 0.0)),
+        ((1.0, 0.0), (1.0, 1.0)),
+        ((1.0, 1.0), (0.0, 1.0)),
+        ((0.0, 1.0), (0.0, 0.0)),
+    )
+]
+
+
+def area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    a, b, c = (points[triangles[:, i]] for i in range(3))
+    return 0.5 * ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0])
+
+
+def polygon_area(loop: np.ndarray) -> float:
+    x, y = loop.T
+    return float(0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+
+
+def test_fills_the_polygon_without_its_hole_counter_clockwise() -> None:
+    (mesh,) = triangulate([RING], 1.0)
+    areas = area(mesh.points, mesh.triangles)
+    assert areas.min() > 0.0
+    assert areas.sum() == pytest.approx(sum(polygon_area(loop) for loop in RING.loops), rel=1e-12)
+
+
+def test_keeps_the_given_points_bit_for_bit_and_their_edges_whole() -> None:
+    (mesh,) = triangulate([RING], 1e-3)
+    given = np.concatenate(RING.loops)
+    assert np.array_equal(mesh.points[: len(given)], given)
+    edges = {tuple(sorted(e)) for t in mesh.triangles for e in zip(t, np.roll(t, 1), strict=True)}
+    assert {(i, i + 1) for i in range(39)} <= edges
+
+
+def test_is_deterministic_and_free_of_scale() -> None:
+    first, again = (triangulate([RING, SQUARE], 1.0)[0] for _ in range(2))
+    assert np.array_equal(first.points, again.points)
+    assert np.array_equal(first.triangles, again.triangles)
+    large = Region(tuple(1024.0 * loop for loop in RING.loops))
+    (scaled,) = triangulate([large], 1024.0)
+    assert np.array_equal(scaled.triangles, first.triangles)
+    assert scaled.points == pytest.approx(1024.0 * first.points, rel=1e-14)
+
+
+def test_growth_thins_the_interior_out() -> None:
+    square = np.concatenate([np.linspace(a, b, 40, endpoint=False) for a, b in SQUARE_SIDES])
+    slow, fast = (len(triangulate([Region((square,))], 1.0, growth=g)[0].triangles) for g in (0.05, 0.5))
+    assert fast < 0.6 * slow
+
+
+@pytest.mark.parametrize(
+    ("code", "complaint"),
+    [
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", "killed by SIGKILL"),
+        ("raise ValueError('no licence to mesh')", "no licence to mesh"),
+        ("import sys; sys.exit(3)", "exit code 3"),
+        ("print('not json')", "unusable answer"),
+        ("print('{}')", "unusable answer"),
+        ("print('[1]')", "unusable answer"),
+        ("""print('{"regions": [{"points": [[0, 0]], "triangles": []}]}')""", "unusable answer"),
+        ("""print('{"error": "boundary crosses itself"}')""", "boundary crosses itself"),
+    ],
+)
+def test_a_failing_child_becomes_a_mesh_error_with_the_reason(code: str, complaint: str) -> None:
+    with pytest.raises(MeshError, match=complaint):
+        triangulate([SQUARE], 1.0, command=(sys.executable, "-c", code))
+
+
+def test_a_child_that_hangs_is_ended() -> None:
+    with pytest.raises(MeshError, match=r"no mesh within 0\.2 s"):
+        triangulate([SQUARE], 1.0, seconds=0.2, command=(sys.executable, "-c", "import time; time.sleep(60)"))
+
+
+def test_a_missing_program_is_a_mesh_error(tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match="cannot be started"):
+        triangulate([SQUARE], 1.0, command=(str(tmp_path / "absent"),))
+
+
+def test_gmsh_refuses_a_boundary_that_crosses_itself() -> None:
+    crossed = Region((np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]),))
+    with pytest.raises(MeshError, match="gmsh"):
+        triangulate([crossed], 1.0, seconds=20.0)
+
+
+def test_the_worker_leaves_signal_handlers_as_they_were() -> None:
+    code = (
+        "import runpy, signal, sys\n"
+        "def mine(number, frame): pass\n"
+        "names = ('SIGTERM', 'SIGHUP', 'SIGPIPE', 'SIGINT')\n"
+        "for name in names: signal.signal(getattr(signal, name), mine)\n"
+        f"worker = runpy.run_path({str(WORKER)!r})\n"
+        "worker['start_gmsh']()\n"
+        "import ctypes\n"
+        "action = ctypes.create_string_buffer(1024)\n"
+        "libc = ctypes.CDLL(None)\n"
+        "for name in names:\n"
+        "    libc.sigaction(getattr(signal, name), None, action)\n"
+        "    assert int.from_bytes(action.raw[:8], sys.byteorder) > 1, name\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert run.returncode == 0, run.stderr
