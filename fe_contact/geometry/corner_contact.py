@@ -47,7 +47,8 @@ class CornerContact:
         mating flank's normal, so the ratio is 1 for the gear whose flank is touched. For the wheel it is also
         the rate at which a lag on the line of action closes the distance along that normal.
     valid : array of bool
-        False where the edge meets no involute: below the form point, or past the tooth's tip.
+        False where the edge meets no involute (below the form point, or past the tooth's tip), and where the
+        force would pass its gear's axis on the other side and no longer drive.
     """
 
     gap: FloatArray
@@ -145,11 +146,11 @@ def _touch_by_tip_gear(pair: GearPair, tip: Gear, flank: Gear, roll_length: Floa
 
 
 def _masked(touch: _Touch, flank: Gear, pinion_arm: FloatArray, wheel_arm: FloatArray) -> CornerContact:
-    """Blank what lies off the flank's involute."""
+    """Blank what lies off the flank's involute or cannot drive."""
     slack = 1e-9 * flank.normal_module
     roll = touch.flank_roll_length
     valid = (roll >= flank.form_roll_length - slack) & (roll <= flank.tip_roll_length + slack)
-    valid &= np.isfinite(touch.gap)
+    valid &= np.isfinite(touch.gap) & (touch.lever_arm_ratio > 0.0)
     parts = (np.maximum(touch.gap, 0.0), roll, np.maximum(touch.slope_angle, 0.0), pinion_arm, wheel_arm)
     gap, flank_roll_length, slope, arm_1, arm_2 = (np.where(valid, part, np.nan) for part in parts)
     return CornerContact(gap, flank_roll_length, slope, arm_1, arm_2, valid)
