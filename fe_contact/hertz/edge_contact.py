@@ -1,17 +1,19 @@
 r"""Contact of a smooth flank with the tip edge of its partner.
 
-Along the tip gear's flank, measured inwards from its edge, the gap is g(x) = phi x + x^2/(2R). Contact spreads over 0 <= x <= c; the
-pressure is singular at the edge and vanishes at c. Inverting the half-plane equation with that end behaviour [1]_ gives
+Along the tip gear's flank, measured inwards from its edge, the gap is g(x) = phi x + x^2/(2R). Contact
+spreads over 0 <= x <= c; the pressure is singular at the edge and vanishes at c. Inverting the half-plane
+equation with that end behaviour [1]_ gives
 
     q(x) = (E*/2) sqrt((c - x)/x) [phi + (x + c/2)/R],      p = (pi E* c/4) (phi + 3c/(4R)).
 
-The approach at the edge is the mean of -ln x under q. Written like the Hertz result it needs only an equivalent half-width b_eff:
-sqrt((c-x)/x) and sqrt(x(c-x)) are Beta(1/2, 3/2) and Beta(3/2, 3/2) densities whose mean logarithms are ln c - 1 - 2 ln 2 and
-ln c + 1/2 - 2 ln 2, while a Hertz strip has ln b - 1/2 - ln 2. Nothing is fitted.
+The approach at the edge is the mean of -ln x under q. Written like the Hertz result it needs only an
+equivalent half-width b_eff: sqrt((c-x)/x) and sqrt(x(c-x)) are Beta(1/2, 3/2) and Beta(3/2, 3/2) densities
+whose mean logarithms are ln c - 1 - 2 ln 2 and ln c + 1/2 - 2 ln 2, while a Hertz strip has ln b - 1/2 - ln
+2. Nothing is fitted.
 
-A contact on the line of action at arc distance t from the edge has phi = -t/R (and the rigid gap t^2/(2R) at the edge). As
-long as c > 2t the edge cuts the Hertz strip off; at c = 2t both laws agree in value and slope. The derivation is in
-docs/theory/hertz.md.
+A contact on the line of action at arc distance t from the edge has phi = -t/R (and the rigid gap t^2/(2R)
+at the edge). As long as c > 2t the edge cuts the Hertz strip off; at c = 2t both laws agree in value and
+slope. The derivation is in docs/theory/hertz.md.
 
 References
 ----------
@@ -52,11 +54,11 @@ def edge_contact_length(
 
 
 def edge_half_width(length: ArrayLike, slope: ArrayLike, radius: ArrayLike) -> FloatArray:
-    """Equivalent Hertz half-width b_eff in m of an edge contact of length c > 0: ln b_eff = ln(c/2) + 1/2 + w."""
+    """Equivalent Hertz half-width b_eff in m of an edge contact of length c > 0.
+
+    ln b_eff = ln(c/2) + 1/2 + w, w the mean of the two parts of the pressure weighted by their resultants.
+    """
     c, phi, r = (np.asarray(v, dtype=float) for v in (length, slope, radius))
-    singular, regular = (
-        phi * r + 0.5 * c,
-        0.25 * c,
-    )  # shares of the two parts of the pressure in the resultant
+    singular, regular = phi * r + 0.5 * c, 0.25 * c  # resultants of the two parts, up to a factor
     w = (-singular + 0.5 * regular) / (singular + regular)
     return np.asarray(0.5 * c * np.exp(0.5 + w), dtype=float)

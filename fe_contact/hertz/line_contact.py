@@ -1,6 +1,7 @@
 """Hertz line contact of two cylinders in plane strain.
 
-All functions broadcast over arrays. Symbols: p line load in N/m, R relative radius in m, E* contact modulus in Pa.
+All functions broadcast over arrays. Symbols: p line load in N/m, R relative radius in m, E* contact modulus
+in Pa.
 
 References
 ----------
@@ -24,17 +25,17 @@ def contact_modulus(first: Material, second: Material) -> float:
 
 
 def relative_radius(first: ArrayLike, second: ArrayLike) -> FloatArray:
-    """Relative radius of curvature R in m, 1/R = 1/R1 + 1/R2 (R2 infinite: a plane, R2 < 0: a concave partner)."""
-    with np.errstate(
-        divide="ignore"
-    ):  # a radius of zero has infinite curvature, conforming bodies an infinite R
+    """Relative radius of curvature R in m, 1/R = 1/R1 + 1/R2 (R2 infinite: a plane; R2 < 0: concave)."""
+    # a radius of zero has infinite curvature, conforming bodies have an infinite R
+    with np.errstate(divide="ignore"):
         curvature = 1.0 / np.asarray(first, dtype=float) + 1.0 / np.asarray(second, dtype=float)
         return np.asarray(1.0 / curvature, dtype=float)
 
 
 def half_width(line_load: ArrayLike, radius: ArrayLike, modulus: float) -> FloatArray:
     """Half-width b in m of the contact strip, b^2 = 4 p R / (pi E*) [1]_."""
-    return np.sqrt(4.0 * np.asarray(line_load, dtype=float) * radius / (math.pi * modulus))
+    p, r = np.asarray(line_load, dtype=float), np.asarray(radius, dtype=float)
+    return np.asarray(np.sqrt(4.0 * p * r / (math.pi * modulus)), dtype=float)
 
 
 def line_load_at_half_width(width: ArrayLike, radius: ArrayLike, modulus: float) -> FloatArray:
@@ -50,11 +51,12 @@ def peak_pressure(line_load: ArrayLike, radius: ArrayLike, modulus: float) -> Fl
 def local_approach(
     line_load: ArrayLike, patch: ArrayLike, width: ArrayLike, material: Material
 ) -> FloatArray:
-    """What one body's surface moves more under Hertz pressure than under the patch of the finite-element model.
+    """Approach that Hertz pressure causes in one body beyond the patch of the finite-element model.
 
-    Two half-plane solutions with the same resultant are subtracted, so the far field cancels and no reference depth
-    appears: k p [ln(a/b) + 1/4] with k = 2 (1 - nu^2)/(pi E). The surface under a semi-elliptic pressure of half-width a
-    falls off as x^2/a^2, whose mean weighted by that pressure is the 1/4; under the Hertz strip the centre point counts.
+    Two half-plane solutions with the same resultant are subtracted, so the far field cancels and no
+    reference depth appears: k p [ln(a/b) + 1/4] with k = 2 (1 - nu^2)/(pi E). The surface under a
+    semi-elliptic pressure of half-width a falls off as x^2/a^2, whose mean weighted by that pressure is the
+    1/4; under the Hertz strip the centre point counts.
 
     Parameters
     ----------
@@ -81,7 +83,10 @@ def local_approach(
 def two_cylinder_approach(
     line_load: float, radii: tuple[float, float], materials: tuple[Material, Material]
 ) -> float:
-    """Approach in m of the centres of two solid cylinders pressed together: sum of p (1 - nu^2)/(pi E) [2 ln(4 R_i/b) - 1] [1]_."""
+    """Approach in m of the centres of two solid cylinders pressed together [1]_.
+
+    The sum over both of p (1 - nu^2)/(pi E) [2 ln(4 R_i/b) - 1].
+    """
     b = float(half_width(line_load, relative_radius(*radii), contact_modulus(*materials)))
     return sum(
         line_load / (math.pi * m.plane_strain_modulus) * (2.0 * math.log(4.0 * r / b) - 1.0)

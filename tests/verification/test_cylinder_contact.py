@@ -1,4 +1,4 @@
-"""Line contact against published and independently recomputed closed-form numbers (units of the tables: N, mm, MPa, um)."""
+"""Line contact against published and recomputed numbers (units of the tables: N, mm, MPa, um)."""
 
 from __future__ import annotations
 

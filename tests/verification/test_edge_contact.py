@@ -2,12 +2,14 @@
 
 Two routes, neither of which uses the inversion formula that `fe_contact.hertz.edge_contact` comes from:
 
-- the logarithmic equation expanded in Chebyshev polynomials, where the end of the strip is found from the vanishing of its
-  singularity;
-- boundary elements with the conditions of contact only (no tension, no penetration), where no end behaviour and no contact length is assumed.
+- the logarithmic equation expanded in Chebyshev polynomials, where the end of the strip is found from the
+  vanishing of its singularity;
+- boundary elements with the conditions of contact only (no tension, no penetration), where no end behaviour
+  and no contact length is assumed.
 
-A pressure q moves the surfaces together by -(2/(pi E*)) times the integral of q(s) ln|x - s| ds plus a constant. `local_approach` counts
-from the patch: that constant is ln(a) + 1/4 - 1/2 - ln(2) for every pressure of resultant one.
+A pressure q moves the surfaces together by -(2/(pi E*)) times the integral of q(s) ln|x - s| ds plus a
+constant. `local_approach` counts from the patch: that constant is ln(a) + 1/4 - 1/2 - ln(2) for every
+pressure of resultant one.
 """
 
 from __future__ import annotations
@@ -43,8 +45,9 @@ def edge_law(load, slope):
 def chebyshev_solution(length, slope):
     """Load and approach at the edge for a strip of given length.
 
-    With x = length (1 + xi)/2 and q = sum a_n T_n(xi)/sqrt(1 - xi^2), the integral of q ln|x - s| has the coefficients
-    -pi a_n/n (n > 0) and -pi a_0 ln 2, in units of length/2. Surface plus gap is the same all over the strip.
+    With x = length (1 + xi)/2 and q = sum a_n T_n(xi)/sqrt(1 - xi^2), the integral of q ln|x - s| has the
+    coefficients -pi a_n/n (n > 0) and -pi a_0 ln 2, in units of length/2. Surface plus gap is the same all
+    over the strip.
     """
     gap = chebyshev.chebinterpolate(
         lambda xi: slope * length * (1 + xi) / 2 + (length * (1 + xi) / 2) ** 2 / (2 * RADIUS), 6
@@ -72,7 +75,7 @@ def test_edge_law_against_chebyshev_expansion(slope, length):
 
 
 def boundary_elements(load, slope, points):
-    """Contact length and approach by constant elements graded towards the edge, unilateral conditions only."""
+    """Contact length and approach by constant elements graded towards the edge."""
     reach = 2.2 * max(float(half_width(load, RADIUS, MODULUS)), -slope * RADIUS)
     ends = reach * np.linspace(0.0, 1.0, points + 1) ** 2
     middle, size = 0.5 * (ends[1:] + ends[:-1]), np.diff(ends)
