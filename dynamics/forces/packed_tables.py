@@ -1,0 +1,91 @@
+"""Mesh-force tables laid out for the compiled look-up."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.forces.mesh_table import MeshTable
+from dynamics.types import FloatArray, IntArray
+
+BUCKETS_PER_KNOT = 4
+
+
+class PackedTables(NamedTuple):
+    """Tables of several flanks, one after the other in flat arrays.
+
+    Attributes
+    ----------
+    offset : (m, 6) int array
+        Per flank: first knot, first bucket, number of buckets, first row, first level, number of levels.
+    shift : (m,) array
+        Position of the first knot.
+    knot : flat array
+        Knots less `shift`, from 0 to 1 inclusive (P + 1 of them).
+    bucket : flat int array
+        The interval in which each of the equal buckets of the period begins: finding it takes no search.
+    row : (sum of P L, 8) array
+        Per position interval and level the ascending cubic coefficients of deflection (4) and stiffness (4) in
+        the local coordinate 0..1: one cache line each.
+    level : flat array
+        Forces, N.
+    """
+
+    offset: IntArray
+    shift: FloatArray
+    knot: FloatArray
+    bucket: IntArray
+    row: FloatArray
+    level: FloatArray
+
+
+def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
+    """Lay out `tables`, each with misalignment and centre-distance axes of length 1."""
+    knots = [np.append(np.asarray(table.position, float), table.position[0] + 1.0) for table in tables]
+    relative = [knot - knot[0] for knot in knots]
+    buckets = [_buckets(knot) for knot in relative]
+    rows = [_rows(table, knot) for table, knot in zip(tables, relative, strict=True)]
+    levels = [np.asarray(table.level, dtype=float) for table in tables]
+    starts = [_starts(parts) for parts in (relative, buckets, rows, levels)]
+    offset = [
+        [starts[0][f], starts[1][f], buckets[f].size, starts[2][f], starts[3][f], levels[f].size]
+        for f in range(len(tables))
+    ]
+    return PackedTables(
+        np.array(offset, dtype=np.int64).reshape(-1, 6),
+        np.array([knot[0] for knot in knots]),
+        np.concatenate([*relative, np.empty(0)]),
+        np.concatenate([*buckets, np.empty(0, dtype=np.int64)]),
+        np.ascontiguousarray(np.concatenate([*rows, np.empty((0, 8))])),
+        np.concatenate([*levels, np.empty(0)]),
+    )
+
+
+def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
+    """Where each part begins when they are joined."""
+    return [0, *np.cumsum([len(part) for part in parts]).tolist()]
+
+
+def _buckets(knot: FloatArray) -> IntArray:
+    """Interval that holds the start of each bucket; rounding must never put it behind the position looked up."""
+    count = BUCKETS_PER_KNOT * (knot.size - 1)
+    start = np.arange(count) / count * (1.0 - 1e-12)
+    index = np.clip(np.searchsorted(knot, start, side="right") - 1, 0, knot.size - 2)
+    return np.asarray(index, dtype=np.int64)
+
+
+def _rows(table: MeshTable, knot: FloatArray) -> FloatArray:
+    """Hermite data as ascending cubics: (P L, 8)."""
+    width = np.diff(knot)[:, np.newaxis]
+    deflection = _cubic(table.deflection[0, 0], table.deflection_slope[0, 0], width)
+    stiffness = _cubic(table.stiffness[0, 0], table.stiffness_slope[0, 0], width)
+    return np.concatenate([deflection, stiffness], axis=-1).reshape(-1, 8)
+
+
+def _cubic(value: FloatArray, slope: FloatArray, width: FloatArray) -> FloatArray:
+    """Coefficients (P, L, 4) on each interval, the last of which joins the last knot to the first."""
+    end, rise, fall = np.roll(value, -1, axis=0), slope * width, np.roll(slope, -1, axis=0) * width
+    step = end - value
+    return np.stack([value, rise, 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step], axis=-1)

@@ -1,0 +1,103 @@
+"""Compiled look-up of mesh force and tangent stiffness at a position and a deflection."""
+
+from __future__ import annotations
+
+import math
+
+from dynamics.forces.compiled import compiled, inner
+from dynamics.forces.packed_tables import PackedTables
+from dynamics.types import FloatArray
+
+
+@inner
+def cubic(row: FloatArray, index: int, column: int, u: float) -> float:
+    """Evaluate the cubic in ``row[index, column : column + 4]`` at u."""
+    return row[index, column] + u * (
+        row[index, column + 1] + u * (row[index, column + 2] + u * row[index, column + 3])
+    )
+
+
+@inner
+def position_interval(table: PackedTables, flank: int, position: float) -> tuple[int, float, float]:
+    """Return the first row of the interval that holds `position` (any real), the coordinate in it, 1/width."""
+    first, bucket, buckets = table.offset[flank, 0], table.offset[flank, 1], table.offset[flank, 2]
+    phase = position - table.shift[flank]
+    phase -= math.floor(phase)
+    if phase >= 1.0:  # a tiny negative phase rounds up to a whole turn
+        phase = 0.0
+    interval = table.bucket[bucket + int(phase * buckets)]
+    while phase >= table.knot[first + interval + 1]:
+        interval += 1
+    start = table.knot[first + interval]
+    per_width = 1.0 / (table.knot[first + interval + 1] - start)
+    return table.offset[flank, 3] + interval * table.offset[flank, 5], (phase - start) * per_width, per_width
+
+
+@inner
+def level_interval(
+    table: PackedTables, flank: int, row: int, u: float, deflection: float, hint: int
+) -> tuple[int, float, float]:
+    """Return the level k whose interval holds `deflection`, and the deflections at k and k + 1.
+
+    The walk starts at `hint` because a solution moves little between calls. Outside the table k is the first
+    or the last interval.
+    """
+    last = table.offset[flank, 5] - 2
+    k = min(max(hint, 0), last)
+    low, high = cubic(table.row, row + k, 0, u), cubic(table.row, row + k + 1, 0, u)
+    while deflection < low and k > 0:
+        k -= 1
+        low, high = cubic(table.row, row + k, 0, u), low
+    while deflection >= high and k < last:
+        k += 1
+        low, high = high, cubic(table.row, row + k + 1, 0, u)
+    return k, low, high
+
+
+@compiled
+def table_force(
+    table: PackedTables, flank: int, position: float, deflection: float, hint: int
+) -> tuple[float, float, int]:
+    """Return transverse force (N), tangent stiffness (N/m) and the level interval, to be the next call's hint.
+
+    Zero below lift-off; straight on with the last stiffness above the last level.
+    """
+    row, u, _ = position_interval(table, flank, position)
+    k, low, high = level_interval(table, flank, row, u, deflection, hint)
+    if deflection < low:
+        return 0.0, 0.0, k
+    level = table.offset[flank, 4] + k
+    if deflection >= high:
+        stiffness = cubic(table.row, row + k + 1, 4, u)
+        return table.level[level + 1] + stiffness * (deflection - high), stiffness, k
+    span = high - low
+    w = (deflection - low) / span
+    rise = span * cubic(table.row, row + k, 4, u)
+    fall = span * cubic(table.row, row + k + 1, 4, u)
+    step = table.level[level + 1] - table.level[level]
+    c2, c3 = 3.0 * step - 2.0 * rise - fall, rise + fall - 2.0 * step
+    force = table.level[level] + w * (rise + w * (c2 + w * c3))
+    return force, (rise + w * (2.0 * c2 + 3.0 * w * c3)) / span, k
+
+
+@compiled
+def table_deflection(table: PackedTables, flank: int, position: float, force: float) -> float:
+    """Return the deflection (m) at which the table's force is `force` (N); lift-off for 0 or less."""
+    row, u, _ = position_interval(table, flank, position)
+    first, levels = table.offset[flank, 4], table.offset[flank, 5]
+    k = 0
+    while k < levels - 2 and force >= table.level[first + k + 1]:
+        k += 1
+    low, high = cubic(table.row, row + k, 0, u), cubic(table.row, row + k + 1, 0, u)
+    if force <= 0.0:
+        return low
+    if force >= table.level[first + k + 1]:
+        return high + (force - table.level[first + k + 1]) / cubic(table.row, row + k + 1, 4, u)
+    # The cubic is monotone on its interval: bisection to the last bit cannot fail, and this is no inner loop.
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        if table_force(table, flank, position, middle, k)[0] < force:
+            low = middle
+        else:
+            high = middle
+    return 0.5 * (low + high)

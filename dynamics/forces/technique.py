@@ -1,0 +1,96 @@
+"""What a mesh's technique makes of its table: the table itself, or the secant stiffness at one force."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.forces.mesh_table import FIELDS, MeshTable
+from dynamics.forces.packed_tables import pack_tables
+from dynamics.forces.table_lookup import table_deflection
+from dynamics.forces.table_slope import deflection_slope
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class PlainTable:
+    """A mesh-force table held as plain arrays; fields as in `MeshTable`."""
+
+    position: FloatArray
+    level: FloatArray
+    misalignment: FloatArray
+    center_distance_change: FloatArray
+    deflection: FloatArray
+    deflection_slope: FloatArray
+    stiffness: FloatArray
+    stiffness_slope: FloatArray
+
+
+def table_at(table: MeshTable, misalignment: float, center_distance_change: float) -> PlainTable:
+    """Return `table` at one misalignment and centre-distance change, linear between their knots.
+
+    Raises
+    ------
+    InputError
+        If the place is outside the table, or not the table's only one.
+    """
+    weight_m = _weights("misalignment", table.misalignment, misalignment)
+    weight_d = _weights("center_distance_change", table.center_distance_change, center_distance_change)
+    fields = [
+        np.einsum("m,d,mdpl->pl", weight_m, weight_d, np.asarray(getattr(table, name), dtype=float))[
+            None, None
+        ]
+        for name in FIELDS
+    ]
+    return PlainTable(
+        np.asarray(table.position, dtype=float),
+        np.asarray(table.level, dtype=float),
+        np.array([misalignment]),
+        np.array([center_distance_change]),
+        *fields,
+    )
+
+
+def secant_table(table: PlainTable, force: float) -> PlainTable:
+    """Return the two-level table of F = k(x) d with k(x) = force / STE(x), both at the knots of `table`.
+
+    Raises
+    ------
+    InputError
+        If the static transmission error at that force is not above zero everywhere.
+    """
+    packed = pack_tables([table])
+    position = table.position
+    ste = np.array([table_deflection(packed, 0, x, force) for x in position])
+    slope = np.array([deflection_slope(packed, 0, x, force) for x in position])
+    if not np.all(ste > 0.0):
+        raise InputError(
+            "nominal_force", force, "a force at which the transmission error is above 0 everywhere"
+        )
+    zero, stiffness = np.zeros_like(ste), force / ste
+    stiffness_slope = -stiffness * slope / ste
+
+    def shaped(first: FloatArray, second: FloatArray) -> FloatArray:
+        return np.stack([first, second], axis=-1)[None, None]
+
+    return PlainTable(
+        position,
+        np.array([0.0, force]),
+        table.misalignment,
+        table.center_distance_change,
+        shaped(zero, ste),
+        shaped(zero, slope),
+        shaped(stiffness, stiffness),
+        shaped(stiffness_slope, stiffness_slope),
+    )
+
+
+def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:
+    """Weights of `knots` for linear interpolation at `value`."""
+    knots = np.atleast_1d(np.asarray(knots, dtype=float))
+    if not knots[0] <= value <= knots[-1]:
+        bound = f"from {knots[0]:g} to {knots[-1]:g} m, the table's"
+        raise InputError(field, value, bound, "Compute the table for this place.")
+    return np.array([np.interp(value, knots, unit) for unit in np.eye(knots.size)])

@@ -1,0 +1,115 @@
+"""Compiled time stepping: steps, error control, output on a uniform grid."""
+
+from __future__ import annotations
+
+from dynamics.forces.compiled import compiled, inner
+from dynamics.integrators.explicit_step import accelerate, explicit_step
+from dynamics.integrators.implicit_step import implicit_step
+from dynamics.integrators.powers import write_powers
+from dynamics.integrators.step_control import Control, next_rung, step_error
+from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
+from dynamics.integrators.workspace import Count, Workspace
+from dynamics.system.arrays import SystemArrays
+from dynamics.types import FloatArray, RunStatus
+
+COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
+STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
+
+
+@compiled
+def advance(
+    system: SystemArrays,
+    work: Workspace,
+    control: Control,
+    stop: float,
+    sample_rate: float,
+    q_out: FloatArray,
+    v_out: FloatArray,
+) -> int:
+    """Step until the time passes `stop`; write output samples k / sample_rate into rows k; return a `RunStatus`.
+
+    Steps never end at `stop` on purpose: cutting a run into chunks changes no bit of it.
+    """
+    if work.count[Count.ACCEPTED] == 0:
+        _start(system, work, control, q_out, v_out)
+    while work.time[0] < stop:
+        count = work.count
+        if count[Count.ACCEPTED] + count[Count.REJECTED] >= control.step_limit:
+            return STEP_LIMIT
+        rung = count[Count.RUNG]
+        step = work.ladder[rung]
+        if control.implicit:
+            solved = implicit_step(system, work, rung, control.force_tolerance, control.audit)
+        else:
+            solved = explicit_step(system, work, rung, control.audit)
+        error = step_error(system, work, step) / control.tolerance if solved else 1e10
+        accepted = error <= 1.0 or (not control.adaptive and solved and error < 1e300)
+        if control.adaptive:
+            count[Count.RUNG] = next_rung(work, control, error, accepted)
+        if accepted:
+            _accept(work, control, rung, sample_rate, q_out, v_out)
+            work.error[0] = max(error, 1e-4)
+            continue
+        count[Count.REJECTED] += 1
+        count[Count.NEWTON_FAILED] += 0 if solved else 1
+        if count[Count.RUNG] > work.ladder.size - 2 or not control.adaptive:
+            return STEP_FLOOR if error < 1e300 else NOT_FINITE
+    return COMPLETED
+
+
+@inner
+def _start(
+    system: SystemArrays, work: Workspace, control: Control, q_out: FloatArray, v_out: FloatArray
+) -> None:
+    """Evaluate accelerations and powers at t = 0, and store sample 0."""
+    accelerate(system, work, work.time[0], work.q, work.v, work.a)
+    for i in range(work.q.size):
+        work.stage_v[0, i] = work.v[i]
+        q_out[0, i], v_out[0, i] = work.q[i], work.v[i]
+    work.count[Count.OUTPUT] = 1
+    if control.audit:
+        write_powers(system, work, 0, work.time[0])
+
+
+@inner
+def _accept(
+    work: Workspace, control: Control, rung: int, sample_rate: float, q_out: FloatArray, v_out: FloatArray
+) -> None:
+    """Store the samples inside the step, add its works, and make its end the new state."""
+    step = work.ladder[rung]
+    end = work.time[0] + step
+    sample = work.count[Count.OUTPUT]
+    while sample < q_out.shape[0] and sample / sample_rate <= end:
+        _interpolate(work, step, sample / sample_rate - work.time[0], q_out[sample], v_out[sample])
+        sample += 1
+    work.count[Count.OUTPUT] = sample
+    if control.audit:
+        _add_works(work, control.implicit, step)
+    for i in range(work.q.size):
+        work.q[i], work.v[i], work.a[i] = work.q_new[i], work.v_new[i], work.a_new[i]
+    work.time[0] = end
+    work.count[Count.ACCEPTED] += 1
+    work.count[Count.SMALLEST_RUNG] = min(work.count[Count.SMALLEST_RUNG], rung)
+    work.count[Count.LARGEST_RUNG] = max(work.count[Count.LARGEST_RUNG], rung)
+
+
+@inner
+def _interpolate(work: Workspace, step: float, elapsed: float, q: FloatArray, v: FloatArray) -> None:
+    """Cubic Hermite interpolation of displacements (with rates) and of rates (with accelerations)."""
+    u = elapsed / step
+    end = u * u * (3.0 - 2.0 * u)
+    first, last = step * u * (1.0 - u) ** 2, -step * u * u * (1.0 - u)
+    for i in range(q.size):
+        q[i] = work.q[i] + end * (work.q_new[i] - work.q[i]) + first * work.v[i] + last * work.v_new[i]
+        v[i] = work.v[i] + end * (work.v_new[i] - work.v[i]) + first * work.a[i] + last * work.a_new[i]
+
+
+@inner
+def _add_works(work: Workspace, implicit: bool, step: float) -> None:
+    """Integrate the powers with the method's own weights; the last stage becomes the first of the next step."""
+    weights = IMPLICIT_WEIGHTS if implicit else EXPLICIT_WEIGHTS
+    last = weights.size - 1
+    for column in range(work.work.size):
+        for stage in range(weights.size):
+            work.work[column] += step * weights[stage] * work.power[stage, column]
+        work.power[0, column] = work.power[last, column]

@@ -1,0 +1,76 @@
+"""Compiled step of the explicit Dormand-Prince method of order 5: the check of the implicit one."""
+
+from __future__ import annotations
+
+from dynamics.forces.compiled import inner
+from dynamics.forces.flank_force import flank_force
+from dynamics.integrators.powers import write_powers
+from dynamics.integrators.rung import prepare_rung, row_product
+from dynamics.integrators.stage import add_flank_motion, finish_step, set_motion
+from dynamics.integrators.tableaus import (
+    EXPLICIT_EMBEDDED,
+    EXPLICIT_NODES,
+    EXPLICIT_STAGES,
+    EXPLICIT_WEIGHTS,
+)
+from dynamics.integrators.workspace import Workspace
+from dynamics.system.arrays import SystemArrays
+from dynamics.types import FloatArray
+
+STAGE_COUNT = 7
+
+
+@inner
+def explicit_step(system: SystemArrays, work: Workspace, rung: int, audit: bool) -> bool:
+    """Try one step from the state in `work`; fill what `implicit_step` fills; return True."""
+    step, size = work.ladder[rung], work.q.size
+    for i in range(size):
+        work.stage_v[0, i], work.stage_a[0, i] = work.v[i], work.a[i]
+    for stage in range(1, STAGE_COUNT):
+        for i in range(size):
+            displacement, rate = 0.0, 0.0
+            for s in range(stage):
+                displacement += EXPLICIT_STAGES[stage, s] * work.stage_v[s, i]
+                rate += EXPLICIT_STAGES[stage, s] * work.stage_a[s, i]
+            work.q_new[i] = work.q[i] + step * displacement
+            work.v_new[i] = work.v[i] + step * rate
+            work.stage_v[stage, i] = work.v_new[i]
+        time = work.time[0] + EXPLICIT_NODES[stage] * step
+        accelerate(system, work, time, work.q_new, work.v_new, work.stage_a[stage])
+        if audit:
+            write_powers(system, work, stage, time)
+    for i in range(size):
+        work.a_new[i] = work.stage_a[STAGE_COUNT - 1, i]
+    finish_step(work, step, EXPLICIT_WEIGHTS, EXPLICIT_EMBEDDED)
+    return True
+
+
+@inner
+def accelerate(
+    system: SystemArrays,
+    work: Workspace,
+    time: float,
+    q: FloatArray,
+    v: FloatArray,
+    acceleration: FloatArray,
+) -> None:
+    """Write the accelerations (n,) in the state `q`, `v` at `time`, and the flank state into `work`.
+
+    The last rung's step is 0, so its matrix is M alone.
+    """
+    rung = work.ladder.size - 1
+    if not work.ready[rung]:
+        prepare_rung(system, work, rung, 0.0)
+    set_motion(system, work, time)
+    add_flank_motion(system, work, q, v)
+    for i in range(q.size):
+        work.external[i] -= row_product(system.damping, system.block, v, i)
+        work.external[i] -= row_product(system.stiffness, system.block, q, i)
+    for i in range(q.size):
+        acceleration[i] = row_product(work.inverse[rung], system.block, work.external, i)
+    for f in range(work.force.size):
+        work.force[f], work.elastic[f], _, _, work.hint[f] = flank_force(
+            system.flank, f, work.position[f], work.deflection[f], work.rate[f], work.hint[f]
+        )
+        for i in range(q.size):
+            acceleration[i] -= work.response[rung, f, i] * work.force[f]

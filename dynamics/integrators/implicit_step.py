@@ -1,0 +1,84 @@
+"""Compiled step of the L-stable, singly diagonally implicit method of order 4."""
+
+from __future__ import annotations
+
+from dynamics.forces.compiled import inner
+from dynamics.integrators.flank_newton import solve_flanks
+from dynamics.integrators.powers import write_powers
+from dynamics.integrators.rung import prepare_rung, row_product
+from dynamics.integrators.stage import add_flank_motion, finish_step, set_motion
+from dynamics.integrators.tableaus import (
+    IMPLICIT_DIAGONAL,
+    IMPLICIT_EMBEDDED,
+    IMPLICIT_NODES,
+    IMPLICIT_STAGES,
+    IMPLICIT_WEIGHTS,
+)
+from dynamics.integrators.workspace import Count, Workspace
+from dynamics.system.arrays import SystemArrays
+
+STAGE_COUNT = 6
+
+
+@inner
+def implicit_step(system: SystemArrays, work: Workspace, rung: int, tolerance: float, audit: bool) -> bool:
+    """Try one step from the state in `work`; return whether Newton's method converged in every stage.
+
+    Fills q_new, v_new, a_new, the error estimates and, if `audit`, the powers. `tolerance` in N is Newton's.
+    """
+    if not work.ready[rung]:
+        prepare_rung(system, work, rung, IMPLICIT_DIAGONAL)
+    step = work.ladder[rung]
+    for i in range(work.q.size):
+        work.stage_v[0, i], work.stage_a[0, i] = work.v[i], work.a[i]
+    for stage in range(1, STAGE_COUNT):
+        iterations = _stage(system, work, rung, stage, tolerance)
+        if iterations < 0:
+            return False
+        work.count[Count.NEWTON_TOTAL] += iterations
+        work.count[Count.NEWTON_MOST] = max(work.count[Count.NEWTON_MOST], iterations)
+        if audit:
+            write_powers(system, work, stage, work.time[0] + IMPLICIT_NODES[stage] * step)
+    for i in range(work.q.size):
+        work.v_new[i], work.a_new[i] = work.stage_v[STAGE_COUNT - 1, i], work.stage_a[STAGE_COUNT - 1, i]
+    finish_step(work, step, IMPLICIT_WEIGHTS, IMPLICIT_EMBEDDED)
+    return True
+
+
+@inner
+def _stage(system: SystemArrays, work: Workspace, rung: int, stage: int, tolerance: float) -> int:
+    """Solve one stage for its acceleration.
+
+    With s = diagonal * step the stage's rates are v = v* + s a and q = q* + s v* + s^2 a, where v* and q* hold
+    what earlier stages contribute; (M + s C + s^2 K) a = external - C v* - K (q* + s v*) - sum g F.
+    """
+    step, size = work.ladder[rung], work.q.size
+    span = IMPLICIT_DIAGONAL * step
+    set_motion(system, work, work.time[0] + IMPLICIT_NODES[stage] * step)
+    q, v = work.q_new, work.v_new
+    for i in range(size):
+        displacement, rate = 0.0, 0.0
+        for s in range(stage):
+            displacement += IMPLICIT_STAGES[stage, s] * work.stage_v[s, i]
+            rate += IMPLICIT_STAGES[stage, s] * work.stage_a[s, i]
+        v[i] = work.v[i] + step * rate
+        q[i] = work.q[i] + step * displacement + span * v[i]
+    for i in range(size):
+        work.external[i] -= row_product(system.damping, system.block, v, i)
+        work.external[i] -= row_product(system.stiffness, system.block, q, i)
+    for i in range(size):
+        work.linear[i] = row_product(work.inverse[rung], system.block, work.external, i)
+    for i in range(size):
+        v[i] += span * work.linear[i]
+        q[i] += span * span * work.linear[i]
+    add_flank_motion(system, work, q, v)
+    iterations = solve_flanks(system, work, rung, span, tolerance)
+    for i in range(size):
+        pushed = 0.0
+        for f in range(work.force.size):
+            pushed += work.response[rung, f, i] * work.force[f]
+        work.stage_a[stage, i] = work.linear[i] - pushed
+        v[i] -= span * pushed
+        q[i] -= span * span * pushed
+        work.stage_v[stage, i] = v[i]
+    return iterations

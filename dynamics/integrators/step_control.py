@@ -1,0 +1,76 @@
+"""Compiled step size control on the ladder of step sizes."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from dynamics.forces.compiled import inner
+from dynamics.integrators.workspace import RUNGS_PER_OCTAVE, Count, Workspace
+from dynamics.system.arrays import SystemArrays
+
+SAFETY = 0.9
+RISE_LIMIT = 2.0
+FALL_LIMIT = 0.2
+
+
+class Control(NamedTuple):
+    """Settings of the step size control.
+
+    Attributes
+    ----------
+    implicit : bool
+        Which method.
+    adaptive : bool
+        False: every step is accepted, and all have the size of the rung at the start.
+    audit : bool
+        Whether to integrate the powers.
+    order : int
+        Of the embedded error estimate.
+    tolerance : float
+        Error allowed per step, m.
+    force_tolerance : float
+        Last update allowed in Newton's method, N.
+    step_limit : int
+    """
+
+    implicit: bool
+    adaptive: bool
+    audit: bool
+    order: int
+    tolerance: float
+    force_tolerance: float
+    step_limit: int
+
+
+@inner
+def step_error(system: SystemArrays, work: Workspace, step: float) -> float:
+    """Return the largest error estimate of any freedom over one step, in metres; NaN counts as infinite."""
+    error = 0.0
+    for i in range(work.q.size):
+        scale = system.scale[i]
+        error = max(error, scale * abs(work.q_error[i]), scale * step * abs(work.v_error[i]))
+        if not math.isfinite(work.q_error[i]) or not math.isfinite(work.v_error[i]):
+            return math.inf
+    return error
+
+
+@inner
+def next_rung(work: Workspace, control: Control, error: float, accepted: bool) -> int:
+    """Return the rung of the next step from this step's error over the tolerance.
+
+    Proportional-integral control (Gustafsson): the factor depends on the last accepted error too, so that the
+    step size does not oscillate where the solution is stiff. A rejected step falls by at least one rung, and no
+    accepted one rises by less than a whole rung, so the step stays put unless it pays.
+    """
+    exponent = 1.0 / (control.order + 1)
+    error = max(error, 1e-10)
+    factor = SAFETY * error ** (-0.7 * exponent) * work.error[0] ** (0.4 * exponent)
+    if not accepted:
+        factor = min(SAFETY * error ** (-exponent), 1.0)
+    factor = min(max(factor, FALL_LIMIT), RISE_LIMIT)
+    rise = math.floor(RUNGS_PER_OCTAVE * math.log2(factor))
+    rung = work.count[Count.RUNG] - int(rise)
+    if not accepted:
+        rung = max(rung, work.count[Count.RUNG] + 1)
+    return max(rung, 0)

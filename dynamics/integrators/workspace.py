@@ -1,0 +1,150 @@
+"""Arrays that a run carries from step to step, allocated once."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.system.arrays import SystemArrays
+from dynamics.types import BoolArray, FloatArray, IntArray
+
+STAGES = 7  # of the method with the most stages
+RUNGS_PER_OCTAVE = 4
+
+
+class Power(IntEnum):
+    """Columns of the powers, integrated to works over the run."""
+
+    DRIVE = 0  # supplied by the drive
+    LOAD = 1  # supplied by the load torques (negative: they resist)
+    POSITION = 2  # supplied by the table's change with position
+    BUSHING = 3  # dissipated in bushings
+    MESH = 4  # dissipated in meshes
+
+
+class Count(IntEnum):
+    """Entries of the step statistics."""
+
+    RUNG = 0  # of the current step size
+    OUTPUT = 1  # next output sample
+    ACCEPTED = 2
+    REJECTED = 3
+    NEWTON_TOTAL = 4
+    NEWTON_MOST = 5  # in one stage
+    NEWTON_FAILED = 6  # steps repeated because Newton failed
+    SMALLEST_RUNG = 7  # of an accepted step: the largest step
+    LARGEST_RUNG = 8
+
+
+class Workspace(NamedTuple):
+    """State and scratch of a run with n freedoms and m flanks.
+
+    The step sizes are those of a ladder, RUNGS_PER_OCTAVE to a factor of 2, so that the matrices of the implicit
+    stages are inverted once per rung and run.
+
+    Attributes
+    ----------
+    time, error : (1,) arrays
+        Current time, s; error of the last accepted step over the tolerance.
+    q, v, a : (n,) arrays
+        State at `time`: deviations from the kinematic motion, their rates and accelerations.
+    q_new, v_new, a_new, q_error, v_error : (n,) arrays
+        At the end of the step tried.
+    external, linear : (n,) arrays
+        Scratch: external force; acceleration without flank forces.
+    stage_v, stage_a : (STAGES, n) arrays
+    force, elastic, deflection, rate, position : (m,) arrays
+        Of the flanks at the current stage: total and elastic force, transmission error, its rate, position.
+    jacobian : (m, m + 1) array
+        Scratch of Newton's method.
+    hint : (m,) int array
+        Level intervals of the last look-up.
+    power : (STAGES, 5) array
+        Per stage; columns `Power`.
+    work : (5,) array
+        Integrated, J.
+    count : int array
+        See `Count`.
+    ladder : (r,) array
+        Step sizes, falling, s; the last is 0, for the matrices of an explicit evaluation.
+    matrix : (n, n) array
+        Scratch: the matrix to invert.
+    ready : (r,) bool array
+        Whether the matrices of a rung are there.
+    inverse : (r, n, n) array
+        Of M + h g C + (h g)^2 K.
+    response : (r, m, n) array
+        inverse times flank direction.
+    approach, turning : (r, m, m) arrays
+        Transmission error, position of flank e per response to flank f.
+    """
+
+    time: FloatArray
+    error: FloatArray
+    q: FloatArray
+    v: FloatArray
+    a: FloatArray
+    q_new: FloatArray
+    v_new: FloatArray
+    a_new: FloatArray
+    q_error: FloatArray
+    v_error: FloatArray
+    external: FloatArray
+    linear: FloatArray
+    stage_v: FloatArray
+    stage_a: FloatArray
+    force: FloatArray
+    elastic: FloatArray
+    deflection: FloatArray
+    rate: FloatArray
+    position: FloatArray
+    jacobian: FloatArray
+    hint: IntArray
+    power: FloatArray
+    work: FloatArray
+    count: IntArray
+    ladder: FloatArray
+    matrix: FloatArray
+    ready: BoolArray
+    inverse: FloatArray
+    response: FloatArray
+    approach: FloatArray
+    turning: FloatArray
+
+
+def step_ladder(largest: float, smallest: float) -> FloatArray:
+    """Return step sizes falling from `largest` to at most `smallest` by equal factors, and 0."""
+    rungs = int(np.ceil(RUNGS_PER_OCTAVE * np.log2(largest / smallest))) + 1
+    return np.append(largest * 2.0 ** (-np.arange(rungs) / RUNGS_PER_OCTAVE), 0.0)
+
+
+def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, first_step: float) -> Workspace:
+    """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
+    n, m, r = q.size, system.drive_direction.size, ladder.size
+    state = [np.zeros(n) for _ in range(10)]
+    state[0][:] = q
+    count = np.zeros(len(Count), dtype=np.int64)
+    count[Count.RUNG] = min(int(np.searchsorted(-ladder, -first_step)), r - 2)
+    count[Count.SMALLEST_RUNG] = r - 1
+    return Workspace(
+        np.zeros(1),
+        np.ones(1),
+        *state,
+        np.zeros((STAGES, n)),
+        np.zeros((STAGES, n)),
+        *[np.zeros(m) for _ in range(5)],
+        np.zeros((m, m + 1)),
+        np.zeros(m, dtype=np.int64),
+        np.zeros((STAGES, len(Power))),
+        np.zeros(len(Power)),
+        count,
+        ladder,
+        np.zeros((n, n)),
+        np.zeros(r, dtype=np.bool_),
+        np.zeros((r, n, n)),
+        np.zeros((r, m, n)),
+        np.zeros((r, m, m)),
+        np.zeros((r, m, m)),
+    )

@@ -1,0 +1,100 @@
+"""What an effect of the multibody model is: which freedoms it adds, and when a rotor calls for them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+FREEDOMS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
+
+
+@dataclass(frozen=True)
+class MeshOnRotor:
+    """A mesh as its rotor feels it.
+
+    Attributes
+    ----------
+    force : float
+        Nominal transverse mesh force, N.
+    lever : float
+        Axial distance from the rotor's centre of mass, m.
+    axial : float
+        Axial over transverse force, tan(base helix angle), >= 0.
+    radius : float
+        Operating pitch radius, m: the axial force's lever across the shaft.
+    """
+
+    force: float
+    lever: float
+    axial: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class SupportedRotor:
+    """What effects decide on: stiffness of a rotor's supports, and the meshes it carries.
+
+    Attributes
+    ----------
+    name : str
+        The shaft's.
+    length : float
+        m.
+    radial_stiffness, axial_stiffness, tilt_stiffness : float
+        Of all its bushings together, N/m and N m/rad; 0: held rigidly, because nothing else holds it.
+    elastic_lever : float
+        Axial distance from the centre of mass to the bushings' elastic centre, m.
+    meshes : tuple of MeshOnRotor
+    """
+
+    name: str
+    length: float
+    radial_stiffness: float
+    axial_stiffness: float
+    tilt_stiffness: float
+    elastic_lever: float
+    meshes: tuple[MeshOnRotor, ...]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether a rotor calls for an effect.
+
+    Attributes
+    ----------
+    on : bool
+    possible : bool
+        False: the supports leave no such freedom, and asking for it changes nothing.
+    reason : str
+        In words.
+    worth : float
+        Static displacement along the line of action that the effect adds at the nominal force, m.
+    """
+
+    on: bool
+    possible: bool
+    reason: str
+    worth: float
+
+
+class Effect(Protocol):
+    """One optional piece of physics of the multibody model."""
+
+    @property
+    def name(self) -> str:
+        """What a scene calls it."""
+        ...
+
+    @property
+    def adds(self) -> tuple[str, ...]:
+        """Names of the freedoms it gives a rotor."""
+        ...
+
+    @property
+    def cost(self) -> str:
+        """What it costs, in words."""
+        ...
+
+    def called_for(self, rotor: SupportedRotor) -> Verdict:
+        """Decide for one rotor."""
+        ...

@@ -1,0 +1,20 @@
+"""The effects of the multibody model, one line each, and what is left out."""
+
+from __future__ import annotations
+
+from dynamics.system.effects.axial import Axial
+from dynamics.system.effects.effect import Effect
+from dynamics.system.effects.lateral import Lateral
+from dynamics.system.effects.tilt import Tilt
+
+EFFECTS: tuple[Effect, ...] = (Lateral(), Axial(), Tilt())
+
+LEFT_OUT: dict[str, str] = {
+    "coast flank": "only the driving flank carries force; below lift-off there is none",
+    "gyroscopic terms": "shafts tilt slowly against their rotation, or not at all",
+    "gravity": "weights are small against mesh forces",
+    "friction": "the mesh force acts along the line of action",
+    "moving point of application": "the mesh force acts at mid-face, at the operating pitch point",
+    "shaft flexibility": "shafts are rigid",
+    "dynamic misalignment and centre distance": "the table is used at one constant place of these axes",
+}

@@ -1,0 +1,101 @@
+"""Force laws of all flanks as resolved: table at its place, technique applied, damping filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.forces.flank_force import FlankLaws
+from dynamics.forces.mesh_table import MeshTable
+from dynamics.forces.packed_tables import PackedTables, pack_tables
+from dynamics.forces.table_lookup import table_deflection, table_force
+from dynamics.forces.technique import PlainTable, secant_table, table_at
+from dynamics.system.kinematics import Kinematics
+from dynamics.system.scene import Scene
+from dynamics.types import FloatArray
+
+DAMPING_REACH = 0.05
+"""Damping acts in full from this fraction of the nominal force on (of the last level without one)."""
+
+
+@dataclass(frozen=True)
+class Flanks:
+    """Resolved force laws of m flanks (for now one per mesh, its driving flank).
+
+    Attributes
+    ----------
+    nominal_force : (m,) array
+        Transverse, N.
+    mean_stiffness : (m,) array
+        Tangent stiffness of the table at the nominal force, mean over the positions, N/m.
+    law : FlankLaws
+        Table, damping (N s/m) and reach (N), for the compiled loops.
+    static : PackedTables
+        The tables themselves, whatever the technique: the static reference.
+    """
+
+    nominal_force: FloatArray
+    mean_stiffness: FloatArray
+    law: FlankLaws
+    static: PackedTables
+
+
+def flank_laws(
+    scene: Scene, kinematics: Kinematics, nominal: FloatArray, polar_inertia: Sequence[float]
+) -> Flanks:
+    """Resolve the force law of every mesh."""
+    static: list[PlainTable] = []
+    used: list[MeshTable] = []
+    for index, mesh in enumerate(scene.meshes):
+        try:
+            static.append(table_at(mesh.table, mesh.misalignment, mesh.center_distance_change))
+            used.append(_apply_technique(mesh.technique, static[-1], nominal[index]))
+        except InputError as error:
+            raise error.within(f"meshes[{index}]") from None
+    packed = pack_tables(static)
+    stiffness = np.array(
+        [mean_stiffness(packed, f, nominal[f], static[f].position) for f in range(len(static))]
+    )
+    damping = np.array(
+        [_damping(scene, kinematics, f, stiffness[f], polar_inertia) for f in range(len(static))]
+    )
+    top = np.array([table.level[-1] for table in static])
+    reach = DAMPING_REACH * np.where(nominal > 0.0, nominal, top)
+    return Flanks(nominal, stiffness, FlankLaws(pack_tables(used), damping, reach), packed)
+
+
+def mean_stiffness(packed: PackedTables, flank: int, force: float, positions: FloatArray) -> float:
+    """Return the tangent stiffness at `force`, mean over `positions`, N/m."""
+    deflections = [table_deflection(packed, flank, x, force) for x in positions]
+    return float(
+        np.mean([table_force(packed, flank, x, d, 0)[1] for x, d in zip(positions, deflections, strict=True)])
+    )
+
+
+def _apply_technique(technique: str, table: PlainTable, force: float) -> PlainTable:
+    """The table a mesh runs on."""
+    if technique == "variable_torque":
+        return table
+    if force <= 0.0:
+        raise InputError(
+            "technique", technique, "used with a nominal force", "Load the mesh or give nominal_force."
+        )
+    return secant_table(table, force)
+
+
+def _damping(
+    scene: Scene, kinematics: Kinematics, index: int, stiffness: float, polar_inertia: Sequence[float]
+) -> float:
+    """As given, or from the damping ratio of the two gears turning against each other on the mean stiffness."""
+    mesh = scene.meshes[index]
+    if mesh.damping is not None:
+        return mesh.damping
+    mobility = 0.0
+    for gear in (scene.gear(mesh.driver), scene.gear(mesh.driven)):
+        shaft = scene.shaft_index(gear.shaft)
+        if shaft != kinematics.drive:
+            mobility += gear.base_radius**2 / polar_inertia[shaft]
+    return 2.0 * mesh.damping_ratio * float(np.sqrt(stiffness / mobility))

@@ -1,0 +1,103 @@
+"""Where and in which direction the force of a mesh acts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.bodies import GearBody, Shaft
+from dynamics.errors import InputError
+from dynamics.system.scene import Scene
+from dynamics.types import FloatArray
+
+BASE_PITCH_AGREEMENT = 1e-9
+
+
+@dataclass(frozen=True)
+class LineOfAction:
+    """The line along which the driver pushes the driven gear.
+
+    Attributes
+    ----------
+    point : (3,) array
+        Operating pitch point in the middle of the common face, fixed frame, m.
+    force : (3,) array
+        Force on the driven gear per unit transverse mesh force: a unit vector in the transverse plane, plus
+        the axial part of a helical mesh.
+    working_pressure_angle : float
+        rad.
+    """
+
+    point: FloatArray
+    force: FloatArray
+    working_pressure_angle: float
+
+    def gradient(self, center: FloatArray) -> FloatArray:
+        """Return the (6,) wrench of `force` about `center`: the derivative of the approach along the line.
+
+        Displacements and small rotations of a body at `center` move its point at the pitch point by
+        u + r x point arm, and this is its projection on `force`.
+        """
+        return np.concatenate([self.force, np.cross(self.point - center, self.force)])
+
+
+def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
+    """Return the line of action of mesh `index` whose driver pushes in the `sense` (+1 or -1) about +z.
+
+    With e from the driver's to the driven gear's centre and alpha the working pressure angle, the driver turning
+    in +z pushes along n = sin(alpha) e + cos(alpha) (z x e). A right-hand driver (beta_b > 0) pushed on by
+    F feels the axial force sense F tan(beta_b).
+
+    Raises
+    ------
+    InputError
+        If the gears cannot mesh: base pitch, hand, faces or centre distance do not fit.
+    """
+    mesh = scene.meshes[index]
+    driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
+    field = f"meshes[{index}].driven"
+    _check_fit(field, driver, driven)
+    first, second = _center(scene, driver), _center(scene, driven)
+    apart = (second - first) * np.array([1.0, 1.0, 0.0])
+    distance = float(np.hypot(apart[0], apart[1]))
+    bases = driver.base_radius + driven.base_radius
+    if distance <= bases:
+        raise InputError(field, distance, f"at a centre distance above the base radii's sum, {bases:g} m")
+    angle = math.acos(bases / distance)
+    e = apart / distance
+    across = np.array([-e[1], e[0], 0.0])
+    force = math.sin(angle) * e + sense * math.cos(angle) * across
+    force[2] = -sense * math.tan(driver.base_helix_angle)
+    point = first + e * driver.base_radius / math.cos(angle)
+    point[2] = _middle_of_common_face(field, first[2], driver, second[2], driven)
+    return LineOfAction(point, force, angle)
+
+
+def _center(scene: Scene, gear: GearBody) -> FloatArray:
+    """Mid-face centre of a gear in the fixed frame."""
+    shaft: Shaft = scene.shafts[scene.shaft_index(gear.shaft)]
+    return np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, gear.position])
+
+
+def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
+    """Equal base pitch, opposite hand."""
+    if abs(driver.base_pitch / driven.base_pitch - 1.0) > BASE_PITCH_AGREEMENT:
+        bound = f"a gear of base pitch {driver.base_pitch:.12g} m like the driver's"
+        raise InputError(field, driven.base_pitch, bound, "base_radius / teeth must agree to 1e-9.")
+    if abs(driver.base_helix_angle + driven.base_helix_angle) > 1e-9:
+        raise InputError(
+            field,
+            driven.base_helix_angle,
+            f"of base helix angle {-driver.base_helix_angle:g}, the other hand",
+        )
+
+
+def _middle_of_common_face(field: str, z1: float, driver: GearBody, z2: float, driven: GearBody) -> float:
+    """Axial place of the force."""
+    low = max(z1 - driver.face_width / 2.0, z2 - driven.face_width / 2.0)
+    high = min(z1 + driver.face_width / 2.0, z2 + driven.face_width / 2.0)
+    if high <= low:
+        raise InputError(field, driven.position, "at an axial place where the faces overlap")
+    return (low + high) / 2.0
