@@ -7,8 +7,12 @@ from contextlib import asynccontextmanager
 
 from fastapi import FastAPI
 
-from service.jobs import Claims, Registry, Scheduler, Submissions, solver_version
 from service.jobs.catalogue import default_registry
+from service.jobs.claims import Claims
+from service.jobs.key import solver_version
+from service.jobs.process import Registry
+from service.jobs.scheduler import Scheduler
+from service.jobs.submissions import Submissions
 from service.routes import effects, health, jobs, landing, results
 from service.routes.context import Context
 from service.routes.errors import install_error_handlers

@@ -18,7 +18,6 @@ import time
 import traceback
 from typing import Any, TextIO
 
-from service.convert.errors import translated
 from service.jobs.order import Product, WorkOrder
 from service.problems import ServiceError
 
@@ -83,12 +82,19 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
     except MemoryError:
         return {"failure": "The computation ran out of memory. Ask for a coarser level."}
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
-        known = error if isinstance(error, ServiceError) else translated(error)
+        known = error if isinstance(error, ServiceError) else _translated(error)
         if known is None:
             traceback.print_exc(file=sys.stderr)
             return {"failure": "unexpected", "unexpected": True}
         return {"failure": str(known), "faults": [fault.as_json() for fault in known.faults]}
     return {"products": [{"key": p.key, "kind": p.kind, "file": str(p.file)} for p in products]}
+
+
+def _translated(error: Exception) -> ServiceError | None:
+    """Return an error of the libraries as the boundary's."""
+    from service.convert.errors import translated  # noqa: PLC0415 (start-up time; failures are rare)
+
+    return translated(error)
 
 
 if __name__ == "__main__":

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from service.problems import NoSuchProcess
 from service.schemas.model import BoundaryModel
-from service.store import ResultStore
+
+if TYPE_CHECKING:
+    from service.store import ResultStore
 
 Json = dict[str, Any]
-Prepare = Callable[[BoundaryModel, ResultStore], Json]
+Prepare = Callable[[BoundaryModel, "ResultStore"], Json]
 
 
 @dataclass(frozen=True)

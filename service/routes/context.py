@@ -10,7 +10,9 @@ from typing import Annotated
 from fastapi import Depends, Request
 
 from fe_contact.ste import SteDatabase
-from service.jobs import Registry, Scheduler, Submissions
+from service.jobs.process import Registry
+from service.jobs.scheduler import Scheduler
+from service.jobs.submissions import Submissions
 from service.settings import Settings
 from service.store import ResultStore, StoredResult
 

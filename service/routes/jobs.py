@@ -6,7 +6,8 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 
-from service.jobs import Job, Registry
+from service.jobs.process import Registry
+from service.jobs.submissions import Job
 from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
 from service.routes.context import Ctx
 from service.routes.errors import documented

@@ -8,7 +8,7 @@ from prometheus_client import CollectorRegistry, Counter, Histogram, generate_la
 from prometheus_client.core import GaugeMetricFamily
 from prometheus_client.registry import Collector
 
-from service.jobs import Submissions
+from service.jobs.submissions import Submissions
 
 _STATES = ("accepted", "running", "successful", "failed", "dismissed")
 

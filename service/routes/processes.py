@@ -7,7 +7,8 @@ from typing import Any, Literal, cast
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field, create_model
 
-from service.jobs import Process, Registry, content_key
+from service.jobs.key import content_key
+from service.jobs.process import Process, Registry
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
 from service.routes.jobs import status_info

@@ -1,0 +1,81 @@
+"""What the tests of the service share: the job machinery on a fresh directory, waiting, processes."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from service.jobs.claims import Claims
+from service.jobs.key import content_key
+from service.jobs.process import Registry
+from service.jobs.scheduler import Scheduler
+from service.jobs.submissions import Job, Submissions
+from service.settings import Settings
+from service.store import ResultStore, open_database
+
+
+@dataclass(frozen=True)
+class Bench:
+    """The job machinery without HTTP."""
+
+    settings: Settings
+    submissions: Submissions
+    claims: Claims
+    store: ResultStore
+    scheduler: Scheduler
+
+    def submit(self, **wish: Any) -> Job:
+        """Enter a wish as the execution route does."""
+        inputs = {"wish": {"mode": "write", "text": "", "number": 0.0, **wish}}
+        key = content_key("standin", "1", inputs)
+        stored = self.store.find(key, "database") is not None
+        job = self.submissions.submit("standin", key, inputs, stored=stored)
+        self.scheduler.wake()
+        return job
+
+    def ended(self, job: Job) -> Job:
+        """Wait for a job."""
+        until(lambda: self.submissions.find(job.id).ended)
+        return self.submissions.find(job.id)
+
+    def starts(self, job: Job) -> list[str]:
+        """Return one line per time the work was started."""
+        file = self.settings.data_directory / f"started_{job.key[:8]}"
+        return file.read_text().splitlines() if file.exists() else []
+
+    def again(self) -> Bench:
+        """Return a new scheduler on the same directory, as after a restart."""
+        scheduler = Scheduler(self.settings, self._registry(), self.claims, self.store)
+        return replace(self, scheduler=scheduler)
+
+    def _registry(self) -> Registry:
+        return self.scheduler._registry
+
+
+def bench(directory: Path, registry: Registry, **settings: Any) -> Bench:
+    """Return the machinery on a directory; its scheduler is not started."""
+    chosen = Settings(data_directory=directory, **settings)
+    engine = open_database(directory / "service.sqlite3")
+    store, claims = ResultStore(engine, directory / "results"), Claims(engine)
+    scheduler = Scheduler(chosen, registry, claims, store)
+    return Bench(chosen, Submissions(engine, chosen.queue_limit), claims, store, scheduler)
+
+
+def until(condition: Callable[[], bool], seconds: float = 30.0) -> None:
+    """Wait for a condition; fail if it does not come true (a hang, not a speed, is what this finds)."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
+
+
+def lives(pid: int) -> bool:
+    """Whether a process exists and is no zombie."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state not in ("Z", "X")

@@ -1,0 +1,47 @@
+"""The work of the stand-in process; imports little, as its worker starts often."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import time
+
+from fe_contact.errors import InputError, MeshError
+from service.jobs.order import Product, Progress, WorkOrder
+
+SECRET = "the text of a defect"
+
+
+def work(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Do what was wished."""
+    wish = order.inputs["wish"]
+    with (order.data_directory / f"started_{order.key[:8]}").open("a") as stream:
+        stream.write(f"{os.getpid()} {os.nice(0)} {os.environ['OMP_NUM_THREADS']}\n")
+    progress("first", 0.5)
+    _misbehave(order, wish["mode"])
+    progress("first", 1.0)
+    progress("second", 1.0)
+    file = order.workspace / "result.nc"
+    file.write_text(wish["text"])
+    return (Product(order.key, "database", file),)
+
+
+def _misbehave(order: WorkOrder, mode: str) -> None:
+    """Fail in the way that is asked for."""
+    if mode == "hang":
+        grandchild = subprocess.Popen(["sleep", "600"])
+        (order.data_directory / f"grandchild_{order.key[:8]}").write_text(str(grandchild.pid))
+        time.sleep(600)
+    if mode == "die" or (mode == "die_once" and _first_time(order)):
+        os._exit(7)
+    if mode == "mesh":
+        raise MeshError("element 7 has a negative Jacobian")
+    if mode == "input":
+        raise InputError("pinion.bore_diameter", 0.095, "below the root diameter 0.07 m", "Lower the bore.")
+    if mode == "defect":
+        raise RuntimeError(SECRET)
+
+
+def _first_time(order: WorkOrder) -> bool:
+    """Whether this is the first attempt."""
+    return len((order.data_directory / f"started_{order.key[:8]}").read_text().splitlines()) == 1

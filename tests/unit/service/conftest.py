@@ -1,0 +1,23 @@
+"""Stand-in processes for the tests of the service, importable here and in the workers."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+STAND_INS = str(Path(__file__).resolve().parents[2] / "stand_ins")
+sys.path.insert(0, STAND_INS)
+
+
+@pytest.fixture(autouse=True)
+def _workers_find_stand_ins(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[None]:
+    """Let workers import the stand-ins, and keep caches out of the home directory."""
+    path = os.pathsep.join(part for part in (STAND_INS, os.environ.get("PYTHONPATH", "")) if part)
+    monkeypatch.setenv("PYTHONPATH", path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+    yield

@@ -1,0 +1,165 @@
+"""The scheduler: work is done once, ends for a stated reason, and leaves no process behind."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from running_service import Bench, bench, lives, until
+from service_stand_in_work import SECRET
+from service_stand_ins import REGISTRY
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Iterator[Bench]:
+    """A started scheduler with two workers."""
+    found = bench(tmp_path, REGISTRY, workers=2)
+    found.scheduler.start()
+    yield found
+    if found.scheduler.alive:
+        found.scheduler.stop()
+
+
+def grandchild(machine: Bench, key: str) -> int:
+    """Return the process id of the worker's own child, once it is there."""
+    file = machine.settings.data_directory / f"grandchild_{key[:8]}"
+    until(lambda: file.exists() and file.read_text() != "")
+    return int(file.read_text())
+
+
+def worker(machine: Bench, job_key: str) -> int:
+    """Return the process id of the last worker of a key."""
+    file = machine.settings.data_directory / f"started_{job_key[:8]}"
+    return int(file.read_text().splitlines()[-1].split()[0])
+
+
+def test_work_is_stored_under_its_key_and_the_workspace_is_gone(machine: Bench) -> None:
+    job = machine.ended(machine.submit(text="hello"))
+    assert (job.status, job.fraction, job.attempts) == ("successful", 1.0, 1)
+    assert machine.store.verified(job.key, "database").path.read_text() == "hello"
+    assert list((machine.settings.data_directory / "work").iterdir()) == []
+
+
+def test_workers_are_nice_and_keep_to_one_thread(machine: Bench) -> None:
+    job = machine.ended(machine.submit())
+    _, niceness, threads = machine.starts(job)[0].split()
+    assert (int(niceness), threads) == (10, "1")
+
+
+def test_progress_is_reported_by_stage(machine: Bench) -> None:
+    job = machine.submit(mode="hang")
+    until(lambda: machine.submissions.find(job.id).stage == "first")
+    seen = machine.submissions.find(job.id)
+    assert (seen.status, seen.stage_fraction, seen.fraction) == ("running", 0.5, 0.125)
+
+
+def test_a_dying_worker_gets_a_second_attempt(machine: Bench) -> None:
+    job = machine.ended(machine.submit(mode="die_once", text="late"))
+    assert (job.status, job.attempts) == ("successful", 2)
+    assert machine.store.verified(job.key, "database").path.read_text() == "late"
+
+
+def test_attempts_are_limited_and_the_reason_is_stated(machine: Bench) -> None:
+    job = machine.ended(machine.submit(mode="die"))
+    assert (job.status, job.attempts, len(machine.starts(job))) == ("failed", 2, 2)
+    assert job.message == "The worker ended early with exit code 7. That was attempt 2 of 2."
+
+
+def test_failures_raised_on_purpose_are_told_and_not_retried(machine: Bench) -> None:
+    job = machine.ended(machine.submit(mode="mesh"))
+    assert (job.status, job.attempts, job.message) == ("failed", 1, "element 7 has a negative Jacobian")
+
+
+def test_bad_input_found_by_the_work_is_named_as_the_user_wrote_it(machine: Bench) -> None:
+    job = machine.ended(machine.submit(mode="input"))
+    assert job.status == "failed"
+    assert job.faults == (
+        {
+            "field": "pair.pinion.bore_diameter_mm",
+            "value": 95.0,
+            "bound": "below the root diameter 70 mm",
+            "suggestion": "Lower the bore.",
+        },
+    )
+
+
+def test_the_text_of_a_defect_stays_in_the_log(machine: Bench) -> None:
+    job = machine.ended(machine.submit(mode="defect"))
+    logs = "".join(file.read_text() for file in (machine.settings.data_directory / "log").iterdir())
+    assert SECRET in logs
+    assert SECRET not in job.message
+    assert job.reference and job.reference in job.message
+
+
+def test_dismissal_ends_the_worker_and_its_children(machine: Bench) -> None:
+    job = machine.submit(mode="hang")
+    sleeper = grandchild(machine, job.key)
+    child = worker(machine, job.key)
+    assert lives(sleeper) and lives(child)
+    assert machine.submissions.dismiss(job.id).status == "dismissed"
+    machine.scheduler.wake()
+    until(lambda: not lives(sleeper) and not lives(child))
+    assert machine.submissions.find(job.id).status == "dismissed"
+
+
+def test_shared_work_goes_on_until_nobody_wants_it(machine: Bench) -> None:
+    one, other = machine.submit(mode="hang"), machine.submit(mode="hang")
+    sleeper = grandchild(machine, one.key)
+    machine.submissions.dismiss(one.id)
+    machine.scheduler.wake()
+    assert machine.submissions.find(one.id).status == "dismissed"
+    assert machine.submissions.find(other.id).status == "running"
+    assert lives(sleeper)
+    machine.submissions.dismiss(other.id)
+    machine.scheduler.wake()
+    until(lambda: not lives(sleeper))
+
+
+def test_the_deadline_ends_the_work(tmp_path: Path) -> None:
+    machine = bench(tmp_path, REGISTRY, deadline_s=2.0)
+    machine.scheduler.start()
+    job = machine.submit(mode="hang")
+    ended = machine.ended(job)
+    machine.scheduler.stop()
+    assert (ended.status, ended.message) == ("failed", "The deadline of 2 s passed. Ask for less.")
+    for file in tmp_path.glob("grandchild_*"):  # on a busy machine the worker may not have come that far
+        assert not lives(int(file.read_text()))
+
+
+def test_a_stop_kills_the_workers_and_loses_no_job(machine: Bench) -> None:
+    job = machine.submit(mode="hang")
+    sleeper, child = grandchild(machine, job.key), worker(machine, job.key)
+    machine.scheduler.stop()
+    assert not lives(sleeper) and not lives(child)
+    waiting = machine.submissions.find(job.id)
+    assert (waiting.status, waiting.attempts) == ("accepted", 0)
+
+
+def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path: Path) -> None:
+    dead = bench(tmp_path, REGISTRY)
+    job = dead.submit(text="found again")
+    assert dead.claims.claim() is not None  # it died right after this
+    assert dead.submissions.find(job.id).status == "running"
+    alive = dead.again()
+    alive.scheduler.start()
+    ended = alive.ended(job)
+    alive.scheduler.stop()
+    assert (ended.status, ended.attempts) == ("successful", 2)
+    assert alive.store.verified(job.key, "database").path.read_text() == "found again"
+
+
+def test_a_service_that_dies_with_its_job_again_and_again_gives_it_up(tmp_path: Path) -> None:
+    dead = bench(tmp_path, REGISTRY)
+    job = dead.submit()
+    dead.claims.claim()
+    dead.claims.put_back(dead.claims.running()[0].id, "died", counted=True)
+    dead.claims.claim()
+    alive = dead.again()
+    alive.scheduler.start()
+    ended = alive.ended(job)
+    alive.scheduler.stop()
+    assert (ended.status, ended.message) == (
+        "failed",
+        "The service ended while it ran. That was attempt 2 of 2.",
+    )

@@ -1,0 +1,114 @@
+"""The job table: single flight, shared dismissal, bounded queue, order."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import pytest
+from running_service import Bench, bench
+from service_stand_ins import REGISTRY
+
+from service.problems import NoSuchJob, QueueFull
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Bench:
+    """The table without a running scheduler."""
+    return bench(tmp_path, REGISTRY, queue_limit=3)
+
+
+def test_equal_work_is_one_computation_for_many_jobs(machine: Bench) -> None:
+    jobs = [machine.submit(text="same") for _ in range(5)]
+    assert len({job.id for job in jobs}) == 5
+    assert machine.submissions.counts() == {"accepted": 1}
+    assert machine.claims.claim() is not None
+    assert machine.claims.claim() is None
+
+
+def test_equal_work_submitted_at_once_from_many_threads_is_one_computation(machine: Bench) -> None:
+    with ThreadPoolExecutor(16) as pool:
+        jobs = list(pool.map(lambda _: machine.submit(text="same"), range(64)))
+    assert len({job.id for job in jobs}) == 64
+    assert machine.submissions.counts() == {"accepted": 1}
+
+
+def test_claims_from_many_threads_are_disjoint(machine: Bench) -> None:
+    for text in "abc":
+        machine.submit(text=text)
+    with ThreadPoolExecutor(8) as pool:
+        claims = list(pool.map(lambda _: machine.claims.claim(), range(8)))
+    identifiers = [claim.id for claim in claims if claim is not None]
+    assert len(identifiers) == len(set(identifiers)) == 3
+
+
+def test_the_queue_is_bounded_but_lets_shared_work_in(machine: Bench) -> None:
+    for text in "abc":
+        machine.submit(text=text)
+    with pytest.raises(QueueFull, match="3 computations wait already"):
+        machine.submit(text="d")
+    assert machine.submit(text="a").status == "accepted"
+    assert machine.claims.claim() is not None
+    assert machine.submit(text="d").status == "accepted"
+
+
+def test_stored_results_are_successful_at_once(machine: Bench, tmp_path: Path) -> None:
+    job = machine.submit(text="kept")
+    file = tmp_path / "made.nc"
+    file.write_text("kept")
+    machine.store.put(job.key, "database", file)
+    machine.submissions.dismiss(job.id)
+    again = machine.submit(text="kept")
+    assert (again.status, again.fraction, again.key) == ("successful", 1.0, job.key)
+
+
+def test_failed_work_may_be_tried_anew(machine: Bench) -> None:
+    first = machine.submit(text="a")
+    claim = machine.claims.claim()
+    assert claim is not None
+    machine.claims.fail(claim.id, "no mesh")
+    assert machine.submissions.find(first.id).status == "failed"
+    assert machine.submit(text="a").status == "accepted"
+    assert machine.submissions.find(first.id).status == "failed"
+
+
+def test_dismissed_work_cannot_end_otherwise(machine: Bench) -> None:
+    job = machine.submit(text="a")
+    claim = machine.claims.claim()
+    assert claim is not None
+    machine.submissions.dismiss(job.id)
+    machine.claims.progress(claim.id, "first", 1.0, 1.0)
+    machine.claims.succeed(claim.id)
+    machine.claims.put_back(claim.id, "again", counted=True)
+    assert machine.claims.dismissed([claim.id, "other"]) == {claim.id}
+    assert machine.submissions.find(job.id).status == "dismissed"
+    assert machine.claims.claim() is None
+
+
+def test_ended_jobs_stay_as_they_are(machine: Bench) -> None:
+    job = machine.submit(text="a")
+    claim = machine.claims.claim()
+    assert claim is not None
+    machine.claims.succeed(claim.id)
+    assert machine.submissions.dismiss(job.id).status == "successful"
+
+
+def test_pages_hold_every_job_once_the_newest_first(machine: Bench) -> None:
+    jobs = [machine.submit(text="same").id for _ in range(7)]
+    pages, after = [], None
+    while page := machine.submissions.page(3, after):
+        pages.append([job.id for job in page])
+        after = page[-1].id
+    assert [len(page) for page in pages] == [3, 3, 1]
+    assert [identifier for page in pages for identifier in page] == jobs[::-1]
+
+
+def test_an_unknown_job_is_said_to_be_unknown(machine: Bench) -> None:
+    with pytest.raises(NoSuchJob, match="'nothing'"):
+        machine.submissions.find("nothing")
+
+
+def test_jobs_survive_a_restart(machine: Bench, tmp_path: Path) -> None:
+    job = machine.submit(text="durable")
+    again = bench(tmp_path, REGISTRY)
+    assert again.submissions.find(job.id) == machine.submissions.find(job.id)
