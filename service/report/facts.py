@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from service.report.figure import Table, number
+from service.report.figure import Table
 
 # endings of field names that state a unit, longest first
 _UNITS = {
@@ -25,6 +25,14 @@ def records(caption: str, content: Sequence[Mapping[str, Any]]) -> Table:
     fields = tuple(dict.fromkeys(name for record in content for name in record))
     rows = tuple(tuple(_cell(record.get(name)) for name in fields) for record in content)
     return Table(caption, tuple(_words(name) for name in fields), rows)
+
+
+def side_by_side(caption: str, columns: Mapping[str, Mapping[str, Any]]) -> Table:
+    """Tabulate settings of the same names beside each other, for example of both gears."""
+    found = {name: dict(_rows(content)) for name, content in columns.items()}
+    labels = dict.fromkeys(label for content in found.values() for label in content)
+    rows = tuple((label, *(content.get(label, "") for content in found.values())) for label in labels)
+    return Table(caption, ("quantity", *found), rows)
 
 
 def _rows(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, str]]:
@@ -60,11 +68,7 @@ def _cell(value: object) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, float):
-        return (
-            number(value).rstrip("0").rstrip(".")
-            if abs(value) >= 1e-4 and abs(value) < 1e7
-            else number(value)
-        )
+        return f"{value:.6g}"
     if isinstance(value, Mapping):
         return ", ".join(f"{_words(str(k))} {_cell(v)}" for k, v in value.items())
     if isinstance(value, Sequence) and not isinstance(value, str):

@@ -100,7 +100,7 @@ def _refer(ax: Axes, reference: Reference) -> None:
     else:
         ax.axhline(reference.value, **stroke)
         written = ax.text(
-            0.99, reference.value, text, ha="right", va="bottom", transform=ax.get_yaxis_transform()
+            0.5, reference.value, text, ha="center", va="bottom", transform=ax.get_yaxis_transform()
         )
     written.set(fontsize=8, color=palette.MUTED)
 

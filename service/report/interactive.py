@@ -126,8 +126,8 @@ def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str
     layout["shapes"].append({"type": "line", "layer": "below"} | along | extent | stroke)
     scale = panel.x.scale if upright else panel.y.scale
     value = float(np.log10(reference.value)) if scale == "log" else reference.value
-    place = {"x": value, "y": 1} if upright else {"x": 1, "y": value}
-    anchor = {"xanchor": "left" if upright else "right", "yanchor": "top" if upright else "bottom"}
+    place = {"x": value, "y": 1} if upright else {"x": 0.5, "y": value}
+    anchor = {"xanchor": "left" if upright else "center", "yanchor": "top" if upright else "bottom"}
     text = {"text": reference.label, "showarrow": False, "font": {"size": 12, "color": palette.MUTED}}
     layout["annotations"].append(along | place | anchor | text)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
@@ -17,12 +18,16 @@ from service.report.style import STYLE
 
 @dataclass(frozen=True)
 class Section:
-    """A heading with the figures and tables under it; `text` is one sentence that introduces them."""
+    """A heading with the figures and tables under it.
+
+    `text` introduces them in a sentence; `folded` tables are shown when asked for, and in print.
+    """
 
     title: str
     text: str = ""
     figures: tuple[Figure, ...] = ()
     tables: tuple[Table, ...] = ()
+    folded: tuple[Table, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,9 @@ for (const node of document.querySelectorAll(".plot")) {
     drawn.push(Plotly.newPlot(node, figure.data, figure.layout, config).catch(fall));
   }
 }
+addEventListener("beforeprint", () => {
+  for (const folded of document.querySelectorAll("details")) folded.open = true;
+});
 Promise.all(drawn).then(() => { document.documentElement.dataset.drawn = "yes"; });
 """
 
@@ -106,7 +114,7 @@ def _section(section: Section, index: int, images: dict[str, bytes]) -> str:
     """One numbered part of the page."""
     text = f"<p>{escape(section.text)}</p>" if section.text else ""
     figures = "\n".join(_figure(figure, images[figure.key]) for figure in section.figures)
-    tables = "\n".join(_table(table) for table in section.tables)
+    tables = "\n".join([*map(_table, section.tables), *map(_folded, section.folded)])
     title = escape(section.title)
     head = f'<section aria-labelledby="part-{index}">\n<h2 id="part-{index}">{title}</h2>'
     return f"{head}\n{text}{figures}{tables}</section>"
@@ -116,7 +124,7 @@ def _figure(figure: Figure, image: bytes) -> str:
     """One plot with its caption, its still image and its numbers."""
     still = base64.b64encode(image).decode("ascii")
     alternative = escape(f"{figure.title}. {figure.alternative}", quote=True)
-    numbers = f"<details><summary>Numbers</summary>{_table(figure.table)}</details>" if figure.table else ""
+    numbers = _folded(figure.table, "Numbers") if figure.table else ""
     return (
         f'<figure id="{figure.key}">\n<h3>{escape(figure.title)}</h3>\n'
         f'<div class="plot" role="img" aria-label="{alternative}" data-figure="{figure.key}-data"></div>'
@@ -132,10 +140,20 @@ def _embedded(figure: Figure) -> str:
     return text.replace("<", "\\u003c")
 
 
+def _folded(table: Table, name: str = "") -> str:
+    """Write a table that opens when asked for."""
+    return f"<details><summary>{escape(name or table.caption)}</summary>{_table(table)}</details>"
+
+
 def _table(table: Table) -> str:
-    """Write a table; its first column names the row."""
-    head = "".join(f'<th scope="col">{escape(cell)}</th>' for cell in table.head)
-    rows = "".join(_row(row) for row in table.rows)
+    """Write a table; its first column names the row, columns of numbers stand to the right."""
+    columns = list(zip(*table.rows, strict=True)) or [("text",)] * len(table.head)
+    numeric = [all(map(_is_number, column)) for column in columns]
+    marks = [' class="n"' if right else "" for right in numeric]
+    head = "".join(
+        f'<th scope="col"{m}>{escape(cell)}</th>' for m, cell in zip(marks, table.head, strict=True)
+    )
+    rows = "".join(_row(row, marks) for row in table.rows)
     return (
         f'<div class="scroll" tabindex="0" role="region" aria-label="{escape(table.caption, quote=True)}">'
         f"<table>\n<caption>{escape(table.caption)}</caption>\n<thead><tr>{head}</tr></thead>\n"
@@ -143,13 +161,12 @@ def _table(table: Table) -> str:
     )
 
 
-def _row(row: Sequence[str]) -> str:
-    """One row; numbers stand to the right."""
-    first = f'<th scope="row">{escape(row[0])}</th>'
-    return f"<tr>{first}{''.join(_cell(cell) for cell in row[1:])}</tr>"
+def _row(row: Sequence[str], marks: Sequence[str]) -> str:
+    """Write one row."""
+    cells = "".join(f"<td{m}>{escape(cell)}</td>" for m, cell in zip(marks[1:], row[1:], strict=True))
+    return f'<tr><th scope="row"{marks[0]}>{escape(row[0])}</th>{cells}</tr>'
 
 
-def _cell(text: str) -> str:
-    """One cell."""
-    numeric = text[:1].isdigit() or (text[:1] in "-+" and text[1:2].isdigit())
-    return f'<td class="n">{escape(text)}</td>' if numeric and len(text) < 24 else f"<td>{escape(text)}</td>"
+def _is_number(text: str) -> bool:
+    """Whether a cell holds a number, alone or with unit or error; empty cells count for either."""
+    return re.fullmatch(r"|[-+]?[\d.]+(e[-+]?\d+)?( (N m|µm|%|± .*))?", text) is not None

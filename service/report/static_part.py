@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from service.report.aligned import load_curve, load_labels, middle_load
 from service.report.database_surface import database_surface
-from service.report.facts import facts, records
+from service.report.facts import facts, records, side_by_side
 from service.report.figure import Table, number
 from service.report.load_sharing import load_sharing
 from service.report.mesh_stiffness import mesh_stiffness
@@ -27,9 +28,9 @@ _LEDGER = (
 )
 
 
-def static_headlines(database: SteDatabase) -> tuple[Headline, ...]:
-    """Mean and peak-to-peak STE at the middle load, with their errors."""
-    load = middle_load(database)
+def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
+    """Mean and peak-to-peak STE at the stored load nearest to `force` (N), or the middle one."""
+    load = middle_load(database) if force is None else int(np.argmin(np.abs(database.force - force)))
     curve, label = load_curve(database, load), load_labels(database)[load]
     return (
         Headline(f"mean STE at {label}", f"{_um(curve.mean.value)} µm", _band(curve.mean)),
@@ -54,10 +55,11 @@ def static_sections(database: SteDatabase) -> tuple[Section, ...]:
     accuracy = Section(
         "Accuracy and cost of the table",
         "Errors are half-widths of the band around each number; the receipt says where the time went.",
-        tables=(_accuracy(database), *receipt_tables(metadata.receipt)),
+        tables=(_accuracy(database), _stages(metadata.receipt)),
+        folded=(facts("Receipt", _without(metadata.receipt, "stages")), _software(database)),
     )
     effects = Section("Effects", tables=(ledger_table(metadata.effect_ledger),))
-    case = Section("Case", "With every default that was taken.", tables=(facts("Case", metadata.case),))
+    case = Section("Case", "With every default that was taken.", tables=case_tables(metadata.case))
     return curves, stiffness, accuracy, effects, case
 
 
@@ -68,13 +70,36 @@ def ledger_table(ledger: Any) -> Table:
     return records("Effect ledger", known)
 
 
-def receipt_tables(receipt: dict[str, Any]) -> tuple[Table, ...]:
-    """Tabulate time by stage, then everything else the receipt says."""
+def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:
+    """Tabulate both gears beside each other, then the rest of the case."""
+    pair = case.get("pair")
+    if not isinstance(pair, dict) or not {"pinion", "wheel"} <= set(pair):
+        return (facts("Case", case),)
+    gears = side_by_side("Gears", {"pinion (drives)": pair["pinion"], "wheel": pair["wheel"]})
+    rest = {**_without(pair, "pinion", "wheel"), **_without(case, "pair")}
+    return gears, facts("Pair, loads and accuracy", rest)
+
+
+def _stages(receipt: dict[str, Any]) -> Table:
+    """Tabulate CPU and wall seconds by stage."""
     stages = receipt.get("stages")
-    rest = facts("Receipt", {name: value for name, value in receipt.items() if name != "stages"})
-    if not isinstance(stages, dict):
-        return (rest,)
-    return records("Time by stage", [{"stage": name, **times} for name, times in stages.items()]), rest
+    entries = stages.items() if isinstance(stages, dict) else ()
+    rows = tuple(
+        (name, *(number(float(times.get(clock, math.nan)), 3) for clock in ("cpu_seconds", "wall_seconds")))
+        for name, times in entries
+    )
+    return Table("Time by stage", ("stage", "CPU s", "wall s"), rows)
+
+
+def _software(database: SteDatabase) -> Table:
+    """Tabulate the versions and the content hash."""
+    metadata = database.metadata
+    return facts("Made with", {**metadata.software_versions, "content_hash": metadata.content_hash})
+
+
+def _without(content: dict[str, Any], *names: str) -> dict[str, Any]:
+    """Return the content without some of its fields."""
+    return {name: value for name, value in content.items() if name not in names}
 
 
 def _accuracy(database: SteDatabase) -> Table:

@@ -38,7 +38,8 @@ th, td { text-align: left; vertical-align: top; padding: .28rem 1.1rem .28rem 0;
   border-bottom: 1px solid var(--rule); }
 thead th { border-bottom: 1.5px solid var(--ink); white-space: nowrap; }
 tbody th { font-weight: 500; }
-td.n { text-align: right; white-space: nowrap; }
+th.n, td.n { text-align: right; white-space: nowrap; }
+thead th.n { white-space: normal; }
 details { margin: .3rem 0 1rem; }
 summary { cursor: pointer; color: var(--link); font-size: .92rem; padding: .2rem 0; }
 footer { margin-top: 4rem; color: var(--muted); font-size: .88rem; border-top: 1px solid var(--rule);

@@ -1,0 +1,78 @@
+"""Tables say what the metadata says, in full digits."""
+
+import pytest
+
+from fe_contact.ste import SteDatabase
+from service.report.facts import facts, side_by_side
+from service.report.page import _is_number
+from service.report.static_part import (
+    case_tables,
+    ledger_table,
+    static_alarms,
+    static_headlines,
+    static_sections,
+)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (1330.0, "1330"),
+        (7850.0, "7850"),
+        (0.349066, "0.349066"),
+        (2.1e11, "2.1e+11"),
+        ([10.0, 0.5], "10, 0.5"),
+    ],
+)
+def test_no_digit_is_lost(value: object, text: str) -> None:
+    assert facts("Case", {"load": value}).rows == (("load", text),)
+
+
+def test_both_gears_stand_beside_each_other() -> None:
+    table = side_by_side("Gears", {"pinion": {"teeth": 20}, "wheel": {"teeth": 40, "rim_mm": 5.0}})
+    assert table.head == ("quantity", "pinion", "wheel")
+    assert table.rows == (("teeth", "20", "40"), ("rim, mm", "", "5"))
+
+
+def test_the_case_is_told_in_full(database: SteDatabase) -> None:
+    gears, rest = case_tables(database.metadata.case)
+    assert ("teeth", "20", "20") in gears.rows
+    assert ("center distance, mm", "80") in rest.rows
+    assert ("load · torque, N m", "10, 100, 400") in rest.rows
+
+
+def test_the_ledger_says_what_is_simulated_and_why(database: SteDatabase) -> None:
+    table = ledger_table(database.metadata.effect_ledger)
+    assert table.head == ("effect", "simulated", "because", "worth", "cost")
+    assert table.rows == (("corner_contact", "yes", "tips touch", "2 %", "none"),)
+
+
+def test_headlines_are_those_of_the_load_asked_for(database: SteDatabase) -> None:
+    names = [headline.name for headline in static_headlines(database, force=10_000.0)]
+    assert names == ["mean STE at 400 N m", "peak-to-peak STE at 400 N m"]
+    mean = static_headlines(database)[0]
+    assert (mean.name, mean.value, mean.remark) == ("mean STE at 100 N m", "5.978 µm", "± 0.012 µm")
+
+
+def test_failed_points_are_said_loudly(database: SteDatabase, damaged: SteDatabase) -> None:
+    assert static_alarms(database) == ()
+    (alarm,) = static_alarms(damaged)
+    assert "1 of 256 points FAILED" in alarm
+
+
+def test_the_receipt_is_in_the_page(database: SteDatabase) -> None:
+    tables = [t for section in static_sections(database) for t in (*section.tables, *section.folded)]
+    stages = next(t for t in tables if t.caption == "Time by stage")
+    assert stages.rows == (("mesh", "1.00", "1.10"),)
+    made = next(t for t in tables if t.caption == "Made with")
+    assert ("numpy", "2.0") in made.rows
+
+
+@pytest.mark.parametrize("text", ["12", "-0.5", "1.0e-12", "6.2 ± 0.1", "10 N m", ""])
+def test_numbers_are_known(text: str) -> None:
+    assert _is_number(text)
+
+
+@pytest.mark.parametrize("text", ["none", "832, 0 failed", "10, 20", "corner_contact", "2 % of the mean"])
+def test_words_are_no_numbers(text: str) -> None:
+    assert not _is_number(text)
