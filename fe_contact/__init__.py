@@ -1,0 +1,53 @@
+"""Contact analysis of gear pairs: static transmission error by finite elements and Hertz contact.
+
+Names are imported on first use, so that reading a database does not load the mesher or the finite-element
+library.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fe_contact.analysis import analyze
+    from fe_contact.geometry import FlankModification, Gear, GearPair
+    from fe_contact.material import STEEL, Material
+    from fe_contact.ste import SteDatabase
+    from fe_contact.types import Estimate, Status
+
+__all__ = [
+    "STEEL",
+    "Estimate",
+    "FlankModification",
+    "Gear",
+    "GearPair",
+    "Material",
+    "Status",
+    "SteDatabase",
+    "analyze",
+]
+
+_HOME = {
+    "analyze": "fe_contact.analysis",
+    "FlankModification": "fe_contact.geometry",
+    "Gear": "fe_contact.geometry",
+    "GearPair": "fe_contact.geometry",
+    "STEEL": "fe_contact.material",
+    "Material": "fe_contact.material",
+    "SteDatabase": "fe_contact.ste",
+    "Estimate": "fe_contact.types",
+    "Status": "fe_contact.types",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name from the room that holds it."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOME[name]), name)
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return sorted(__all__)

@@ -1,0 +1,107 @@
+"""Where the database has its positions: equally spaced, or denser where the curves bend."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.ste.interpolation import Axis, interpolate
+from fe_contact.types import BoolArray, FloatArray
+
+MAX_NODES = 768
+MAX_ROUNDS = 10
+
+
+@dataclass(frozen=True)
+class PositionNodes:
+    """Nodes over one base pitch with the interpolation error between them.
+
+    Attributes
+    ----------
+    position : ndarray, shape (P,)
+        Increasing in [0, 1).
+    error : ndarray, shape (L,)
+        Largest difference in m between interpolant and solution at the middles of the intervals, by load
+        level.
+    """
+
+    position: FloatArray
+    error: FloatArray
+
+
+def fixed_nodes(count: int, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
+    """`count` equally spaced nodes; the error is measured at the middles of all intervals."""
+    nodes = np.arange(count) / count
+    return PositionNodes(nodes, _middle_error(nodes, solve(nodes), solve)[1].max(axis=0))
+
+
+def adaptive_nodes(start: int, solve: Callable[[FloatArray], FloatArray], tolerance: float) -> PositionNodes:
+    """Bisect the intervals whose middle the interpolant misses.
+
+    Parameters
+    ----------
+    start : int
+        Equally spaced nodes to begin with.
+    solve : callable
+        Positions (P,) to STE (P, L) in m.
+    tolerance : float
+        Largest error as a fraction of each level's peak-to-peak value.
+
+    Notes
+    -----
+    The slope of STE jumps where a pair comes into contact, at a position that moves with load, so a few
+    hundred nodes gather at the handovers. The search ends with the tolerance met, after `MAX_ROUNDS`, or at
+    `MAX_NODES`; the error says which.
+    """
+    nodes = np.arange(start) / start
+    values = solve(nodes)
+    settled = np.zeros(start, dtype=bool)
+    error = np.full_like(values, np.inf)
+    for _ in range(MAX_ROUNDS):
+        allowed = np.maximum(tolerance * np.ptp(values, axis=0), 1e-6 * np.abs(values).max(axis=0))
+        middles, error, found = _middle_error(nodes, values, solve, settled, error)
+        missed = np.any(error > allowed, axis=1)
+        if not missed.any() or nodes.size + missed.sum() > MAX_NODES:
+            break
+        nodes, values, settled, error = _inserted(nodes, values, missed, middles, found, error)
+    return PositionNodes(nodes, error.max(axis=0))
+
+
+def _middle_error(
+    nodes: FloatArray,
+    values: FloatArray,
+    solve: Callable[[FloatArray], FloatArray],
+    settled: BoolArray | None = None,
+    known: FloatArray | None = None,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Middles, errors and solutions there, of the intervals not yet settled."""
+    axis = Axis(nodes, 1.0)
+    middles = nodes + 0.5 * axis.spacing
+    open_ = np.ones(nodes.size, dtype=bool) if settled is None else ~settled
+    error = np.zeros_like(values) if known is None else known.copy()
+    found = np.zeros_like(values)
+    found[open_] = solve(middles[open_])
+    error[open_] = np.abs(interpolate(axis, values, middles[open_]) - found[open_])
+    return middles, error, found
+
+
+def _inserted(
+    nodes: FloatArray,
+    values: FloatArray,
+    missed: BoolArray,
+    middles: FloatArray,
+    found: FloatArray,
+    error: FloatArray,
+) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray]:
+    """Insert the middles of the missed intervals; both halves and the neighbours are measured again."""
+    touched = missed | np.roll(missed, 1) | np.roll(missed, -1)
+    order = np.argsort(np.concatenate([nodes, middles[missed]]), kind="stable")
+    merged = np.concatenate([nodes, middles[missed]])[order]
+    return (
+        merged,
+        np.concatenate([values, found[missed]])[order],
+        np.concatenate([~touched, np.zeros(int(missed.sum()), dtype=bool)])[order],
+        np.concatenate([error, np.full((int(missed.sum()), values.shape[1]), np.inf)])[order],
+    )

@@ -1,0 +1,20 @@
+"""Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
+
+from fe_contact.contact.assembly import contact_problem
+from fe_contact.contact.model import ContactModel, GapTerm
+from fe_contact.contact.plane_candidates import PatchRule, plane_candidates
+from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.solution import ContactSolution
+from fe_contact.contact.sweep import solve_contact
+
+__all__ = [
+    "Candidates",
+    "ContactModel",
+    "ContactProblem",
+    "ContactSolution",
+    "GapTerm",
+    "PatchRule",
+    "contact_problem",
+    "plane_candidates",
+    "solve_contact",
+]

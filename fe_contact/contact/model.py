@@ -1,0 +1,35 @@
+"""What the contact analysis includes: effects contribute to this, the candidates are built from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from fe_contact.geometry import GearPair
+from fe_contact.types import FloatArray
+
+
+class GapTerm(Protocol):
+    """A rigid gap on the line of action, added to the conjugate (zero) or corner gap."""
+
+    def __call__(self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
+        """Gap in m, >= 0 where material is missing, at the touching roll lengths of the two flanks."""
+        ...
+
+
+@dataclass(frozen=True)
+class ContactModel:
+    """The composed model; neutral as constructed.
+
+    Attributes
+    ----------
+    couple_teeth : bool
+        Load on one tooth moves its neighbours.
+    corner_contact : bool
+        Tip edges may touch off the line of action, before A and after E.
+    gaps : tuple of GapTerm
+    """
+
+    couple_teeth: bool = False
+    corner_contact: bool = False
+    gaps: tuple[GapTerm, ...] = ()

@@ -1,0 +1,147 @@
+"""Load patches on a flank and their consistent nodal forces.
+
+Away from the tip a patch is semi-elliptic, (2/(pi a)) sqrt(1 - x^2/a^2) about its centre. Near a tip edge
+it takes the form that contact has there (see `fe_contact.hertz.edge_contact`): over a length c from the
+edge a mixture of the semi-ellipse and of (2/(pi c)) sqrt((c - x)/x), singular at the edge. With t the arc
+distance of the contact from the edge (negative, -phi R, off the line of action) the singular share is (c/2
+- t)/(3c/4 - t): none at t = c/2, where the patch is the semi-ellipse that just reaches the edge, so that
+nothing jumps as a contact runs out.
+
+Nodal forces are f_k = integral of p phi_k ds with the quadratic shape functions of the flank. Substituting
+s = s0 + a sin(theta) removes the roots, so that a few Gauss points per element are exact to rounding.
+Patches are built at the exact position: an interpolated self compliance would ripple with the element
+length.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from fe_contact.types import FloatArray
+
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+@dataclass(frozen=True)
+class Patches:
+    """Patches of one gear; arrays (P, n).
+
+    Attributes
+    ----------
+    center, half_width : ndarray
+        Flank coordinate of the middle and half the length, m.
+    edge_share : ndarray
+        Share of the load that is singular at the tip edge, 0 to 1.
+    """
+
+    center: FloatArray
+    half_width: FloatArray
+    edge_share: FloatArray
+
+    @property
+    def centroid(self) -> FloatArray:
+        """Flank coordinate of the load's centroid, m."""
+        return self.center + 0.5 * self.edge_share * self.half_width
+
+    @property
+    def law_width(self) -> FloatArray:
+        """Half-width in m of the semi-elliptic patch that moves as much on a half plane under its own weight.
+
+        With w the density of the patch, u = u(0) - s [phi x + x^2/(2R)] over it, which leaves ln a = ln 2 +
+        1/4 + E_w[ln x] + E_w[x^2 - 2 t x]/(c (3c/4 - t)); the moments are those of Beta distributions. It
+        equals a at no edge share.
+        """
+        share, c = self.edge_share, 2.0 * self.half_width
+        logarithm = np.log(c / 4.0) + 0.5 - 1.5 * share
+        first, second = 0.5 - 0.25 * share, 0.3125 - 0.1875 * share
+        # t/c = (1/2 - 3/4 share)/(1 - share), multiplied through by 1 - share, zero at a sharp corner
+        moments = (second * (1.0 - share) - first * (1.0 - 1.5 * share)) / 0.25
+        return np.exp(math.log(2.0) + 0.25 + logarithm + moments)
+
+
+def tip_patches(
+    s: FloatArray, offset: FloatArray, tip: float, half_width: float, edge_length: float
+) -> Patches:
+    """Patches on a flank for contacts at `s`.
+
+    Parameters
+    ----------
+    s : ndarray
+        Flank coordinate of the contact, m.
+    offset : ndarray
+        Distance t of the contact from the tip edge, m; negative = -phi R off the line of action.
+    tip : float
+        Flank coordinate of the tip edge, m.
+    half_width : float
+        Half-width away from the edge, m.
+    edge_length : float
+        Length c of the patch at the edge, m, at most 2 `half_width`.
+    """
+    half = np.clip(offset, 0.5 * edge_length, half_width)
+    missing = np.maximum(0.5 * edge_length - offset, 0.0)
+    share = missing / (missing + 0.25 * edge_length)
+    center = np.where(offset < half, tip - half, s)
+    return Patches(center, half, share)
+
+
+@njit(cache=True)
+def load_vector(
+    nodes: FloatArray, center: float, half_width: float, edge_share: float, out: FloatArray
+) -> tuple[int, int]:
+    """Fill `out` with the nodal forces of a unit patch and return the range of nodes it touches.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (k,)
+        Increasing flank coordinates; element e has nodes 2e, 2e+1, 2e+2 with 2e+1 at its middle.
+    center, half_width : float
+        Patch centre s0 and half-width a in the unit of `nodes`; the patch must lie within the nodes.
+    edge_share : float
+        Share of the load that is singular at the upper end of the patch, 0 to 1 (see `Patches`).
+    out : ndarray, shape (k,)
+        Receives the forces; only the returned range is written.
+
+    Returns
+    -------
+    first, last : int
+        Nodes first .. last - 1 carry the load.
+    """
+    elements = (nodes.size - 1) // 2
+    low, high = center - half_width, center + half_width
+    first = 0
+    while first < elements - 1 and nodes[2 * first + 2] <= low:
+        first += 1
+    last = first
+    out[2 * first] = 0.0
+    for e in range(first, elements):
+        if nodes[2 * e] >= high:
+            break
+        last = e + 1
+        out[2 * e + 1] = 0.0
+        out[2 * e + 2] = 0.0
+        _add_element(nodes, e, center, half_width, edge_share, out)
+    return 2 * first, 2 * last + 1
+
+
+@njit(cache=True)
+def _add_element(
+    nodes: FloatArray, e: int, center: float, half_width: float, edge_share: float, out: FloatArray
+) -> None:
+    """Add the share of the patch that lies on element `e`."""
+    left, right = nodes[2 * e], nodes[2 * e + 2]
+    start = math.asin(min(max((left - center) / half_width, -1.0), 1.0))
+    stop = math.asin(min(max((right - center) / half_width, -1.0), 1.0))
+    middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
+    for g in range(_GAUSS_POINTS.size):
+        theta = middle + half * _GAUSS_POINTS[g]
+        sine = math.sin(theta)
+        density = (1.0 - edge_share) * 2.0 * (1.0 - sine * sine) + edge_share * (1.0 + sine)
+        weight = density / math.pi * half * _GAUSS_WEIGHTS[g]
+        xi = 2.0 * (center + half_width * sine - left) / (right - left) - 1.0
+        out[2 * e] += weight * 0.5 * xi * (xi - 1.0)
+        out[2 * e + 1] += weight * (1.0 - xi * xi)
+        out[2 * e + 2] += weight * 0.5 * xi * (xi + 1.0)

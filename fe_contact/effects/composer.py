@@ -1,0 +1,87 @@
+"""Compose the contact model from the effects a scene calls for, and keep the ledger of what was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.errors import InputError
+from fe_contact.types import Json
+
+CHOICES = ("on", "off", "auto")
+
+
+@dataclass(frozen=True)
+class LedgerEntry:
+    """One effect in one run.
+
+    Attributes
+    ----------
+    name : str
+    on : bool
+        Whether it was simulated.
+    choice : str
+        "on", "off" or "auto", as asked.
+    verdict : Verdict
+        What the scene calls for; its reason and worth stand even when the caller decided otherwise.
+    cost : str
+    """
+
+    name: str
+    on: bool
+    choice: str
+    verdict: Verdict
+    cost: str
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "name": self.name,
+            "on": self.on,
+            "choice": self.choice,
+            "cost": self.cost,
+            **asdict(self.verdict),
+            "called_for": self.verdict.on,
+        }
+
+
+def compose(
+    scene: ContactScene, choices: Mapping[str, str], registry: Sequence[Effect]
+) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
+    """Apply every effect that is on.
+
+    Parameters
+    ----------
+    scene : ContactScene
+    choices : mapping of str to str
+        Effect name to "on", "off" or "auto"; names left out are "auto".
+    registry : sequence of Effect
+
+    Raises
+    ------
+    InputError
+        Unknown effect or choice.
+    """
+    check_choices(choices, registry)
+    model = ContactModel()
+    ledger = []
+    for effect in registry:
+        choice = choices.get(effect.name, "auto")
+        verdict = effect.called_for(scene)
+        on = verdict.on if choice == "auto" else choice == "on"
+        if on:
+            model = effect.contribute(scene, model)
+        ledger.append(LedgerEntry(effect.name, on, choice, verdict, effect.cost))
+    return model, tuple(ledger)
+
+
+def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:
+    """Refuse unknown effects and choices."""
+    names = [effect.name for effect in registry]
+    for name, choice in choices.items():
+        if name not in names:
+            raise InputError(f"effects.{name}", choice, f"one of the effects {', '.join(names)}")
+        if choice not in CHOICES:
+            raise InputError(f"effects.{name}", choice, '"on", "off" or "auto"')

@@ -1,0 +1,70 @@
+"""What an effect is: one optional piece of physics that can be switched on or off.
+
+An effect is a frozen dataclass in a file of its own. The composer knows none by name and applies them in any
+order. Neutral settings (nothing to contribute) leave the results bit-identical.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Protocol
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.geometry import GearPair
+from fe_contact.types import FloatArray
+
+
+@dataclass(frozen=True)
+class ContactScene:
+    """What the effects judge by.
+
+    Attributes
+    ----------
+    pair : GearPair
+    torque : ndarray
+        Torques on the driving gear, N m.
+    """
+
+    pair: GearPair
+    torque: FloatArray
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Whether a scene calls for an effect.
+
+    Attributes
+    ----------
+    on : bool
+    reason : str
+        Why, in words an engineer would use.
+    worth : str
+        What leaving it out would change, as a value with its unit, or "nothing".
+    """
+
+    on: bool
+    reason: str
+    worth: str
+
+
+class Effect(Protocol):
+    """Interface of an effect.
+
+    Class attributes: `name`; `needs` and `adds` (terms such as "position", "load", "gap", "coupling",
+    "candidates", "table axis"); `cost` in words; `sources`; `valid_for`, the range in which it may be used.
+    """
+
+    name: ClassVar[str]
+    needs: ClassVar[tuple[str, ...]]
+    adds: ClassVar[tuple[str, ...]]
+    cost: ClassVar[str]
+    sources: ClassVar[tuple[str, ...]]
+    valid_for: ClassVar[str]
+
+    def called_for(self, scene: ContactScene) -> Verdict:
+        """Judge whether `scene` needs this effect, why, and what it is worth."""
+        ...
+
+    def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
+        """Return `model` with this effect in it."""
+        ...
