@@ -98,6 +98,9 @@ def test_beyond_the_involute_the_end_value_holds(make_gear: Callable[..., Gear])
     )
     removed = relief.material_removed(gear, [0.0, 2.0 * gear.tip_roll_length])
     assert removed == pytest.approx([5e-6, 20e-6])
+    curved = FlankModification(profile_crowning=6e-6, profile_slope=2e-6)
+    removed = curved.material_removed(gear, [0.0, 2.0 * gear.tip_roll_length])
+    assert removed == pytest.approx([5e-6, 7e-6])
 
 
 @pytest.mark.parametrize(
