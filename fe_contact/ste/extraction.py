@@ -11,15 +11,16 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
 from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiffness_grid
-from fe_contact.types import FloatArray
+from fe_contact.ste.load_refinement import LoadLevels, refined
+from fe_contact.types import FloatArray, IntArray
 
 
 def force_table(database: SteFields) -> ForceTable:
     """Turn curves of STE over position at constant force into levels of a mesh force.
 
-    Level 0 is lift-off: the no-load transmission error with zero stiffness. Level k is the k-th load, with
-    the inverse of the stored tangent compliance as stiffness. Both turn from the normal force to the
-    transverse one, F_bt = F_bn cos(beta_b).
+    Level 0 is lift-off: the no-load transmission error with zero stiffness. Every stored load is a level,
+    with the inverse of the stored tangent compliance as stiffness; between loads where a further pair comes
+    into contact there are more (`load_refinement`). Normal forces become transverse, F_bt = F_bn cos(beta_b).
 
     Raises
     ------
@@ -29,28 +30,39 @@ def force_table(database: SteFields) -> ForceTable:
         If the transmission error does not increase with load everywhere.
     """
     database.require_complete()
+    levels = refined(_stored_levels(database), _pairs_in_contact(database))
+    axis = Axis(database.position, 1.0)
+    deflection = deflection_grid((axis,), levels.deflection, (ordered_slopes(axis, levels.deflection),))
+    unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
+    stiffness = monotone_stiffness(unlimited, deflection, levels.force)
+    flat = np.zeros_like(levels.deflection)  # the slopes of a table of one position
+    return ForceTable(
+        position=database.position,
+        level=levels.force,
+        misalignment=database.misalignment,
+        center_distance_change=database.center_distance_change,
+        deflection=_position_third(deflection.nodal[(0,)]),
+        deflection_slope=_position_third(deflection.nodal.get((1,), flat)),
+        stiffness=_position_third(stiffness.nodal[(0,)]),
+        stiffness_slope=_position_third(stiffness.nodal.get((1,), flat)),
+    )
+
+
+def _stored_levels(database: SteFields) -> LoadLevels:
+    """Lift-off and the stored loads, with stiffness limited at the knots."""
     to_transverse = math.cos(database.facts.base_helix_angle)
     deflection = deflection_levels(database)
     _require_increasing(database, deflection)
     tangent = np.moveaxis(to_transverse / database.tangent_compliance, 1, -1)
     stiffness = np.concatenate([np.zeros_like(tangent[..., :1]), tangent], axis=-1)
     level = np.concatenate([[0.0], database.force * to_transverse])
-    stiffness = np.minimum(stiffness, _knot_limit(deflection, level))
-    axis = Axis(database.position, 1.0)
-    levels = deflection_grid((axis,), deflection, (ordered_slopes(axis, deflection),))
-    unlimited = stiffness_grid((axis,), stiffness, (monotone_slopes(axis, stiffness),))
-    limited = monotone_stiffness(unlimited, levels, level)
-    flat = np.zeros_like(deflection)  # the slopes of a table of one position
-    return ForceTable(
-        position=database.position,
-        level=level,
-        misalignment=database.misalignment,
-        center_distance_change=database.center_distance_change,
-        deflection=_position_third(levels.nodal[(0,)]),
-        deflection_slope=_position_third(levels.nodal.get((1,), flat)),
-        stiffness=_position_third(limited.nodal[(0,)]),
-        stiffness_slope=_position_third(limited.nodal.get((1,), flat)),
-    )
+    return LoadLevels(level, deflection, np.minimum(stiffness, _knot_limit(deflection, level)))
+
+
+def _pairs_in_contact(database: SteFields) -> IntArray:
+    """Count the pairs that carry load at every level, none at lift-off."""
+    loaded = np.moveaxis(database.pairs_in_contact, 1, -1).astype(np.int64)
+    return np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
 
 
 def deflection_levels(database: SteFields) -> FloatArray:

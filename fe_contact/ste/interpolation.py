@@ -15,6 +15,7 @@ References
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -74,12 +75,14 @@ class Stencil:
     fraction: FloatArray
     outside: BoolArray
 
+    @cached_property
     def weights(self) -> FloatArray:
         """Hermite weights, shape (2 knots, 2: value and slope, queries)."""
         t, h = self.fraction, self.width
         s = 1.0 - t
         return np.array([[(1.0 + 2.0 * t) * s * s, h * t * s * s], [t * t * (3.0 - 2.0 * t), -h * t * t * s]])
 
+    @cached_property
     def weight_slopes(self) -> FloatArray:
         """Differentiate `weights` in the coordinate; same shape."""
         t, h = self.fraction, self.width
@@ -124,7 +127,7 @@ def interpolate(axis: Axis, values: FloatArray, query: FloatArray) -> FloatArray
     """Evaluate the monotone interpolant of values (P, ...) at query (Q,); held constant beyond open ends."""
     at = axis.stencil(query)
     slopes = monotone_slopes(axis, values)
-    weights = at.weights().reshape(2, 2, -1, *(1,) * (values.ndim - 1))
+    weights = at.weights.reshape(2, 2, -1, *(1,) * (values.ndim - 1))
     result = weights[0, 0] * values[at.left] + weights[0, 1] * slopes[at.left]
     return np.asarray(result + weights[1, 0] * values[at.right] + weights[1, 1] * slopes[at.right])
 

@@ -27,20 +27,32 @@ class LevelGrid:
     axes: tuple[Axis, ...]
     nodal: dict[Order, FloatArray]
 
-    def evaluate(
-        self, at: tuple[Stencil, ...], columns: IntArray | None = None
-    ) -> tuple[FloatArray, FloatArray]:
-        """Value and derivative in axis 0: all levels (Q, L), or for each query its own `columns` (Q, C)."""
-        weights = [stencil.weights() for stencil in at]
-        tilted = [at[0].weight_slopes(), *weights[1:]]
+    def value(self, at: tuple[Stencil, ...], columns: IntArray) -> FloatArray:
+        """Value of the given levels (Q, C) of each query."""
+        return self._sum(at, columns, [stencil.weights for stencil in at])
+
+    def slope(self, at: tuple[Stencil, ...], columns: IntArray) -> FloatArray:
+        """Differentiate `value` in axis 0; zero if that has one knot only."""
+        if len(self.axes[0].knots) == 1:
+            return np.zeros(columns.shape)
+        return self._sum(at, columns, [at[0].weight_slopes, *(stencil.weights for stencil in at[1:])])
+
+    def _sum(self, at: tuple[Stencil, ...], columns: IntArray, weights: list[FloatArray]) -> FloatArray:
+        """Sum of weight times nodal number over the corners of each query's cell."""
         sides = product(*((0, 1) if len(axis.knots) > 1 else (0,) for axis in self.axes))
-        value: FloatArray | float = 0.0
-        slope: FloatArray | float = 0.0
-        for corner, order in product(sides, self.nodal):
-            entry = _gather(self.nodal[order], corner, at, columns)
-            value = value + _factor(weights, corner, order) * entry
-            slope = slope + _factor(tilted, corner, order) * entry
-        return np.asarray(value), np.asarray(slope)
+        total: FloatArray | float = 0.0
+        for corner in sides:
+            places = ((stencil.left, stencil.right)[side] for stencil, side in zip(at, corner, strict=True))
+            place = (*(index[:, None] for index in places), columns)
+            for order, entry in self.nodal.items():
+                total = total + self._factor(weights, corner, order) * entry[place]
+        return np.asarray(total)
+
+    def _factor(self, weights: list[FloatArray], corner: Order, order: Order) -> FloatArray:
+        """Product of the one-axis weights of a corner and an order, (Q, 1); axes of one knot are left out."""
+        chosen = zip(self.axes, weights, corner, order, strict=True)
+        factors = [weight[side, once] for axis, weight, side, once in chosen if len(axis.knots) > 1]
+        return np.asarray(prod(factors[1:], start=factors[0])[:, None] if factors else np.ones((1, 1)))
 
     def control_net(self) -> FloatArray:
         """Bernstein coefficients of every cell, which bound the interpolant in it.
@@ -115,22 +127,6 @@ def _orders(axes: tuple[Axis, ...]) -> list[Order]:
 def _plain(order: Order, values: FloatArray, slopes: tuple[FloatArray, ...]) -> FloatArray:
     """Return the values, or their slope along the one axis that `order` names."""
     return slopes[order.index(1)] if any(order) else values
-
-
-def _gather(
-    entry: FloatArray, corner: Order, at: tuple[Stencil, ...], columns: IntArray | None
-) -> FloatArray:
-    """Numbers at one corner of every query's cell."""
-    place = tuple(stencil.right if side else stencil.left for stencil, side in zip(at, corner, strict=True))
-    if columns is None:
-        return np.asarray(entry[place])
-    return np.asarray(entry[(*(index[:, None] for index in place), columns)])
-
-
-def _factor(weights: list[FloatArray], corner: Order, order: Order) -> FloatArray:
-    """Product of the one-axis weights of a corner and an order, (Q, 1)."""
-    chosen = [weight[side, once] for weight, side, once in zip(weights, corner, order, strict=True)]
-    return np.asarray(prod(chosen[1:], start=chosen[0])[:, None])
 
 
 def _bernstein(axis: Axis, along: int, value: FloatArray, slope: FloatArray | None) -> FloatArray:

@@ -20,7 +20,7 @@ from fe_contact.ste.force_cubic import ForceCubic
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.interpolation import Axis, Stencil, monotone_slopes, ordered_slopes
 from fe_contact.ste.level_grid import LevelGrid, deflection_grid, monotone_stiffness, stiffness_grid
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 SlopeRule = Callable[[Axis, FloatArray], FloatArray]
 
@@ -105,14 +105,11 @@ class MeshForce:
             center_distance_change=center_distance_change,
         )
         at = self._stencils(x, m, c)
-        levels, level_slopes = self.levels.evaluate(at)
-        top = levels.shape[1] - 1
-        below = np.count_nonzero(levels <= d[:, None], axis=1) - 1
-        cell = _cell(self, at, levels, level_slopes, np.clip(below, 0, top - 1))
-        force, stiffness, position_slope = cell.sample(d, below < 0, below == top)
-        validity = (
-            _outside(at) + Validity.LIFTED_OFF * (below < 0) + Validity.ABOVE_TABLE * (d > levels[:, -1])
-        )
+        lower = self._level_below(at, d)
+        cubic, top = self._cubic(at, lower), len(self.table.level) - 1
+        force, stiffness, position_slope = cubic.sample(d, lower < 0, lower == top)
+        lifted, above = lower < 0, (lower == top) & (d > cubic.deflection_ends[:, 1])
+        validity = _outside(at) + Validity.LIFTED_OFF * lifted + Validity.ABOVE_TABLE * above
         return ForceSample(
             force.reshape(shape),
             stiffness.reshape(shape),
@@ -147,11 +144,8 @@ class MeshForce:
             raise InputError("force", float(f.min()), "0 N or more", "Teeth do not pull.")
         f = f * to_transverse
         at = self._stencils(x, m, c)
-        levels, level_slopes = self.levels.evaluate(at)
-        top = levels.shape[1] - 1
-        below = np.searchsorted(self.table.level, f, side="right") - 1
-        cell = _cell(self, at, levels, level_slopes, np.clip(below, 0, top - 1))
-        deflection = cell.deflection(f, below == top)
+        lower = np.searchsorted(self.table.level, f, side="right") - 1
+        deflection = self._cubic(at, lower).deflection(f, lower == len(self.table.level) - 1)
         validity = _outside(at) + Validity.ABOVE_TABLE * (f > self.table.level[-1])
         return deflection.reshape(shape), validity.astype(np.int8).reshape(shape)
 
@@ -160,17 +154,25 @@ class MeshForce:
         first, second, third = self.axes
         return first.stencil(x), second.stencil(m), third.stencil(c)
 
+    def _level_below(self, at: tuple[Stencil, ...], d: FloatArray) -> IntArray:
+        """Highest level not above each deflection, -1 below lift-off: by bisection, levels are in order."""
+        low, high = np.full(d.size, -1), np.full(d.size, len(self.table.level))
+        while np.any(high - low > 1):
+            middle = np.maximum((low + high) // 2, 0)
+            reached = self.levels.value(at, middle[:, None])[:, 0] <= d
+            low, high = np.where(reached, middle, low), np.where(reached, high, middle)
+        return low
 
-def _cell(
-    force: MeshForce, at: tuple[Stencil, ...], levels: FloatArray, slopes: FloatArray, lower: NDArray[np.intp]
-) -> ForceCubic:
-    """Gather the two levels that bound each query."""
-    columns = lower[:, None] + np.arange(2)
-    rows = np.arange(len(lower))[:, None]
-    stiffness, stiffness_slopes = force.stiffnesses.evaluate(at, columns)
-    return ForceCubic(
-        levels[rows, columns], slopes[rows, columns], force.table.level[columns], stiffness, stiffness_slopes
-    )
+    def _cubic(self, at: tuple[Stencil, ...], lower: IntArray) -> ForceCubic:
+        """Return the cubic above level `lower` of each query, the nearest one outside the table."""
+        columns = np.clip(lower, 0, len(self.table.level) - 2)[:, None] + np.arange(2)
+        return ForceCubic(
+            deflection_ends=self.levels.value(at, columns),
+            deflection_slopes=self.levels.slope(at, columns),
+            force_ends=self.table.level[columns],
+            stiffness_ends=self.stiffnesses.value(at, columns),
+            stiffness_slopes=self.stiffnesses.slope(at, columns),
+        )
 
 
 def _outside(at: tuple[Stencil, ...]) -> NDArray[np.int64]:

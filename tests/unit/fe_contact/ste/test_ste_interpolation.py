@@ -17,7 +17,7 @@ SQUARE = np.where((UNEVEN > 0.2) & (UNEVEN < 0.6), 7.8, 5.1)
 def derivative(axis, values, at):
     """Derivative of the interpolant, from its own weights."""
     stencil, slopes = axis.stencil(at), monotone_slopes(axis, values)
-    weights = stencil.weight_slopes()
+    weights = stencil.weight_slopes
     left = weights[0, 0] * values[stencil.left] + weights[0, 1] * slopes[stencil.left]
     return left + weights[1, 0] * values[stencil.right] + weights[1, 1] * slopes[stencil.right]
 
@@ -65,8 +65,8 @@ def test_slope_is_continuous_at_every_knot_and_across_the_seam(at):
 def test_derivative_weights_are_the_derivative_of_the_weights():
     stencil = Axis(UNEVEN, 1.0).stencil(np.linspace(0.1, 0.9, 57))
     step = 1e-6
-    shifted = [type(stencil)(*moved(stencil, s)).weights() for s in (-step, step)]
-    assert np.allclose((shifted[1] - shifted[0]) / (2 * step), stencil.weight_slopes(), rtol=1e-5, atol=1e-4)
+    shifted = [type(stencil)(*moved(stencil, s)).weights for s in (-step, step)]
+    assert np.allclose((shifted[1] - shifted[0]) / (2 * step), stencil.weight_slopes, rtol=1e-5, atol=1e-4)
 
 
 def moved(stencil, by):
@@ -159,6 +159,6 @@ def test_ordering_changes_nothing_where_nothing_threatens_it():
 def with_slopes(axis, levels, slopes):
     """Evaluate given slopes on the fine grid."""
     at = axis.stencil(FINE)
-    weights = at.weights()[..., None]
+    weights = at.weights[..., None]
     left = weights[0, 0] * levels[at.left] + weights[0, 1] * slopes[at.left]
     return left + weights[1, 0] * levels[at.right] + weights[1, 1] * slopes[at.right]

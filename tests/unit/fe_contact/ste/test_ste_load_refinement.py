@@ -1,0 +1,130 @@
+"""Levels between the loads: the kink where a further pair comes into contact."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fe_contact.ste import held_out_error
+
+COARSE = (266.0, 1330.0, 2660.0, 5320.0, 10640.0)
+BETWEEN = (900.0, 2000.0, 4000.0, 8000.0)
+# dense where the handovers sweep, so that the load direction is what is tested
+POSITION = np.unique(
+    np.concatenate([np.arange(64) / 64, np.linspace(0.1, 0.24, 150), np.linspace(0.76, 0.9, 150)])
+)
+
+
+def without_kinks(make, **case):
+    """The same table, said to hold the same pairs at all loads: one cubic from load to load."""
+    database = make(**case)
+    return make(**case, pairs_in_contact=np.ones(database.status.shape))
+
+
+def test_no_levels_are_added_without_a_kink(make):
+    table = without_kinks(make).force_table()
+    assert table.level.tolist() == [0.0, *COARSE]
+
+
+def test_levels_are_added_only_to_steps_with_a_kink(make):
+    """The pairs change between the second and third load only."""
+    pairs = np.ones((64, 5, 1, 1))
+    pairs[:, 2:] = 2
+    level = make(pairs_in_contact=pairs).force_table().level
+    added = np.setdiff1d(level, [0.0, *COARSE])
+    assert added.size > 10
+    assert added.min() > 1330.0
+    assert added.max() < 2660.0
+
+
+def test_away_from_kinks_the_force_is_the_same_cubic(make):
+    """Cutting a cubic into parts does not change it."""
+    refined, plain = make(), without_kinks(make)
+    changing = np.any(np.diff(refined.pairs_in_contact[:, :, 0, 0], axis=1) != 0, axis=1)
+    x = refined.position[~changing]
+    assert x.size > 20
+    d = np.linspace(1e-7, 3e-5, 400)
+    one, other = refined.force_at(x[:, None], d), plain.force_at(x[:, None], d)
+    assert np.allclose(one.force, other.force, rtol=1e-9, atol=1e-9)
+    assert np.allclose(one.stiffness, other.stiffness, rtol=1e-7)
+
+
+def test_two_straight_branches_are_found(make):
+    """F = k d, and k2 (d - e) more beyond e: the kink comes out where it is, to the width of one inserted step."""
+    position, force = np.arange(16) / 16, np.array([100.0, 1000.0, 3000.0])
+    k, k2 = 3e8, 2e8
+    gap = np.linspace(4e-6, 6e-6, 16)  # kinks between the second and third load
+    ste = branches(k, k2, gap[:, None], force)
+    carries_two = ste > gap[:, None]
+    database = make(
+        position=position,
+        force=force,
+        static_transmission_error=ste[..., None, None],
+        tangent_compliance=(1.0 / np.where(carries_two, k + k2, k))[..., None, None],
+        no_load_transmission_error=np.zeros((16, 1, 1)),
+        pairs_in_contact=np.where(carries_two, 2, 1)[..., None, None],
+    )
+    asked = np.linspace(1000.0, 3000.0, 301)
+    error = np.abs(database.ste(position[:, None], asked) - branches(k, k2, gap[:, None], asked))
+    inserted_step = 2000.0 / 64 / k
+    assert error.max() < inserted_step * k2 / (k + k2) / 4
+    assert np.median(error) < 1e-12
+
+
+def branches(k, k2, gap, force):
+    """Deflection of the two springs."""
+    alone = force / k
+    return np.where(alone <= gap, alone, (force + k2 * gap) / (k + k2))
+
+
+def test_a_curved_branch_is_followed(make):
+    """F = c d^1.2 up to the kink: the exponent comes from the step before."""
+    force = np.array([100.0, 300.0, 1000.0, 3000.0])
+    soft, gap = 3e8 * 1e6**0.2, 6e-6
+    edge = soft * gap**1.2
+
+    def law(asked):
+        alone = (asked / soft) ** (1 / 1.2)
+        together = gap + np.maximum(asked - edge, 0.0) / 1e9
+        return np.where(asked <= edge, alone, together)
+
+    ste = law(force)
+    tangent = np.where(force <= edge, 1.2 * force / ste, 1e9)
+    shape = (8, 4, 1, 1)
+    database = make(
+        position=np.arange(8) / 8,
+        force=force,
+        static_transmission_error=np.broadcast_to(ste[:, None, None], shape),
+        tangent_compliance=np.broadcast_to(1.0 / tangent[:, None, None], shape),
+        no_load_transmission_error=np.zeros((8, 1, 1)),
+        pairs_in_contact=np.broadcast_to(np.where(force <= edge, 1, 2)[:, None, None], shape),
+    )
+    assert 1000.0 < edge < 3000.0
+    asked = np.linspace(1000.0, 0.95 * edge, 50)
+    error = np.abs(database.ste(0.3, asked) - law(asked)).max()
+    straight = np.abs(ste[2] + (asked - 1000.0) / tangent[2] - law(asked)).max()
+    assert error < 0.02 * straight
+
+
+@pytest.mark.parametrize("relief", [0.0, 10e-6])
+def test_it_pays_between_the_loads(make, relief):
+    """At held-out loads and positions, against one cubic from load to load."""
+    case = {"position": POSITION, "relief": relief, "force": COARSE}
+    truth = make(position=(np.arange(211) + 0.37) / 211, relief=relief, force=BETWEEN)
+    refined, plain = held_out_error(make(**case), truth), held_out_error(without_kinks(make, **case), truth)
+    assert refined.relative_rms < 0.5 * plain.relative_rms
+    assert refined.maximum < 0.7 * plain.maximum
+
+
+def test_no_false_peaks_beside_the_handover(make):
+    """Peak-to-peak between the loads, where single cubics read several per cent too high."""
+    truth, refined, plain = (
+        make(position=POSITION, force=BETWEEN),
+        make(position=POSITION),
+        without_kinks(make, position=POSITION),
+    )
+    for force in BETWEEN:
+        exact = float(truth.peak_to_peak(force=force))
+        assert float(refined.peak_to_peak(force=force)) == pytest.approx(exact, rel=0.01)
+    too_high = max(float(plain.peak_to_peak(force=f)) / float(truth.peak_to_peak(force=f)) for f in BETWEEN)
+    assert too_high > 1.02
