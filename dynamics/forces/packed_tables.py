@@ -27,8 +27,8 @@ class PackedTables(NamedTuple):
     bucket : flat int array
         The interval in which each of the equal buckets of the period begins: finding it takes no search.
     row : (sum of P L, 8) array
-        Per position interval and level the ascending cubic coefficients of deflection (4) and stiffness (4) in
-        the local coordinate 0..1: one cache line each.
+        Per position interval and level the ascending cubic coefficients of deflection (4) and stiffness (4)
+        in the local coordinate 0..1: one cache line each.
     level : flat array
         Forces, N.
     """
@@ -69,7 +69,7 @@ def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
 
 
 def _buckets(knot: FloatArray) -> IntArray:
-    """Interval that holds the start of each bucket; rounding must never put it behind the position looked up."""
+    """Interval that holds the start of each bucket; rounding must not put it behind a position in it."""
     count = BUCKETS_PER_KNOT * (knot.size - 1)
     start = np.arange(count) / count * (1.0 - 1e-12)
     index = np.clip(np.searchsorted(knot, start, side="right") - 1, 0, knot.size - 2)

@@ -10,8 +10,10 @@ from dynamics.types import FloatArray
 
 @inner
 def cubic_slope(row: FloatArray, index: int, column: int, u: float) -> float:
-    """Derivative in u of the cubic in ``row[index, column : column + 4]``."""
-    return row[index, column + 1] + u * (2.0 * row[index, column + 2] + 3.0 * u * row[index, column + 3])
+    """Return the derivative in u of the cubic in ``row[index, column : column + 4]``."""
+    return float(
+        row[index, column + 1] + u * (2.0 * row[index, column + 2] + 3.0 * u * row[index, column + 3])
+    )
 
 
 @compiled

@@ -12,14 +12,13 @@ from dynamics.types import FloatArray
 @inner
 def cubic(row: FloatArray, index: int, column: int, u: float) -> float:
     """Evaluate the cubic in ``row[index, column : column + 4]`` at u."""
-    return row[index, column] + u * (
-        row[index, column + 1] + u * (row[index, column + 2] + u * row[index, column + 3])
-    )
+    higher = row[index, column + 1] + u * (row[index, column + 2] + u * row[index, column + 3])
+    return float(row[index, column] + u * higher)
 
 
 @inner
 def position_interval(table: PackedTables, flank: int, position: float) -> tuple[int, float, float]:
-    """Return the first row of the interval that holds `position` (any real), the coordinate in it, 1/width."""
+    """Return the first row of the interval that holds `position`, the coordinate in it, 1/width."""
     first, bucket, buckets = table.offset[flank, 0], table.offset[flank, 1], table.offset[flank, 2]
     phase = position - table.shift[flank]
     phase -= math.floor(phase)
@@ -58,7 +57,7 @@ def level_interval(
 def table_force(
     table: PackedTables, flank: int, position: float, deflection: float, hint: int
 ) -> tuple[float, float, int]:
-    """Return transverse force (N), tangent stiffness (N/m) and the level interval, to be the next call's hint.
+    """Return transverse force (N), tangent stiffness (N/m) and the level interval, the next call's hint.
 
     Zero below lift-off; straight on with the last stiffness above the last level.
     """
@@ -92,12 +91,19 @@ def table_deflection(table: PackedTables, flank: int, position: float, force: fl
     if force <= 0.0:
         return low
     if force >= table.level[first + k + 1]:
-        return high + (force - table.level[first + k + 1]) / cubic(table.row, row + k + 1, 4, u)
-    # The cubic is monotone on its interval: bisection to the last bit cannot fail, and this is no inner loop.
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        if table_force(table, flank, position, middle, k)[0] < force:
-            low = middle
+        return float(high + (force - table.level[first + k + 1]) / cubic(table.row, row + k + 1, 4, u))
+    # Newton, kept inside the bracket: the cubic is monotone on its interval, so bisection can always step in.
+    deflection = 0.5 * (low + high)
+    for _ in range(100):
+        found, stiffness, _ = table_force(table, flank, position, deflection, k)
+        if found < force:
+            low = deflection
         else:
-            high = middle
-    return 0.5 * (low + high)
+            high = deflection
+        step = (force - found) / stiffness
+        if not low <= deflection + step <= high:
+            step = 0.5 * (low + high) - deflection
+        deflection += step
+        if abs(step) <= 1e-15 * abs(high):
+            break
+    return deflection

@@ -26,14 +26,15 @@ def advance(
     q_out: FloatArray,
     v_out: FloatArray,
 ) -> int:
-    """Step until the time passes `stop`; write output samples k / sample_rate into rows k; return a `RunStatus`.
+    """Step until the time passes `stop` and return a `RunStatus`.
 
-    Steps never end at `stop` on purpose: cutting a run into chunks changes no bit of it.
+    The output samples at k / sample_rate go into the rows k of `q_out` and `v_out`. Steps never
+    end at `stop` on purpose: cutting a run into chunks changes no bit of it.
     """
-    if work.count[Count.ACCEPTED] == 0:
+    if work.counts[Count.ACCEPTED] == 0:
         _start(system, work, control, q_out, v_out)
     while work.time[0] < stop:
-        count = work.count
+        count = work.counts
         if count[Count.ACCEPTED] + count[Count.REJECTED] >= control.step_limit:
             return STEP_LIMIT
         rung = count[Count.RUNG]
@@ -66,7 +67,7 @@ def _start(
     for i in range(work.q.size):
         work.stage_v[0, i] = work.v[i]
         q_out[0, i], v_out[0, i] = work.q[i], work.v[i]
-    work.count[Count.OUTPUT] = 1
+    work.counts[Count.OUTPUT] = 1
     if control.audit:
         write_powers(system, work, 0, work.time[0])
 
@@ -78,19 +79,19 @@ def _accept(
     """Store the samples inside the step, add its works, and make its end the new state."""
     step = work.ladder[rung]
     end = work.time[0] + step
-    sample = work.count[Count.OUTPUT]
+    sample = work.counts[Count.OUTPUT]
     while sample < q_out.shape[0] and sample / sample_rate <= end:
         _interpolate(work, step, sample / sample_rate - work.time[0], q_out[sample], v_out[sample])
         sample += 1
-    work.count[Count.OUTPUT] = sample
+    work.counts[Count.OUTPUT] = sample
     if control.audit:
         _add_works(work, control.implicit, step)
     for i in range(work.q.size):
         work.q[i], work.v[i], work.a[i] = work.q_new[i], work.v_new[i], work.a_new[i]
     work.time[0] = end
-    work.count[Count.ACCEPTED] += 1
-    work.count[Count.SMALLEST_RUNG] = min(work.count[Count.SMALLEST_RUNG], rung)
-    work.count[Count.LARGEST_RUNG] = max(work.count[Count.LARGEST_RUNG], rung)
+    work.counts[Count.ACCEPTED] += 1
+    work.counts[Count.SMALLEST_RUNG] = min(work.counts[Count.SMALLEST_RUNG], rung)
+    work.counts[Count.LARGEST_RUNG] = max(work.counts[Count.LARGEST_RUNG], rung)
 
 
 @inner
@@ -106,7 +107,7 @@ def _interpolate(work: Workspace, step: float, elapsed: float, q: FloatArray, v:
 
 @inner
 def _add_works(work: Workspace, implicit: bool, step: float) -> None:
-    """Integrate the powers with the method's own weights; the last stage becomes the first of the next step."""
+    """Integrate the powers with the method's own weights; the last stage is the next step's first."""
     weights = IMPLICIT_WEIGHTS if implicit else EXPLICIT_WEIGHTS
     last = weights.size - 1
     for column in range(work.work.size):

@@ -1,7 +1,7 @@
 """Compiled Newton's method for the flank forces of one implicit stage.
 
-Everything but the flanks is linear, and each flank acts along one direction, so the stage's n equations reduce to
-one scalar unknown per flank: its force.
+Everything but the flanks is linear, and each flank acts along one direction, so the stage's n equations
+reduce to one scalar unknown per flank: its force.
 """
 
 from __future__ import annotations
@@ -19,10 +19,11 @@ ITERATION_LIMIT = 25
 def solve_flanks(system: SystemArrays, work: Workspace, rung: int, span: float, tolerance: float) -> int:
     """Find ``work.force`` such that each force is its law's at the motion it causes; return the iterations.
 
-    On entry position, deflection and rate are those without flank forces, and ``work.force`` is a first guess;
-    on exit they include the forces. A force F of flank f changes the deflection of flank e by -span^2 approach[e, f] F, its rate by -span ... F. The
-    change of the position with the force is followed but left out of the Jacobian: it is of the order of a
-    deflection over a base pitch. Returns -1 if the last update was not below `tolerance` (N).
+    On entry position, deflection and rate are those without flank forces, and ``work.force`` is a first
+    guess; on exit they include the forces. A force F of flank f changes the deflection of flank e by -span^2
+    approach[e, f] F, its rate by -span ... F. The change of the position with the force is followed but left
+    out of the Jacobian: it is of the order of a deflection over a base pitch. Returns -1 if the last update
+    was not below `tolerance` (N).
     """
     flanks = work.force.size
     for iteration in range(ITERATION_LIMIT):

@@ -35,8 +35,8 @@ def implicit_step(system: SystemArrays, work: Workspace, rung: int, tolerance: f
         iterations = _stage(system, work, rung, stage, tolerance)
         if iterations < 0:
             return False
-        work.count[Count.NEWTON_TOTAL] += iterations
-        work.count[Count.NEWTON_MOST] = max(work.count[Count.NEWTON_MOST], iterations)
+        work.counts[Count.NEWTON_TOTAL] += iterations
+        work.counts[Count.NEWTON_MOST] = max(work.counts[Count.NEWTON_MOST], iterations)
         if audit:
             write_powers(system, work, stage, work.time[0] + IMPLICIT_NODES[stage] * step)
     for i in range(work.q.size):
@@ -49,8 +49,8 @@ def implicit_step(system: SystemArrays, work: Workspace, rung: int, tolerance: f
 def _stage(system: SystemArrays, work: Workspace, rung: int, stage: int, tolerance: float) -> int:
     """Solve one stage for its acceleration.
 
-    With s = diagonal * step the stage's rates are v = v* + s a and q = q* + s v* + s^2 a, where v* and q* hold
-    what earlier stages contribute; (M + s C + s^2 K) a = external - C v* - K (q* + s v*) - sum g F.
+    With s = diagonal * step the stage's rates are v = v* + s a and q = q* + s v* + s^2 a, where v* and q*
+    hold what earlier stages contribute; (M + s C + s^2 K) a = external - C v* - K (q* + s v*) - sum g F.
     """
     step, size = work.ladder[rung], work.q.size
     span = IMPLICIT_DIAGONAL * step

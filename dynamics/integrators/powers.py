@@ -16,8 +16,8 @@ from dynamics.system.motion import drive_motion, law_value
 def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float) -> None:
     """Write row `stage` of ``work.power`` from the flank state at that stage and its rates ``work.stage_v``.
 
-    The drive supplies the torque on its own shaft times its speed. A table V(x, d) exerts dV/dd only along the
-    line of action; what dV/dx stores as the position moves on is counted as supplied by the position.
+    The drive supplies the torque on its own shaft times its speed. A table V(x, d) exerts dV/dd only along
+    the line of action; what dV/dx stores as the position moves on is counted as supplied by the position.
     """
     _, _, speed, acceleration = drive_motion(system.reference, time)
     velocity = work.stage_v[stage]
@@ -36,9 +36,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     for f in range(work.force.size):
         torque += system.drive_direction[f] * work.force[f]
         mesh += (work.force[f] - work.elastic[f]) * work.rate[f]
-        slope = table_energy(
-            system.flank.table, f, work.position[f], work.deflection[f], work.hint[f]
-        )[1]
+        slope = table_energy(system.flank.table, f, work.position[f], work.deflection[f], work.hint[f])[1]
         rate = system.reference.numerator[f] / system.reference.denominator[f] * speed / (2.0 * math.pi)
         for i in range(velocity.size):
             rate += system.turn[f, i] * velocity[i]

@@ -1,4 +1,4 @@
-"""Compiled preparation of one step size: the inverse of the implicit stage matrix and the flanks' responses."""
+"""Compiled preparation of one step size: inverse of the stage matrix, responses to the flanks."""
 
 from __future__ import annotations
 

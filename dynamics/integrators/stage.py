@@ -32,9 +32,7 @@ def add_flank_motion(system: SystemArrays, work: Workspace, q: FloatArray, v: Fl
 
 
 @inner
-def finish_step(
-    work: Workspace, step: float, weights: FloatArray, embedded: FloatArray
-) -> None:
+def finish_step(work: Workspace, step: float, weights: FloatArray, embedded: FloatArray) -> None:
     """Write the embedded error estimates of displacements and rates."""
     for i in range(work.q.size):
         work.q_error[i], work.v_error[i] = 0.0, 0.0

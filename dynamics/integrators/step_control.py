@@ -60,8 +60,8 @@ def next_rung(work: Workspace, control: Control, error: float, accepted: bool) -
     """Return the rung of the next step from this step's error over the tolerance.
 
     Proportional-integral control (Gustafsson): the factor depends on the last accepted error too, so that the
-    step size does not oscillate where the solution is stiff. A rejected step falls by at least one rung, and no
-    accepted one rises by less than a whole rung, so the step stays put unless it pays.
+    step size does not oscillate where the solution is stiff. A rejected step falls by at least one rung, and
+    no accepted one rises by less than a whole rung, so the step stays put unless it pays.
     """
     exponent = 1.0 / (control.order + 1)
     error = max(error, 1e-10)
@@ -70,7 +70,7 @@ def next_rung(work: Workspace, control: Control, error: float, accepted: bool) -
         factor = min(SAFETY * error ** (-exponent), 1.0)
     factor = min(max(factor, FALL_LIMIT), RISE_LIMIT)
     rise = math.floor(RUNGS_PER_OCTAVE * math.log2(factor))
-    rung = work.count[Count.RUNG] - int(rise)
+    rung = work.counts[Count.RUNG] - int(rise)
     if not accepted:
-        rung = max(rung, work.count[Count.RUNG] + 1)
-    return max(rung, 0)
+        rung = max(rung, work.counts[Count.RUNG] + 1)
+    return int(max(rung, 0))

@@ -1,7 +1,7 @@
 """Coefficients of the Runge-Kutta methods.
 
-ESDIRK: ESDIRK4(3)6L[2]SA of Kennedy and Carpenter, Appl. Numer. Math. 44 (2003) 139-181: order 4 with an embedded
-order 3, first stage explicit, L-stable, stiffly accurate, stage order 2.
+ESDIRK: ESDIRK4(3)6L[2]SA of Kennedy and Carpenter, Appl. Numer. Math. 44 (2003) 139-181: order 4 with an
+embedded order 3, first stage explicit, L-stable, stiffly accurate, stage order 2.
 Dormand-Prince: RK5(4)7M, J. Comput. Appl. Math. 6 (1980) 19-26: order 5 with an embedded order 4.
 In both the last stage is the end of the step, so it serves as the first stage of the next one.
 """
@@ -29,7 +29,14 @@ IMPLICIT_STAGES = np.array(
         [1 / 4, 1 / 4, 0.0, 0.0, 0.0, 0.0],
         [8611 / 62500, -1743 / 31250, 1 / 4, 0.0, 0.0, 0.0],
         [5012029 / 34652500, -654441 / 2922500, 174375 / 388108, 1 / 4, 0.0, 0.0],
-        [15267082809 / 155376265600, -71443401 / 120774400, 730878875 / 902184768, 2285395 / 8070912, 1 / 4, 0],
+        [
+            15267082809 / 155376265600,
+            -71443401 / 120774400,
+            730878875 / 902184768,
+            2285395 / 8070912,
+            1 / 4,
+            0,
+        ],
         [82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, 1 / 4],
     ]
 )

@@ -41,8 +41,8 @@ class Count(IntEnum):
 class Workspace(NamedTuple):
     """State and scratch of a run with n freedoms and m flanks.
 
-    The step sizes are those of a ladder, RUNGS_PER_OCTAVE to a factor of 2, so that the matrices of the implicit
-    stages are inverted once per rung and run.
+    The step sizes are those of a ladder, RUNGS_PER_OCTAVE to a factor of 2, so that the matrices of the
+    implicit stages are inverted once per rung and run.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Workspace(NamedTuple):
         Per stage; columns `Power`.
     work : (5,) array
         Integrated, J.
-    count : int array
+    counts : int array
         See `Count`.
     ladder : (r,) array
         Step sizes, falling, s; the last is 0, for the matrices of an explicit evaluation.
@@ -104,7 +104,7 @@ class Workspace(NamedTuple):
     hint: IntArray
     power: FloatArray
     work: FloatArray
-    count: IntArray
+    counts: IntArray
     ladder: FloatArray
     matrix: FloatArray
     ready: BoolArray
@@ -123,28 +123,29 @@ def step_ladder(largest: float, smallest: float) -> FloatArray:
 def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, first_step: float) -> Workspace:
     """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
     n, m, r = q.size, system.drive_direction.size, ladder.size
-    state = [np.zeros(n) for _ in range(10)]
-    state[0][:] = q
-    count = np.zeros(len(Count), dtype=np.int64)
-    count[Count.RUNG] = min(int(np.searchsorted(-ladder, -first_step)), r - 2)
-    count[Count.SMALLEST_RUNG] = r - 1
+    counts = np.zeros(len(Count), dtype=np.int64)
+    counts[Count.RUNG] = min(int(np.searchsorted(-ladder, -first_step)), r - 2)
+    counts[Count.SMALLEST_RUNG] = r - 1
+    per_freedom = ("v", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "linear")
+    per_flank = ("force", "elastic", "deflection", "rate", "position")
     return Workspace(
-        np.zeros(1),
-        np.ones(1),
-        *state,
-        np.zeros((STAGES, n)),
-        np.zeros((STAGES, n)),
-        *[np.zeros(m) for _ in range(5)],
-        np.zeros((m, m + 1)),
-        np.zeros(m, dtype=np.int64),
-        np.zeros((STAGES, len(Power))),
-        np.zeros(len(Power)),
-        count,
-        ladder,
-        np.zeros((n, n)),
-        np.zeros(r, dtype=np.bool_),
-        np.zeros((r, n, n)),
-        np.zeros((r, m, n)),
-        np.zeros((r, m, m)),
-        np.zeros((r, m, m)),
+        time=np.zeros(1),
+        error=np.ones(1),
+        q=np.array(q, dtype=float),
+        **{name: np.zeros(n) for name in per_freedom},
+        stage_v=np.zeros((STAGES, n)),
+        stage_a=np.zeros((STAGES, n)),
+        **{name: np.zeros(m) for name in per_flank},
+        jacobian=np.zeros((m, m + 1)),
+        hint=np.zeros(m, dtype=np.int64),
+        power=np.zeros((STAGES, len(Power))),
+        work=np.zeros(len(Power)),
+        counts=counts,
+        ladder=ladder,
+        matrix=np.zeros((n, n)),
+        ready=np.zeros(r, dtype=np.bool_),
+        inverse=np.zeros((r, n, n)),
+        response=np.zeros((r, m, n)),
+        approach=np.zeros((r, m, m)),
+        turning=np.zeros((r, m, m)),
     )

@@ -102,7 +102,7 @@ def assemble(scene: Scene) -> System:
 def _supported(
     scene: Scene, rotors: Sequence[Rotor], lines: Sequence[LineOfAction], forces: FloatArray
 ) -> list[SupportedRotor]:
-    """What the effects decide on."""
+    """Gather what the effects decide on."""
     meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
     for mesh, line, force in zip(scene.meshes, lines, forces, strict=True):
         for name in (mesh.driver, mesh.driven):
@@ -172,7 +172,7 @@ def _check_mass(freedoms: Freedoms, mass: FloatArray) -> None:
 
 
 def _gradients(scene: Scene, rotors: Sequence[Rotor], lines: Sequence[LineOfAction]) -> FloatArray:
-    """Derivative of each transmission error in all six freedoms of all rotors, (m, 6 r)."""
+    """Return the derivatives of each transmission error in six freedoms of all rotors, (m, 6 r)."""
     gradient = np.zeros((len(lines), len(rotors), 6))
     for row, (mesh, line) in enumerate(zip(scene.meshes, lines, strict=True)):
         for name, sign in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
@@ -182,7 +182,7 @@ def _gradients(scene: Scene, rotors: Sequence[Rotor], lines: Sequence[LineOfActi
 
 
 def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
-    """Derivative of each position in all freedoms, (m, 6 r): only the driver's rotation counts."""
+    """Return the derivatives of each position in all freedoms, (m, 6 r): the driver's rotation."""
     turn = np.zeros((len(scene.meshes), len(rotors), 6))
     for row, mesh in enumerate(scene.meshes):
         driver = scene.gear(mesh.driver)

@@ -76,7 +76,7 @@ def mean_stiffness(packed: PackedTables, flank: int, force: float, positions: Fl
 
 
 def _apply_technique(technique: str, table: PlainTable, force: float) -> PlainTable:
-    """The table a mesh runs on."""
+    """Return the table a mesh runs on."""
     if technique == "variable_torque":
         return table
     if force <= 0.0:
@@ -89,7 +89,7 @@ def _apply_technique(technique: str, table: PlainTable, force: float) -> PlainTa
 def _damping(
     scene: Scene, kinematics: Kinematics, index: int, stiffness: float, polar_inertia: Sequence[float]
 ) -> float:
-    """As given, or from the damping ratio of the two gears turning against each other on the mean stiffness."""
+    """Return it as given, or from the ratio, for the gears turning against each other on the mesh."""
     mesh = scene.meshes[index]
     if mesh.damping is not None:
         return mesh.damping

@@ -79,7 +79,7 @@ def bushing_coefficients(bushings: Sequence[Bushing]) -> tuple[FloatArray, Float
 
 
 def shared_blocks(matrices: Sequence[FloatArray]) -> IntArray:
-    """Return (n, 2): first and end column of each row's block, the finest that all `matrices` (n, n) share."""
+    """Return (n, 2): first and end column of each row's block, the finest that all `matrices` share."""
     size = matrices[0].shape[0]
     coupled = np.any([matrix != 0.0 for matrix in matrices], axis=0)
     starts, reach = [], 0

@@ -59,8 +59,8 @@ def solve_kinematics(scene: Scene) -> Kinematics:
                 f"shafts[{index}]", shaft.name, "geared to the drive", "Add a mesh or leave it out."
             )
     forward = 1 if scene.drives[0].speed.extreme > 0.0 else -1
-    ratio = tuple(found[index] for index in range(len(scene.shafts)))
-    return Kinematics(drive, ratio, tuple(forward if value > 0 else -forward for value in ratio))
+    ratios = tuple(found[index] for index in range(len(scene.shafts)))
+    return Kinematics(drive, ratios, tuple(forward if value > 0 else -forward for value in ratios))
 
 
 def _link(scene: Scene, index: int) -> tuple[int, int, Fraction]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.bodies import GearBody, Shaft
+from dynamics.bodies import GearBody
 from dynamics.errors import InputError
 from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
@@ -46,9 +46,9 @@ class LineOfAction:
 def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     """Return the line of action of mesh `index` whose driver pushes in the `sense` (+1 or -1) about +z.
 
-    With e from the driver's to the driven gear's centre and alpha the working pressure angle, the driver turning
-    in +z pushes along n = sin(alpha) e + cos(alpha) (z x e). A right-hand driver (beta_b > 0) pushed on by
-    F feels the axial force sense F tan(beta_b).
+    With e from the driver's to the driven gear's centre and alpha the working pressure angle, the driver
+    turning in +z pushes along n = sin(alpha) e + cos(alpha) (z x e). A right-hand driver (beta_b > 0) pushed
+    on by F feels the axial force sense F tan(beta_b).
 
     Raises
     ------
@@ -77,8 +77,9 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
 
 def _center(scene: Scene, gear: GearBody) -> FloatArray:
     """Mid-face centre of a gear in the fixed frame."""
-    shaft: Shaft = scene.shafts[scene.shaft_index(gear.shaft)]
-    return np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, gear.position])
+    shaft = scene.shafts[scene.shaft_index(gear.shaft)]
+    x, y, z = shaft.origin
+    return np.array([x, y, z + gear.position])
 
 
 def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:

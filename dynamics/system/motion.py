@@ -28,7 +28,7 @@ def law_value(law: LawArrays, index: int, time: float) -> float:
 
 @compiled
 def drive_motion(reference: Reference, time: float) -> tuple[float, float, float, float]:
-    """Return the drive's whole revolutions, the fraction of one (0..1), speed (rad/s), acceleration (rad/s^2)."""
+    """Return the drive's whole revolutions, fraction of one (0..1), speed (rad/s), acceleration (rad/s^2)."""
     piece = piece_at(reference.speed, 0, time)
     s, c = time - reference.speed.start[piece], reference.speed.coefficient
     angle = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))

@@ -47,4 +47,4 @@ def _balance(scene: Scene, kinematics: Kinematics) -> FloatArray:
             raise InputError(
                 f"meshes[{index}]", f"{value:.6g} N", "loaded on its driving flank", "Turn the load."
             )
-    return np.maximum(force, 0.0)
+    return np.asarray(np.maximum(force, 0.0), dtype=float)

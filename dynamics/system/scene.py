@@ -27,11 +27,14 @@ class Outputs:
         Store the three force components of every bushing.
     displacements : bool
         Store displacement and velocity of every freedom.
+    energy_audit : bool
+        Integrate the powers and close the balance at the end (a quarter more time).
     """
 
     sample_rate: float = 20e3
     bearing_forces: bool = True
     displacements: bool = False
+    energy_audit: bool = True
 
     def __post_init__(self) -> None:
         positive("sample_rate", self.sample_rate)
@@ -54,6 +57,8 @@ class Integration:
         s; bounds of the error control.
     step_limit : int
         Number of steps after which a run ends as `RunStatus.STEP_LIMIT`.
+    estimate_error : bool
+        Run again at a tenth of the tolerance and report the difference of the transmission errors.
     """
 
     method: str = "implicit"
@@ -62,6 +67,7 @@ class Integration:
     smallest_step: float = 1e-12
     largest_step: float = 1e-3
     step_limit: int = 100_000_000
+    estimate_error: bool = False
 
     def __post_init__(self) -> None:
         one_of("method", self.method, METHODS)

@@ -1,0 +1,113 @@
+"""Static equilibrium under the load at one time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.forces.table_lookup import table_deflection, table_force
+from dynamics.system.arrays import SystemArrays
+from dynamics.system.assemble import System
+from dynamics.system.observation import observe_drive, observe_flanks
+from dynamics.types import FloatArray, StaticStatus
+
+ITERATION_LIMIT = 50
+RESIDUAL_LIMIT = 1e-10  # of the largest force
+
+
+@dataclass(frozen=True)
+class StaticSolution:
+    """Where the bodies rest.
+
+    Attributes
+    ----------
+    status : StaticStatus
+    displacement : (n,) array
+        Deviations from the kinematic motion, m and rad.
+    mesh_force : (m,) array
+        Transverse, N.
+    residual : float
+        Largest unbalanced force (torques over the freedom's scale), N.
+    iterations : int
+    """
+
+    status: StaticStatus
+    displacement: FloatArray
+    mesh_force: FloatArray
+    residual: float
+    iterations: int
+
+
+def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
+    """Balance bushings and meshes against loads and the inertia of the imposed motion at `time`.
+
+    Newton's method with step halving, from the state in which every mesh has its nominal deflection.
+    """
+    arrays = system.arrays
+    external = _external(system, time)
+    q = _first_guess(system, time, external)
+    residual, stiffness, force = _residual(arrays, time, q, external)
+    scale = max(
+        float(np.max(np.abs(external / arrays.scale), initial=0.0)), float(np.max(force, initial=0.0))
+    )
+    for iteration in range(ITERATION_LIMIT + 1):
+        size = float(np.max(np.abs(residual / arrays.scale), initial=0.0))
+        if size <= RESIDUAL_LIMIT * scale:
+            return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
+        matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", arrays.direction, stiffness, arrays.direction)
+        update = np.linalg.lstsq(matrix, residual, rcond=1e-14)[0]
+        q, residual, stiffness, force = _line_search(arrays, time, q, update, external, size)
+    lost = bool(np.any(stiffness <= 0.0))
+    status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
+    return StaticSolution(status, q, force, size, ITERATION_LIMIT)
+
+
+def _external(system: System, time: float) -> FloatArray:
+    """Return loads and the inertial force of the kinematic motion, (n,)."""
+    motion = np.empty((4, 1))
+    observe_drive(system.arrays, np.array([time]), motion)
+    torque = np.array([float(load.torque(time)) for load in system.scene.loads])
+    return np.asarray(torque @ system.arrays.load.direction + system.arrays.inertial * motion[3, 0])
+
+
+def _first_guess(system: System, time: float, external: FloatArray) -> FloatArray:
+    """Displacements with every mesh at its nominal deflection, from a saddle-point system."""
+    arrays, flanks = system.arrays, system.flanks
+    n, m = external.size, flanks.nominal_force.size
+    position = _observe(arrays, time, np.zeros(n))[0]
+    table = arrays.flank.table
+    deflection = [table_deflection(table, f, position[f], flanks.nominal_force[f]) for f in range(m)]
+    matrix = np.block(
+        [[arrays.stiffness, arrays.direction.T], [arrays.direction, np.zeros((m, m))]],
+    )
+    return np.asarray(np.linalg.lstsq(matrix, np.concatenate([external, deflection]), rcond=1e-14)[0][:n])
+
+
+def _observe(arrays: SystemArrays, time: float, q: FloatArray) -> FloatArray:
+    """Position, transmission error and force of every flank at rest in `q`, (3, m)."""
+    observed = np.empty((3, arrays.drive_direction.size, 1))
+    observe_flanks(arrays, np.array([time]), q[None, :], np.zeros((1, q.size)), observed)
+    return observed[:, :, 0]
+
+
+def _residual(
+    arrays: SystemArrays, time: float, q: FloatArray, external: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Unbalanced force (n,), tangent stiffness (m,) and force (m,) of the flanks."""
+    position, deflection, force = _observe(arrays, time, q)
+    table = arrays.flank.table
+    stiffness = np.array([table_force(table, f, position[f], deflection[f], 0)[1] for f in range(force.size)])
+    return external - arrays.stiffness @ q - force @ arrays.direction, stiffness, force
+
+
+def _line_search(
+    arrays: SystemArrays, time: float, q: FloatArray, update: FloatArray, external: FloatArray, size: float
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Halve the update until it lowers the residual (or is too small to matter)."""
+    for halving in range(30):
+        trial = q + update * 0.5**halving
+        residual, stiffness, force = _residual(arrays, time, trial, external)
+        if float(np.max(np.abs(residual / arrays.scale))) < size:
+            break
+    return trial, residual, stiffness, force

@@ -1,0 +1,54 @@
+"""The scene as resolved, in plain JSON: every default and every derived value spelled out."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+
+import numpy as np
+
+from dynamics.system.assemble import System
+from dynamics.types import Json
+
+
+def resolved_case(system: System) -> Json:
+    """Return what was computed: parts, dampings in use, lines of action, freedoms; of tables the size."""
+    scene, flanks = system.scene, system.flanks
+    case = {
+        "shafts": [asdict(shaft) for shaft in scene.shafts],
+        "gears": [asdict(gear) for gear in scene.gears],
+        "bushings": [asdict(bushing) for bushing in system.bushings],
+        "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],
+        "drives": [asdict(drive) for drive in scene.drives],
+        "loads": [asdict(load) for load in scene.loads],
+        "duration": scene.duration,
+        "effects": dict(scene.effects),
+        "outputs": asdict(scene.outputs),
+        "integration": asdict(scene.integration),
+        "freedoms": list(system.freedoms.name),
+        "damping_reach": [float(value) for value in flanks.law.reach],
+    }
+    plain: Json = json.loads(json.dumps(case, default=float))  # lists for tuples, as a file gives them back
+    return plain
+
+
+def _mesh(system: System, index: int) -> Json:
+    """One mesh as used."""
+    mesh, line, flanks = system.scene.meshes[index], system.lines[index], system.flanks
+    return {
+        "name": mesh.name,
+        "driver": mesh.driver,
+        "driven": mesh.driven,
+        "technique": mesh.technique,
+        "nominal_force": float(flanks.nominal_force[index]),
+        "mean_stiffness": float(flanks.mean_stiffness[index]),
+        "damping": float(flanks.law.damping[index]),
+        "damping_ratio": mesh.damping_ratio,
+        "position_offset": mesh.position_offset,
+        "misalignment": mesh.misalignment,
+        "center_distance_change": mesh.center_distance_change,
+        "working_pressure_angle": line.working_pressure_angle,
+        "line_of_action": [float(value) for value in line.force],
+        "point_of_action": [float(value) for value in line.point],
+        "table": {"positions": np.size(mesh.table.position), "levels": np.size(mesh.table.level)},
+    }

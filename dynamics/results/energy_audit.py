@@ -1,0 +1,77 @@
+"""The energy audit: what went in, what is stored, what was lost, and what is missing."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+
+from dynamics.types import FloatArray, Json
+
+
+@dataclass(frozen=True)
+class EnergyAudit:
+    """Energies in J over the whole run.
+
+    Attributes
+    ----------
+    drive, load : float
+        Work supplied by the drive and by the load torques (negative: they resist).
+    position : float
+        Work supplied by the change of the mesh tables with position: their force is that of a potential V(x,
+        d) in the direction of d only, and the imposed motion of x pays for dV/dx.
+    bushings, meshes : float
+        Dissipated, >= 0.
+    kinetic, stored_bushings, stored_meshes : float
+        Gained from start to end.
+    """
+
+    drive: float
+    load: float
+    position: float
+    bushings: float
+    meshes: float
+    kinetic: float
+    stored_bushings: float
+    stored_meshes: float
+
+    @property
+    def residual(self) -> float:
+        """What does not balance, J; 0 for an exact integration."""
+        gained = self.kinetic + self.stored_bushings + self.stored_meshes
+        return self.drive + self.load + self.position - self.bushings - self.meshes - gained
+
+    @property
+    def relative(self) -> float:
+        """Residual over all that was dissipated, stored or supplied by the tables.
+
+        The power that drive and load exchange is thousands of times what vibration turns over, and would hide
+        any error of it.
+        """
+        turnover = self.bushings + self.meshes + abs(self.position) + abs(self.stored_bushings)
+        turnover += abs(self.stored_meshes)
+        return abs(self.residual) / turnover if turnover > 0.0 else 0.0
+
+    @property
+    def relative_to_throughput(self) -> float:
+        """Residual over the larger of the works of drive and load."""
+        through = max(abs(self.drive), abs(self.load))
+        return abs(self.residual) / through if through > 0.0 else 0.0
+
+    def to_json(self) -> Json:
+        """Return all figures, the balance included."""
+        return {
+            **asdict(self),
+            "residual": self.residual,
+            "relative": self.relative,
+            "relative_to_throughput": self.relative_to_throughput,
+        }
+
+    @classmethod
+    def from_json(cls, data: Json) -> EnergyAudit:
+        """Read what `to_json` wrote."""
+        return cls(**{name: data[name] for name in cls.__dataclass_fields__})
+
+    @classmethod
+    def from_arrays(cls, work: FloatArray, stored: FloatArray) -> EnergyAudit:
+        """Build from works in the order of the first five fields and stored energies (2, 3), start, end."""
+        gained = stored[1] - stored[0]
+        return cls(*(float(value) for value in work), *(float(value) for value in gained))

@@ -1,0 +1,111 @@
+"""Run results as netCDF-4 files."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray
+
+from dynamics.errors import ResultError
+from dynamics.results.energy_audit import EnergyAudit
+from dynamics.results.run_result import RunResult
+from dynamics.results.series import LABELS, SERIES
+from dynamics.results.step_statistics import StepStatistics
+from dynamics.types import RunStatus
+
+SCHEMA = "lineofaction dynamics run"
+SCHEMA_VERSION = 1
+DIRECTIONS = ("x", "y", "z")
+DOCUMENTS = ("effect_ledger", "receipt", "case")
+
+
+def to_dataset(result: RunResult) -> xarray.Dataset:
+    """Return `result` as a dataset: CF-style names and units, documents as JSON attributes."""
+    coordinates: dict[str, Any] = {
+        dimension: (dimension, np.array(getattr(result, field), dtype=object))
+        for field, dimension in LABELS.items()
+        if getattr(result, field)
+    }
+    coordinates["time"] = ("time", result.time, {"units": "s", "long_name": "time"})
+    coordinates["direction"] = ("direction", np.array(DIRECTIONS, dtype=object))
+    data = {
+        series.name: (
+            series.dimensions,
+            getattr(result, series.name),
+            {"units": series.units, "long_name": series.long_name},
+        )
+        for series in SERIES
+        if getattr(result, series.name).size
+    }
+    return xarray.Dataset(data, coordinates, _attributes(result))
+
+
+def write_netcdf(result: RunResult, path: Path) -> None:
+    """Write to a neighbour of `path`, then move it there in one step."""
+    dataset = to_dataset(result)
+    encoding = {
+        name: {"zlib": True, "complevel": 1, "shuffle": True, "_FillValue": None}
+        for name in dataset.data_vars
+    }
+    handle, name = tempfile.mkstemp(prefix=path.name, suffix=".part", dir=path.parent)
+    os.close(handle)
+    part = Path(name)
+    try:
+        dataset.to_netcdf(part, engine="h5netcdf", encoding=encoding)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def read_netcdf(path: Path) -> RunResult:
+    """Read a file of `write_netcdf`."""
+    try:
+        with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
+            dataset.load()
+    except (OSError, ValueError, KeyError) as error:
+        raise ResultError(f"{path}: not a readable netCDF-4 file ({error})") from error
+    if dataset.attrs.get("schema") != SCHEMA or dataset.attrs.get("schema_version") != SCHEMA_VERSION:
+        found = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
+        raise ResultError(f"{path}: schema is {found}, expected {SCHEMA} {SCHEMA_VERSION}")
+    return _from_dataset(dataset)
+
+
+def _attributes(result: RunResult) -> dict[str, Any]:
+    """All that is not a series."""
+    return {
+        "schema": SCHEMA,
+        "schema_version": SCHEMA_VERSION,
+        "status": result.status.name,
+        "statistics": json.dumps(result.statistics.to_json()),
+        "energy": json.dumps(result.energy.to_json() if result.energy else None),
+        **{name: json.dumps(getattr(result, name)) for name in DOCUMENTS},
+    }
+
+
+def _from_dataset(dataset: xarray.Dataset) -> RunResult:
+    """Undo `to_dataset`."""
+    fields: dict[str, Any] = {
+        field: tuple(str(name) for name in dataset[dimension].values) if dimension in dataset.coords else ()
+        for field, dimension in LABELS.items()
+    }
+    sizes = {"direction": len(DIRECTIONS), **{str(key): size for key, size in dataset.sizes.items()}}
+    fields |= {
+        entry.name: np.asarray(dataset[entry.name].values, dtype=float)
+        if entry.name in dataset
+        else np.empty([sizes.get(dimension, 0) for dimension in entry.dimensions])
+        for entry in SERIES
+    }
+    energy = json.loads(dataset.attrs["energy"])
+    return RunResult(
+        time=np.asarray(dataset["time"].values, dtype=float),
+        **fields,
+        status=RunStatus[dataset.attrs["status"]],
+        statistics=StepStatistics(**json.loads(dataset.attrs["statistics"])),
+        energy=EnergyAudit.from_json(energy) if energy else None,
+        **{name: json.loads(dataset.attrs[name]) for name in DOCUMENTS},
+    )

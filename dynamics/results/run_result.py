@@ -1,0 +1,131 @@
+"""The result of a run: time series and everything needed to trust them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.results.energy_audit import EnergyAudit
+from dynamics.results.step_statistics import StepStatistics
+from dynamics.types import FloatArray, Json, RunStatus
+
+if TYPE_CHECKING:
+    import xarray
+
+
+@dataclass(frozen=True)
+class RunResult:
+    """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms, one drive.
+
+    Attributes
+    ----------
+    time : (T,) array
+        s.
+    mesh, shaft, bearing, freedom : tuples of str
+        Names along the axes below.
+    position : (m, T) array
+        Of each mesh by its driver, base pitches in [0, 1).
+    mesh_frequency : (m, T) array
+        Hz, of the kinematic motion.
+    dynamic_transmission_error : (m, T) array
+        m; r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the
+        driven gear lags.
+    static_transmission_error : (m, T) array
+        m; the table's at the nominal force and the same position: the static reference.
+    mesh_force : (m, T) array
+        Transverse force in N, damping included, >= 0.
+    speed : (s, T) array
+        rad/s about +z.
+    drive_torque : (T,) array
+        N m about +z, on the drive's shaft.
+    bearing_force : (b, 3, T) array
+        Force of the shaft on the ground in the fixed frame x, y, z, N; b = 0 if not asked for.
+    displacement, velocity : (n, T) arrays
+        Deviations from the kinematic motion, m and rad (and per s); n = 0 if not asked for.
+    nominal_force : (m,) array
+        Transverse, N.
+    status : RunStatus
+    statistics : StepStatistics
+    energy : EnergyAudit or None
+        None if not asked for.
+    effect_ledger, receipt, case : dict
+        Plain JSON: effects on and off with reasons; times and error estimate; the scene as resolved, with
+        every damping value used.
+    """
+
+    time: FloatArray
+    mesh: tuple[str, ...]
+    shaft: tuple[str, ...]
+    bearing: tuple[str, ...]
+    freedom: tuple[str, ...]
+    position: FloatArray
+    mesh_frequency: FloatArray
+    dynamic_transmission_error: FloatArray
+    static_transmission_error: FloatArray
+    mesh_force: FloatArray
+    speed: FloatArray
+    drive_torque: FloatArray
+    bearing_force: FloatArray
+    displacement: FloatArray
+    velocity: FloatArray
+    nominal_force: FloatArray
+    status: RunStatus
+    statistics: StepStatistics
+    energy: EnergyAudit | None
+    effect_ledger: Json = field(default_factory=dict)
+    receipt: Json = field(default_factory=dict)
+    case: Json = field(default_factory=dict)
+
+    @property
+    def sample_rate(self) -> float:
+        """Hz of the output grid."""
+        return float(self.case["outputs"]["sample_rate"])
+
+    def window(self, start: float, end: float) -> slice:
+        """Return the samples with start <= time <= end (s).
+
+        Raises
+        ------
+        InputError
+            If fewer than 2 samples lie there.
+        """
+        first, last = np.searchsorted(self.time, [start, end * (1.0 + 1e-12)])
+        if last - first < 2:
+            bound = f"inside the run, 0 to {self.time[-1]:g} s, and longer than a sample"
+            raise InputError("window", (start, end), bound)
+        return slice(int(first), int(last))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Return the series as a dataset with units, the rest as JSON attributes."""
+        from dynamics.results.netcdf import to_dataset  # noqa: PLC0415 - xarray takes a second to import
+
+        return to_dataset(self)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write a netCDF-4 file, compressed without loss; the file appears whole or not at all."""
+        from dynamics.results.netcdf import write_netcdf  # noqa: PLC0415
+
+        write_netcdf(self, Path(path))
+
+    @classmethod
+    def from_netcdf(cls, path: str | Path) -> RunResult:
+        """Read what `to_netcdf` wrote, bit by bit the same.
+
+        Raises
+        ------
+        ResultError
+            If the file is no run result of this schema.
+        """
+        from dynamics.results.netcdf import read_netcdf  # noqa: PLC0415
+
+        return read_netcdf(Path(path))
+
+    def to_csv(self, path: str | Path) -> None:
+        """Write one row per sample, one column per series, units in the header."""
+        from dynamics.results.csv_export import write_csv  # noqa: PLC0415
+
+        write_csv(self, Path(path))

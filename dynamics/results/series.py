@@ -1,0 +1,48 @@
+"""The series of a result: dimensions, units, names. One table that every export reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+LABELS = {
+    "mesh": "mesh",
+    "shaft": "shaft",
+    "bearing": "bearing",
+    "freedom": "freedom",
+}
+
+
+@dataclass(frozen=True)
+class Series:
+    """One stored array.
+
+    Attributes
+    ----------
+    name : str
+        Field of `RunResult`.
+    dimensions : tuple of str
+    units : str
+    long_name : str
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    units: str
+    long_name: str
+
+
+SERIES = (
+    Series("position", ("mesh", "time"), "1", "position by the driving gear in base pitches"),
+    Series("mesh_frequency", ("mesh", "time"), "Hz", "mesh frequency of the kinematic motion"),
+    Series("dynamic_transmission_error", ("mesh", "time"), "m", "dynamic transmission error"),
+    Series(
+        "static_transmission_error", ("mesh", "time"), "m", "static transmission error at the nominal force"
+    ),
+    Series("mesh_force", ("mesh", "time"), "N", "transverse mesh force"),
+    Series("speed", ("shaft", "time"), "rad s-1", "speed about +z"),
+    Series("drive_torque", ("time",), "N m", "drive torque about +z"),
+    Series("bearing_force", ("bearing", "direction", "time"), "N", "force of the shaft on the ground"),
+    Series("displacement", ("freedom", "time"), "m or rad", "deviation from the kinematic motion"),
+    Series("velocity", ("freedom", "time"), "m s-1 or rad s-1", "rate of the deviation"),
+    Series("nominal_force", ("mesh",), "N", "nominal transverse mesh force"),
+)
