@@ -59,11 +59,11 @@ def adaptive_nodes(start: int, solve: Callable[[FloatArray], FloatArray], tolera
     values = solve(nodes)
     settled = np.zeros(start, dtype=bool)
     error = np.full_like(values, np.inf)
-    for _ in range(MAX_ROUNDS):
+    for remaining in reversed(range(MAX_ROUNDS)):
         allowed = np.maximum(tolerance * np.ptp(values, axis=0), 1e-6 * np.abs(values).max(axis=0))
         middles, error, found = _middle_error(nodes, values, solve, settled, error)
         missed = np.any(error > allowed, axis=1)
-        if not missed.any() or nodes.size + missed.sum() > MAX_NODES:
+        if not missed.any() or not remaining or nodes.size + missed.sum() > MAX_NODES:
             break
         nodes, values, settled, error = _inserted(nodes, values, missed, middles, found, error)
     return PositionNodes(nodes, error.max(axis=0))
