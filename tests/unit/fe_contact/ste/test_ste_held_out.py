@@ -34,7 +34,7 @@ def test_a_known_difference_is_found_where_it_is(make, spur):
 
 
 def test_position_error_falls_with_the_spacing(make):
-    """At the stored loads. The transmission error has kinks, so the largest error falls with the first power."""
+    """At the stored loads; the curves have kinks, so the largest error falls with the first power."""
     force = [500.0, 2000.0, 8000.0]
     truth = make(position=(np.arange(97) + 0.31) / 97, force=force)
     results = [held_out_error(make(position=np.arange(n) / n, force=force), truth) for n in (64, 256, 1024)]

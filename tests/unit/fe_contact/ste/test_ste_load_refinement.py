@@ -50,7 +50,7 @@ def test_away_from_kinks_the_force_is_the_same_cubic(make):
 
 
 def test_two_straight_branches_are_found(make):
-    """F = k d, and k2 (d - e) more beyond e: the kink comes out where it is, to the width of one inserted step."""
+    """F = k d, and k2 (d - e) more beyond e: the kink is found to the width of one inserted step."""
     position, force = np.arange(16) / 16, np.array([100.0, 1000.0, 3000.0])
     k, k2 = 3e8, 2e8
     gap = np.linspace(4e-6, 6e-6, 16)  # kinks between the second and third load

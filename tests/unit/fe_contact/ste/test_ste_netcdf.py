@@ -164,7 +164,7 @@ class TestUnreadable:
         database.to_netcdf(path)
         content = bytearray(path.read_bytes())
         noticed = 0
-        for place in np.random.default_rng(1).choice(len(content), 120, replace=False):
+        for place in np.random.default_rng(1).choice(len(content), 60, replace=False):
             damaged = bytearray(content)
             damaged[place] ^= 0x10
             path.write_bytes(damaged)
