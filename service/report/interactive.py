@@ -12,6 +12,7 @@ from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Referen
 Json = dict[str, Any]
 
 _PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 520, 60, 62  # pixels
+_LABEL = 26  # pixels of an axis label between panels
 _LEGEND_ROW, _NAMES_IN_ROW = 22, 8
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
@@ -30,7 +31,8 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
     """Stack panels, each with its own axes, the first on top."""
     names = dict.fromkeys(line.name for panel in panels for line in panel.lines)
     above = (62 if panels[0].title else 44) + _LEGEND_ROW * (len(names) // (_NAMES_IN_ROW + 1))
-    inner = _PANEL_HEIGHT * len(panels) + _BETWEEN * (len(panels) - 1)
+    gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
+    inner = _PANEL_HEIGHT * len(panels) + sum(gaps)
     layout: Json = _layout(inner + above + _BELOW)
     layout |= {"shapes": [], "annotations": [], "showlegend": len(names) > 1}
     layout["margin"] = layout["margin"] | {"t": above}
@@ -38,7 +40,7 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
     unnamed = set(names)
     for index, panel in enumerate(panels):
         suffix = str(index + 1) if index else ""
-        place = {"domain": _domain(index, inner), "anchor": "x" + suffix}
+        place = {"domain": _domain(_PANEL_HEIGHT * index + sum(gaps[:index]), inner), "anchor": "x" + suffix}
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
@@ -52,10 +54,10 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
     return {"data": data, "layout": layout}
 
 
-def _domain(index: int, inner: int) -> list[float]:
-    """Vertical extent of a panel as a fraction of the plot, with room for labels and titles between."""
-    top = inner - index * (_PANEL_HEIGHT + _BETWEEN)
-    return [round(max(top - _PANEL_HEIGHT, 0) / inner, 6), round(top / inner, 6)]
+def _domain(above: int, inner: int) -> list[float]:
+    """Vertical extent of a panel as a fraction of the plot, with `above` pixels of it over the panel."""
+    top = inner - above
+    return [round((top - _PANEL_HEIGHT) / inner, 6), round(top / inner, 6)]
 
 
 def _layout(height: int) -> Json:

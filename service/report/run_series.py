@@ -1,4 +1,4 @@
-"""What the figures of a run are drawn from: one mesh, all bearings, SI and base pitches."""
+"""What the figures of a run are drawn from: one mesh with its driving gear, and all bearings."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.results import RunResult
 from service.report.figure import FloatArray
 
 
@@ -18,40 +19,56 @@ class RunSeries:
     ----------
     time : (n,) array
         s.
-    speed : (n,) array
-        Speed of the driving gear in rad/s, with its sign.
+    speed_rpm : (n,) array
+        Speed of the driving gear, without sign.
+    mesh_frequency : (n,) array
+        Hz.
     position : (n,) array
-        Position of the driving gear in base pitches, not wrapped.
-    transmission_error, mesh_force : (n,) arrays
-        Dynamic transmission error in m; transverse mesh force in N.
+        Travel of the driving gear in base pitches, not wrapped.
+    dynamic_error, static_error : (n,) arrays
+        Transmission errors in m; the static one is the table's at the nominal force.
+    mesh_force : (n,) array
+        Transverse, N.
     nominal_force : float
         Transverse mesh force in N that the load asks for.
-    teeth : int
-        Of the driving gear.
     bearings : mapping of str to (n, 3) array
         Force on each bearing in N, x, y, z in the fixed frame.
     """
 
     time: FloatArray
-    speed: FloatArray
+    speed_rpm: FloatArray
+    mesh_frequency: FloatArray
     position: FloatArray
-    transmission_error: FloatArray
+    dynamic_error: FloatArray
+    static_error: FloatArray
     mesh_force: FloatArray
     nominal_force: float
-    teeth: int
     bearings: Mapping[str, FloatArray]
-
-    @property
-    def speed_rpm(self) -> FloatArray:
-        """Speed of the driving gear in rpm, without sign."""
-        return np.abs(self.speed) * 30.0 / np.pi
-
-    @property
-    def mesh_frequency(self) -> FloatArray:
-        """Mesh frequency in Hz."""
-        return np.abs(self.speed) * self.teeth / (2.0 * np.pi)
 
     @property
     def loudest_bearing(self) -> str:
         """Name of the bearing whose force varies most over the run."""
         return max(self.bearings, key=lambda name: float(np.sum(np.var(self.bearings[name], axis=0))))
+
+
+def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
+    """Take the series of one mesh out of a run."""
+    shaft = run.shaft.index(_driving_shaft(run, mesh))
+    bearings = {name: run.bearing_force[k].T for k, name in enumerate(run.bearing)}
+    return RunSeries(
+        time=run.time,
+        speed_rpm=np.abs(run.speed[shaft]) * 30.0 / np.pi,
+        mesh_frequency=run.mesh_frequency[mesh],
+        position=np.abs(np.unwrap(run.position[mesh], period=1.0)),
+        dynamic_error=run.dynamic_transmission_error[mesh],
+        static_error=run.static_transmission_error[mesh],
+        mesh_force=run.mesh_force[mesh],
+        nominal_force=float(run.nominal_force[mesh]),
+        bearings=bearings,
+    )
+
+
+def _driving_shaft(run: RunResult, mesh: int) -> str:
+    """Name of the shaft that carries the driving gear."""
+    driver = run.case["meshes"][mesh]["driver"]
+    return str(next(gear["shaft"] for gear in run.case["gears"] if gear["name"] == driver))

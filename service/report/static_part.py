@@ -45,13 +45,18 @@ def static_alarms(database: SteDatabase) -> tuple[str, ...]:
     return (database.failure_message(),) if database.n_failed else ()
 
 
-def static_sections(database: SteDatabase) -> tuple[Section, ...]:
-    """All parts of the page that one database fills."""
-    metadata = database.metadata
+def static_results(database: SteDatabase) -> tuple[Section, ...]:
+    """Show what one database says of its pair."""
     curves = Section("Static transmission error", figures=(ste_curves(database), load_sharing(database)))
     stiffness = Section(
         "Mesh stiffness and the table", figures=(mesh_stiffness(database), database_surface(database))
     )
+    return curves, stiffness
+
+
+def static_making(database: SteDatabase) -> tuple[Section, ...]:
+    """Show how exact the database is, what it cost, and what it was made from."""
+    metadata = database.metadata
     accuracy = Section(
         "Accuracy and cost of the table",
         "Errors are half-widths of the band around each number; the receipt says where the time went.",
@@ -59,8 +64,9 @@ def static_sections(database: SteDatabase) -> tuple[Section, ...]:
         folded=(facts("Receipt", _without(metadata.receipt, "stages")), _software(database)),
     )
     effects = Section("Effects", tables=(ledger_table(metadata.effect_ledger),))
-    case = Section("Case", "With every default that was taken.", tables=case_tables(metadata.case))
-    return curves, stiffness, accuracy, effects, case
+    text = "With every default that was taken. Numbers without a unit are in SI."
+    case = Section("Case", text, tables=case_tables(metadata.case))
+    return accuracy, effects, case
 
 
 def ledger_table(ledger: Any) -> Table:

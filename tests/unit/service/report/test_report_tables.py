@@ -61,7 +61,7 @@ def test_failed_points_are_said_loudly(database: SteDatabase, damaged: SteDataba
 
 
 def test_the_receipt_is_in_the_page(database: SteDatabase) -> None:
-    tables = [t for section in static_sections(database) for t in (*section.tables, *section.folded)]
+    tables = [t for section in static_making(database) for t in (*section.tables, *section.folded)]
     stages = next(t for t in tables if t.caption == "Time by stage")
     assert stages.rows == (("mesh", "1.00", "1.10"),)
     made = next(t for t in tables if t.caption == "Made with")

@@ -1,0 +1,59 @@
+"""What the page holds, from whatever was read."""
+
+from __future__ import annotations
+
+import math
+
+from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
+from service.report.inputs import Inputs
+from service.report.page import Headline, Page, Section
+from service.report.static_part import static_alarms, static_headlines, static_making, static_results
+
+
+def page_of(read: Inputs) -> Page:
+    """Put the page together: results first, then how they were made."""
+    database, run = read.database, read.run
+    headlines: list[Headline] = []
+    results: list[Section] = []
+    making: list[Section] = []
+    alarms: list[str] = []
+    if database is not None:
+        headlines += static_headlines(database, _nominal_force(read))
+        results += static_results(database)
+        making += static_making(database)
+        alarms += static_alarms(database)
+    if run is not None:
+        headlines += dynamic_headlines(run)
+        results += dynamic_results(run)
+        making += dynamic_making(run)
+        alarms += dynamic_alarms(run)
+    return Page(_title(read), _lead(read), tuple(headlines), (*results, *making), tuple(alarms))
+
+
+def _nominal_force(read: Inputs) -> float | None:
+    """Return the normal force in N that the run's load asks of the database's pair."""
+    if read.run is None or read.database is None:
+        return None
+    return float(read.run.nominal_force[0]) / math.cos(read.database.facts.base_helix_angle)
+
+
+def _title(read: Inputs) -> str:
+    """Name the pair, or the run."""
+    if read.database is None:
+        return "Dynamics of geared shafts"
+    one, other = read.database.facts.teeth
+    return f"Gear pair {one}/{other}"
+
+
+def _lead(read: Inputs) -> str:
+    """Say in one line what was computed."""
+    parts = []
+    if read.database is not None:
+        facts = read.database.facts
+        parts.append(
+            f"centre distance {1e3 * facts.center_distance:.6g} mm, "
+            f"face width {1e3 * facts.face_width:.6g} mm, base pitch {1e3 * facts.base_pitch:.5g} mm"
+        )
+    if read.run is not None:
+        parts.append(f"{read.run.time[-1]:.6g} s of motion at {read.run.sample_rate:.6g} samples per second")
+    return "; ".join(parts)

@@ -1,0 +1,107 @@
+"""What the page says of a run: main results, figures, accuracy, cost, effects and scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dynamics.results import RunResult
+from service.report.bearing_force import bearing_force
+from service.report.bearing_spectrum import bearing_spectrum
+from service.report.dynamic_error import dynamic_error
+from service.report.facts import facts, records
+from service.report.figure import Figure, Table, number
+from service.report.page import Headline, Section
+from service.report.run_series import RunSeries, run_series
+
+_LEDGER = {"effect": "effect", "shaft": "shaft", "on": "simulated", "reason": "because"}
+
+
+def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
+    """Mean mesh force, and the balance of energy."""
+    force = float(np.mean(run.mesh_force[0]))
+    headlines = [
+        Headline("mean mesh force", f"{number(force)} N", f"nominal {number(float(run.nominal_force[0]))} N")
+    ]
+    if run.energy is not None:
+        headlines.append(
+            Headline("energy balance", f"{number(100 * run.energy.relative, 2)} %", "unaccounted for")
+        )
+    return tuple(headlines)
+
+
+def dynamic_alarms(run: RunResult) -> tuple[str, ...]:
+    """Say loudly that a run ended early."""
+    if run.status.usable:
+        return ()
+    return (f"The run ended early at {run.time[-1]:g} s: {run.status.name.lower().replace('_', ' ')}.",)
+
+
+def dynamic_results(run: RunResult) -> tuple[Section, ...]:
+    """Show the motion and the forces of one run."""
+    series = run_series(run)
+    text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[0]} is shown."
+    motion = Section("Dynamic transmission error", text, figures=(dynamic_error(series),))
+    return motion, *_bearings(series)
+
+
+def dynamic_making(run: RunResult) -> tuple[Section, ...]:
+    """Show how exact the run is, what it cost, and what it was made from."""
+    accuracy = Section(
+        "Accuracy and cost of the run",
+        tables=(_accuracy(run), _seconds(run)),
+        folded=(facts("Step statistics", run.statistics.to_json()), _energy(run)),
+    )
+    scene = Section("Scene", "As it was resolved, in SI.", folded=(facts("Scene", run.case),))
+    return accuracy, _effects(run), scene
+
+
+def _bearings(series: RunSeries) -> tuple[Section, ...]:
+    """Show the forces on the bearings, where the run kept them."""
+    if not series.bearings:
+        return ()
+    figures: tuple[Figure, ...] = (bearing_force(series), bearing_spectrum(series))
+    return (Section("Bearing forces", figures=figures),)
+
+
+def _effects(run: RunResult) -> Section:
+    """Tabulate what was simulated and what the model leaves out."""
+    entries = run.effect_ledger.get("entries", ())
+    rows = [{title: entry.get(name) for name, title in _LEDGER.items()} | _worth(entry) for entry in entries]
+    left_out = run.effect_ledger.get("left_out", {})
+    tables = (records("Effect ledger of the run", rows), facts("Not in this model", left_out))
+    return Section("Effects in the run", tables=tables)
+
+
+def _worth(entry: dict[str, Any]) -> dict[str, str]:
+    """Write what an effect moves the mesh by."""
+    return {"worth at the line of action": f"{number(1e6 * float(entry['worth']), 3)} µm"}
+
+
+def _accuracy(run: RunResult) -> Table:
+    """Tabulate status, step error and balance."""
+    error = run.receipt.get("error", {}).get("time_step", {})
+    rows = [("status", run.status.name.lower().replace("_", " "))]
+    if "rms" in error:
+        rows.append((f"step error, nm rms ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
+    if run.energy is not None:
+        rows.append(
+            ("energy unaccounted for, % of what vibration turns over", number(100 * run.energy.relative, 2))
+        )
+        through = run.energy.relative_to_throughput
+        rows.append(("energy unaccounted for, % of the drive's work", number(100 * through, 2)))
+    return Table("Accuracy of the run", ("quantity", "value"), tuple(rows))
+
+
+def _seconds(run: RunResult) -> Table:
+    """Tabulate wall time by stage."""
+    stages = run.receipt.get("seconds", {})
+    rows = tuple((name.replace("_", " "), number(float(value), 3)) for name, value in stages.items())
+    return Table("Time of the run by stage", ("stage", "wall s"), rows)
+
+
+def _energy(run: RunResult) -> Table:
+    """Tabulate the energy audit."""
+    audit = {} if run.energy is None else run.energy.to_json()
+    return facts("Energy audit, J", {name: value for name, value in audit.items() if "relative" not in name})

@@ -1,0 +1,62 @@
+"""From result files to the report: read, draw, write."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from service.report.content import page_of
+from service.report.image import png
+from service.report.inputs import read_inputs
+from service.report.page import html
+
+
+def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | None = None) -> list[Path]:
+    """Write one HTML page that needs no network, and the plots as PNG files.
+
+    Parameters
+    ----------
+    inputs : Path or sequence of Path
+        STE databases and runs, at most one of each; the file says which it is.
+    output : Path
+        The page.
+    images : Path, optional
+        Folder for the PNG files, made if missing; left out: none are written.
+
+    Returns
+    -------
+    list of Path
+        The files written, the page first.
+
+    Raises
+    ------
+    BadInput
+        A file is neither, is damaged, or there are two of a kind.
+    """
+    page = page_of(read_inputs([inputs] if isinstance(inputs, Path) else list(inputs)))
+    drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
+    _write(output, html(page, drawn).encode("utf-8"))
+    written = [output]
+    if images is not None:
+        images.mkdir(parents=True, exist_ok=True)
+        for key, image in drawn.items():
+            _write(images / f"{key}.png", image)
+            written.append(images / f"{key}.png")
+    return written
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Write a file whole or not at all."""
+    handle, draft = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+        mask = os.umask(0)
+        os.umask(mask)
+        Path(draft).chmod(0o666 & ~mask)
+        Path(draft).replace(path)
+    except BaseException:
+        Path(draft).unlink(missing_ok=True)
+        raise
