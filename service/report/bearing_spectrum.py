@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dynamics.orders import spectrum
 from service.report import palette
 from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
 from service.report.run_series import RunSeries
@@ -37,16 +38,10 @@ def spectrum_window(run: RunSeries) -> slice:
 
 
 def amplitude_spectrum(time: FloatArray, force: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return frequencies in Hz and amplitudes in N of a force (n, 3) on a uniform grid, without its mean.
-
-    A sine of amplitude A at one of the frequencies shows as A.
-    """
-    size = len(time)
-    taper = np.hanning(size + 1)[:-1]
-    lines = np.fft.rfft((force - force.mean(axis=0)) * taper[:, None], axis=0)
-    amplitude = np.sqrt(np.sum(np.abs(lines) ** 2, axis=1)) * 2.0 / taper.sum()
-    frequency = np.fft.rfftfreq(size, float(time[1] - time[0]))
-    return np.asarray(frequency, dtype=float), np.asarray(amplitude)
+    """Return frequencies in Hz and amplitudes in N of a force (n, 3) on a uniform grid, without its mean."""
+    made = spectrum(force.T, 1.0 / float(time[1] - time[0]), "N")
+    amplitude = np.asarray(np.sqrt(np.sum(made.amplitude**2, axis=0)))
+    return made.frequency[1:], amplitude[1:]
 
 
 def order_amplitudes(
@@ -54,7 +49,7 @@ def order_amplitudes(
 ) -> list[tuple[float, float]]:
     """Return frequency and amplitude of the largest line in the band that each mesh order sweeps."""
     found = []
-    spacing = float(frequency[1])
+    spacing = float(frequency[0])  # the first line stands one spacing above zero
     for order in range(1, ORDERS + 1):
         low, high = order * float(mesh.min()) - spacing, order * float(mesh.max()) + spacing
         band = np.flatnonzero((frequency >= low) & (frequency <= high))
@@ -68,7 +63,7 @@ def order_amplitudes(
 def _panel(frequency: FloatArray, amplitude: FloatArray, mesh: float) -> Panel:
     """Draw up to a little beyond the last order marked."""
     end = min((ORDERS + 0.5) * mesh, float(frequency[-1]))
-    shown = (frequency > 0.0) & (frequency <= end)
+    shown = frequency <= end
     orders = [Reference(f"{k}×", k * mesh) for k in range(1, ORDERS + 1) if k * mesh < end]
     line = Line("force", frequency[shown], np.maximum(amplitude[shown], 1e-12), palette.BLUE, width=1.2)
     top = float(amplitude[shown].max())

@@ -113,7 +113,7 @@ def _surface_sheet(surface: Surface) -> Sheet:
     colours = LinearSegmentedColormap.from_list("cividis_steps", palette.CIVIDIS)
     x, y = np.meshgrid(surface.x, surface.y)
     drawn = ax.plot_surface(
-        x, y, surface.z, cmap=colours, rcount=60, ccount=160, linewidth=0, antialiased=True
+        x, y, surface.z, cmap=colours, rcount=40, ccount=100, linewidth=0, antialiased=True
     )
     for axis, name in zip(surface.axes, "xyz", strict=True):
         getattr(ax, f"set_{name}label")(axis.label, labelpad=8)

@@ -1,4 +1,4 @@
-"""A small STE database in closed form: one or two equal pairs in contact, stiffening slightly with load."""
+"""A small STE database and a small run in closed form."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from dynamics.results import EnergyAudit, RunResult, StepStatistics
+from dynamics.types import RunStatus
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 
 R_B, PITCH, WIDTH = 0.0375877, 0.0118085, 0.025
@@ -80,3 +82,53 @@ def database() -> SteDatabase:
 @pytest.fixture
 def damaged() -> SteDatabase:
     return with_failures()
+
+
+def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) -> RunResult:
+    """Run up with a bearing force of 10 N at the mesh frequency and 20 N at its double, on 1000 N."""
+    time = np.arange(round(rate * duration) + 1) / rate
+    speed = top_rpm * math.pi / 30 * time / duration
+    travel = 20 * np.cumsum(speed) / rate / (2 * math.pi)
+    phase = 2 * math.pi * travel
+    static = 6e-6 + 1e-6 * np.cos(phase)
+    force = np.zeros((2, 3, time.size))
+    force[1, 1] = -1000 + 10 * np.cos(phase) + 20 * np.sin(2 * phase)
+    case = {
+        "meshes": [{"name": "mesh", "driver": "pinion"}],
+        "gears": [{"name": "pinion", "shaft": "input"}, {"name": "wheel", "shaft": "output"}],
+        "outputs": {"sample_rate": rate},
+    }
+    return RunResult(
+        time=time,
+        mesh=("mesh",),
+        shaft=("output", "input"),
+        bearing=("left", "right"),
+        freedom=(),
+        position=(travel % 1.0)[None],
+        mesh_frequency=(20 * speed / (2 * math.pi))[None],
+        dynamic_transmission_error=(static + 0.1e-6 * np.cos(7 * phase))[None],
+        static_transmission_error=static[None],
+        mesh_force=np.full((1, time.size), 2660.0),
+        speed=np.stack([-speed, speed]),
+        drive_torque=np.full(time.size, 100.0),
+        bearing_force=force,
+        displacement=np.empty((0, time.size)),
+        velocity=np.empty((0, time.size)),
+        nominal_force=np.array([2660.44]),
+        status=RunStatus.COMPLETED,
+        statistics=StepStatistics(1000, 3, 0, 2.0, 5, 1e-6, 1e-4),
+        energy=EnergyAudit(100.0, -90.0, 0.0, 6.0, 3.0, 0.5, 0.25, 0.25),
+        effect_ledger={
+            "entries": [{"effect": "lateral", "shaft": "input", "on": True, "reason": "r", "worth": 1e-6}]
+        },
+        receipt={
+            "seconds": {"integration": 0.5},
+            "error": {"time_step": {"rms": 1e-9, "source": "step control"}},
+        },
+        case=case,
+    )
+
+
+@pytest.fixture
+def run() -> RunResult:
+    return run_up()

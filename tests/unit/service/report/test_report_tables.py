@@ -10,7 +10,7 @@ from service.report.static_part import (
     ledger_table,
     static_alarms,
     static_headlines,
-    static_sections,
+    static_making,
 )
 
 
