@@ -49,6 +49,7 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
+        lock.acquire()
         context.scheduler.start()
         try:
             yield

@@ -39,41 +39,48 @@ class Scheduler:
     def __init__(self, settings: Settings, registry: Registry, claims: Claims, store: ResultStore) -> None:
         self._settings, self._registry, self._claims, self._store = settings, registry, claims, store
         self._running: dict[int, _Running] = {}
-        self._selector = selectors.DefaultSelector()
-        self._wake_out, self._wake_in = os.pipe()
-        os.set_blocking(self._wake_out, False)
-        os.set_blocking(self._wake_in, False)
-        self._selector.register(self._wake_out, selectors.EVENT_READ)
         self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._loop, name="scheduler", daemon=True)
+        self._thread: threading.Thread | None = None
+        self._wake_in: int | None = None
 
     def start(self) -> None:
-        """Take up what a dead service left behind, then begin."""
-        for directory in (self._settings.data_directory / "work", self._settings.data_directory / "log"):
-            directory.mkdir(parents=True, exist_ok=True)
+        """Take up what a dead service left behind, then begin; may be started again after a stop."""
         shutil.rmtree(self._settings.data_directory / "work", ignore_errors=True)
+        for name in ("work", "log"):
+            (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
         for claim in self._claims.running():
             self._again_or_fail(claim, "The service ended while it ran.")
+        self._selector = selectors.DefaultSelector()
+        self._wake_out, self._wake_in = os.pipe()
+        for end in (self._wake_out, self._wake_in):
+            os.set_blocking(end, False)
+        self._selector.register(self._wake_out, selectors.EVENT_READ)
+        self._stopping.clear()
+        self._thread = threading.Thread(target=self._loop, name="scheduler", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
         """Kill the workers, let their computations wait for the next start, and end the thread."""
+        if self._thread is None or self._wake_in is None:
+            return
         self._stopping.set()
         self.wake()
         self._thread.join()
+        wake_in, self._wake_in, self._thread = self._wake_in, None, None
         self._selector.close()
         os.close(self._wake_out)
-        os.close(self._wake_in)
+        os.close(wake_in)
 
     @property
     def alive(self) -> bool:
         """Whether the thread runs."""
-        return self._thread.is_alive()
+        return self._thread is not None and self._thread.is_alive()
 
     def wake(self) -> None:
         """Look at the table now: something was submitted or dismissed."""
-        with contextlib.suppress(BlockingIOError):  # the pipe is full of wake-ups already
-            os.write(self._wake_in, b".")
+        if self._wake_in is not None:
+            with contextlib.suppress(BlockingIOError):  # the pipe is full of wake-ups already
+                os.write(self._wake_in, b".")
 
     def _loop(self) -> None:
         """Until stopped: claim, listen, enforce. A turn that fails is logged and the next one tries again."""

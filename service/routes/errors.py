@@ -12,9 +12,10 @@ from fastapi.exceptions import RequestValidationError
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
+from starlette.routing import compile_path
 
 from service.problems import BadInput, Fault, ServiceError
-from service.schemas.faults import fault_of
+from service.schemas.faults import fault_of, innermost
 from service.schemas.problem import ProblemBody
 
 MEDIA_TYPE = "application/problem+json"
@@ -57,7 +58,7 @@ def _invalid_request(request: Request, error: Exception) -> Response:
     """Answer a body or parameter that its model refuses."""
     assert isinstance(error, RequestValidationError)
     model = getattr(request.scope.get("endpoint"), "body_model", None)
-    return problem_of(BadInput(_request_fault(item, model) for item in error.errors()))
+    return problem_of(BadInput(_request_fault(item, model) for item in innermost(error.errors())))
 
 
 def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:
@@ -76,10 +77,10 @@ def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fa
         )
         if named is not None and isinstance(named.annotation, type):
             return fault_of(item, named.annotation, loc[2:])
-    return fault_of(item, model, loc or ["body"])
+    return fault_of(item, model, loc if loc or item["type"] == "refused" else ["body"])
 
 
-def _refused_by_framework(_request: Request, error: Exception) -> Response:
+def _refused_by_framework(request: Request, error: Exception) -> Response:
     """Answer what routing refuses: unknown path, wrong method, unreadable body."""
     assert isinstance(error, HTTPException)
     phrase = HTTPStatus(error.status_code).phrase
@@ -90,4 +91,14 @@ def _refused_by_framework(_request: Request, error: Exception) -> Response:
         "detail": str(error.detail),
         "errors": [],
     }
-    return problem_response(facts, error.headers)
+    headers = dict(error.headers or {})
+    if error.status_code == HTTPStatus.METHOD_NOT_ALLOWED:
+        headers["Allow"] = ", ".join(_methods(request))
+    return problem_response(facts, headers)
+
+
+def _methods(request: Request) -> list[str]:
+    """Methods of a path, whichever routes hold them (the framework names those of one route only)."""
+    paths = request.app.openapi()["paths"]
+    matching = [path for path in paths if compile_path(path)[0].match(request.url.path)]
+    return sorted({method.upper() for path in matching for method in paths[path]})

@@ -26,10 +26,10 @@ class Guard:
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
-        exchange = _Exchange(receive, send, self._body_limit)
+        exchange = _Exchange(scope, receive, send, self._body_limit)
         begin = time.perf_counter()
         try:
-            exchange.refuse_announced(scope)
+            exchange.refuse_announced()
             await self._app(scope, exchange.receive, exchange.send)
         except ServiceError as error:
             await self._answer(error, exchange, scope)
@@ -57,15 +57,16 @@ class Guard:
 class _Exchange:
     """One request and its answer, watched."""
 
-    def __init__(self, receive: Receive, send: Send, body_limit: int) -> None:
-        self._receive, self._send, self._body_limit = receive, send, body_limit
+    def __init__(self, scope: Scope, receive: Receive, send: Send, body_limit: int) -> None:
+        self._scope, self._receive, self._send, self._body_limit = scope, receive, send, body_limit
         self._received = 0
+        self.exceeded = False
         self.status: int | None = None
         self.identifier = uuid.uuid4().hex[:12]
 
-    def refuse_announced(self, scope: Scope) -> None:
+    def refuse_announced(self) -> None:
         """Refuse a body that says itself that it is too long."""
-        announced = dict(scope["headers"]).get(b"content-length", b"0")
+        announced = dict(self._scope["headers"]).get(b"content-length", b"0")
         if announced.isdigit() and int(announced) > self._body_limit:
             raise self._too_large()
 
@@ -77,11 +78,23 @@ class _Exchange:
         """Pass on a piece of the body, counting."""
         message = await self._receive()
         self._received += len(message.get("body", b""))
-        if self._received > self._body_limit:
+        self.exceeded = self._received > self._body_limit
+        if self.exceeded:
             raise self._too_large()
         return message
 
     async def send(self, message: Message) -> None:
+        """Pass on a piece of the answer.
+
+        The framework takes our refusal of a long body for an unreadable one: what it answers to that is
+        replaced by the refusal.
+        """
+        if not self.exceeded:
+            await self._pass(message)
+        elif self.status is None:
+            await problem_of(self._too_large())(self._scope, self._receive, self._pass)
+
+    async def _pass(self, message: Message) -> None:
         """Pass on a piece of the answer, with the request's identifier in its headers."""
         if message["type"] == "http.response.start":
             self.status = message["status"]

@@ -34,7 +34,18 @@ _KINDS = {
 
 def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ...]:
     """Return the faults of a validation of `model`."""
-    return tuple(fault_of(item, model, item["loc"]) for item in error.errors(include_url=False))
+    items = innermost(error.errors(include_url=False))
+    return tuple(fault_of(item, model, item["loc"]) for item in items)
+
+
+def innermost(items: Sequence[Any]) -> list[Any]:
+    """Return the errors without those of a list or table whose own parts are at fault already."""
+    places = [tuple(item["loc"]) for item in items]
+    return [
+        item
+        for item, place in zip(items, places, strict=True)
+        if not any(len(other) > len(place) and other[: len(place)] == place for other in places)
+    ]
 
 
 def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -> Fault:

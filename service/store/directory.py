@@ -17,13 +17,15 @@ class DirectoryLock:
         self._descriptor: int | None = None
 
     def acquire(self) -> None:
-        """Take the lock.
+        """Take the lock, if it is not ours already.
 
         Raises
         ------
         BadInput
             The directory cannot be written, or another service works in it.
         """
+        if self._descriptor is not None:
+            return
         try:
             self._directory.mkdir(parents=True, exist_ok=True)
             descriptor = os.open(
