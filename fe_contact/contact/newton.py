@@ -2,8 +2,8 @@
 
 Find the forces F >= 0 and the deflection d with
 
-    sum_j C_ij F_j + lambda_i(F_i) + g_i - m_i d  = 0 where F_i > 0,  >= 0 where F_i = 0,      sum_i n_i F_i =
-    T,
+    sum_j C_ij F_j + lambda_i(F_i) + g_i - m_i d  = 0 where F_i > 0,  >= 0 where F_i = 0,
+    sum_i n_i F_i = T,
 
 C symmetric positive definite, lambda_i increasing and concave. With m = n this is the optimum of a strictly
 convex energy, so there is one solution; off the line of action m and n differ by a per cent.
@@ -11,7 +11,7 @@ convex energy, so there is one solution; off the line of action m and n differ b
 Bold steps come first: Newton on the contacts of the current set; one that turns negative is held at zero
 once, from where the concave law lets Newton approach from the safe side, and leaves the set if it turns
 negative again; all that penetrate enter. This needs a handful of iterations but may cycle. If it has not
-settled after `_PATIENCE` iterations, cautious steps take over: forces stay feasible, a step ends at the first
+settled after `PATIENCE` iterations, cautious steps take over: forces stay feasible, a step ends at the first
 contact that would pull or where the energy stops falling, and contacts enter one by one. Then the energy
 falls with every step and no set comes back.
 """

@@ -8,9 +8,9 @@ distance of the contact from the edge (negative, -phi R, off the line of action)
 nothing jumps as a contact runs out.
 
 Nodal forces are f_k = integral of p phi_k ds with the quadratic shape functions of the flank. Substituting
-s = s0 + a sin(theta) removes the roots, so that a few Gauss points per element are exact to rounding.
-Patches are built at the exact position: an interpolated self compliance would ripple with the element
-length.
+s = s0 + a sin(theta) removes the roots, so that thirteen Gauss points are exact to rounding, even for a
+patch within one element. Patches are built at the exact position: an interpolated self compliance would
+ripple with the element length.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from numba import njit
 
 from fe_contact.types import FloatArray
 
-_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(13)
 
 
 @dataclass(frozen=True)

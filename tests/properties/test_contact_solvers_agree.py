@@ -1,0 +1,221 @@
+"""The compiled contact solver against the independent one, and its laws, over random problems.
+
+The problems are nastier than gears make them: compliances from nearly diagonal to nearly singular, gaps of
+any size beside zero, edges of every angle, identical contacts, arms that differ between the gears, loads from
+1e-4 to 1e3 of nominal.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fe_contact.contact.local_law import local_law
+from fe_contact.contact.newton import CONVERGED, PATIENCE, PointProblem, solve_point
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "reference"))
+from contact_oracle import Problem, solve
+
+MODULUS = 115e9
+HALF_PLANE = 1.0 / (math.pi * MODULUS)  # equal bodies
+NOMINAL = 2660.0
+
+
+def compliance(rng: np.random.Generator, kind: str, n: int) -> np.ndarray:
+    """Symmetric positive definite, of the size of teeth."""
+    if kind == "smooth":  # neighbours along a face
+        place = rng.uniform(size=n)
+        matrix = 0.5 * np.exp(-np.abs(place[:, None] - place) * rng.uniform(1.0, 30.0)) + 0.1
+    elif kind == "dense":  # either sign off the diagonal
+        basis = rng.normal(size=(n, n))
+        matrix = basis @ basis.T / n + 1e-3 * np.eye(n)
+    elif kind == "singular":  # half the rank
+        basis = rng.normal(size=(n, max(1, n // 2)))
+        matrix = basis @ basis.T / n
+    else:  # teeth on a common body
+        matrix = 0.2 * np.ones((n, n)) + np.diag(rng.uniform(0.5, 2.0, n))
+    return 3e-9 * matrix
+
+
+def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: bool) -> Problem:
+    """Return the problem that `seed` picks."""
+    rng = np.random.default_rng(seed)
+    size = {"none": [0.0], "mixed": [0.0, 1e-8, 1e-6, 1e-5, 1e-4], "wide": [1e-3]}[gaps]
+    motion = rng.uniform(0.97, 1.0, n) if arms else np.ones(n)
+    problem = Problem(
+        compliance=compliance(rng, kind, n),
+        gap=rng.choice(size, n) * rng.uniform(size=n),
+        motion_arm=motion,
+        torque_arm=motion * rng.uniform(0.98, 1.02, n) if arms else motion,
+        radius=rng.uniform(2e-3, 15e-3, n),
+        edge_slope=rng.choice([np.nan, 0.05, 0.003, 0.0, -0.003, -0.03], n),
+        width=np.full(n, 25e-3 / max(1, n // 5)),
+        patch_1=rng.uniform(1e-4, 4e-4, n),
+        patch_2=rng.uniform(1e-4, 4e-4, n),
+        modulus=MODULUS,
+        k1=HALF_PLANE,
+        k2=HALF_PLANE,
+    )
+    return with_twins(problem) if twins and n > 1 else problem
+
+
+def with_twins(problem: Problem) -> Problem:
+    """Make the second contact the same as the first."""
+    index = np.arange(problem.gap.size)
+    index[1] = 0
+    names = ("gap", "motion_arm", "torque_arm", "radius", "edge_slope", "width", "patch_1", "patch_2")
+    arrays = {name: getattr(problem, name)[index] for name in names}
+    return replace(problem, compliance=problem.compliance[np.ix_(index, index)], **arrays)
+
+
+class Solved:
+    """What the compiled solver says, from a cold start unless `force` is given."""
+
+    def __init__(
+        self, problem: Problem, load: float, force: np.ndarray | None = None, patience: int = PATIENCE
+    ) -> None:
+        p = problem
+        law = local_law(p.radius, p.edge_slope, p.width, p.patch_1, p.patch_2, p.modulus, p.k1, p.k2)
+        point = PointProblem(p.compliance, p.gap, p.motion_arm, p.torque_arm, law)
+        self.force = np.zeros(p.gap.size) if force is None else force.copy()
+        self.residual = np.full(4, np.nan)
+        self.deflection, self.tangent, self.status, self.iterations, self.beyond = solve_point(
+            point, load, self.force, self.residual, patience
+        )
+
+
+kinds = st.sampled_from(["smooth", "dense", "singular", "body"])
+problems = st.builds(
+    random_problem,
+    seed=st.integers(0, 2**32 - 1),
+    n=st.integers(1, 12),
+    kind=kinds,
+    gaps=st.sampled_from(["none", "mixed", "wide"]),
+    twins=st.booleans(),
+    arms=st.booleans(),
+)
+loads = st.floats(-4.0, 3.0).map(lambda power: NOMINAL * 10.0**power)
+thorough = settings(max_examples=150, deadline=None)
+
+
+def assert_agreement(problem: Problem, load: float, solved: Solved) -> None:
+    answer = solve(problem, load)
+    assert answer.violation < 1e-11, "the oracle itself must solve the problem"
+    assert solved.status == CONVERGED
+    assert solved.deflection == pytest.approx(answer.deflection, rel=1e-9)
+    assert solved.force == pytest.approx(answer.force, abs=1e-7 * load)
+    assert np.all(solved.residual < 1e-9)
+
+
+@thorough
+@given(problem=problems, load=loads)
+def test_two_solvers_agree(problem, load):
+    solved = Solved(problem, load)
+    assert_agreement(problem, load, solved)
+    assert solved.iterations <= 40
+
+
+@settings(max_examples=12, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), kind=kinds, twins=st.booleans(), arms=st.booleans(), load=loads)
+def test_two_solvers_agree_on_sixty_contacts(seed, kind, twins, arms, load):
+    problem = random_problem(seed, 60, kind, "mixed", twins, arms)
+    assert_agreement(problem, load, Solved(problem, load))
+
+
+@settings(max_examples=60, deadline=None)
+@given(problem=problems, load=loads)
+def test_cautious_steps_alone_find_the_same_solution(problem, load):
+    assert_agreement(problem, load, Solved(problem, load, patience=0))
+
+
+@thorough
+@given(problem=problems, load=loads, seed=st.integers(0, 2**32 - 1))
+def test_the_start_does_not_matter(problem, load, seed):
+    start = load * np.random.default_rng(seed).uniform(-1.0, 1.0, problem.gap.size)
+    cold, warm = Solved(problem, load), Solved(problem, load, start)
+    assert warm.status == CONVERGED
+    assert warm.deflection == pytest.approx(cold.deflection, rel=1e-12)
+
+
+@thorough
+@given(problem=problems, load=loads, factor=st.floats(1.0 + 1e-6, 10.0))
+def test_deflection_grows_with_load(problem, load, factor):
+    assert Solved(problem, factor * load).deflection > Solved(problem, load).deflection
+
+
+@thorough
+@given(problem=problems, load=loads)
+def test_tangent_is_the_derivative_in_load(problem, load):
+    # touch is subtracted from the gaps, or a wide gap would swallow the digits of the difference
+    touch = np.min(problem.gap / problem.motion_arm)
+    near = replace(problem, gap=problem.gap - touch * problem.motion_arm)
+    step = 1e-5
+    lower, here, upper = (Solved(near, load * factor) for factor in (1.0 - step, 1.0, 1.0 + step))
+    secants = (
+        (here.deflection - lower.deflection) / (step * load),
+        (upper.deflection - here.deflection) / (step * load),
+    )
+    # between the two one-sided slopes: a contact may come in just here
+    assert min(secants) * (1.0 - 1e-3) <= here.tangent <= max(secants) * (1.0 + 1e-3)
+
+
+@thorough
+@given(problem=problems, load=loads, offset=st.floats(-1e-3, 1e-3))
+def test_rigid_offset_is_added(problem, load, offset):
+    solved = Solved(problem, load)
+    shifted = Solved(replace(problem, gap=problem.gap + offset * problem.motion_arm), load)
+    assert shifted.deflection == pytest.approx(solved.deflection + offset, rel=1e-12, abs=1e-15)
+    assert shifted.tangent == pytest.approx(solved.tangent, rel=1e-6)
+
+
+@thorough
+@given(problem=problems, load=loads, scale=st.floats(0.01, 100.0))
+def test_lengths_scale_and_forces_scale_with_their_square(problem, load, scale):
+    names = ("gap", "radius", "width", "patch_1", "patch_2")
+    larger = replace(
+        problem,
+        compliance=problem.compliance / scale,
+        **{name: scale * getattr(problem, name) for name in names},
+    )
+    solved, scaled = Solved(problem, load), Solved(larger, scale**2 * load)
+    assert scaled.deflection == pytest.approx(scale * solved.deflection, rel=1e-10)
+    assert scaled.force == pytest.approx(scale**2 * solved.force, abs=1e-8 * scale**2 * load)
+
+
+@thorough
+@given(problem=problems, load=loads, seed=st.integers(0, 2**32 - 1))
+def test_the_order_of_contacts_does_not_matter(problem, load, seed):
+    order = np.random.default_rng(seed).permutation(problem.gap.size)
+    names = ("gap", "motion_arm", "torque_arm", "radius", "edge_slope", "width", "patch_1", "patch_2")
+    shuffled = replace(
+        problem,
+        compliance=problem.compliance[np.ix_(order, order)],
+        **{name: getattr(problem, name)[order] for name in names},
+    )
+    assert Solved(shuffled, load).deflection == pytest.approx(Solved(problem, load).deflection, rel=1e-12)
+
+
+@thorough
+@given(problem=problems, load=loads)
+def test_a_contact_out_of_reach_changes_nothing(problem, load):
+    # one more candidate whose gap is infinite, coupled to the others or not
+    n = problem.gap.size
+    names = ("motion_arm", "torque_arm", "radius", "edge_slope", "width", "patch_1", "patch_2")
+    wider = np.zeros((n + 1, n + 1))
+    wider[:n, :n] = problem.compliance
+    more = replace(
+        problem,
+        compliance=wider,
+        gap=np.append(problem.gap, np.inf),
+        **{name: np.append(getattr(problem, name), getattr(problem, name)[0]) for name in names},
+    )
+    solved = Solved(more, load)
+    assert solved.force[-1] == 0.0
+    assert solved.deflection == pytest.approx(Solved(problem, load).deflection, rel=1e-14)

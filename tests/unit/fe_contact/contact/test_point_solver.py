@@ -1,0 +1,200 @@
+"""The contact solver on problems with known answers, its outcomes, and its sweep over positions and loads."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fe_contact.contact import Candidates, ContactProblem, solve_contact
+from fe_contact.contact.cholesky import factorize, substitute
+from fe_contact.contact.local_law import approach, local_law
+from fe_contact.contact.newton import PointProblem, _residuals, solve_point
+from fe_contact.contact.patch import Patches
+from fe_contact.types import Status
+
+MODULUS = 115e9
+HALF_PLANE = 1.0 / (math.pi * MODULUS)
+RADIUS, WIDTH, PATCH = 6e-3, 25e-3, 3e-4
+STIFF = 3e-9  # m/N, a tooth pair
+
+
+def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan) -> PointProblem:
+    n = len(gap)
+    ones = np.ones(n)
+    law = local_law(
+        RADIUS * ones,
+        edge_slope * ones,
+        WIDTH * ones,
+        PATCH * ones,
+        PATCH * ones,
+        MODULUS,
+        HALF_PLANE,
+        HALF_PLANE,
+    )
+    motion = ones if motion_arm is None else np.asarray(motion_arm)
+    torque = motion if torque_arm is None else np.asarray(torque_arm)
+    return PointProblem(np.asarray(compliance, float), np.asarray(gap, float), motion, torque, law)
+
+
+def solve(problem, load, force=None):
+    force = np.zeros(problem.gap.size) if force is None else force
+    residual = np.full(4, np.nan)
+    return *solve_point(problem, load, force, residual), force, residual
+
+
+@pytest.mark.parametrize("edge_slope", [math.nan, 0.03, -0.01])
+def test_one_contact_in_closed_form(edge_slope):
+    # F = T/n, and what it moves follows; m scales the deflection
+    problem = point([[STIFF]], [2e-6], [0.98], [0.95], edge_slope)
+    d, tangent, status, _, _, force, residual = solve(problem, 1000.0)
+    local, slope, _ = approach(problem.law, 0, 1000.0 / 0.95)
+    assert status == Status.CONVERGED
+    assert force[0] == pytest.approx(1000.0 / 0.95, rel=1e-12)
+    assert d == pytest.approx((2e-6 + STIFF * force[0] + local) / 0.98, rel=1e-12)
+    assert tangent == pytest.approx((STIFF + slope) / (0.98 * 0.95), rel=1e-12)
+    assert residual.max() < 1e-12
+
+
+def test_equal_contacts_share_equally():
+    compliance = STIFF * (np.eye(4) + 0.3)
+    *_, force, _ = solve(point(compliance, np.zeros(4)), 4000.0)
+    assert force == pytest.approx(np.full(4, 1000.0), rel=1e-12)
+
+
+def test_a_contact_enters_when_its_gap_closes():
+    # alone, contact 0 moves contact 1 by C_10 F; the second enters where d reaches gap + C_10 F
+    compliance = STIFF * np.array([[1.0, 0.25], [0.25, 1.0]])
+    load = 2000.0
+    alone = point(compliance, [0.0, math.inf])
+    d_alone = solve(alone, load)[0]
+    reach = d_alone - compliance[1, 0] * load
+    apart = solve(point(compliance, [0.0, reach * (1.0 + 1e-9)]), load)
+    touching = solve(point(compliance, [0.0, reach * (1.0 - 1e-3)]), load)
+    assert apart[5][1] == 0.0
+    assert apart[0] == pytest.approx(d_alone, rel=1e-15)
+    assert 0.0 < touching[5][1] < 0.01 * load
+    assert touching[0] < d_alone
+
+
+def test_two_contacts_balance_their_approach():
+    # both loaded: d - g_i - sum C F - lambda = 0 for each, whatever the solver did
+    compliance = STIFF * np.array([[1.0, 0.2], [0.2, 1.4]])
+    problem = point(compliance, [0.0, 1e-6])
+    d, *_, force, _ = solve(problem, 3000.0)
+    for i in (0, 1):
+        local, _, _ = approach(problem.law, i, force[i])
+        assert problem.gap[i] + compliance[i] @ force + local == pytest.approx(d, rel=1e-12)
+    assert force.sum() == pytest.approx(3000.0, rel=1e-12)
+
+
+def test_no_contact_at_all_is_out_of_model():
+    d, tangent, status, iterations, _, force, residual = solve(point([[STIFF]], [math.inf]), 1.0)
+    assert status == Status.OUT_OF_MODEL
+    assert math.isnan(d)
+    assert math.isnan(tangent)
+    assert iterations == 0
+    assert force.tolist() == [0.0]
+    assert not np.any(residual < 1.0)
+
+
+@pytest.mark.parametrize("entry", [-1e-6, math.nan])
+def test_lost_definiteness_is_reported(entry):
+    d, _, status, *_, residual = solve(point([[entry]], [0.0]), 1000.0)
+    assert status == Status.SINGULAR
+    assert math.isnan(d)
+    assert not np.any(residual < 1.0)
+
+
+def test_outgrown_patch_is_flagged():
+    strip_load = WIDTH * math.pi * MODULUS * (0.66 * PATCH) ** 2 / (4.0 * RADIUS)
+    assert [solve(point([[STIFF]], [0.0]), factor * strip_load)[4] for factor in (0.99, 1.01)] == [
+        False,
+        True,
+    ]
+
+
+def test_residuals_measure_what_they_say():
+    # a state that violates each condition by a known amount
+    problem = point([[STIFF, 0.0], [0.0, STIFF]], [0.0, 5e-6])
+    force, elastic, total = np.array([2000.0, -20.0]), 4e-6, 2200.0
+    residual = np.full(4, np.nan)
+    _residuals(problem, total, elastic, force, problem.gap, residual)
+    moved = [STIFF * f + approach(problem.law, i, f)[0] for i, f in enumerate(force)]
+    slack = [(problem.gap[i] - elastic + moved[i]) / elastic for i in range(2)]
+    assert slack[0] > 0.0 > -slack[1]
+    assert residual[0] == pytest.approx((2200.0 - 1980.0) / total, rel=1e-12)
+    assert residual[1] == max(0.0, -min(slack))
+    assert residual[2] == pytest.approx(20.0 / total, rel=1e-12)
+    assert residual[3] == pytest.approx(max(2000.0 * abs(slack[0]), 20.0 * abs(slack[1])) / total, rel=1e-12)
+
+
+def test_cholesky_solves_and_refuses():
+    rng = np.random.default_rng(7)
+    basis = rng.normal(size=(9, 9))
+    matrix = basis @ basis.T + np.eye(9)
+    factor, x = matrix.copy(), np.arange(9.0)
+    assert factorize(factor, 7)
+    substitute(factor, x, 7)
+    assert matrix[:7, :7] @ x[:7] == pytest.approx(np.arange(7.0), abs=1e-10)
+    assert x[7:].tolist() == [7.0, 8.0]
+    assert not factorize(-matrix, 9)
+
+
+def two_position_problem() -> ContactProblem:
+    """One contact at the first position, two at the second."""
+    shape = (2, 2)
+    full = np.ones(shape)
+    patches = Patches(full, PATCH * full, 0.0 * full)
+    candidates = Candidates(
+        position=np.array([0.0, 0.5]),
+        pair=np.array([0, 1]),
+        patch_1=patches,
+        patch_2=patches,
+        gap=np.array([[1e-6, math.inf], [0.0, 0.0]]),
+        lever_1=full,
+        lever_2=full,
+        radius=RADIUS * full,
+        edge_slope=math.nan * full,
+        width=np.full(2, WIDTH),
+        base_helix_cosine=1.0,
+    )
+    compliance = np.broadcast_to(STIFF * np.array([[1.0, 0.2], [0.2, 1.0]]), (2, 2, 2)).copy()
+    return ContactProblem(candidates, compliance, MODULUS, HALF_PLANE, HALF_PLANE)
+
+
+LOADS = np.array([10.0, 1000.0, 5000.0])
+
+
+def test_sweep_equals_single_solves():
+    problem = two_position_problem()
+    solution = solve_contact(problem, LOADS)
+    assert solution.converged
+    assert solution.no_load.tolist() == [1e-6, 0.0]
+    for p in range(2):
+        for k, load in enumerate(LOADS):
+            d, tangent, *_, force, _ = solve(point(problem.compliance[p], problem.candidates.gap[p]), load)
+            assert solution.deflection[p, k] == pytest.approx(d, rel=1e-12)
+            assert solution.tangent[p, k] == pytest.approx(tangent, rel=1e-9)
+            assert solution.force[p, k] == pytest.approx(force, rel=1e-9)
+
+
+def test_a_failed_position_leaves_the_others_alone():
+    problem = two_position_problem()
+    broken = problem.candidates.gap.copy()
+    broken[0] = math.inf
+    candidates = replace(problem.candidates, gap=broken)
+    solution = solve_contact(replace(problem, candidates=candidates), LOADS)
+    assert not solution.converged
+    assert np.all(solution.status[0] == Status.OUT_OF_MODEL)
+    assert np.isnan(solution.deflection[0]).all()
+    assert np.all(solution.force[0] == 0.0)
+    assert np.array_equal(solution.deflection[1], solve_contact(problem, LOADS).deflection[1])
+
+
+def test_positions_and_loads_are_independent_of_each_other():
+    problem = two_position_problem()
+    all_loads, one_load = solve_contact(problem, LOADS), solve_contact(problem, LOADS[1:2])
+    assert one_load.deflection[:, 0] == pytest.approx(all_loads.deflection[:, 1], rel=1e-12)

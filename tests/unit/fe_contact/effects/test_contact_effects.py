@@ -1,0 +1,120 @@
+"""What each effect contributes, when it is called for, and that neutral settings change no bit."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.contact.plane_candidates import PatchRule, plane_candidates
+from fe_contact.effects import ContactScene
+from fe_contact.effects.corner_contact import CornerContact
+from fe_contact.effects.profile_modification import ProfileModification
+from fe_contact.effects.tooth_coupling import ToothCoupling
+from fe_contact.geometry import FlankModification, Gear, GearPair
+
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+RELIEF = FlankModification(tip_relief=30e-6, tip_relief_length=1e-3)
+POSITIONS = np.arange(64) / 64
+RULE = PatchRule(half_width=3e-4, edge_length=2e-4)
+
+
+def scene(
+    pinion: FlankModification | None = None, wheel: FlankModification | None = None, torque: float = 100.0
+) -> ContactScene:
+    gears = (replace(GEAR, modification=m or FlankModification()) for m in (pinion, wheel))
+    return ContactScene(GearPair(*gears, center_distance=80e-3), np.array([torque]))
+
+
+def candidates(case: ContactScene, model: ContactModel):
+    return plane_candidates(case.pair, model, POSITIONS, RULE)
+
+
+def assert_identical(first, second):
+    """Compare every array of two sets of candidates, bit for bit."""
+    for entry in fields(first):
+        a, b = getattr(first, entry.name), getattr(second, entry.name)
+        pairs = [(a, b)] if isinstance(a, np.ndarray | float) else [(vars(a)[n], vars(b)[n]) for n in vars(a)]
+        for x, y in pairs:
+            np.testing.assert_array_equal(x, y, err_msg=entry.name, strict=isinstance(x, np.ndarray))
+
+
+@pytest.mark.parametrize("model", [ContactModel(), ContactModel(corner_contact=True)])
+def test_neutral_modification_changes_no_bit(model):
+    case = scene()
+    with_effect = ProfileModification().contribute(case, model)
+    assert_identical(candidates(case, with_effect), candidates(case, model))
+
+
+@pytest.mark.parametrize("effect", [ToothCoupling(), CornerContact(), ProfileModification()])
+def test_contributions_touch_nothing_else(effect):
+    model = ContactModel()
+    after = effect.contribute(scene(), model)
+    changed = [f.name for f in fields(model) if getattr(after, f.name) != getattr(model, f.name)]
+    expected = {
+        "tooth_coupling": "couple_teeth",
+        "corner_contact": "corner_contact",
+        "profile_modification": "gaps",
+    }
+    assert changed == [expected[effect.name]]
+    assert model == ContactModel()
+
+
+def test_modification_opens_a_gap_of_the_material_removed():
+    case = scene(pinion=RELIEF)
+    plain = candidates(case, ContactModel())
+    relieved = candidates(case, ProfileModification().contribute(case, ContactModel()))
+    roll_1, _ = case.pair.roll_lengths(POSITIONS[:, None], plain.pair[None, :])
+    touching = np.isfinite(plain.gap)
+    removed = case.pair.pinion.modification.material_removed(case.pair.pinion, roll_1)
+    assert relieved.gap[touching] == pytest.approx(removed[touching], abs=1e-18)
+    assert relieved.gap[touching].max() > 25e-6
+    assert np.all(relieved.gap[touching] >= 0.0)
+
+
+def test_both_gears_contribute():
+    one, other, both = (scene(RELIEF, None), scene(None, RELIEF), scene(RELIEF, RELIEF))
+    model = ContactModel(gaps=ProfileModification().contribute(one, ContactModel()).gaps)
+    first, second, sum_ = (candidates(case, model).gap for case in (one, other, both))
+    touching = np.isfinite(sum_)
+    assert sum_[touching] == pytest.approx((first + second)[touching], abs=1e-18)
+
+
+def test_corner_contact_leaves_the_line_of_action_alone():
+    case = scene()
+    plain, cornered = (candidates(case, ContactModel(corner_contact=on)) for on in (False, True))
+    columns = np.isin(cornered.pair, plain.pair)
+    inside = np.isfinite(plain.gap)
+    assert np.array_equal(cornered.gap[:, columns][inside], plain.gap[inside])
+    assert np.array_equal(cornered.radius[:, columns][inside], plain.radius[inside])
+    assert np.all(plain.gap[inside] == 0.0)
+    more = np.isfinite(cornered.gap).sum() - inside.sum()
+    assert more > 0
+    outside = np.isfinite(cornered.gap)
+    outside[:, columns] &= ~inside
+    assert np.all(cornered.gap[outside] > 0.0)
+
+
+def test_modification_is_called_for_by_a_modified_flank_only():
+    effect = ProfileModification()
+    assert not effect.called_for(scene()).on
+    assert "pinion" in effect.called_for(scene(RELIEF)).reason
+    assert "wheel" in effect.called_for(scene(None, RELIEF)).reason
+    assert effect.called_for(scene(None, RELIEF)).on
+
+
+def test_corner_contact_is_called_for_unless_relief_outgrows_deflection():
+    effect = CornerContact()
+    deep = FlankModification(tip_relief=200e-6, tip_relief_length=1e-3)
+    assert effect.called_for(scene()).on
+    assert effect.called_for(scene(deep, None)).on, "the other gear's tip edge is not relieved"
+    assert not effect.called_for(scene(deep, deep)).on
+    assert effect.called_for(scene(deep, deep, torque=1e5)).on
+
+
+def test_coupling_is_always_called_for_and_worth_more_with_more_pairs():
+    verdict = ToothCoupling().called_for(scene())
+    assert verdict.on
+    assert "1.557" in verdict.reason
