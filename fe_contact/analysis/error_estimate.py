@@ -30,8 +30,8 @@ class ErrorSources:
     Attributes
     ----------
     discretisation : ndarray, shape (P, F)
-    interpolation : ndarray, shape (F,)
-        Largest between the nodes.
+    interpolation : ndarray, shape (P, F)
+        Beside the node.
     contact : ndarray, shape (P, F)
     """
 
@@ -42,13 +42,13 @@ class ErrorSources:
     @property
     def total(self) -> FloatArray:
         """Sum of the sources at each point (P, F), m."""
-        return self.discretisation + self.interpolation[None, :] + self.contact
+        return self.discretisation + self.interpolation + self.contact
 
     def to_json(self) -> Json:
         """Return the largest of each source by load, m, and the model's own uncertainty."""
         return {
             "discretisation_m": self.discretisation.max(axis=0).tolist(),
-            "table_interpolation_m": self.interpolation.tolist(),
+            "table_interpolation_m": self.interpolation.max(axis=0).tolist(),
             "contact_solver_m": self.contact.max(axis=0).tolist(),
             "plane_for_finite_width_relative": PLANE_FOR_FINITE_WIDTH,
         }
@@ -63,8 +63,8 @@ def error_sources(fine: ContactSolution, coarse: FloatArray, interpolation: Floa
         P positions, F loads.
     coarse : ndarray, shape (P, F)
         STE in m on the coarser meshes.
-    interpolation : ndarray, shape (F,)
-        Largest error between the nodes, m.
+    interpolation : ndarray, shape (P, F)
+        Error beside the nodes, m.
     """
     difference = np.nan_to_num(np.abs(fine.deflection - coarse)) * CONVERGENCE_FACTOR
     contact = np.nan_to_num(np.abs(fine.deflection)) * fine.residuals.max(axis=2)

@@ -22,19 +22,23 @@ class PositionNodes:
     ----------
     position : ndarray, shape (P,)
         Increasing in [0, 1).
-    error : ndarray, shape (L,)
-        Largest difference in m between interpolant and solution at the middles of the intervals, by load
-        level.
+    interval_error : ndarray, shape (P, L)
+        Difference in m between interpolant and solution at the middle of the interval after each node.
     """
 
     position: FloatArray
-    error: FloatArray
+    interval_error: FloatArray
+
+    @property
+    def error(self) -> FloatArray:
+        """Largest error beside each node (P, L), m."""
+        return np.maximum(self.interval_error, np.roll(self.interval_error, 1, axis=0))
 
 
 def fixed_nodes(count: int, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
     """`count` equally spaced nodes; the error is measured at the middles of all intervals."""
     nodes = np.arange(count) / count
-    return PositionNodes(nodes, _middle_error(nodes, solve(nodes), solve)[1].max(axis=0))
+    return PositionNodes(nodes, _middle_error(nodes, solve(nodes), solve)[1])
 
 
 def adaptive_nodes(start: int, solve: Callable[[FloatArray], FloatArray], tolerance: float) -> PositionNodes:
@@ -66,7 +70,7 @@ def adaptive_nodes(start: int, solve: Callable[[FloatArray], FloatArray], tolera
         if not missed.any() or not remaining or nodes.size + missed.sum() > MAX_NODES:
             break
         nodes, values, settled, error = _inserted(nodes, values, missed, middles, found, error)
-    return PositionNodes(nodes, error.max(axis=0))
+    return PositionNodes(nodes, error)
 
 
 def _middle_error(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
@@ -42,8 +42,9 @@ class LedgerEntry:
             "on": self.on,
             "choice": self.choice,
             "cost": self.cost,
-            **asdict(self.verdict),
             "called_for": self.verdict.on,
+            "reason": self.verdict.reason,
+            "worth": self.verdict.worth,
         }
 
 

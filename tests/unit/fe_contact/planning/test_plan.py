@@ -1,0 +1,54 @@
+"""Accuracy to discretisation, and the receipt."""
+
+import time
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair
+from fe_contact.errors import InputError
+from fe_contact.hertz import half_width, relative_radius
+from fe_contact.planning import Accuracy, StageClock, make_plan
+
+
+@pytest.fixture(scope="module")
+def pair():
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    return GearPair(gear, gear, 80e-3)
+
+
+def test_levels_are_nested_refinements(pair):
+    sizes = [
+        make_plan(pair, np.array([1e3]), Accuracy(level=name)).recipes[0].flank_size
+        for name in ("draft", "standard", "fine")
+    ]
+    assert sizes[0] > sizes[1] > sizes[2]
+
+
+def test_the_coarse_mesh_is_half_as_fine(pair):
+    plan = make_plan(pair, np.array([1e3]), Accuracy())
+    assert plan.coarse_recipes[1].flank_size == pytest.approx(2.0 * plan.recipes[1].flank_size)
+
+
+def test_patches_are_wider_than_the_contact_under_the_largest_load(pair):
+    loads = np.array([1e3, 5e5])
+    strip = half_width(loads[-1] / pair.face_width, relative_radius(*pair.roll_lengths(0.0)), 115e9)
+    assert make_plan(pair, loads, Accuracy()).patch.half_width >= strip / 0.66
+
+
+def test_one_way_of_asking_at_a_time():
+    with pytest.raises(InputError, match="time_budget"):
+        Accuracy(tolerance=0.01, time_budget=5.0)
+
+
+def test_the_clock_adds_repeated_stages():
+    clock = StageClock()
+    for _ in range(2):
+        with clock.stage("work"):
+            end = time.process_time() + 0.02
+            while time.process_time() < end:
+                pass
+    receipt = clock.to_json()
+    assert receipt["stages"]["work"]["cpu_seconds"] >= 0.04
+    assert receipt["cpu_seconds"] == pytest.approx(receipt["stages"]["work"]["cpu_seconds"])
+    assert receipt["peak_memory_bytes"] > 1e6
