@@ -115,6 +115,17 @@ def test_square_wave_steps_are_as_sharp_as_their_knots():
     assert np.all(np.abs(interpolate(Axis(knots, 1.0), values, quiet) - 1.0) <= 4 * EPSILON)
 
 
+def test_a_corner_between_knots_stays_between_them():
+    """Akima's slopes: two straight flanks are exact up to the interval that hides their corner."""
+    knots = np.array([0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.7, 0.85, 1.0])
+    corner = np.maximum(knots - 0.37, 0.0) + 0.2 * knots
+    query = np.linspace(0.0, 1.0, 401)
+    error = np.abs(interpolate(Axis(knots), corner, query) - np.maximum(query - 0.37, 0.0) - 0.2 * query)
+    hidden = (query > 0.3) & (query < 0.45)
+    assert error[~hidden].max() < 1e-14
+    assert error[hidden].max() > 1e-3
+
+
 def family(seed, count=17, curves=6):
     """Increasing levels with jumps in different places, some almost touching."""
     rng = np.random.default_rng(seed)
