@@ -1,0 +1,122 @@
+"""The main job, as a user would script it: service, STE database, run-up, report.
+
+    python examples/main_job.py [--exit] [--out FOLDER]
+
+Starts a service of its own on a free loopback port, has it compute the example pair, runs the run-up on the
+table that the client fetched, and writes the report. In a terminal it stays up, for trying the service.
+"""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from main_job_summary import summary
+
+from service.client import JobState, LineOfActionClient
+from service.report import write_report
+
+EXAMPLES = Path(__file__).parent
+CASE, SCENE = EXAMPLES / "palermo_spur_20_20.toml", EXAMPLES / "palermo_scene.toml"
+START_S, STOP_S = 60.0, 10.0
+
+
+def main() -> int:
+    """Run the main job."""
+    arguments = _arguments()
+    out: Path = arguments.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the service is stopped on the way out
+    with _service(out) as address:
+        times = _compute(address, out)
+        start = time.perf_counter()
+        files = write_report([out / "ste.nc", out / "run.nc"], out / "report.html", out / "images")
+        times["report"] = time.perf_counter() - start
+        print(summary(out / "ste.nc", out / "run.nc", times))
+        print(f"\nreport    {files[0]}\nservice   {address}, log in {out / 'service.log'}", flush=True)
+        if sys.stdout.isatty() and not arguments.exit:
+            print("The service stays up. Stop it with Ctrl-C.", flush=True)
+            _wait_for_interrupt()
+    return 0
+
+
+def _arguments() -> argparse.Namespace:
+    """Read the command line."""
+    parser = argparse.ArgumentParser(description="Run the main job on the example pair.")
+    parser.add_argument("--exit", action="store_true", help="end when the report is written")
+    parser.add_argument("--out", type=Path, default=EXAMPLES.parent / "out", help="folder for all results")
+    return parser.parse_args()
+
+
+@contextmanager
+def _service(out: Path) -> Iterator[str]:
+    """Run a service on a free port and yield its address; it ends with the block."""
+    data = str(out / "service")
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--data-directory", data]
+    with (out / "service.log").open("w", encoding="utf-8") as log:
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True)
+    try:
+        yield _address(process, out / "service.log")
+    finally:
+        process.terminate()
+        try:
+            process.wait(STOP_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+
+
+def _address(process: subprocess.Popen[str], log: Path) -> str:
+    """Read the address from the service's first line."""
+    assert process.stdout is not None
+    watchdog = threading.Timer(START_S, process.kill)
+    watchdog.start()
+    line = process.stdout.readline()
+    watchdog.cancel()
+    if "http://" not in line:
+        raise SystemExit(
+            f"The service did not start within {START_S:.0f} s:\n{log.read_text(encoding='utf-8')}"
+        )
+    return line[line.index("http://") :].strip()
+
+
+def _compute(address: str, out: Path) -> dict[str, float]:
+    """Have the table computed, fetch it, and run the dynamics on it; wall seconds by step."""
+    times: dict[str, float] = {}
+    start = time.perf_counter()
+    with LineOfActionClient(address) as client:
+        key = client.analysis_key(CASE, _show_progress)
+        shutil.copyfile(client.fetch_file(key), out / "ste.nc")
+    times["STE database"], start = time.perf_counter() - start, time.perf_counter()
+    simulate = [sys.executable, "-m", "service.cli", "simulate", str(SCENE), "--service", address]
+    subprocess.run([*simulate, "-o", str(out / "run.nc")], stdout=subprocess.DEVNULL, check=True)
+    times["run-up"] = time.perf_counter() - start
+    return times
+
+
+def _show_progress(state: JobState) -> None:
+    """Show the stage on the terminal."""
+    if sys.stderr.isatty():
+        sys.stderr.write(f"\r\x1b[K{state.status} {state.stage}")
+        sys.stderr.write("\n" if state.ended else "")
+        sys.stderr.flush()
+
+
+def _wait_for_interrupt() -> None:
+    """Stay until Ctrl-C."""
+    try:
+        threading.Event().wait()
+    except KeyboardInterrupt:
+        print()
+
+
+if __name__ == "__main__":
+    sys.exit(main())

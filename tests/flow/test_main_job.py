@@ -1,0 +1,100 @@
+"""The main job runs from case to report, says what it found, and leaves nothing running."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+JOB = ROOT / "examples" / "main_job.py"
+
+
+def environment(folder: Path) -> dict[str, str]:
+    """Keep caches out of the user's home."""
+    return os.environ | {"XDG_CACHE_HOME": str(folder / "cache"), "OMP_NUM_THREADS": "1"}
+
+
+def running(folder: Path) -> list[int]:
+    """Processes that name `folder` on their command line."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit() and int(entry.name) != os.getpid():
+            try:
+                if str(folder) in (entry / "cmdline").read_bytes().decode(errors="replace"):
+                    found.append(int(entry.name))
+            except OSError:  # it ended meanwhile
+                continue
+    return found
+
+
+@pytest.fixture(scope="module")
+def job(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
+    """Run the whole job once; return its folder and what it printed."""
+    folder = tmp_path_factory.mktemp("main-job")
+    done = subprocess.run(
+        [sys.executable, str(JOB), "--exit", "--out", str(folder / "out")],
+        env=environment(folder),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return folder / "out", done.stdout
+
+
+def number(text: str, label: str) -> float:
+    """Return the number printed after a label."""
+    found = re.search(rf"{re.escape(label)}\s+([-\d.]+)", text)
+    assert found, f"{label} is not in:\n{text}"
+    return float(found.group(1))
+
+
+@pytest.mark.slow
+def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
+    _, text = job
+    assert number(text, "mean STE at 100 N m") == pytest.approx(6.245, rel=0.003)
+    assert number(text, "peak-to-peak STE at 100 N m") == pytest.approx(2.799, rel=0.01)
+    assert number(text, "mean contact force") == pytest.approx(2660.4, rel=0.002)
+    assert 286.5 <= number(text, "spectrum: fundamental") <= 302.5
+
+
+@pytest.mark.slow
+def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
+    folder, text = job
+    assert str(folder / "report.html") in text
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    keys = re.findall(r'<figure id="(\w+)">', page)
+    assert len(keys) == 7
+    assert sorted(path.stem for path in (folder / "images").iterdir()) == sorted(keys)
+
+
+@pytest.mark.slow
+def test_nothing_is_left_running(job: tuple[Path, str]) -> None:
+    assert running(job[0]) == []
+
+
+@pytest.mark.slow
+def test_stopped_in_the_middle_it_stops_its_service(tmp_path: Path) -> None:
+    started = subprocess.Popen(
+        [sys.executable, str(JOB), "--out", str(tmp_path / "out")],
+        env=environment(tmp_path),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    log = tmp_path / "out" / "service.log"
+    end = time.monotonic() + 120
+    while not (log.exists() and "execution" in log.read_text()) and time.monotonic() < end:
+        time.sleep(0.1)
+    assert started.poll() is None
+    started.send_signal(signal.SIGTERM)
+    output, _ = started.communicate(timeout=60)
+    assert started.returncode == 143, output
+    assert running(tmp_path) == []
