@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from dynamics.simulate import simulate
-
 from fe_contact.ste import SteDatabase
 from service.cli.analyze import analyzed
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
@@ -13,7 +12,7 @@ from service.cli.remote import watching
 from service.cli.ste import open_ste
 from service.client import LineOfActionClient
 from service.client.portable import case_of_mesh, scene_of
-from service.convert.runs import run_json
+from service.convert.runs import run_json, staged
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput
 from service.schemas import Case
@@ -31,7 +30,7 @@ def run_simulate(file: Path, output: Path, service: str | None, *, as_json: bool
         with progress_bar() as report:
             tables = _Tables(folder, client, report)
             databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
-            run = simulate(dynamic_scene(scene, databases), progress=report)
+            run = simulate(dynamic_scene(scene, databases), progress=staged(report))
     finally:
         if client is not None:
             client.close()

@@ -6,6 +6,8 @@ import math
 import re
 from collections.abc import Callable
 
+from pydantic import BaseModel
+
 from dynamics.errors import DynamicsError
 from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import FeContactError, InfeasibleGeometry
@@ -14,6 +16,9 @@ from fe_contact.geometry import FlankModification
 from service.convert.units import DEGREE, GPA, MM, UM, boundary_text, factor
 from service.convert.vocabulary import case_field, scene_field
 from service.problems import BadInput, Fault, JobFailed, ServiceError
+from service.schemas import Case
+from service.schemas.faults import field_advice
+from service.schemas.scene import SceneInput
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _LENGTH = re.compile(rf"({_NUMBER}) m\b(?!/)")
@@ -25,15 +30,17 @@ _PLAIN = re.compile(rf"(?<![\w.]){_NUMBER}(?![\w.])")
 def translated(error: Exception) -> ServiceError | None:
     """Return an error of the libraries as the boundary's, None for one they do not raise on purpose."""
     if isinstance(error, ContactInputError):
-        return BadInput([_fault(error, case_field)])
+        return BadInput([_fault(error, case_field, Case)])
     if isinstance(error, DynamicsInputError):
-        return BadInput([_fault(error, scene_field)])
+        return BadInput([_fault(error, scene_field, SceneInput)])
     if isinstance(error, FeContactError | DynamicsError):
         return JobFailed(str(error))
     return None
 
 
-def _fault(error: ContactInputError | DynamicsInputError, name: Callable[[str], str]) -> Fault:
+def _fault(
+    error: ContactInputError | DynamicsInputError, name: Callable[[str], str], model: type[BaseModel]
+) -> Fault:
     """One input error under the boundary's name and in its unit."""
     if isinstance(error.value, FlankModification):
         error = _named_modification(error, error.value)
@@ -42,7 +49,8 @@ def _fault(error: ContactInputError | DynamicsInputError, name: Callable[[str], 
     bound = _in_boundary_units(error.bound, unit)
     if isinstance(error, InfeasibleGeometry):
         bound = f"{bound} ({error.name})"
-    return Fault(field, _scaled(error.value, unit), bound, _advice(error.suggestion))
+    advice = _advice(error.suggestion) or field_advice(model, field)
+    return Fault(field, _scaled(error.value, unit), bound, advice)
 
 
 def _named_modification(

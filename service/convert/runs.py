@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray
+
+
+def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]:
+    """Return the progress callback of `dynamics.simulate` that feeds ``report(stage, fraction)``."""
+    return lambda fraction, _doing: report("integration", fraction)
 
 
 def run_json(file: Path) -> dict[str, Any]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import json
 
 from dynamics.simulate import simulate
-
 from fe_contact.ste import SteDatabase
 from service.convert.case import case_json
+from service.convert.runs import staged
 from service.convert.scene import dynamic_scene
 from service.jobs.analysis_work import database_of
 from service.jobs.catalogue import ANALYZE
@@ -26,7 +26,7 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     for index, mesh in enumerate(scene.meshes):
         databases[mesh.name] = _table(order, index, mesh, products, progress)
     file = order.workspace / "run.nc"
-    simulate(dynamic_scene(scene, databases), progress=progress).to_netcdf(file)
+    simulate(dynamic_scene(scene, databases), progress=staged(progress)).to_netcdf(file)
     return (*products, Product(order.key, "run", file))
 
 

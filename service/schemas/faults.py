@@ -161,6 +161,17 @@ def _suggestion(
     """Say what to try: the nearest known name, or the field's description with an example."""
     if item["type"] == "extra_forbidden" and parent is not None:
         return _nearest(str(loc[-1]), list(parent.model_fields))
+    return _described(info)
+
+
+def field_advice(model: type[BaseModel], field: str) -> str:
+    """Return what the model says about a field, e.g. ``"pair.pinion.bore_diameter_mm"``; empty if nothing."""
+    loc = [part for part in field.replace("[", ".").replace("]", "").split(".") if not part.isdigit()]
+    return _described(_place(model, loc)[1])
+
+
+def _described(info: FieldInfo | None) -> str:
+    """Describe a field, with an example."""
     if info is None:
         return ""
     example = f"For example {info.examples[0]!r}" if info.examples else ""
