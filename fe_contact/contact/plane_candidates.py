@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,8 +10,8 @@ import numpy as np
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates
-from fe_contact.geometry import Gear, GearPair, corner_contact
-from fe_contact.hertz import relative_radius
+from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
+from fe_contact.geometry import GearPair
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -53,29 +54,11 @@ def plane_candidates(
     """
     index = _pair_indices(pair, position)
     roll_1, roll_2 = pair.roll_lengths(position[:, None], index[None, :])
-    touch = _line_of_action(pair, roll_1, roll_2)
-    if model.corner_contact:
-        _add_corners(pair, roll_1, roll_2, touch)
-    for term in model.gaps:
-        touch.gap += np.where(np.isfinite(touch.gap), term(pair, touch.roll_1, touch.roll_2), 0.0)
+    touch = conjugate_touch(pair, roll_1, roll_2, model.corner_contact)
+    if model.gaps:
+        touch = modified_touch(pair, touch, model.gaps)
     keep = np.any(np.isfinite(touch.gap), axis=0)
     return _candidates(pair, position, index[keep], touch.columns(keep), rule)
-
-
-@dataclass
-class _Touch:
-    """Touching points under construction; arrays (P, n)."""
-
-    roll_1: FloatArray
-    roll_2: FloatArray
-    gap: FloatArray
-    arm_1: FloatArray
-    arm_2: FloatArray
-    corner_slope: FloatArray
-
-    def columns(self, keep: FloatArray) -> _Touch:
-        """Keep some pairs."""
-        return _Touch(*(getattr(self, name)[:, keep] for name in self.__dataclass_fields__))
 
 
 def _pair_indices(pair: GearPair, position: FloatArray) -> IntArray:
@@ -86,68 +69,29 @@ def _pair_indices(pair: GearPair, position: FloatArray) -> IntArray:
     return np.arange(int(first), int(last) + 1)
 
 
-def _line_of_action(pair: GearPair, roll_1: FloatArray, roll_2: FloatArray) -> _Touch:
-    """Conjugate contact from A to E: no gap, arms of the base circles."""
-    inside = (roll_1 <= pair.pinion.tip_roll_length) & (roll_2 <= pair.wheel.tip_roll_length)
-    one = np.ones_like(roll_1)
-    return _Touch(
-        np.clip(roll_1, pair.path_of_contact.start, pair.pinion.tip_roll_length),
-        np.clip(roll_2, pair.common_tangent - pair.path_of_contact.end, pair.wheel.tip_roll_length),
-        np.where(inside, 0.0, np.inf),
-        one,
-        one.copy(),
-        np.full_like(roll_1, np.nan),
-    )
-
-
-def _add_corners(pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, touch: _Touch) -> None:
-    """Fill in tip-edge contact before A (edge of gear 2) and after E (edge of gear 1)."""
-    for side, overshoot, flank_roll in (
-        ("approach", roll_2 - pair.wheel.tip_roll_length, touch.roll_1),
-        ("exit", roll_1 - pair.pinion.tip_roll_length, touch.roll_2),
-    ):
-        beyond = overshoot > 0.0
-        corner = corner_contact(pair, side, overshoot[beyond])  # type: ignore[arg-type]
-        touch.gap[beyond] = np.where(corner.valid, corner.gap, np.inf)
-        flank_roll[beyond] = np.where(corner.valid, corner.flank_roll_length, flank_roll[beyond])
-        touch.arm_1[beyond] = np.where(corner.valid, corner.lever_arm_ratio_pinion, 1.0)
-        touch.arm_2[beyond] = np.where(corner.valid, corner.lever_arm_ratio_wheel, 1.0)
-        touch.corner_slope[beyond] = np.where(corner.valid, corner.slope_angle, np.nan)
-
-
 def _candidates(
-    pair: GearPair,
-    position: FloatArray,
-    index: IntArray,
-    touch: _Touch,
-    rule: PatchRule,
+    pair: GearPair, position: FloatArray, index: IntArray, touch: Touch, rule: PatchRule
 ) -> Candidates:
     """Turn touching points into patches, curvatures and edge angles."""
-    cosine = np.cos(pair.base_helix_angle)
-    radius = relative_radius(touch.roll_1, touch.roll_2) / cosine
-    s_1, tip_1 = _flank_coordinates(pair.pinion, touch.roll_1)
-    s_2, tip_2 = _flank_coordinates(pair.wheel, touch.roll_2)
-    opening = np.nan_to_num(touch.corner_slope) * radius
-    offset_1 = np.where(s_1 < tip_1, tip_1 - s_1, -opening)
-    offset_2 = np.where(s_2 < tip_2, tip_2 - s_2, -opening)
+    cosine = math.cos(pair.base_helix_angle)
+    tip_1 = float(flank_coordinate(pair.pinion, pair.pinion.tip_roll_length))
+    tip_2 = float(flank_coordinate(pair.wheel, pair.wheel.tip_roll_length))
+    shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, rule)
+    shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, rule)
+    radius = touch.radius / cosine
     return Candidates(
         position=position,
         pair=index,
-        patch_1=_patches(s_1, offset_1, tip_1, _shift(s_2, offset_2, tip_2, rule), rule),
-        patch_2=_patches(s_2, offset_2, tip_2, _shift(s_1, offset_1, tip_1, rule), rule),
+        patch_1=_patches(touch.s_1, touch.offset_1, tip_1, shift_1, rule),
+        patch_2=_patches(touch.s_2, touch.offset_2, tip_2, shift_2, rule),
         gap=touch.gap,
-        lever_1=touch.arm_1,
-        lever_2=touch.arm_2,
+        lever_1=touch.lever_1,
+        lever_2=touch.lever_2,
         radius=radius,
-        edge_slope=-np.minimum(offset_1, offset_2) / radius,
+        edge_slope=-np.minimum(touch.offset_1, touch.offset_2) / radius,
         width=np.full(index.size, pair.face_width / cosine),
-        base_helix_cosine=float(cosine),
+        base_helix_cosine=cosine,
     )
-
-
-def _flank_coordinates(gear: Gear, roll: FloatArray) -> tuple[FloatArray, float]:
-    """Flank coordinates of roll lengths, and of the tip edge, m."""
-    return roll**2 / (2.0 * gear.base_radius), gear.tip_roll_length**2 / (2.0 * gear.base_radius)
 
 
 def _shift(s: FloatArray, offset: FloatArray, tip: float, rule: PatchRule) -> FloatArray:

@@ -1,0 +1,155 @@
+"""Where the rigid flanks of each pair come closest, and how far apart they are there."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.contact.model import GapTerm
+from fe_contact.geometry import Gear, GearPair, Side, corner_contact
+from fe_contact.hertz import relative_radius
+from fe_contact.types import BoolArray, FloatArray
+
+_SAMPLES = 65
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Touching points of the rigid gears; arrays (P, n).
+
+    Attributes
+    ----------
+    s_1, s_2 : ndarray
+        Flank coordinates, m.
+    offset_1, offset_2 : ndarray
+        Arc distance to the gear's tip edge in m; negative at an edge that touches while the flanks open by
+        phi:
+        -phi R.
+    gap : ndarray
+        On the line of action, m; infinite = the pair cannot touch.
+    radius : ndarray
+        Relative radius of curvature in the transverse section, m.
+    lever_1, lever_2 : ndarray
+        Lever arms of the common normal over the base radii.
+    """
+
+    s_1: FloatArray
+    s_2: FloatArray
+    offset_1: FloatArray
+    offset_2: FloatArray
+    gap: FloatArray
+    radius: FloatArray
+    lever_1: FloatArray
+    lever_2: FloatArray
+
+    def columns(self, keep: BoolArray) -> Touch:
+        """Keep some pairs."""
+        return Touch(*(getattr(self, name)[:, keep] for name in self.__dataclass_fields__))
+
+
+def conjugate_touch(pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, corners: bool) -> Touch:
+    """Touching points of plain involutes.
+
+    Parameters
+    ----------
+    pair : GearPair
+    roll_1, roll_2 : ndarray, shape (P, n)
+        Nominal roll lengths, m; beyond A and E too.
+    corners : bool
+        Whether tip edges may touch before A and after E.
+    """
+    tip_1, tip_2 = pair.pinion.tip_roll_length, pair.wheel.tip_roll_length
+    gap = np.where((roll_1 <= tip_1) & (roll_2 <= tip_2), 0.0, np.inf)
+    touched_1 = np.clip(roll_1, pair.path_of_contact.start, tip_1)
+    touched_2 = np.clip(roll_2, pair.common_tangent - pair.path_of_contact.end, tip_2)
+    lever_1, lever_2 = np.ones((2, *gap.shape))
+    opening_1, opening_2 = np.zeros((2, *gap.shape))
+    sides: tuple[tuple[Side, FloatArray, FloatArray, FloatArray], ...] = (
+        ("approach", roll_2 - tip_2, touched_1, opening_2),
+        ("exit", roll_1 - tip_1, touched_2, opening_1),
+    )
+    for side, overshoot, touched, opening in sides if corners else ():
+        at = np.nonzero(overshoot > 0.0)
+        corner = corner_contact(pair, side, overshoot[at])
+        found = tuple(index[corner.valid] for index in at)
+        gap[found], touched[found] = corner.gap[corner.valid], corner.flank_roll_length[corner.valid]
+        opening[found] = corner.slope_angle[corner.valid]
+        lever_1[found] = corner.lever_arm_ratio_pinion[corner.valid]
+        lever_2[found] = corner.lever_arm_ratio_wheel[corner.valid]
+    radius = relative_radius(touched_1, touched_2)
+    s_1, s_2 = flank_coordinate(pair.pinion, touched_1), flank_coordinate(pair.wheel, touched_2)
+    offset_1 = flank_coordinate(pair.pinion, tip_1) - s_1 - opening_1 * radius
+    offset_2 = flank_coordinate(pair.wheel, tip_2) - s_2 - opening_2 * radius
+    return Touch(s_1, s_2, offset_1, offset_2, gap, radius, lever_1, lever_2)
+
+
+def flank_coordinate(gear: Gear, roll: FloatArray | float) -> FloatArray:
+    """Flank coordinate s in m of a roll length."""
+    return np.asarray(np.square(roll) / (2.0 * gear.base_radius))
+
+
+def modified_touch(pair: GearPair, touch: Touch, gaps: tuple[GapTerm, ...]) -> Touch:
+    """Touching points of modified flanks.
+
+    Sloping modifications move the touching point off the line of action: over the distance x along the flank
+    the gap is (x - x0)^2/(2R) plus the modifications, and its least value counts. On a relief of slope m' it
+    is less than the modification on the line of action by R m'^2/2, some tenths of a micrometre.
+
+    Parameters
+    ----------
+    pair : GearPair
+    touch : Touch
+        Of plain involutes.
+    gaps : tuple of GapTerm
+        At least one.
+    """
+    possible = np.isfinite(touch.gap)
+    low = np.where(possible, touch.s_2 - flank_coordinate(pair.wheel, pair.wheel.tip_roll_length), 0.0)
+    high = np.where(possible, flank_coordinate(pair.pinion, pair.pinion.tip_roll_length) - touch.s_1, 0.0)
+
+    def gap(shift: FloatArray) -> FloatArray:
+        return _gap_beside(pair, touch, gaps, shift)
+
+    amount = np.abs(gap(np.zeros((*low.shape, 1)))[possible]).max()
+    if amount == 0.0:
+        return touch
+    reach = np.sqrt(4.0 * touch.radius * amount)
+    shift = _least(gap, np.maximum(low, -reach), np.minimum(high, reach))
+    step = 1e-3 * reach
+    at = gap(np.stack([shift, np.minimum(shift + step, high), np.maximum(shift - step, low)], axis=2))
+    # at an edge the flanks open by the slope of the gap there; elsewhere the distance to it is what matters
+    opening_1 = np.maximum(at[..., 2] - at[..., 0], 0.0) / step * touch.radius
+    opening_2 = np.maximum(at[..., 1] - at[..., 0], 0.0) / step * touch.radius
+    return replace(
+        touch,
+        s_1=touch.s_1 + shift,
+        s_2=touch.s_2 - shift,
+        offset_1=np.where(shift < high, high - shift, -opening_1),
+        offset_2=np.where(shift > low, shift - low, -opening_2),
+        gap=touch.gap + at[..., 0],
+    )
+
+
+def _gap_beside(pair: GearPair, touch: Touch, gaps: tuple[GapTerm, ...], shift: FloatArray) -> FloatArray:
+    """Gap in m over the conjugate one at `shift` (P, n, k) from the touching point towards tip 1."""
+    roll_1 = np.sqrt(2.0 * pair.pinion.base_radius * np.maximum(touch.s_1[..., None] + shift, 0.0))
+    roll_2 = np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(touch.s_2[..., None] - shift, 0.0))
+    # beside an edge the flanks open by phi = -offset/R
+    opening = np.maximum(-touch.offset_1, 0.0)[..., None] * np.maximum(-shift, 0.0)
+    opening += np.maximum(-touch.offset_2, 0.0)[..., None] * np.maximum(shift, 0.0)
+    rigid = (0.5 * shift**2 + opening) / touch.radius[..., None]
+    return np.asarray(rigid + sum(term(pair, roll_1, roll_2) for term in gaps))
+
+
+def _least(gap: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
+    """Where the gap is least between `low` and `high` (P, n): nested searches; a tie goes to the middle."""
+    fraction = np.linspace(0.0, 1.0, _SAMPLES)
+    for _ in range(3):
+        shift = low[..., None] + (high - low)[..., None] * fraction
+        best = np.argmin(gap(shift) + 1e-15 * np.abs(fraction - 0.5), axis=2)[..., None]
+        low, high = (
+            np.take_along_axis(shift, np.clip(best + k, 0, _SAMPLES - 1), axis=2)[..., 0] for k in (-1, 1)
+        )
+    return np.asarray(np.take_along_axis(shift, best, axis=2)[..., 0])

@@ -1,0 +1,60 @@
+"""STE converges under mesh refinement at the element's rate, and does not ripple with the element length."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair
+from fe_contact.analysis.plane_contact import PlaneContact, plane_compliances
+from fe_contact.effects import EFFECTS, ContactScene, compose
+from fe_contact.planning import Accuracy, make_plan
+
+LOAD = np.array([100.0, 400.0]) / 37.588e-3  # N, 100 and 400 N m
+
+
+@pytest.fixture(scope="module")
+def contact(tmp_path_factory):
+    """Return the pair's contact on the standard mesh refined by a factor, patches kept."""
+    cache: Path = tmp_path_factory.mktemp("compliance")
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    pair = GearPair(gear, gear, 80e-3)
+    plan = make_plan(pair, LOAD, Accuracy())
+    model, _ = compose(ContactScene(pair, pair.torque(LOAD)), {}, EFFECTS)
+
+    def refined(factor: float) -> PlaneContact:
+        first, second = (recipe.refined(factor) for recipe in plan.recipes)
+        finer = dataclasses.replace(plan, recipes=(first, second))
+        return PlaneContact(pair, model, finer, plane_compliances(pair, finer, finer.recipes, cache))
+
+    return refined
+
+
+def test_rate_and_level(contact, record_figure):
+    """Halving the elements divides the error at least fourfold: quadratic elements, Galerkin loads."""
+    position = np.array([0.0, 0.1, 0.3, 0.5])
+    ste = [contact(factor).solve(position, LOAD)[1].deflection for factor in (0.25, 0.5, 1.0)]
+    first, second = np.abs(ste[1] - ste[0]).max(), np.abs(ste[2] - ste[1]).max()
+    rate = float(np.log2(first / second))
+    left = float(second / (2**rate - 1.0) / ste[2].max())
+    record_figure("STE under mesh refinement, rate", rate, "at least 2", "-", "quadratic elements")
+    record_figure(
+        "STE, discretisation error of the standard mesh", 100 * left, "below 0.1 %", "%", "Richardson"
+    )
+    assert rate > 2.0
+    assert left < 1e-3
+
+
+@pytest.mark.parametrize(("low", "high", "name"), [(-0.14, 0.14, "single"), (0.26, 0.74, "double")])
+def test_position_noise(contact, record_figure, low, high, name):
+    """Between the handovers the curve is smooth: what a polynomial of degree 10 leaves is noise."""
+    position = np.linspace(low, high, 400)
+    ste = contact(1.0).solve(position, LOAD[:1])[1].deflection[:, 0]
+    noise = float(np.std(ste - np.polynomial.Chebyshev.fit(position, ste, 10)(position)))
+    record_figure(
+        f"position noise in {name} contact, 100 N m, rms", 1e9 * noise, "below 2 nm", "nm", "target"
+    )
+    assert noise < 0.5e-9
