@@ -134,3 +134,18 @@ def test_lengths_scale_and_forces_with_their_square(slope):
         assert found[0] == pytest.approx(s * expected, rel=1e-11)
         assert found[1] == pytest.approx(stiffness / s, rel=1e-11)
         assert found[2] == beyond
+
+
+def test_blunt_wedge_keeps_its_digits():
+    # phi R is far beyond the strip; c = 4 p/(pi E* phi) there and b_eff = c exp(-1/2)/2
+    modulus, wedge, radius, patch = contact_modulus(STEEL, STEEL), 0.3, 2e4, 3e-4
+    k = 1.0 / (math.pi * modulus)
+    one = np.ones(1)
+    law = local_law(radius * one, wedge * one, WIDTH * one, patch * one, patch * one, modulus, k, k)
+    p = 1.5 * law.low[0]
+    half_width_at_edge = 2.0 * p / (math.pi * modulus * wedge) * math.exp(-0.5)
+    expected = 2.0 * k * p * (math.log(patch / half_width_at_edge) + 0.25)
+    assert value(law, p) == pytest.approx(expected, rel=1e-10)
+    assert approach(law, 0, p * WIDTH)[1] * WIDTH == pytest.approx(
+        2.0 * k * (math.log(patch / half_width_at_edge) - 0.75), rel=1e-10
+    )
