@@ -47,7 +47,8 @@ def content_hash(content: Json) -> str:
 def read_compliance(directory: Path, key: str) -> FlankCompliance | None:
     """Return the compliance kept under `key`, or None if there is none or its file is damaged."""
     try:
-        with np.load(_file(directory, key), allow_pickle=False) as file:
+        # NumPy leaves a file it opened itself open when the content is damaged.
+        with _file(directory, key).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in ARRAYS}
             facts = str(file["facts"])
             intact = str(file["checksum"]) == _checksum(arrays, facts)

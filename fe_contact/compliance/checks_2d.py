@@ -54,9 +54,10 @@ class FlankLoad:
 def uniform_pressure(s: FloatArray, s_form: float, base_radius: float) -> FlankLoad:
     """Return the load of unit pressure on the involute.
 
-    `s` (k,) are the flank's nodes; elements below `s_form` carry nothing: their normals miss the base circle.
+    `s` (k,) are the flank's nodes; elements that begin below `s_form` carry nothing, since their normals
+    miss the base circle.
     """
-    lengths = np.where(s[1::2] > s_form, s[2::2] - s[:-2:2], 0.0)
+    lengths = np.where(s[:-2:2] >= s_form, s[2::2] - s[:-2:2], 0.0)
     forces = np.zeros(len(s))
     forces[:-2:2] += lengths / 6.0
     forces[1::2] = 4.0 * lengths / 6.0

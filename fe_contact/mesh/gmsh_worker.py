@@ -4,7 +4,7 @@ Run as a script by `fe_contact.mesh.triangulation`, never imported by it: gmsh c
 crash on hard input and keeps global state, so it lives and dies here. It reads one JSON object from
 standard input and writes one to standard output::
 
-    {"regions": [[loop, ...], ...], "growth": 0.3, "seconds": 60}    loop = [[x, y], ...], closed by itself
+    {"regions": [[loop, ...], ...], "growth": 0.3, "seconds": 60}    loop = [[x, y], ...]
     {"regions": [{"points": [[x, y], ...], "triangles": [[i, j, k], ...]}, ...]}   or   {"error": "..."}
 
 The first loop of a region is its outer boundary, further ones are holes. The loops' points come first in
@@ -21,6 +21,8 @@ import sys
 from typing import Any
 
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
+
+
 FRONTAL_DELAUNAY = 6
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from fe_contact.errors import MeshError
+from dataclasses import dataclass
+
 from fe_contact.geometry import Gear, ToothProfile, tooth_profile
 from fe_contact.mesh.gear_mesh import GearMesh, assemble, real_teeth
 from fe_contact.mesh.hub import Hub, hub, hub_outlines
@@ -16,6 +17,7 @@ from fe_contact.mesh.triangulation import triangulate
 from fe_contact.types import IntArray
 
 SLENDER = 3.0  # deepest sector down to the bore, in root circle pitches: beyond it a hub needs fewer elements
+TAPER = 0.35  # least bore of sectors down to it, in root circles: below it a sector is a needle
 RIM_DEPTH = 2.0  # depth of a sector above a hub, in normal modules
 
 
@@ -40,49 +42,52 @@ def mesh_gear(
     MeshError
         gmsh failed, was killed or ran out of time, or an element misses its quality limit.
     """
-    recipe = recipe or MeshRecipe.standard(gear)
+    recipe, filling = recipe or MeshRecipe.standard(gear), Filling(limits or QualityLimits(), seconds)
     profile = tooth_profile(gear)
     teeth = real_teeth(gear.teeth, recipe.real_teeth)
     bottom_radius = sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
-    sector = mesh_sector(profile, bottom_radius, recipe, seconds)
+    sector = mesh_sector(profile, bottom_radius, recipe, filling)
     reaches_bore = bottom_radius == 0.5 * gear.bore_diameter
-    rest = None if reaches_bore else mesh_hub(gear, sector, teeth, recipe, seconds)
-    mesh = assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
-    # Copies of the sector are as good as the sector.
-    refuse_poor_elements("tooth sector", sector.points, sector.triangles, limits or QualityLimits())
-    if rest is not None:
-        refuse_poor_elements("hub", rest.points, rest.triangles, limits or QualityLimits())
-    return mesh
+    rest = None if reaches_bore else mesh_hub(gear, sector, teeth, recipe, filling)
+    # Copies of the sector are as good as the sector, which is checked.
+    return assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
 
 
 def sector_bottom(gear: Gear, profile: ToothProfile, all_real: bool) -> float:
     """Return the radius down to which a tooth sector reaches, m."""
     bore = 0.5 * gear.bore_diameter
     depth = gear.root_radius - bore
-    if all_real and depth <= SLENDER * gear.root_radius * profile.pitch_angle:
+    slender = depth > SLENDER * gear.root_radius * profile.pitch_angle
+    if all_real and not slender and bore >= TAPER * gear.root_radius:
         return bore
     return gear.root_radius - min(RIM_DEPTH * gear.normal_module, 0.5 * depth)
 
 
+@dataclass(frozen=True)
+class Filling:
+    """How outlines are filled with elements: quality limits and time limit in s."""
+
+    limits: QualityLimits
+    seconds: float
+
+    def mesh(self, part: str, outlines: tuple[Outline, ...], scale: float, growth: float) -> QuadraticMesh:
+        """Return the checked mesh of `part` inside outlines; `scale` is a length of its size, m."""
+        (straight,) = triangulate([region(outlines)], scale, growth, self.seconds)
+        mesh = quadratic_mesh(outlines, straight)
+        refuse_poor_elements(part, mesh.points, mesh.triangles, self.limits)
+        return mesh
+
+
 def mesh_sector(
-    profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe, seconds: float
+    profile: ToothProfile, bottom_radius: float, recipe: MeshRecipe, filling: Filling
 ) -> ToothSector:
     """Mesh one tooth and the ring below it down to `bottom_radius`."""
     outline = tooth_outline(profile, bottom_radius, recipe)
-    mesh = _filled((outline.outline,), profile.gear.normal_module, recipe.growth, seconds)
-    return tooth_sector(mesh, outline)
+    scale = profile.gear.normal_module
+    return tooth_sector(filling.mesh("tooth sector", (outline.outline,), scale, recipe.growth), outline)
 
 
-def mesh_hub(gear: Gear, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, seconds: float) -> Hub:
+def mesh_hub(gear: Gear, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: Filling) -> Hub:
     """Mesh the rest of the ring."""
     outlines = hub_outlines(gear, sector, teeth, recipe)
-    return hub(_filled(outlines, gear.normal_module, recipe.growth, seconds), outlines, teeth)
-
-
-def _filled(outlines: tuple[Outline, ...], scale: float, growth: float, seconds: float) -> QuadraticMesh:
-    """Return the quadratic mesh inside outlines."""
-    (straight,) = triangulate([region(outlines)], scale, growth, seconds)
-    try:
-        return quadratic_mesh(outlines, straight)
-    except ValueError as error:
-        raise MeshError(f"gmsh worker: {error}") from error
+    return hub(filling.mesh("hub", outlines, gear.normal_module, recipe.growth), outlines, teeth)

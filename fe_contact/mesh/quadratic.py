@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.errors import MeshError
 from fe_contact.mesh.outline import Outline
 from fe_contact.mesh.triangulation import Region, Triangulation
 from fe_contact.types import FloatArray, IntArray
@@ -45,8 +46,8 @@ def quadratic_mesh(outlines: Sequence[Outline], straight: Triangulation) -> Quad
 
     Raises
     ------
-    ValueError
-        If an edge of an outline is no side of the triangulation.
+    MeshError
+        An edge of an outline is no side of the triangulation.
     """
     count = len(straight.points)
     sides = np.sort(np.concatenate([straight.triangles[:, side] for side in SIDES]), axis=1)
@@ -71,7 +72,7 @@ def _numbered(outline: Outline, start: int, count: int, keys: IntArray) -> IntAr
     wanted = np.minimum(corners, following) * count + np.maximum(corners, following)
     found = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
     if not np.array_equal(keys[found], wanted):
-        raise ValueError("an edge of the outline was divided")
+        raise MeshError("gmsh worker: an edge of the outline was divided")
     nodes = np.empty(2 * n, dtype=np.int64)
     nodes[::2], nodes[1::2] = corners, count + found
     return nodes

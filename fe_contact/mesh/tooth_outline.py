@@ -18,7 +18,8 @@ LARGEST_ARC = math.radians(
 )  # of one quadratic edge: it leaves its circle by less than 1e-5 of the radius
 COARSE = 201  # samples of the size inside the material, where it changes slowly
 TINY = 1e-6  # rounding of a root land that is not there, in parts of the fillet size
-SNAP = 0.25  # a root land shorter than this part of the fillet size is left to the fillet
+SNAP = 0.25  # a piece shorter than this part of an element is left to its neighbour
+THINNEST = 0.01  # rim that still limits the element size by its thickness, in normal modules
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,7 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     recipe : MeshRecipe
         Element sizes.
     """
-    s_low = max(profile.s_root, profile.s_form - recipe.flank_margin)
+    s_low = lowest_flank_node(profile, recipe)
     ends = flank_divisions(profile, s_low, recipe)
     flank = piece("flank", profile.flank, ends)
     surface = [*root_pieces(profile, s_low, recipe), flank, tip_piece(profile, recipe)]
@@ -63,40 +64,59 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     return ToothOutline(Outline((*inner[:2], *surface, inner[2])), s)
 
 
+def lowest_flank_node(profile: ToothProfile, recipe: MeshRecipe) -> float:
+    """Return where the fine division ends: the margin below the form point, or the end of the fillet."""
+    wanted = profile.s_form - recipe.flank_margin
+    return wanted if wanted > profile.s_root + SNAP * recipe.fillet_size else profile.s_root
+
+
+def rim_limit(profile: ToothProfile, recipe: MeshRecipe, s: FloatArray) -> FloatArray:
+    """Return the largest element a thin rim admits: its thickness, growing away from the root."""
+    gear = profile.gear
+    thickness = max(gear.root_radius - 0.5 * gear.bore_diameter, THINNEST * gear.normal_module)
+    return thickness + recipe.growth * np.maximum(s - profile.s_root, 0.0)
+
+
 def flank_divisions(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> FloatArray:
-    """Divide the flank from `s_low` to the tip edge; a corner is on the form point, where curvature jumps."""
+    """Divide the flank from `s_low` to the tip edge.
+
+    A corner is on the form point, where the curvature jumps, unless it is almost at `s_low`.
+    """
 
     def size(s: FloatArray) -> FloatArray:
-        return np.minimum(recipe.flank_size, recipe.tip_size + recipe.growth * (profile.s_tip - s))
+        wanted = np.minimum(recipe.flank_size, recipe.tip_size + recipe.growth * (profile.s_tip - s))
+        return np.minimum(wanted, rim_limit(profile, recipe, s))
 
-    involute = divide(profile.s_form, profile.s_tip, size)
-    if s_low >= profile.s_form:
-        return involute
-    return np.concatenate([divide(s_low, profile.s_form, size)[:-1], involute])
+    if profile.s_form - s_low < SNAP * recipe.flank_size:
+        return divide(s_low, profile.s_tip, size)
+    below, above = divide(s_low, profile.s_form, size), divide(profile.s_form, profile.s_tip, size)
+    return np.concatenate([below[:-1], above])
 
 
 def root_pieces(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> list[Piece]:
     """Return the surface from the middle of the tooth space up to `s_low`: root land and fillet."""
 
     def size(s: FloatArray) -> FloatArray:
-        return np.minimum(recipe.fillet_size, recipe.flank_size + recipe.growth * (s_low - s))
+        wanted = np.minimum(recipe.fillet_size, recipe.flank_size + recipe.growth * (s_low - s))
+        return np.minimum(wanted, rim_limit(profile, recipe, s))
 
     land = profile.s_root - profile.s_space
     if s_low <= profile.s_root:
-        return [land_piece(profile, recipe)] if land > TINY * recipe.fillet_size else []
+        return [land_piece(profile, s_low, recipe)] if land > TINY * recipe.fillet_size else []
     fillet = piece("fillet", profile.flank, divide(s_low, profile.s_root, size)[::-1])
     if land > SNAP * recipe.fillet_size:
-        return [land_piece(profile, recipe), fillet]
+        return [land_piece(profile, s_low, recipe), fillet]
     fillet.nodes[0] = profile.flank(np.array([profile.s_space]))[0]
     return [fillet]
 
 
-def land_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
+def land_piece(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> Piece:
     """Return the root circle from the middle of the tooth space to the fillet."""
     largest = min(recipe.body_size, LARGEST_ARC * profile.gear.root_radius)
 
     def size(s: FloatArray) -> FloatArray:
-        return np.minimum(recipe.fillet_size + recipe.growth * (profile.s_root - s), largest)
+        wanted = np.minimum(recipe.flank_size + recipe.growth * (s_low - s), largest)
+        return np.minimum(wanted, rim_limit(profile, recipe, s))
 
     return piece("land", profile.flank, divide(profile.s_root, profile.s_space, size)[::-1])
 
@@ -128,8 +148,14 @@ def inner_pieces(
     def bottom_size(angle: FloatArray) -> FloatArray:
         return np.minimum(size(bottom(angle)) / bottom_radius, LARGEST_ARC)
 
+    def side_size(radius: FloatArray) -> FloatArray:
+        return np.minimum(size(side(radius)), half_pitch_angle * radius)
+
+    def centre_size(radius: FloatArray) -> FloatArray:
+        return np.minimum(size(centre(radius)), half_pitch_angle * radius)
+
     return [
         piece("bottom", bottom, divide(0.0, half_pitch_angle, bottom_size, COARSE)),
-        piece("side", side, divide(bottom_radius, float(root), lambda r: size(side(r)), COARSE)),
-        piece("centre", centre, divide(float(tip), bottom_radius, lambda r: size(centre(r)), COARSE)),
+        piece("side", side, divide(bottom_radius, float(root), side_size, COARSE)),
+        piece("centre", centre, divide(float(tip), bottom_radius, centre_size, COARSE)),
     ]

@@ -65,5 +65,5 @@ def test_an_outline_edge_that_was_divided_is_an_error() -> None:
     points = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0]])
     straight = Triangulation(points, np.array([[0, 3, 2], [3, 1, 2]]))
     nodes = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [0.5, 0.5], [0.0, 1.0], [0.0, 0.5], [0.0, 0.0]])
-    with pytest.raises(ValueError, match="divided"):
+    with pytest.raises(MeshError, match="divided"):
         quadratic_mesh([Outline((Piece("all", nodes),))], straight)

@@ -1,0 +1,222 @@
+"""Laws that a flank compliance keeps on every mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+import fe_contact.mesh.meshing
+from fe_contact.compliance import (
+    ComplianceChecks,
+    FlankCompliance,
+    Pardiso,
+    PlaneHypothesis,
+    Solver,
+    SuperLuColamd,
+    SuperLuMetis,
+    flank_compliance,
+    flank_compliances,
+)
+from fe_contact.compliance.checks_2d import uniform_pressure
+from fe_contact.compliance.elasticity_2d import stiffness_matrix
+from fe_contact.compliance.flank import refuse_broken_laws
+from fe_contact.compliance.sector_2d import freedoms, inward_loads
+from fe_contact.errors import InputError, SolveError
+from fe_contact.geometry import Gear
+from fe_contact.material import Material
+from fe_contact.mesh import MeshRecipe, mesh_gear
+
+MakeGear = Callable[..., Gear]
+MakeRecipe = Callable[..., MeshRecipe]
+STRAIN, STRESS = PlaneHypothesis.PLANE_STRAIN, PlaneHypothesis.PLANE_STRESS
+RINGS = [(20, 40e-3, None), (40, 40e-3, None), (20, 40e-3, 5)]
+RING_NAMES = ["sectors to the bore", "hub", "plain ring"]
+
+
+def relative(found: np.ndarray, expected: np.ndarray) -> float:
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
+def test_equals_the_solution_of_the_whole_uncondensed_mesh(
+    make_gear: MakeGear, coarse: MakeRecipe, teeth: int, bore: float, real: int | None
+) -> None:
+    gear = make_gear(teeth=teeth, bore_diameter=bore)
+    recipe = coarse(gear, real_teeth=real)
+    found = flank_compliance(gear, recipe, teeth=5)
+    mesh = mesh_gear(gear, recipe)
+    matrix = stiffness_matrix(mesh.points, mesh.triangles, STRAIN.lame_parameters(gear.material))
+    free = np.setdiff1d(np.arange(2 * len(mesh.points)), freedoms(mesh.bore_nodes))
+    flanks = [flank for flank in mesh.flanks if flank.tooth in found.teeth]
+    loads = sp.hstack([inward_loads(len(mesh.points), f.nodes, f.normals) for f in flanks], format="csc")[
+        free
+    ]
+    direct = loads.T @ splu(sp.csc_array(matrix[free][:, free])).solve(loads.toarray())
+    assert relative(found.matrix, direct) < 1e-10
+    assert found.unknowns == len(free)
+
+
+@pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
+def test_checks_hold_to_rounding(
+    make_gear: MakeGear, coarse: MakeRecipe, teeth: int, bore: float, real: int | None
+) -> None:
+    gear = make_gear(teeth=teeth, bore_diameter=bore)
+    found = flank_compliance(gear, coarse(gear, real_teeth=real))
+    checks = found.checks
+    assert checks.residual < 1e-10
+    assert checks.reciprocity < 1e-13
+    assert checks.bore_moment < 1e-10
+    assert checks.energy < 1e-11
+    assert checks.least_eigenvalue > 0.0
+    assert np.array_equal(found.matrix, found.matrix.T)
+    assert np.linalg.eigvalsh(found.matrix)[0] == pytest.approx(checks.least_eigenvalue, rel=1e-6)
+
+
+def under_pressure(compliance: FlankCompliance) -> np.ndarray:
+    """Compliance from tooth to tooth (t, t) under uniform pressure, which no mesh changes much."""
+    forces = uniform_pressure(compliance.s, compliance.s_form, 1.0).forces
+    return np.array(
+        [[forces @ compliance.block(i, j) @ forces for j in compliance.teeth] for i in compliance.teeth]
+    )
+
+
+def test_with_all_teeth_real_every_tooth_has_the_same_compliance(
+    make_gear: MakeGear, coarse: MakeRecipe
+) -> None:
+    gear = make_gear()
+    found = flank_compliance(gear, coarse(gear))
+    for distance in (0, 1, 2):
+        first = found.block(-2, -2 + distance)
+        for tooth in range(-1, 3 - distance):
+            assert relative(found.block(tooth, tooth + distance), first) < 1e-10
+    assert np.trace(found.block(0, 1)) > 1.05 * np.trace(found.block(0, 2)) > 0.0
+
+
+def test_opposite_teeth_of_a_closed_ring_are_all_alike(make_gear: MakeGear, coarse: MakeRecipe) -> None:
+    gear = make_gear(teeth=11, bore_diameter=16e-3)
+    found = flank_compliance(gear, coarse(gear), teeth=11)
+    # Around eleven teeth, ten steps one way are one step the other.
+    assert relative(found.block(-5, 5), found.block(0, -1)) < 1e-10
+    assert relative(found.block(-5, 4), found.block(0, -2)) < 1e-10
+
+
+def test_compliance_goes_with_one_over_the_modulus(make_gear: MakeGear, coarse: MakeRecipe) -> None:
+    steel, soft = make_gear(), make_gear(material=Material(youngs_modulus=3e9))
+    ratio = flank_compliance(soft, coarse(soft)).matrix / flank_compliance(steel, coarse(steel)).matrix
+    assert ratio == pytest.approx(210e9 / 3e9, rel=1e-9)
+
+
+def test_compliance_is_free_of_the_length_scale(make_gear: MakeGear, coarse: MakeRecipe) -> None:
+    small, large = make_gear(), make_gear(normal_module=32e-3, bore_diameter=320e-3)
+    found, scaled = (flank_compliance(gear, coarse(gear)) for gear in (small, large))
+    assert scaled.s == pytest.approx(8.0 * found.s, rel=1e-12)
+    assert relative(scaled.matrix, found.matrix) < 1e-9
+
+
+def test_plane_stress_is_plane_strain_of_another_material(make_gear: MakeGear, coarse: MakeRecipe) -> None:
+    nu = 0.3
+    thin = make_gear(material=Material(youngs_modulus=210e9, poissons_ratio=nu))
+    young = 210e9 * (1.0 + 2.0 * nu) / (1.0 + nu) ** 2
+    wide = make_gear(material=Material(youngs_modulus=young, poissons_ratio=nu / (1.0 + nu)))
+    stress, strain = (
+        flank_compliance(thin, coarse(thin), STRESS),
+        flank_compliance(wide, coarse(wide), STRAIN),
+    )
+    assert relative(stress.matrix, strain.matrix) < 1e-11
+    assert stress.contact_modulus == pytest.approx(strain.contact_modulus, rel=1e-14)
+    assert np.trace(stress.matrix) > 1.05 * np.trace(flank_compliance(thin, coarse(thin), STRAIN).matrix)
+
+
+def test_modification_and_face_width_play_no_part(make_gear: MakeGear, coarse: MakeRecipe) -> None:
+    gear = make_gear()
+    twins = flank_compliances([gear, replace(gear, face_width=50e-3)], [coarse(gear)] * 2)
+    assert twins[0] is twins[1]
+    other = flank_compliances([gear, make_gear(bore_diameter=20e-3)], [coarse(gear)] * 2)
+    assert other[0] is not other[1]
+    assert np.trace(other[1].matrix) > np.trace(other[0].matrix)
+
+
+def test_fewer_real_teeth_are_softer(make_gear: MakeGear, coarse: MakeRecipe) -> None:
+    gear = make_gear()
+    found = [under_pressure(flank_compliance(gear, coarse(gear, real_teeth=n))) for n in (5, 7, 11, None)]
+    for tooth in range(5):
+        compliances = [matrix[2, tooth] for matrix in found]
+        assert compliances == sorted(compliances, reverse=True)
+    assert 1e-4 < found[0][2, 2] / found[-1][2, 2] - 1.0 < 3e-3
+
+
+def test_hub_and_sectors_to_the_bore_agree(
+    make_gear: MakeGear, coarse: MakeRecipe, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    gear = make_gear()
+    recipe = coarse(gear)
+    sectors = flank_compliance(gear, recipe)
+    monkeypatch.setattr(fe_contact.mesh.meshing, "SLENDER", 0.0)
+    with_hub = flank_compliance(gear, recipe)
+    assert with_hub.condensed_unknowns != sectors.condensed_unknowns
+    assert under_pressure(with_hub) == pytest.approx(under_pressure(sectors), rel=2e-4)
+
+
+@pytest.mark.parametrize("solver", [SuperLuColamd(), Pardiso()], ids=lambda s: s.name)
+def test_solvers_agree(make_gear: MakeGear, coarse: MakeRecipe, solver: Solver) -> None:
+    if isinstance(solver, Pardiso):
+        pytest.importorskip("pypardiso", reason="the extra 'fast' is not installed")
+    gear = make_gear()
+    found = flank_compliance(gear, coarse(gear), solver=solver)
+    assert relative(found.matrix, flank_compliance(gear, coarse(gear), solver=SuperLuMetis()).matrix) < 1e-10
+    assert found.solver == solver.name
+
+
+@pytest.mark.parametrize("solver", [SuperLuMetis(), SuperLuColamd(), Pardiso()], ids=lambda s: s.name)
+def test_a_singular_matrix_is_a_solve_error(solver: Solver) -> None:
+    if isinstance(solver, Pardiso):
+        pytest.importorskip("pypardiso", reason="the extra 'fast' is not installed")
+    singular = sp.csc_array(
+        np.array([[1.0, -1.0, 0.0, 0.0], [-1.0, 1.0, 0.0, 0.0], [0, 0, 1.0, 0], [0, 0, 0, 1.0]])
+    )
+    with pytest.raises(SolveError, match=solver.name.split()[0]):
+        solver.factorise(singular, block=2)
+
+
+def test_condensed_teeth_are_centred_and_bounded_by_the_real_ones(
+    make_gear: MakeGear, coarse: MakeRecipe
+) -> None:
+    gear = make_gear()
+    recipe = coarse(gear, real_teeth=7)
+    assert flank_compliance(gear, recipe).teeth.tolist() == [-2, -1, 0, 1, 2]
+    assert flank_compliance(gear, recipe, teeth=7).teeth.tolist() == [-3, -2, -1, 0, 1, 2, 3]
+    three = flank_compliance(gear, replace(recipe, real_teeth=3))
+    assert three.teeth.tolist() == [-1, 0, 1]
+    for wrong in (9, 4, 0):
+        with pytest.raises(InputError) as refusal:
+            flank_compliance(gear, recipe, teeth=wrong)
+        assert refusal.value.field == "teeth"
+    with pytest.raises(KeyError):
+        three.block(0, 2)
+
+
+def test_more_condensed_teeth_change_nothing_for_the_inner_ones(
+    make_gear: MakeGear, coarse: MakeRecipe
+) -> None:
+    gear = make_gear()
+    five, seven = (flank_compliance(gear, coarse(gear), teeth=n) for n in (5, 7))
+    for tooth in five.teeth:
+        assert relative(five.block(0, tooth), seven.block(0, tooth)) < 1e-11
+
+
+@pytest.mark.parametrize("name", ["residual", "reciprocity", "bore_moment", "energy", "least_eigenvalue"])
+def test_a_broken_law_is_refused_by_name(make_gear: MakeGear, coarse: MakeRecipe, name: str) -> None:
+    gear = make_gear()
+    found: FlankCompliance = flank_compliance(gear, coarse(gear), teeth=1)
+    assert refuse_broken_laws(found) is found
+    broken: ComplianceChecks = replace(found.checks, **{name: -1.0 if name == "least_eigenvalue" else 1e-3})
+    with pytest.raises(SolveError, match=name.replace("_", ".")) as refusal:
+        refuse_broken_laws(replace(found, checks=broken))
+    assert refusal.value.partial is not None
+    with pytest.raises(SolveError, match=name.replace("_", ".")):
+        refuse_broken_laws(replace(found, checks=replace(broken, **{name: float("nan")})))
