@@ -23,17 +23,22 @@ def run_serve(**given: object) -> None:
     """Serve until stopped by SIGTERM or SIGINT; workers end with the service."""
     settings = load_settings(**given)
     _log_to_standard_error()
-    listener = _listener(settings)
-    app = create_app(settings)
+    with _listener(settings) as listener:
+        app = create_app(settings)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, _stopped)
+        _announce(listener)
+        config = uvicorn.Config(
+            app, log_config=None, access_log=False, timeout_graceful_shutdown=_STOPPING_S, lifespan="on"
+        )
+        uvicorn.Server(config).run(sockets=[listener])
+
+
+def _announce(listener: socket.socket) -> None:
+    """Print the address."""
     host, port = listener.getsockname()[:2]
     name = f"[{host}]" if ":" in host else host
     print(f"lineofaction serves at http://{name}:{port}", flush=True)  # noqa: T201 (this is the command line)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _stopped)
-    config = uvicorn.Config(
-        app, log_config=None, access_log=False, timeout_graceful_shutdown=_STOPPING_S, lifespan="on"
-    )
-    uvicorn.Server(config).run(sockets=[listener])
 
 
 def _stopped(_number: int, _frame: FrameType | None) -> NoReturn:

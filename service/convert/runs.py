@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray
 
 
 def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]:
@@ -18,6 +17,8 @@ def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]
 
 def run_json(file: Path) -> dict[str, Any]:
     """Return attributes, dimensions and variables (with units) of a run, without its data."""
+    import xarray  # noqa: PLC0415 (a third of the service's start-up time, and needed for runs only)
+
     with xarray.open_dataset(file, engine="h5netcdf", decode_times=False) as run:
         return {
             "attributes": {str(name): _plain(value) for name, value in run.attrs.items()},

@@ -1,0 +1,258 @@
+"""The client against a real app in the same process, and against a network that fails."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import httpx2
+import pytest
+from running_service import until
+from service_stand_ins import REGISTRY
+from small_table import small_table
+from starlette.testclient import TestClient
+
+from fe_contact.ste import SteDatabase
+from service.app import create_app
+from service.client import JobState, LineOfActionClient
+from service.problems import (
+    BadInput,
+    DamagedFile,
+    JobDismissed,
+    JobFailed,
+    NotFound,
+    QueueFull,
+    ServiceError,
+    Unreachable,
+)
+from service.settings import Settings
+
+KEY = "ab" * 32
+CASE: dict[str, Any] = {
+    "pair": {
+        "normal_module_mm": 4.0,
+        "center_distance_mm": 80.0,
+        "pinion": {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0},
+        "wheel": {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0},
+    },
+    "load": {"torque_n_m": [10.0, 100.0]},
+}
+
+
+@pytest.fixture
+def service(tmp_path: Path) -> Iterator[TestClient]:
+    """A running app with the stand-in and one table in its store."""
+    app = create_app(Settings(data_directory=tmp_path / "data"), REGISTRY)
+    file = tmp_path / "table.nc"
+    small_table().to_netcdf(file)
+    app.state.context.store.put(KEY, "database", file)
+    with TestClient(app) as found:
+        yield found
+
+
+@pytest.fixture
+def client(service: TestClient, tmp_path: Path) -> Iterator[LineOfActionClient]:
+    """A client whose network is the app."""
+    transport = service._transport
+    with LineOfActionClient("http://testserver", cache_dir=tmp_path / "tables", transport=transport) as found:
+        yield found
+
+
+Answer = Callable[[httpx2.Request], httpx2.Response]
+
+
+def against(answer: Answer, tmp_path: Path, attempts: int = 4) -> LineOfActionClient:
+    """Return a client of a network that answers as told."""
+    transport = httpx2.MockTransport(answer)
+    return LineOfActionClient(
+        "http://127.0.0.1:1", cache_dir=tmp_path / "tables", transport=transport, attempts=attempts
+    )
+
+
+def wish(**facts: Any) -> dict[str, Any]:
+    """Return inputs of the stand-in."""
+    return {"wish": facts}
+
+
+def test_submit_wait_result(client: LineOfActionClient) -> None:
+    seen: list[JobState] = []
+    result = client.wait(client.submit("standin", wish(text="x")).id, seen.append, interval=0.02)
+    assert (result.kind, len(result.key)) == ("database", 64)
+    assert seen[-1].status == "successful" and seen[-1].progress == 100
+    assert client.fetch_file(result.key).read_text() == "x"
+
+
+def test_the_table_that_arrives_is_the_table_that_is_stored(client: LineOfActionClient) -> None:
+    assert client.fetch(KEY).identical(small_table())
+
+
+def test_a_cached_table_needs_no_service(client: LineOfActionClient, tmp_path: Path) -> None:
+    client.fetch(KEY)
+
+    def silent(_request: httpx2.Request) -> httpx2.Response:
+        raise AssertionError("the cache was not used")
+
+    assert against(silent, tmp_path).fetch(KEY).identical(small_table())
+
+
+def test_a_damaged_cache_is_not_used(client: LineOfActionClient) -> None:
+    file = client.fetch_file(KEY)
+    file.write_bytes(file.read_bytes()[:-1] + b"?")
+    assert client.fetch(KEY).identical(small_table())
+
+
+def test_a_file_damaged_on_its_way_is_refused_and_not_kept(tmp_path: Path) -> None:
+    def damaged(_request: httpx2.Request) -> httpx2.Response:
+        return httpx2.Response(200, content=b"half of", headers={"Content-Digest": "sha-256=:AAAA:"})
+
+    with pytest.raises(DamagedFile):
+        against(damaged, tmp_path).fetch_file(KEY)
+    assert list((tmp_path / "tables").rglob("*.nc")) == []
+
+
+def test_forces_are_asked_in_batches(client: LineOfActionClient) -> None:
+    answer = client.query(KEY, [0.0, 0.5], [3.0, 3.0])
+    expected = small_table().force_at([0.0, 0.5], 3e-6).force
+    assert answer.force_n == pytest.approx(expected.tolist())
+
+
+@pytest.mark.parametrize(("mode", "error"), [("mesh", JobFailed), ("input", BadInput), ("die", JobFailed)])
+def test_a_job_that_fails_raises_what_it_failed_of(
+    client: LineOfActionClient, mode: str, error: type[ServiceError]
+) -> None:
+    with pytest.raises(error):
+        client.wait(client.submit("standin", wish(mode=mode)).id, interval=0.02)
+
+
+def test_a_dismissed_job_raises(client: LineOfActionClient) -> None:
+    job = client.submit("standin", wish(mode="hang"))
+    assert client.dismiss(job.id).status == "dismissed"
+    with pytest.raises(JobDismissed):
+        client.wait(job.id)
+
+
+def test_waiting_ends_after_the_time_given_and_the_job_goes_on(client: LineOfActionClient) -> None:
+    job = client.submit("standin", wish(mode="hang"))
+    with pytest.raises(JobFailed, match="It goes on"):
+        client.wait(job.id, timeout=0.1, interval=0.02)
+    assert not client.status(job.id).ended
+    client.dismiss(job.id)
+    until(lambda: client.status(job.id).ended)
+
+
+def test_a_bad_case_is_refused_before_anything_is_sent(tmp_path: Path) -> None:
+    def silent(_request: httpx2.Request) -> httpx2.Response:
+        raise AssertionError("something was sent")
+
+    wrong = CASE | {"load": {"torque_n_m": [float("nan")]}}
+    with pytest.raises(BadInput, match=r"load\.torque_n_m\[0\] = nan"):
+        against(silent, tmp_path).submit_case(wrong)
+
+
+def test_unknown_results_and_jobs_are_not_found(client: LineOfActionClient) -> None:
+    with pytest.raises(NotFound):
+        client.fetch("cd" * 32)
+    with pytest.raises(NotFound):
+        client.status("nothing")
+
+
+def test_a_network_that_recovers_is_not_noticed(tmp_path: Path) -> None:
+    asked: list[str] = []
+
+    def recovers(request: httpx2.Request) -> httpx2.Response:
+        asked.append(request.method)
+        if len(asked) == 1:
+            raise httpx2.ConnectError("refused")
+        if len(asked) == 2:
+            return httpx2.Response(503, headers={"Retry-After": "0"})
+        return httpx2.Response(200, json=_status("running"))
+
+    assert against(recovers, tmp_path).status("j").status == "running"
+    assert len(asked) == 3
+
+
+def _status(status: str) -> dict[str, Any]:
+    """Return a status document."""
+    numbers = {"progress": 10, "stage_progress": 20}
+    return {"jobID": "j", "processID": "analyze", "status": status, "message": "", "stage": "mesh"} | numbers
+
+
+def test_no_service_is_said_with_its_address_after_all_attempts(tmp_path: Path) -> None:
+    asked: list[str] = []
+
+    def refuses(request: httpx2.Request) -> httpx2.Response:
+        asked.append(request.method)
+        raise httpx2.ConnectError("refused")
+
+    with pytest.raises(Unreachable, match=r"http://127\.0\.0\.1:1 .*loa serve"):
+        against(refuses, tmp_path, attempts=2).status("j")
+    assert len(asked) == 2
+
+
+def test_a_full_queue_is_told_after_all_attempts(tmp_path: Path) -> None:
+    body = QueueFull("100 computations wait already.").as_json()
+
+    def full(_request: httpx2.Request) -> httpx2.Response:
+        return httpx2.Response(429, json=body, headers={"Retry-After": "0"})
+
+    with pytest.raises(QueueFull, match="100 computations"):
+        against(full, tmp_path, attempts=2).submit("standin", wish())
+
+
+def test_something_else_at_the_address_is_no_service(tmp_path: Path) -> None:
+    def stranger(_request: httpx2.Request) -> httpx2.Response:
+        return httpx2.Response(404, text="<html>nothing here</html>")
+
+    with pytest.raises(Unreachable, match="not as this service does"):
+        against(stranger, tmp_path).status("j")
+
+
+def test_an_address_that_is_none_is_bad_input(tmp_path: Path) -> None:
+    with pytest.raises(BadInput, match="service = 'nowhere'"):
+        LineOfActionClient("nowhere", cache_dir=tmp_path).status("j")
+
+
+def test_a_case_known_from_before_is_served_offline(tmp_path: Path) -> None:
+    file = tmp_path / "table.nc"
+    small_table().to_netcdf(file)
+    online = [True]
+    content = file.read_bytes()
+
+    def answer(request: httpx2.Request) -> httpx2.Response:
+        if not online[0]:
+            raise httpx2.ConnectError("refused")
+        if request.url.path.endswith("/results"):
+            reference = {"href": f"/v1/databases/{KEY}", "type": "", "hash": KEY}
+            return httpx2.Response(200, json={"database": reference})
+        if "databases" in request.url.path:
+            return httpx2.Response(200, content=content, headers=_digest(content))
+        return httpx2.Response(201 if request.method == "POST" else 200, json=_status("successful"))
+
+    client = against(answer, tmp_path, attempts=1)
+    assert client.analyze(CASE).identical(small_table())
+    online[0] = False
+    assert client.analyze(CASE).identical(small_table())
+    with pytest.raises(Unreachable):
+        client.analyze(CASE | {"load": {"torque_n_m": [1.0]}})
+
+
+def _digest(content: bytes) -> dict[str, str]:
+    """Return the header of RFC 9530."""
+    import base64  # noqa: PLC0415
+    import hashlib  # noqa: PLC0415
+
+    return {"Content-Digest": f"sha-256=:{base64.b64encode(hashlib.sha256(content).digest()).decode()}:"}
+
+
+def test_the_import_is_light() -> None:
+    heavy = {"gmsh", "skfem", "fastapi", "sqlalchemy", "uvicorn", "scipy", "numba", "xarray"}
+    code = f"import sys, service.client; print(sorted({heavy!r} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_a_table_fetched_is_an_ste_database(client: LineOfActionClient) -> None:
+    assert isinstance(client.fetch(KEY), SteDatabase)

@@ -1,0 +1,262 @@
+"""The command line: what is printed where, and with which exit code."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from running_service import lives, until
+from small_table import small_table
+from typer.testing import CliRunner, Result
+
+from service.cli.commands import app
+
+ROOT = Path(__file__).parents[3]
+VERBS = ("analyze", "ste", "simulate", "report", "serve", "submit", "fetch")
+
+
+def loa(*arguments: object) -> Result:
+    """Run the command line in this process."""
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
+    """Run the command line in a process of its own."""
+    path = os.pathsep.join([str(ROOT), os.environ["PYTHONPATH"]])
+    return subprocess.Popen(
+        [sys.executable, "-m", "service.cli", *arguments],
+        env={**os.environ, "PYTHONPATH": path},
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        **options,  # type: ignore[call-overload]
+    )
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A table in a file."""
+    file = tmp_path_factory.mktemp("table") / "ste.nc"
+    small_table().to_netcdf(file)
+    return file
+
+
+def closed_form(position: float) -> float:
+    """Transmission error of the small table at 100 N m, um."""
+    stiffness = 3.5e8 - 0.5e8 * math.cos(2.0 * math.pi * position)
+    return 1e6 * float(small_table().force[2]) / stiffness
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_help_with_an_example(verb: str) -> None:
+    result = loa(verb, "--help")
+    assert result.exit_code == 0
+    assert f"Example: loa {verb}" in result.stdout
+
+
+def test_the_help_names_the_exit_codes() -> None:
+    text = " ".join(loa("--help").stdout.split())
+    assert "2 bad input; 3 a mesh, a solve or a job failed; 4 no service answers" in text
+
+
+def test_help_loads_none_of_the_machinery() -> None:
+    code = (
+        "import sys, service.cli.commands as c; from typer.testing import CliRunner; "
+        "CliRunner().invoke(c.app, ['--help']); "
+        "print(sorted({'scipy', 'numba', 'skfem', 'fastapi', 'sqlalchemy', 'xarray'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout.strip() == "[]"
+
+
+def test_json_holds_the_contract_and_nothing_else(table: Path) -> None:
+    result = loa("ste", table, "--torque", 100, "--at", "0,0.25,0.5", "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    contract = {"position", "ste_um", "load_share", "mean_um", "peak_to_peak_um", "harmonics_um"}
+    assert contract <= set(answer)
+    assert answer["position"] == [0.0, 0.25, 0.5]
+    assert answer["ste_um"] == pytest.approx([closed_form(x) for x in (0.0, 0.25, 0.5)], rel=1e-9)
+    assert answer["peak_to_peak_um"] == pytest.approx(closed_form(0.0) - closed_form(0.5), rel=1e-6)
+    assert np.sum(answer["load_share"], axis=1) == pytest.approx(1.0)
+
+
+def test_csv_says_the_same_as_json(table: Path) -> None:
+    answer = json.loads(loa("ste", table, "--torque", 100, "--json").stdout)
+    rows = list(csv.DictReader(io.StringIO(loa("ste", table, "--torque", 100, "--csv").stdout)))
+    assert [float(row["position"]) for row in rows] == answer["position"]
+    assert [float(row["ste_um"]) for row in rows] == pytest.approx(answer["ste_um"], rel=1e-8)
+
+
+def test_a_table_for_people_shows_the_figures(table: Path) -> None:
+    text = loa("ste", table, "--torque", 100, "--at", "0.5").stdout
+    assert f"{closed_form(0.5):.4f}" in text
+    assert "peak-to-peak" in text and "um" in text
+
+
+def test_force_and_torque_are_the_same_question(table: Path) -> None:
+    force = float(small_table().force[2])
+    by_torque = json.loads(loa("ste", table, "--torque", 100, "--json").stdout)
+    assert json.loads(loa("ste", table, "--force", repr(force), "--json").stdout) == by_torque
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ([], "--torque = nothing"),
+        (["--torque", "100", "--force", "2660"], "--torque = "),
+        (["--torque", "nan"], "--torque = nan: must be a finite number"),
+        (["--torque", "-5"], "torque_n_m = -5.0: must be above 0"),
+        (["--torque", "1000"], "torque_n_m = 1000.0: must be at most 200 N m"),
+        (["--torque", "100", "--at", "0,x"], "--at = '0,x'"),
+        (["--torque", "100", "--at", "nan"], "--at = 'nan'"),
+        (["--torque", "100", "--misalignment-um", "30"], "misalignment_um = 30.0: must be from 0 to 0"),
+    ],
+)
+def test_a_question_that_makes_no_sense_is_one_line(table: Path, arguments: list[str], said: str) -> None:
+    result = loa("ste", table, *arguments, "--json")
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith(f"error: {said}")
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_file_that_is_not_there_or_no_table_is_said(tmp_path: Path) -> None:
+    missing = loa("ste", tmp_path / "none.nc", "--torque", 1)
+    assert missing.exit_code == 2 and "none.nc" in missing.stderr
+    (tmp_path / "text.nc").write_text("no netCDF")
+    wrong = loa("ste", tmp_path / "text.nc", "--torque", 1)
+    assert wrong.exit_code == 3 and wrong.stderr.startswith("error: ") and "Traceback" not in wrong.stderr
+
+
+@pytest.mark.parametrize("text", ["[pair", "\x00\x01", "pair = 3\n"])
+def test_a_case_file_that_is_none_is_said(tmp_path: Path, text: str) -> None:
+    file = tmp_path / "case.toml"
+    file.write_text(text)
+    result = loa("analyze", file, "-o", tmp_path / "ste.nc")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("error: ")
+
+
+def test_an_output_that_cannot_be_written_is_said_before_the_work(tmp_path: Path) -> None:
+    result = loa("analyze", ROOT / "examples/palermo_spur_20_20.toml", "-o", tmp_path / "no" / "ste.nc")
+    assert result.exit_code == 2
+    assert "output = " in result.stderr
+
+
+def test_no_service_is_exit_code_4(tmp_path: Path) -> None:
+    result = loa("fetch", "ab" * 32, "-o", tmp_path / "x.nc", "--service", "http://127.0.0.1:9")
+    assert result.exit_code == 4
+    assert "loa serve" in result.stderr
+
+
+def test_a_defect_is_a_number_and_a_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: Path) -> None:
+    def explode(*_: object, **__: object) -> None:
+        raise RuntimeError("the text of a defect")
+
+    monkeypatch.setattr("service.cli.ste.curve_json", explode)
+    result = loa("ste", table, "--torque", 1)
+    assert result.exit_code == 5
+    assert "the text of a defect" not in result.stderr
+    (log,) = (tmp_path / "cache" / "lineofaction" / "log").iterdir()
+    assert log.name in result.stderr and "the text of a defect" in log.read_text()
+
+
+@pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.5", "::", "example.org"])
+def test_the_service_refuses_an_address_that_others_reach(host: str) -> None:
+    result = loa("serve", "--host", host)
+    assert result.exit_code == 2
+    assert f"host = '{host}': must be a loopback address" in result.stderr
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A server process on a free port and its address."""
+    process = started("serve", "--port", "0", "--data-directory", str(tmp_path / "served"))
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    yield process, line.rpartition(" ")[2].strip()
+    if process.poll() is None:
+        process.kill()
+    process.communicate()
+
+
+def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[str], str]) -> None:
+    process, address = server
+    until(lambda: _healthy(address))
+    process.send_signal(signal.SIGTERM)
+    _, error = process.communicate(timeout=30)
+    assert process.returncode == 0
+    assert "Traceback" not in error
+
+
+def _healthy(address: str) -> bool:
+    """Whether the service answers."""
+    try:
+        with urllib.request.urlopen(f"{address}/health", timeout=5) as answer:
+            return bool(answer.status == 200)
+    except OSError:
+        return False
+
+
+def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], str], tmp_path: Path) -> None:
+    process, address = server
+    until(lambda: _healthy(address))
+    job = loa("submit", ROOT / "examples/palermo_spur_20_20.toml", "--service", address, "--json")
+    assert json.loads(job.stdout)["process"] == "analyze"
+    workers: list[int] = []
+
+    def found() -> bool:
+        workers.extend(_children(process.pid))
+        return bool(workers)
+
+    until(found)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=30)
+    assert process.returncode == 0
+    until(lambda: not any(lives(pid) for pid in workers))
+
+
+def _children(pid: int) -> list[int]:
+    """Return the children of all threads of a process."""
+    tasks = Path(f"/proc/{pid}/task").iterdir()
+    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
+
+
+def test_a_second_server_in_the_same_directory_is_refused(
+    server: tuple[subprocess.Popen[str], str], tmp_path: Path
+) -> None:
+    until(lambda: _healthy(server[1]))
+    result = loa("serve", "--port", "0", "--data-directory", tmp_path / "served")
+    assert result.exit_code == 2
+    assert "another service works in it" in result.stderr
+
+
+def test_a_port_in_use_is_said(server: tuple[subprocess.Popen[str], str], tmp_path: Path) -> None:
+    until(lambda: _healthy(server[1]))
+    port = server[1].rpartition(":")[2]
+    result = loa("serve", "--port", port, "--data-directory", tmp_path / "other")
+    assert result.exit_code == 2
+    assert f"port = {port}: must be a free port" in result.stderr
+
+
+def test_interrupting_is_clean(tmp_path: Path) -> None:
+    fifo = tmp_path / "case.toml"
+    os.mkfifo(fifo)  # the command waits for its case, so the signal comes while it works
+    process = started("analyze", str(fifo), "-o", str(tmp_path / "ste.nc"))
+    writer = os.open(fifo, os.O_WRONLY)  # returns when the command has opened it
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=30)
+    os.close(writer)
+    assert process.returncode == 130
+    assert error == "interrupted\n"
