@@ -99,7 +99,8 @@ def solve_point(
     deflection, tangent : float
         m, and its derivative in `total`, m/N.
     status, iterations : int
-        `CONVERGED`, `ITERATION_LIMIT`, `SINGULAR`, or `OUT_OF_MODEL` where no contact exists.
+        `CONVERGED`, `ITERATION_LIMIT`, `SINGULAR` (no positive definite compliance, or a gap that is NaN), or
+        `OUT_OF_MODEL` (no contact exists).
     beyond : bool
         Whether any contact outgrew its patch.
     """
@@ -107,7 +108,7 @@ def solve_point(
     if not math.isfinite(touch):
         force[:] = 0.0
         residual[:] = math.inf
-        return math.nan, math.nan, OUT_OF_MODEL, 0, False
+        return math.nan, math.nan, SINGULAR if math.isnan(touch) else OUT_OF_MODEL, 0, False
     work = _start(problem, touch, force)
     elastic, tangent, status, iterations = _iterate(problem, total, force, work, patience)
     if status == SINGULAR:
@@ -119,9 +120,11 @@ def solve_point(
 
 @njit(cache=True)
 def _first_touch(problem: PointProblem) -> float:
-    """Deflection at which the first contact touches; infinite if there is none."""
+    """Deflection at which the first contact touches; infinite if there is none, NaN if a gap is."""
     touch = math.inf
     for i in range(problem.gap.size):
+        if math.isnan(problem.gap[i]):
+            return math.nan
         if math.isfinite(problem.gap[i]):
             touch = min(touch, problem.gap[i] / problem.motion_arm[i])
     return touch

@@ -134,6 +134,18 @@ def test_patches_change_continuously_as_a_contact_runs_out(offset):
         assert getattr(after, name) == pytest.approx(getattr(before, name), abs=tolerance)
 
 
+@pytest.mark.parametrize("offset", [5e-5, 0.0, -1e-4, -2e-2])
+def test_edge_share_is_that_of_the_edge_pressure(offset):
+    # of sqrt((c - x)/x) [phi + (x + c/2)/R] with phi = -t/R, integrated over the strip
+    c, radius = EDGE_LENGTH, 6e-3
+    angle = (np.arange(200) + 0.5) * math.pi / 200
+    x = 0.5 * c * (1.0 - np.cos(angle))
+    weight = 0.5 * c * np.sin(angle) * np.sqrt((c - x) / x)
+    whole = np.sum(weight * (-offset + x + 0.5 * c) / radius)
+    singular = np.sum(weight * (-offset + 0.5 * c) / radius)
+    assert at(offset).edge_share[0] == pytest.approx(singular / whole, rel=1e-9)
+
+
 def test_centroid_is_that_of_the_nodal_forces():
     for offset in (-1e-3, -1e-5, 0.0, 5e-5):
         found = at(offset)

@@ -111,6 +111,16 @@ def test_outgrown_patch_is_flagged_and_nothing_else():
     assert flags == [False, False, False, True]
 
 
+@pytest.mark.parametrize("slope", SLOPES)
+def test_straight_below_the_smallest_strip(slope):
+    law = law_of(slope)
+    secant = value(law, law.low[0]) / law.low[0]
+    for share in (1e-6, 0.3, 0.99):
+        found, stiffness, _ = approach(law, 0, share * law.low[0] * WIDTH)
+        assert found == pytest.approx(secant * share * law.low[0], rel=1e-12)
+        assert stiffness == pytest.approx(secant / WIDTH, rel=1e-12)
+
+
 def test_no_force_no_approach_and_straight_through_zero():
     law = law_of(0.02)
     at_zero, slope, _ = approach(law, 0, 0.0)

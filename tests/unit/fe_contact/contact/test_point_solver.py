@@ -108,6 +108,12 @@ def test_lost_definiteness_is_reported(entry):
     assert not np.any(residual < 1.0)
 
 
+def test_a_gap_that_is_no_number_is_not_passed_over():
+    d, _, status, *_ = solve(point(STIFF * np.eye(2), [0.0, math.nan]), 1000.0)
+    assert status == Status.SINGULAR
+    assert math.isnan(d)
+
+
 def test_outgrown_patch_is_flagged():
     strip_load = WIDTH * math.pi * MODULUS * (0.66 * PATCH) ** 2 / (4.0 * RADIUS)
     assert [solve(point([[STIFF]], [0.0]), factor * strip_load)[4] for factor in (0.99, 1.01)] == [
