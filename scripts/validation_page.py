@@ -6,6 +6,7 @@ Usage: validation_page.py RECORDS PAGE
 from __future__ import annotations
 
 import json
+import re
 import sys
 from collections.abc import Iterable
 from itertools import groupby
@@ -24,33 +25,43 @@ KINDS = {
 INTRODUCTION = """# Validation
 
 What the tests measured, beside what they ask for. This page is generated: `./scripts/test` records the
-figures, `./scripts/validation-page` writes them here. The tests named in the last column assert them.
+figures, `./scripts/validation-page` writes them here. The tests named above each table assert them.
 """
 
 
 def page(records: Iterable[Record]) -> str:
-    """Return the page: one table per kind of test, in the order of `KINDS`, others after them."""
-    order = [*KINDS]
-    by_kind = sorted(records, key=lambda r: (_rank(order, r["kind"]), r["kind"], r["test"], r["name"]))
+    """Return the page: kinds in the order of `KINDS`, others after them; a table per test and source."""
     parts = [INTRODUCTION]
-    for kind, group in groupby(by_kind, key=lambda r: str(r["kind"])):
-        rows = [_row(record) for record in group]
-        head = "| what | measured | unit | target | source | test |\n|---|---:|---|---|---|---|"
-        parts.append(f"## {KINDS.get(kind, kind.capitalize())}\n\n{head}\n" + "\n".join(rows) + "\n")
+    for kind, of_kind in groupby(sorted(records, key=_place), key=lambda record: str(record["kind"])):
+        parts.append(f"## {KINDS.get(kind, kind.capitalize())}\n")
+        for (file, source), group in groupby(of_kind, key=_origin):
+            rows = "\n".join(_row(record) for record in group)
+            head = "| what | measured | target | unit |\n|---|---:|---:|---|"
+            parts.append(f"{source} (`{file}`)\n\n{head}\n{rows}\n")
     return "\n".join(parts)
 
 
-def _rank(order: list[str], kind: str) -> int:
-    """Place of a kind of test on the page."""
-    return order.index(kind) if kind in order else len(order)
+def _place(record: Record) -> tuple[object, ...]:
+    """Order on the page; numbers inside names count as numbers."""
+    order = [*KINDS]
+    kind = str(record["kind"])
+    rank = order.index(kind) if kind in order else len(order)
+    pieces = re.split(r"(\d+\.?\d*)", str(record["name"]))
+    name = tuple((float(piece), "") if k % 2 else (0.0, piece) for k, piece in enumerate(pieces))
+    return rank, kind, *_origin(record), name
+
+
+def _origin(record: Record) -> tuple[str, str]:
+    """File of the test and source of the target."""
+    return str(record["test"]).partition("::")[0], str(record["source"])
 
 
 def _row(record: Record) -> str:
     """One figure as a row; a bar inside a cell would end it."""
     target = record["target"]
     goal = target if isinstance(target, str) else f"{target:.6g}"
-    test = str(record["test"]).partition("::")[0]
-    cells = (record["name"], f"{record['value']:.4g}", record["unit"], goal, record["source"], f"`{test}`")
+    unit = "" if record["unit"] in ("1", "-") else record["unit"]
+    cells = (record["name"], f"{record['value']:.6g}", goal, unit)
     return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
 
 

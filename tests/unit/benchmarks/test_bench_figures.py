@@ -1,0 +1,64 @@
+"""The benchmark's table says what was measured and whether it meets its target."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from benchmarks import __main__ as bench
+from benchmarks.figures import Figure, markdown
+from benchmarks.fresh_process import measure
+from benchmarks.machine import describe
+
+FIGURES = (
+    Figure("table", "cold", 2.5, "CPU s", 3.0),
+    Figure("table", "cached", 0.25, "CPU s", 0.2),
+    Figure("table", "memory", 210.0, "MiB"),
+)
+
+
+def test_met_missed_and_without_target() -> None:
+    assert [figure.met for figure in FIGURES] == [True, False, None]
+    rows = markdown(FIGURES).splitlines()[2:]
+    assert rows == [
+        "| table | cold | 2.5 CPU s | at most 3 CPU s | yes |",
+        "| table | cached | 0.25 CPU s | at most 0.2 CPU s | **no** |",
+        "| table | memory | 210 MiB |  |  |",
+    ]
+
+
+def test_the_machine_is_named() -> None:
+    machine = describe()
+    assert {"processor", "cores", "memory", "python", "numpy", "lineofaction"} <= set(machine)
+    assert all(machine.values())
+
+
+def test_a_fresh_process_tells_its_results_and_its_time() -> None:
+    result = measure("measured = {'answer': sum(range(10))}\n")
+    assert result["answer"] == 45
+    assert result["process_cpu_seconds"] > 0.0
+
+
+def test_code_that_fails_is_an_error() -> None:
+    with pytest.raises(RuntimeError, match="no such thing"):
+        measure("raise SystemExit('no such thing')\n")
+
+
+def test_publishing_replaces_the_figures_and_nothing_else(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "docs").mkdir()
+    readme = tmp_path / "README.md"
+    before, after = f"# Title\n\n{bench._MARKS[0]}\n", f"{bench._MARKS[1]}\n\nRest.\n"
+    readme.write_text(before + "old\n" + after)
+    monkeypatch.setattr(bench, "ROOT", tmp_path)
+    for _ in range(2):  # publishing again changes nothing
+        bench._publish("page", {"processor": "P", "python": "3"}, FIGURES)
+        text = readme.read_text()
+        assert text.startswith(before)
+        assert text.endswith(after)
+        assert "old" not in text
+        assert text.count("| table | cold |") == 1
+        assert "memory" not in text  # no target, so no place in the README
+    assert (tmp_path / "docs" / "benchmarks.md").read_text() == "page"
