@@ -107,17 +107,18 @@ def simulate(
     run_simulate(scene, output, service, as_json=json)
 
 
-@app.command(epilog="Example: loa report ste.nc -o report.html")
+@app.command(epilog="Example: loa report ste.nc run.nc -o report.html")
 @guarded
 def report(
-    file: Annotated[Path, typer.Argument(help="STE database or run (netCDF).")],
+    files: Annotated[list[Path], typer.Argument(help="An STE database, a run, or one of each (netCDF).")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
+    images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
     json: AsJson = False,
 ) -> None:
-    """Write one HTML page with the plots of a database or a run."""
+    """Write one HTML page with the plots of a database, a run or both."""
     from service.cli.report import run_report  # noqa: PLC0415 (start-up time)
 
-    run_report(file, output, as_json=json)
+    run_report(files, output, images, as_json=json)
 
 
 @app.command(epilog="Example: loa serve --port 8321 --workers 2")

@@ -1,0 +1,194 @@
+"""From a case to the library: every unit, every field, and errors back in the user's words."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bad_inputs import GOOD
+
+from dynamics.errors import InputError as DynamicsInputError
+from dynamics.errors import SolveError as DynamicsSolveError
+from fe_contact.errors import InputError, MeshError
+from service.convert.case import analysis_arguments, case_json, gear_pair
+from service.convert.errors import translated
+from service.convert.units import factor
+from service.jobs.key import content_key
+from service.problems import BadInput, JobFailed
+from service.schemas import Case, read_model, validated
+
+ROOT = Path(__file__).parents[3]
+
+
+def case(**pinion: Any) -> Case:
+    """Return the good case with changes of the pinion."""
+    table = copy.deepcopy(GOOD)
+    table["pair"]["pinion"] |= pinion
+    return validated(Case, table)
+
+
+MODIFIED: dict[str, Any] = {
+    "tip_relief_um": 20.0,
+    "tip_relief_length_mm": 1.5,
+    "tip_relief_shape": "parabolic",
+    "root_relief_um": 10.0,
+    "root_relief_length_mm": 1.0,
+    "profile_crowning_um": 3.0,
+    "profile_slope_um": -4.0,
+    "helix_crowning_um": 5.0,
+    "helix_slope_um": -6.0,
+    "end_relief_um": 7.0,
+    "end_relief_length_mm": 2.0,
+    "end_relief_shape": "parabolic",
+}
+
+
+def test_lengths_and_angles_become_si() -> None:
+    pair = gear_pair(case(thickness_allowance_um=50.0, tip_diameter_mm=87.5))
+    assert pair.center_distance == pytest.approx(0.08, rel=1e-15)
+    assert pair.pinion.normal_module == pytest.approx(0.004, rel=1e-15)
+    assert pair.pinion.normal_pressure_angle == pytest.approx(math.radians(20.0), rel=1e-15)
+    assert pair.pinion.thickness_allowance == pytest.approx(5e-5, rel=1e-15)
+    assert pair.pinion.tip_diameter == pytest.approx(0.0875, rel=1e-15)
+    assert pair.wheel.tip_diameter is None
+
+
+def test_every_modification_arrives_in_si() -> None:
+    modification = gear_pair(case(**MODIFIED)).pinion.modification
+    for name, value in MODIFIED.items():
+        stem = name.removesuffix("_um").removesuffix("_mm")
+        found = getattr(modification, stem)
+        assert found == (value if isinstance(value, str) else pytest.approx(value * factor(name), rel=1e-15))
+    assert gear_pair(case(**MODIFIED)).wheel.modification.neutral
+
+
+def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
+    """A field that conversion forgets would leave the gear as it is."""
+    plain = gear_pair(case()).pinion
+    changes: dict[str, Any] = {
+        "teeth": 21,
+        "face_width_mm": 24.0,
+        "bore_diameter_mm": 39.0,
+        "profile_shift_coefficient": 0.05,
+        "addendum_coefficient": 0.9,
+        "dedendum_coefficient": 1.2,
+        "root_radius_coefficient": 0.3,
+        "tip_diameter_mm": 87.0,
+        "thickness_allowance_um": 100.0,
+        "material": {"youngs_modulus_gpa": 100.0},
+    }
+    covered = set(changes) | set(MODIFIED) | {"root_relief_shape"}
+    assert covered == set(type(case().pair.pinion).model_fields)
+    for name, value in changes.items():
+        table = copy.deepcopy(GOOD)
+        table["pair"]["pinion"][name] = value
+        table["pair"]["center_distance_mm"] = 82.1 if name == "teeth" else 80.2
+        assert gear_pair(validated(Case, table)).pinion != plain, name
+
+
+def test_mating_gears_have_opposite_hands() -> None:
+    table = copy.deepcopy(GOOD)
+    table["pair"] |= {"helix_angle_deg": 15.0, "center_distance_mm": 80.0 / math.cos(math.radians(15.0))}
+    pair = gear_pair(validated(Case, table))
+    assert pair.pinion.helix_angle == pytest.approx(math.radians(15.0))
+    assert pair.wheel.helix_angle == -pair.pinion.helix_angle
+
+
+def test_a_gears_own_material_wins() -> None:
+    table = copy.deepcopy(GOOD)
+    table["material"] = {"youngs_modulus_gpa": 206.0}
+    table["pair"]["wheel"]["material"] = {"youngs_modulus_gpa": 3.0, "poissons_ratio": 0.4}
+    pair = gear_pair(validated(Case, table))
+    assert pair.pinion.material.youngs_modulus == pytest.approx(206e9)
+    assert (pair.wheel.material.youngs_modulus, pair.wheel.material.poissons_ratio) == pytest.approx(
+        (3e9, 0.4)
+    )
+
+
+def test_arguments_of_the_analysis_are_si_and_echo_the_case() -> None:
+    table = copy.deepcopy(GOOD) | {
+        "errors": {"misalignment_um": [0.0, 30.0], "center_distance_change_mm": [-0.1, 0.0]},
+        "accuracy": {"time_budget_s": 3.0, "positions": 64, "model": "plane_stress"},
+    }
+    arguments = analysis_arguments(validated(Case, table))
+    assert arguments["torques"] == [10.0, 100.0] and arguments["normal_forces"] is None
+    assert arguments["misalignments"] == pytest.approx((0.0, 3e-5))
+    assert arguments["center_distance_changes"] == pytest.approx((-1e-4, 0.0))
+    assert (arguments["tolerance"], arguments["time_budget"], arguments["positions"]) == (None, 3.0, 64)
+    assert arguments["case"]["pair"]["pinion"]["addendum_coefficient"] == 1.0
+
+
+def test_the_echo_holds_every_default_and_is_its_own_fixed_point() -> None:
+    echo = case_json(case())
+    assert echo["accuracy"]["tolerance"] == 0.01
+    assert case_json(validated(Case, echo)) == echo
+    assert json.loads(json.dumps(echo, allow_nan=False)) == echo
+
+
+def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else() -> None:
+    written_out = copy.deepcopy(GOOD) | {"effects": {}, "errors": {"misalignment_um": [0]}}
+    written_out["load"] = {"torque_n_m": [10, 100]}
+    keys = [content_key("analyze", "1", case_json(validated(Case, table))) for table in (GOOD, written_out)]
+    assert keys[0] == keys[1]
+    assert content_key("analyze", "2", case_json(case())) != keys[0]
+    assert content_key("analyze", "1", case_json(case(bore_diameter_mm=40.001))) != keys[0]
+
+
+def test_the_example_is_the_papers_pair() -> None:
+    example = read_model(Case, ROOT / "examples" / "palermo_spur_20_20.toml")
+    assert gear_pair(example).transverse_contact_ratio == pytest.approx(1.557, abs=5e-4)
+    assert example.load.torque_n_m is not None and len(example.load.torque_n_m) == 12
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (
+            InputError("pinion.face_width", -0.025, "above 0", "In m: 25 mm is 0.025."),
+            "pair.pinion.face_width_mm = -25.0: must be above 0",
+        ),
+        (InputError("wheel.helix_angle", 0.5236, "0 rad"), "pair.helix_angle_deg = "),
+        (
+            InputError("pinion.modification.tip_relief_length", 0.05, "from 0 to 0.00636"),
+            "pair.pinion.tip_relief_length_mm = 50.0: must be from 0 to 6.36",
+        ),
+        (
+            InputError("pinion.material.youngs_modulus", 0.0, "above 0", "Steel is 2.1e11 Pa."),
+            "pair.pinion.material.youngs_modulus_gpa = 0.0: must be above 0. Steel is 210 GPa.",
+        ),
+        (InputError("torques[2]", 1.0, "above 2"), "load.torque_n_m[2] = 1.0: must be above 2"),
+        (InputError("misalignments[1]", 3e-5, "0"), "errors.misalignment_um[1] = 30.0: must be 0"),
+        (InputError("effects.magic", "on", "known"), "effects.magic = 'on': must be known"),
+        (
+            DynamicsInputError("bushings[0].radial_stiffness", -1.0, "0 or above"),
+            "bushings[0].radial_stiffness_n_per_m = -1.0: must be 0 or above",
+        ),
+        (
+            DynamicsInputError("gears[1].bore_diameter", 0.09, "below the outer diameter 0.08 m"),
+            "gears[1].bore_diameter_mm = 90.0: must be below the outer diameter 80 mm",
+        ),
+        (DynamicsInputError("duration", -1.0, "0 or above"), "run.duration_s = -1.0"),
+    ],
+)
+def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: str) -> None:
+    found = translated(error)
+    assert isinstance(found, BadInput)
+    assert str(found).startswith(said)
+
+
+def test_suggestions_never_explain_si_to_someone_who_does_not_use_it() -> None:
+    found = translated(InputError("pinion.face_width", -0.025, "above 0", "In m: 25 mm is 0.025."))
+    assert found is not None and "In m" not in str(found) and "Face width in mm" in str(found)
+
+
+@pytest.mark.parametrize("error", [MeshError("no mesh"), DynamicsSolveError("no equilibrium")])
+def test_failures_are_failures(error: Exception) -> None:
+    assert isinstance(translated(error), JobFailed)
+
+
+def test_what_the_libraries_do_not_raise_on_purpose_is_not_translated() -> None:
+    assert translated(ZeroDivisionError("0")) is None

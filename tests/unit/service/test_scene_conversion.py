@@ -1,0 +1,157 @@
+"""From a scene file and its tables to the scene of dynamics."""
+
+from __future__ import annotations
+
+import copy
+import math
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from small_table import BASE_RADIUS, small_table
+
+from dynamics.system import Scene
+from service.convert.scene import dynamic_scene
+from service.convert.topology import facts_of
+from service.problems import BadInput
+from service.schemas import validated
+from service.schemas.scene import SceneInput
+
+ROOT = Path(__file__).parents[3]
+EXAMPLE = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
+Change = Callable[[dict[str, Any]], object]
+
+
+def scene(change: Change = lambda _table: None) -> Scene:
+    """Return the paper's scene with a change, on the small table."""
+    table = copy.deepcopy(EXAMPLE)
+    change(table)
+    return dynamic_scene(validated(SceneInput, table), {"mesh": small_table()})
+
+
+def test_the_papers_scene_is_in_si() -> None:
+    found = scene()
+    assert [shaft.length for shaft in found.shafts] == pytest.approx([0.2, 0.2])
+    assert found.shafts[1].origin == pytest.approx((0.08, 0.0, 0.0))
+    assert len(found.bushings) == 4
+    assert {b.radial_stiffness for b in found.bushings} | {b.axial_stiffness for b in found.bushings} == {1e8}
+    assert found.drives[0].speed.value == pytest.approx((0.0, 955.0 * 2.0 * math.pi / 60.0))
+    assert found.loads[0].torque.value == (100.0,)
+    assert (found.duration, found.outputs.sample_rate) == (5.0, 2e4)
+    assert found.integration.tolerance == pytest.approx(1e-9)
+
+
+def test_gears_take_their_teeth_from_the_table() -> None:
+    pinion, wheel = scene().gears
+    assert (pinion.teeth, wheel.teeth) == (20, 20)
+    assert pinion.base_radius == pytest.approx(BASE_RADIUS)
+    assert pinion.position == pytest.approx(0.1)
+    assert pinion.inertia.mass == pytest.approx(7850 * math.pi * (0.04**2 - 0.02**2) * 0.025, rel=1e-12)
+
+
+def test_the_mesh_uses_the_table_it_was_given() -> None:
+    mesh = scene(lambda t: t["meshes"][0].update(technique="constant_torque", misalignment_um=0.0)).meshes[0]
+    assert mesh.technique == "constant_torque"
+    assert mesh.table.deflection.shape[-1] == mesh.table.level.size
+
+
+def test_given_inertia_is_used_as_it_is() -> None:
+    given = {"mass_kg": 1.0, "polar_kg_m2": 2.0, "transverse_kg_m2": 3.0}
+
+    def change(table: dict[str, Any]) -> None:
+        table["gears"][0]["inertia"] = given
+        del table["shafts"][0]["diameter_mm"]
+        table["shafts"][0]["inertia"] = given
+
+    found = scene(change)
+    for inertia in (found.gears[0].inertia, found.shafts[0].inertia):
+        assert (inertia.mass, inertia.polar, inertia.transverse) == (1.0, 2.0, 3.0)
+
+
+def test_facts_of_a_pair_are_those_its_table_will_have() -> None:
+    from fe_contact.analysis.tabulate import pair_facts  # noqa: PLC0415
+    from fe_contact.geometry import Gear, GearPair  # noqa: PLC0415
+
+    right = Gear(17, 4e-3, 25e-3, 20e-3, helix_angle=0.2)
+    left = Gear(31, 4e-3, 20e-3, 20e-3, helix_angle=-0.2)
+    pair = GearPair(right, left)
+    assert facts_of(pair) == pair_facts(pair)
+
+
+WRONG: dict[str, tuple[Change, str]] = {
+    "misspelt": (lambda t: t["bushings"][0].update(stifness=1.0), "bushings[0].stifness"),
+    "no such shaft": (lambda t: t["gears"][0].update(shaft="inptu"), "gears[0].shaft"),
+    "no such gear": (lambda t: t["meshes"][0].update(driven="ring"), "meshes[0].driven"),
+    "mesh with itself": (lambda t: t["meshes"][0].update(driven="pinion"), "meshes[0].driven"),
+    "repeated name": (lambda t: t["shafts"][1].update(name="input"), "shafts[1].name"),
+    "two sources": (lambda t: t["meshes"][0].update(database_file="x.nc"), "meshes[0].case"),
+    "no source": (lambda t: t["meshes"][0].pop("case_file"), "meshes[0].case"),
+    "hash that is none": (
+        lambda t: (t["meshes"][0].pop("case_file"), t["meshes"][0].update(database_hash="abc")),
+        "meshes[0].database_hash",
+    ),
+    "negative stiffness": (
+        lambda t: t["bushings"][0].update(radial_stiffness_n_per_m=-1.0),
+        "bushings[0].radial_stiffness_n_per_m",
+    ),
+    "stiffness no number": (
+        lambda t: t["bushings"][0].update(radial_stiffness_n_per_m=float("nan")),
+        "bushings[0].radial_stiffness_n_per_m",
+    ),
+    "times out of order": (
+        lambda t: t["drives"][0].update(time_s=[5.0, 0.0]),
+        "drives[0].time_s",
+    ),
+    "speeds without times": (lambda t: t["drives"][0].update(speed_rpm=[1.0]), "drives[0].speed_rpm"),
+    "standing still": (lambda t: t["drives"][0].update(speed_rpm=[0.0, 0.0]), "drives[0].speed_rpm"),
+    "no drive": (lambda t: t.update(drives=[]), "drives"),
+    "single brackets": (lambda t: t.update(shafts=t["shafts"][0]), "shafts"),
+    "axes too far apart": (
+        lambda t: t["shafts"][1].update(origin_mm=[81.0, 0.0, 0.0]),
+        "shafts[1].origin_mm",
+    ),
+    "bore beyond the gear": (
+        lambda t: t["gears"][0].update(bore_diameter_mm=90.0),
+        "gears[0].bore_diameter_mm",
+    ),
+    "idle gear": (
+        lambda t: t["gears"].append({"name": "idle", "shaft": "input", "position_mm": 1.0}),
+        "gears[2].name",
+    ),
+    "two inertias": (
+        lambda t: t["shafts"][0].update(
+            inertia={"mass_kg": 1.0, "polar_kg_m2": 1.0, "transverse_kg_m2": 1.0}
+        ),
+        "shafts[0].diameter_mm",
+    ),
+    "negative duration": (lambda t: t["run"].update(duration_s=-1.0), "run.duration_s"),
+    "two drives": (
+        lambda t: t["drives"].append({"name": "second", "shaft": "output", "speed_rpm": [10.0]}),
+        "drives",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_scene_that_cannot_be_is_one_fault_by_name(name: str) -> None:
+    change, field = WRONG[name]
+    with pytest.raises(BadInput) as caught:
+        scene(change)
+    (fault,) = caught.value.faults
+    assert fault.field == field
+    assert fault.bound
+
+
+def test_a_gear_in_two_meshes_must_be_the_same_in_both() -> None:
+    table = copy.deepcopy(EXAMPLE)
+    table["gears"].append({"name": "third", "shaft": "input", "position_mm": 50.0})
+    table["meshes"].append(table["meshes"][0] | {"name": "other", "driver": "third"})
+    facts = small_table().facts
+    from dataclasses import replace  # noqa: PLC0415
+
+    fields = {name: getattr(small_table(), name) for name in small_table().__dataclass_fields__}
+    other = type(small_table())(**fields | {"facts": replace(facts, teeth=(20, 30))})
+    with pytest.raises(BadInput, match=r"meshes\[1\]\.driven = 'wheel': must be the gear of 20 teeth"):
+        dynamic_scene(validated(SceneInput, table), {"mesh": small_table(), "other": other})

@@ -1,0 +1,82 @@
+"""The pages say what the code does: every field, path, verb, setting and exit code is in them."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from pathlib import Path
+
+import pytest
+from pydantic import BaseModel
+
+from service import problems
+from service.app import create_app
+from service.cli.commands import app as loa
+from service.schemas import case, gear, scene
+from service.settings import Settings, load_settings
+
+DOCS = Path(__file__).parents[3] / "docs"
+
+
+def page(name: str) -> str:
+    """Return a page."""
+    return (DOCS / name).read_text(encoding="utf-8")
+
+
+def models() -> list[type[BaseModel]]:
+    """Return the tables of case and scene files."""
+    found = [vars(module).values() for module in (case, gear, scene)]
+    return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
+
+
+def test_every_field_of_case_and_scene_is_documented() -> None:
+    documented = set(re.findall(r"[`.]([a-z][a-z0-9_]+)`", page("case-file.md")))
+    tables = {"pair", "pinion", "wheel", "load", "errors", "accuracy", "effects", "run", "shafts", "gears"}
+    tables |= {"bushings", "meshes", "drives", "loads", "outputs", "integration"}
+    fields = {name for model in models() for name in model.model_fields} - tables
+    assert fields - documented == set()
+    for table in tables:
+        assert re.search(rf"\[\[?(pair\.)?{table}\]|{table}\.", page("case-file.md")), table
+
+
+def test_every_path_is_documented(tmp_path: Path) -> None:
+    text = page("service.md").replace("{hash}", "{key}").replace("{id}", "{job_id}")
+    paths = create_app(Settings(data_directory=tmp_path)).openapi()["paths"]
+    for path in paths:
+        generic = re.sub(r"/processes/(analyze|simulate|\{process_id\})", "/processes/{job_id}", path)
+        assert generic in text, path
+
+
+def test_every_verb_and_exit_code_is_documented() -> None:
+    text = page("cli.md")
+    for command in loa.registered_commands:
+        assert f"`loa {command.callback.__name__}" in text  # type: ignore[union-attr]
+    for name, code in vars(problems).items():
+        if name.startswith("EXIT_"):
+            assert f"\n| {code} |" in text, name
+
+
+def test_every_setting_is_documented_with_its_default() -> None:
+    text = page("service.md")
+    for name, field in Settings.model_fields.items():
+        assert f"`LOA_{name.upper()}`" in text
+        (line,) = [line for line in text.splitlines() if f"`LOA_{name.upper()}`" in line]
+        if isinstance(field.default, int | float):
+            assert f"{field.default:.15g}" in line.replace(" ", "")
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("port", 70_000), ("workers", 0), ("queue_limit", -1), ("attempts", 0), ("host", "0.0.0.0")],
+)
+def test_a_setting_out_of_bounds_is_said_by_name(name: str, value: object) -> None:
+    with pytest.raises(problems.BadInput) as caught:
+        load_settings(**{name: value})
+    assert [fault.field for fault in caught.value.faults] == [name]
+
+
+def test_settings_come_from_the_environment_and_arguments_win(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LOA_PORT", "1234")
+    monkeypatch.setenv("LOA_WORKERS", "3")
+    assert (load_settings().port, load_settings(port=99, host=None).port) == (1234, 99)
+    assert load_settings().workers == 3
