@@ -95,16 +95,11 @@ def _exponent(levels: LoadLevels, pairs: IntArray, k: int) -> FloatArray:
     """Exponent (P, M, D, 1) of stiffness over force in step k; 0 where it is not one branch of a curve."""
     if k == levels.force.size - 1:
         return np.zeros((*levels.deflection.shape[:-1], 1))
-    force, below, above = (
-        levels.force[k : k + 2],
-        levels.stiffness[..., k, None],
-        levels.stiffness[..., k + 1, None],
-    )
+    force = levels.force[k : k + 2]
+    below, above = levels.stiffness[..., k, None], levels.stiffness[..., k + 1, None]
     if k == 0:  # from lift-off on F ~ (d - d0)^n, so that K ~ F^(1 - 1/n)
-        rise = np.diff(levels.deflection[..., :2], axis=-1)
-        return np.asarray(
-            np.clip(1.0 - force[1] / np.maximum(above * rise, force[1]), 0.0, _LARGEST_EXPONENT)
-        )
+        straight = np.maximum(above * np.diff(levels.deflection[..., :2], axis=-1), force[1])
+        return np.asarray(np.minimum(1.0 - force[1] / straight, _LARGEST_EXPONENT))
     branch = (pairs[..., k, None] == pairs[..., k + 1, None]) & (below > 0.0)
     growth = np.log(np.where(branch, above / np.where(branch, below, 1.0), 1.0))
     return np.asarray(np.clip(growth / np.log(force[1] / force[0]), 0.0, _LARGEST_EXPONENT))

@@ -134,6 +134,12 @@ class TestLoadShare:
         assert np.all(curve.load_share >= 0.0)
         assert curve.load_share.sum(axis=1) == pytest.approx(np.ones(777), abs=1e-14)
 
+    def test_shares_of_three_pairs_sum_to_one(self, make):
+        """Three curves interpolated one by one need the division; two mirror each other."""
+        shares = np.random.default_rng(4).dirichlet([0.4, 0.4, 0.4], (64, 5, 1, 1))
+        curve = make(pair=[-1, 0, 1], load_share=shares).curve(force=3000.0, at=np.linspace(0, 1, 500))
+        assert curve.load_share.sum(axis=1) == pytest.approx(np.ones(500), abs=1e-14)
+
     def test_stored_shares_come_back(self, spur):
         curve = spur.curve(force=2660.0)
         assert curve.pair.tolist() == spur.pair.tolist()

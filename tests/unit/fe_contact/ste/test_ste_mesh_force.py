@@ -15,12 +15,22 @@ F = np.concatenate([RNG.uniform(0.0, 14000.0, 2000), 10.0 ** RNG.uniform(-4.0, 3
 
 @pytest.fixture(
     scope="module",
-    params=["plain", "relieved", "one load", "two loads", "square wave", "parallel", "three knots"],
+    params=[
+        "plain",
+        "helical",
+        "relieved",
+        "one load",
+        "two loads",
+        "square wave",
+        "parallel",
+        "three knots",
+    ],
 )
-def table(request, make):
+def table(request, make, helical):
     uneven = np.sort(np.concatenate([np.arange(20) / 20, 0.22 + 0.005 * np.arange(-5, 6) + 1e-3]))
     return {
         "plain": make,
+        "helical": lambda: helical,
         "relieved": lambda: make(relief=10e-6, position=uneven),
         "one load": lambda: make(force=[2660.0]),
         "two loads": lambda: make(force=[266.0, 10640.0], relief=5e-6),
