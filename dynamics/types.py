@@ -20,7 +20,7 @@ class RunStatus(IntEnum):
     COMPLETED = 0
     STEP_FLOOR = 1  # the step control asked for less than the smallest step allowed
     STEP_LIMIT = 2  # the number of steps allowed was used up
-    NOT_FINITE = 3  # a state or force became infinite or NaN
+    NOT_FINITE = 3  # the motion diverged: NaN, or a step error of a metre
     NO_EQUILIBRIUM = 4  # the run could not start: no static equilibrium under the load at t = 0
 
     @property

@@ -6,7 +6,7 @@ from dynamics.forces.compiled import compiled, inner
 from dynamics.integrators.explicit_step import accelerate, explicit_step
 from dynamics.integrators.implicit_step import implicit_step
 from dynamics.integrators.powers import write_powers
-from dynamics.integrators.step_control import Control, next_rung, step_error
+from dynamics.integrators.step_control import Control, next_rung, slow_enough, step_error
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.system.arrays import SystemArrays
@@ -14,6 +14,8 @@ from dynamics.types import FloatArray, RunStatus
 
 COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
 STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
+UNSOLVED = 1e10  # stands for the error of a step in which Newton's method failed
+DIVERGED = 1.0  # m
 
 
 @compiled
@@ -38,13 +40,16 @@ def advance(
         if count[Count.ACCEPTED] + count[Count.REJECTED] >= control.step_limit:
             return STEP_LIMIT
         rung = count[Count.RUNG]
-        step = work.ladder[rung]
+        if control.adaptive:
+            rung = slow_enough(system, work, rung)
+            count[Count.RUNG] = rung
         if control.implicit:
             solved = implicit_step(system, work, rung, control.force_tolerance, control.audit)
         else:
             solved = explicit_step(system, work, rung, control.audit)
-        error = step_error(system, work, step) / control.tolerance if solved else 1e10
-        accepted = error <= 1.0 or (not control.adaptive and solved and error < 1e300)
+        error = step_error(system, work) / control.tolerance if solved else UNSOLVED
+        diverged = solved and error * control.tolerance >= DIVERGED
+        accepted = error <= 1.0 or (not control.adaptive and solved and not diverged)
         if control.adaptive:
             count[Count.RUNG] = next_rung(work, control, error, accepted)
         if accepted:
@@ -54,7 +59,7 @@ def advance(
         count[Count.REJECTED] += 1
         count[Count.NEWTON_FAILED] += 0 if solved else 1
         if count[Count.RUNG] > work.ladder.size - 2 or not control.adaptive:
-            return STEP_FLOOR if error < 1e300 else NOT_FINITE
+            return NOT_FINITE if diverged else STEP_FLOOR
     return COMPLETED
 
 

@@ -22,8 +22,11 @@ Progress = Callable[[float, str], None]
 
 CHUNKS = 50
 FIRST_STEP = 1e-6
-STEP_SHARE = 0.2
-"""Error allowed per step over the tolerance of the run: measured, so that the run's rms stays below it."""
+STEP_SHARE = 0.07
+"""Error allowed per step over the tolerance of the run.
+
+Measured on the run-up of a spur pair: with it the rms error of the run is 0.2 of the tolerance at damping
+ratios of 0.05, and 0.8 at 0.01, where steps' errors ring five times longer."""
 NEWTON_SHARE = 0.01
 """Error of Newton's method over the error allowed per step."""
 
@@ -66,14 +69,23 @@ class Trajectory:
 
 
 def integrate(
-    system: System, start: StaticSolution, integration: Integration, progress: Progress | None = None
+    system: System,
+    start: StaticSolution,
+    integration: Integration,
+    progress: Progress | None = None,
+    velocity: FloatArray | None = None,
 ) -> Trajectory:
-    """Run `system` from rest in `start` over its scene's duration."""
+    """Run `system` over its scene's duration, from rest in `start` or from the `velocity` (n,) there.
+
+    At rest means without any deviation from the kinematic motion: the shafts turn with the drive.
+    """
     began = clock.perf_counter()
     scene = system.scene
     ladder = _ladder(integration)
     work = make_workspace(system.arrays, ladder, start.displacement, integration.fixed_step or FIRST_STEP)
     control = _control(system, integration)
+    if velocity is not None:
+        work.v[:] = velocity
     rate = scene.outputs.sample_rate
     samples = int(np.floor(scene.duration * rate * (1.0 + 1e-12))) + 1
     q, v = np.zeros((samples, start.displacement.size)), np.zeros((samples, start.displacement.size))

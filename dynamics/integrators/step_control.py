@@ -8,10 +8,12 @@ from typing import NamedTuple
 from dynamics.forces.compiled import inner
 from dynamics.integrators.workspace import RUNGS_PER_OCTAVE, Count, Workspace
 from dynamics.system.arrays import SystemArrays
+from dynamics.system.motion import drive_motion
 
 SAFETY = 0.9
 RISE_LIMIT = 2.0
 FALL_LIMIT = 0.2
+POSITION_LIMIT = 1.0 / 64.0  # base pitches
 
 
 class Control(NamedTuple):
@@ -44,15 +46,36 @@ class Control(NamedTuple):
 
 
 @inner
-def step_error(system: SystemArrays, work: Workspace, step: float) -> float:
-    """Return the largest error estimate of any freedom over one step, in metres; NaN counts as infinite."""
+def step_error(system: SystemArrays, work: Workspace) -> float:
+    """Return the largest error estimate of any freedom over one step, in metres; NaN counts as infinite.
+
+    An error of the rate counts as what it makes of the displacement: where a force jumps, steps get so short
+    that their displacements are right long before the impulse is.
+    """
     error = 0.0
     for i in range(work.q.size):
-        scale = system.scale[i]
-        error = max(error, scale * abs(work.q_error[i]), scale * step * abs(work.v_error[i]))
+        error = max(
+            error, system.scale[i] * abs(work.q_error[i]), system.rate_scale[i] * abs(work.v_error[i])
+        )
         if not math.isfinite(work.q_error[i]) or not math.isfinite(work.v_error[i]):
             return math.inf
     return error
+
+
+@inner
+def slow_enough(system: SystemArrays, work: Workspace, rung: int) -> int:
+    """Return the first rung, `rung` or later, in whose step no flank moves by more than POSITION_LIMIT.
+
+    An error estimate knows the table only where the stages look; a step over half a pitch could miss a
+    handover.
+    """
+    speed = abs(drive_motion(system.reference, work.time[0])[2]) / (2.0 * math.pi)
+    rate = 0.0
+    for f in range(work.force.size):
+        rate = max(rate, speed * abs(system.reference.numerator[f] / system.reference.denominator[f]))
+    while rate * work.ladder[rung] > POSITION_LIMIT and rung < work.ladder.size - 2:
+        rung += 1
+    return rung
 
 
 @inner

@@ -1,4 +1,4 @@
-"""Order tracking: series resampled to equal steps of mesh position, and the amplitudes of mesh orders over a run."""
+"""Order tracking: series over equal steps of position, and the amplitudes of mesh orders over a run."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ class OrderTrack:
 def resample_to_position(
     result: RunResult, values: FloatArray, per_pitch: int = 64, mesh: int = 0
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return unwrapped position (N,), time (N,) and `values` (..., N) at `per_pitch` equal steps per base pitch.
+    """Return unwrapped position (N,), time (N,) and `values` (..., N) in equal steps of a base pitch.
 
-    Linear in time between the samples of the result, so `values` should hold nothing above about a tenth of the
-    sample rate.
+    Linear in time between the samples of the result, so `values` should hold nothing above about a tenth of
+    the sample rate.
 
     Raises
     ------

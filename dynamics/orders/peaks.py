@@ -19,7 +19,7 @@ class Peak:
     frequency : float
         Hz, between the lines: the vertex of the parabola through the logarithms of the three highest.
     amplitude : float
-        At that vertex, in the spectrum's unit.
+        At that vertex, in the spectrum's unit: within 3 % for a sinusoid under a Hann window.
     """
 
     frequency: float

@@ -45,9 +45,9 @@ def histories(system: System, time: FloatArray, q: FloatArray, v: FloatArray) ->
 def bearing_force(system: System, q: FloatArray, v: FloatArray) -> FloatArray:
     """Return the force of the shaft on the ground at each bushing, (b, 3, T) in N."""
     bearings, _, freedoms = system.bearing_stiffness.shape
-    force = system.bearing_stiffness.reshape(-1, freedoms) @ q.T
-    force += system.bearing_damping.reshape(-1, freedoms) @ v.T
-    return np.asarray(force.reshape(bearings, 3, -1))
+    force = system.bearing_stiffness.reshape(3 * bearings, freedoms) @ q.T
+    force += system.bearing_damping.reshape(3 * bearings, freedoms) @ v.T
+    return np.asarray(force.reshape(bearings, 3, q.shape[0]))
 
 
 def _mesh_frequency(system: System, speed: FloatArray) -> FloatArray:

@@ -16,7 +16,7 @@ from dynamics.results.energy_audit import EnergyAudit
 from dynamics.results.run_result import RunResult
 from dynamics.results.series import LABELS, SERIES
 from dynamics.results.step_statistics import StepStatistics
-from dynamics.types import RunStatus
+from dynamics.types import Json, RunStatus
 
 SCHEMA = "lineofaction dynamics run"
 SCHEMA_VERSION = 1
@@ -48,31 +48,47 @@ def to_dataset(result: RunResult) -> xarray.Dataset:
 def write_netcdf(result: RunResult, path: Path) -> None:
     """Write to a neighbour of `path`, then move it there in one step."""
     dataset = to_dataset(result)
-    encoding = {
-        name: {"zlib": True, "complevel": 1, "shuffle": True, "_FillValue": None}
-        for name in dataset.data_vars
-    }
-    handle, name = tempfile.mkstemp(prefix=path.name, suffix=".part", dir=path.parent)
+    packing = {"zlib": True, "complevel": 1, "shuffle": True}
+    encoding: dict[Any, Json] = {name: {"_FillValue": None} for name in dataset.variables}
+    for variable in dataset.data_vars:
+        encoding[variable] |= packing
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     os.close(handle)
     part = Path(name)
     try:
-        dataset.to_netcdf(part, engine="h5netcdf", encoding=encoding)
-        part.replace(path)
+        dataset.to_netcdf(part, engine="h5netcdf", format="NETCDF4", encoding=encoding)
+        _publish(part, path)
     finally:
         part.unlink(missing_ok=True)
 
 
 def read_netcdf(path: Path) -> RunResult:
     """Read a file of `write_netcdf`."""
+    if not path.is_file():
+        raise ResultError(f"{path}: no such file")
     try:
         with xarray.open_dataset(path, engine="h5netcdf", decode_times=False) as dataset:
             dataset.load()
-    except (OSError, ValueError, KeyError) as error:
+    # what HDF5 raises on damaged bytes is not one class
+    except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
         raise ResultError(f"{path}: not a readable netCDF-4 file ({error})") from error
     if dataset.attrs.get("schema") != SCHEMA or dataset.attrs.get("schema_version") != SCHEMA_VERSION:
         found = f"{dataset.attrs.get('schema')} {dataset.attrs.get('schema_version')}"
         raise ResultError(f"{path}: schema is {found}, expected {SCHEMA} {SCHEMA_VERSION}")
-    return _from_dataset(dataset)
+    try:
+        return _from_dataset(dataset)
+    except (KeyError, ValueError, TypeError) as error:
+        raise ResultError(f"{path}: damaged, {error!r}") from error
+
+
+def _publish(part: Path, path: Path) -> None:
+    """Flush to disk and rename; ordinary permissions instead of the temporary file's private ones."""
+    mask = os.umask(0)
+    os.umask(mask)
+    part.chmod(0o666 & ~mask)
+    with part.open("rb") as written:
+        os.fsync(written.fileno())
+    part.replace(path)
 
 
 def _attributes(result: RunResult) -> dict[str, Any]:

@@ -93,6 +93,10 @@ class SystemArrays(NamedTuple):
         Polar inertia of the drive's shaft; of all shafts as seen at the drive, kg m^2.
     scale : (n,) array
         Metres per unit of q, for error norms: 1, or a base radius for rotations.
+    rate_scale : (n,) array
+        Metres per unit of q': `scale` over the natural frequency of the freedom alone, held by its bushings
+        and meshes. An error of the rate becomes an error of the displacement of this size a quarter period
+        later.
     """
 
     mass: FloatArray
@@ -106,6 +110,7 @@ class SystemArrays(NamedTuple):
     drive_inertia: float
     total_inertia: float
     scale: FloatArray
+    rate_scale: FloatArray
     flank: FlankLaws
     reference: Reference
     load: Loads

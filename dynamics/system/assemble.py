@@ -19,7 +19,7 @@ from dynamics.system.freedoms import (
     bushing_coefficients,
     bushing_kinematics,
     find_freedoms,
-    mass_matrix,
+    mass_diagonal,
     shared_blocks,
 )
 from dynamics.system.kinematics import Kinematics, solve_kinematics
@@ -80,6 +80,7 @@ def assemble(scene: Scene) -> System:
     forces = nominal_forces(scene, kinematics)
     ledger = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces))
     freedoms = find_freedoms(rotors, kinematics, ledger)
+    _check_mass(freedoms, rotors)
     flanks = flank_laws(scene, kinematics, forces, [rotor.inertia.polar for rotor in rotors])
     bushings = tuple(bushing for rotor in rotors for bushing in rotor.bushings)
     stiffness, damping = bushing_coefficients(bushings)
@@ -138,34 +139,36 @@ def _arrays(
     moves, coefficient, viscous = supports
     stiffness = np.einsum("bki,bk,bkj->ij", moves, coefficient, moves)
     damping = np.einsum("bki,bk,bkj->ij", moves, viscous, moves)
-    mass = np.diag(freedoms.keep(np.diag(mass_matrix(rotors))))
-    _check_mass(freedoms, mass)
+    mass = np.diag(freedoms.keep(mass_diagonal(rotors)))
     gradient = _gradients(scene, rotors, lines)
     polar = np.array([rotor.inertia.polar for rotor in rotors])
     ratio = np.array([float(value) for value in kinematics.ratio])
     inertial = np.zeros((len(rotors), 6))
     inertial[:, 5] = -polar * ratio
+    scale, direction = freedoms.keep(_scales(scene).ravel()), freedoms.keep(gradient)
+    held = np.diag(stiffness) + flanks.mean_stiffness @ direction**2
     return SystemArrays(
         np.ascontiguousarray(mass),
         damping,
         stiffness,
         shared_blocks([mass, damping, stiffness]),
-        freedoms.keep(gradient),
+        direction,
         freedoms.keep(_turns(scene, rotors, kinematics)),
         np.ascontiguousarray(gradient[:, 6 * kinematics.drive + 5]),
         freedoms.keep(inertial.ravel()),
         float(polar[kinematics.drive]),
         float(np.sum(polar * ratio**2)),
-        freedoms.keep(_scales(scene).ravel()),
+        scale,
+        scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
         flanks.law,
         _reference(scene, kinematics),
         _loads(scene, kinematics, freedoms, ratio),
     )
 
 
-def _check_mass(freedoms: Freedoms, mass: FloatArray) -> None:
+def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:
     """Every free direction needs inertia."""
-    for name, value in zip(freedoms.name, np.diag(mass), strict=True):
+    for name, value in zip(freedoms.name, freedoms.keep(mass_diagonal(rotors)), strict=True):
         if value <= 0.0:
             suggestion = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
             raise InputError(f"inertia of {name}", float(value), "above 0", suggestion)
@@ -178,7 +181,7 @@ def _gradients(scene: Scene, rotors: Sequence[Rotor], lines: Sequence[LineOfActi
         for name, sign in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
             index = scene.shaft_index(scene.gear(name).shaft)
             gradient[row, index] += sign * line.gradient(rotors[index].center)
-    return gradient.reshape(len(lines), -1)
+    return gradient.reshape(len(lines), 6 * len(rotors))
 
 
 def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
@@ -188,7 +191,7 @@ def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> Flo
         driver = scene.gear(mesh.driver)
         index = scene.shaft_index(driver.shaft)
         turn[row, index, 5] = kinematics.sense[index] * driver.teeth / (2.0 * math.pi)
-    return turn.reshape(len(scene.meshes), -1)
+    return turn.reshape(len(scene.meshes), 6 * len(rotors))
 
 
 def _scales(scene: Scene) -> FloatArray:
@@ -225,7 +228,7 @@ def _loads(scene: Scene, kinematics: Kinematics, freedoms: Freedoms, ratio: Floa
         direction[row, shaft, 5] = -kinematics.sense[shaft]
     return Loads(
         pack_laws([load.torque for load in scene.loads]),
-        freedoms.keep(direction.reshape(len(scene.loads), -1)),
+        freedoms.keep(direction.reshape(len(scene.loads), 6 * len(scene.shafts))),
         np.ascontiguousarray(direction[:, :, 5] @ ratio),
         np.ascontiguousarray(direction[:, kinematics.drive, 5]),
     )

@@ -49,11 +49,11 @@ def find_freedoms(rotors: Sequence[Rotor], kinematics: Kinematics, ledger: Effec
     return Freedoms(tuple(names), np.array(places, dtype=np.int64))
 
 
-def mass_matrix(rotors: Sequence[Rotor]) -> FloatArray:
-    """Return the (6 r, 6 r) mass matrix: diagonal, since the freedoms are those of the centres of mass."""
+def mass_diagonal(rotors: Sequence[Rotor]) -> FloatArray:
+    """Return the (6 r,) mass matrix: diagonal, since the freedoms are those of the centres of mass."""
     inertia = [rotor.inertia for rotor in rotors]
     diagonal = [[i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar] for i in inertia]
-    return np.diag(np.array(diagonal, dtype=float).ravel())
+    return np.array(diagonal, dtype=float).ravel()
 
 
 def bushing_kinematics(rotors: Sequence[Rotor]) -> FloatArray:

@@ -13,6 +13,7 @@ from dynamics.forces import GearMesh, LoadTorque
 from dynamics.joints import Bushing, ImposedRotation
 
 METHODS = ("implicit", "explicit")
+SAMPLE_LIMIT = 2e7  # a run's states are held in memory
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,9 @@ class Scene:
 
     def __post_init__(self) -> None:
         not_negative("duration", self.duration)
+        if self.duration * self.outputs.sample_rate > SAMPLE_LIMIT:
+            bound = f"at most {SAMPLE_LIMIT:g} samples at {self.outputs.sample_rate:g} Hz"
+            raise InputError("duration", self.duration, bound, "Shorten the run or lower the sample rate.")
         for kind in ("shafts", "gears", "bushings", "meshes", "drives", "loads"):
             distinct(kind, [part.name for part in getattr(self, kind)])
         shafts, gears = _names(self.shafts), _names(self.gears)
