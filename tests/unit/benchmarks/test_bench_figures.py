@@ -51,14 +51,14 @@ def test_publishing_replaces_the_figures_and_nothing_else(
     (tmp_path / "docs").mkdir()
     readme = tmp_path / "README.md"
     before, after = f"# Title\n\n{bench._MARKS[0]}\n", f"{bench._MARKS[1]}\n\nRest.\n"
-    readme.write_text(before + "old\n" + after)
+    readme.write_text(before + "stale row\n" + after)
     monkeypatch.setattr(bench, "ROOT", tmp_path)
     for _ in range(2):  # publishing again changes nothing
         bench._publish("page", {"processor": "P", "python": "3"}, FIGURES)
         text = readme.read_text()
         assert text.startswith(before)
         assert text.endswith(after)
-        assert "old" not in text
+        assert "stale row" not in text
         assert text.count("| table | cold |") == 1
         assert "memory" not in text  # no target, so no place in the README
     assert (tmp_path / "docs" / "benchmarks.md").read_text() == "page"
