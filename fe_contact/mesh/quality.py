@@ -60,7 +60,7 @@ def least_angle(corners: FloatArray) -> FloatArray:
 
 
 def scaled_jacobian(nodes: FloatArray) -> FloatArray:
-    """Return a lower bound of min det J / max det J over each element (m, 6, 2).
+    """Return a lower bound of min det J / max det J over each element (m, 6, 2), if above 0.
 
     The determinant is a quadratic polynomial, hence between its least and largest Bernstein coefficients:
     the corner values, and 2 det(middle) - (det(corner) + det(corner)) / 2 for each side.

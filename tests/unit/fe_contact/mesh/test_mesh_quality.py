@@ -39,6 +39,28 @@ def test_the_bound_of_a_curved_element_is_below_its_sampled_jacobian(shift: floa
     assert (found < 0.0) == (shift > 0.25)
 
 
+def test_the_bound_holds_for_any_element() -> None:
+    generator = np.random.default_rng(7)
+    xi, eta = np.meshgrid(np.linspace(0.0, 1.0, 41), np.linspace(0.0, 1.0, 41))
+    inside = xi + eta <= 1.0 + 1e-12
+    x, y = xi[inside], eta[inside]
+    z = 1.0 - x - y
+    in_x = np.stack([1 - 4 * z, 4 * x - 1, 0 * x, 4 * (z - x), 4 * y, -4 * y])
+    in_y = np.stack([1 - 4 * z, 0 * x, 4 * y - 1, -4 * x, 4 * x, 4 * (z - y)])
+    below_every_node = 0
+    for _ in range(300):
+        nodes = STRAIGHT + 0.07 * generator.standard_normal((6, 2))
+        (a, b), (c, d) = nodes.T @ in_x, nodes.T @ in_y
+        determinant = a * d - b * c
+        found = mesh_quality(nodes, ELEMENT).scaled_jacobian[0]
+        if found > 0.0:
+            assert found <= determinant.min() / determinant.max() + 1e-12
+        assert found < 0.0 or determinant.min() > 0.0
+        at_nodes = [determinant[(x == p) & (y == q)][0] for p, q in STRAIGHT]
+        below_every_node += determinant.min() < min(at_nodes) - 1e-3
+    assert below_every_node > 10  # values at the nodes alone would be no bound
+
+
 def test_an_inverted_element_is_negative() -> None:
     assert mesh_quality(STRAIGHT, ELEMENT[:, [0, 2, 1, 5, 4, 3]]).scaled_jacobian[0] < 0.0
 

@@ -76,6 +76,12 @@ def test_growth_thins_the_interior_out() -> None:
     assert fast < 0.6 * slow
 
 
+def test_clockwise_triangles_are_turned() -> None:
+    code = """print('{"regions": [{"points": [[0,0],[1,0],[1,1],[0,1]], "triangles": [[0,2,1],[0,2,3]]}]}')"""
+    (mesh,) = triangulate([SQUARE], 1.0, command=(sys.executable, "-c", code))
+    assert area(mesh.points, mesh.triangles) == pytest.approx([0.5, 0.5])
+
+
 @pytest.mark.parametrize(
     ("code", "complaint"),
     [
