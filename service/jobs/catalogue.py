@@ -6,7 +6,10 @@ from typing import Any
 
 from pydantic import Field
 
+from fe_contact.analysis.analyze import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
+from fe_contact.ste.content_hash import content_hash
+from fe_contact.ste.facts import SCHEMA_VERSION
 from service.convert.checks import check_case
 from service.convert.scene import check_scene
 from service.convert.topology import facts_of
@@ -37,6 +40,11 @@ def _prepare_analyze(inputs: BoundaryModel, _store: ResultStore) -> Json:
     assert isinstance(inputs, AnalyzeInputs)
     check_case(inputs.case)
     return inputs.model_dump(mode="json")
+
+
+def _name_database(inputs: Json) -> str:
+    """Return the content hash that the database of a case will carry itself."""
+    return content_hash(inputs["case"], SOLVER_VERSION, SCHEMA_VERSION)
 
 
 def _prepare_simulate(inputs: BoundaryModel, store: ResultStore) -> Json:
@@ -82,6 +90,7 @@ ANALYZE = Process(
     prepare=_prepare_analyze,
     entry="service.jobs.analysis_work:analyze_case",
     stages=(Stage("compliance", 0.6), Stage("contact", 0.15), Stage("error estimate", 0.25)),
+    name_result=_name_database,
 )
 SIMULATE = Process(
     id="simulate",

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from service.jobs.key import content_key
 from service.problems import NoSuchProcess
 from service.schemas.model import BoundaryModel
 
@@ -45,6 +46,9 @@ class Process:
         ``"module:function"`` of the work, called as ``function(order, progress)`` in a process of its own.
     stages : tuple[Stage, ...]
         What the work reports, in order.
+    name_result : callable, optional
+        Normalised inputs to the result's content hash, where the work itself defines one; default: the hash
+        of the inputs with the process and the version of the program.
     """
 
     id: str
@@ -57,6 +61,13 @@ class Process:
     prepare: Prepare
     entry: str
     stages: tuple[Stage, ...]
+    name_result: Callable[[Json], str] | None = None
+
+    def key(self, inputs: Json) -> str:
+        """Return the content hash of the result of normalised inputs."""
+        if self.name_result is not None:
+            return self.name_result(inputs)
+        return content_key(self.id, self.version, inputs)
 
     def overall(self, stage: str, fraction: float) -> float | None:
         """Return the fraction of the whole job, None for a stage that was not declared."""

@@ -11,7 +11,6 @@ from service.convert.runs import staged
 from service.convert.scene import dynamic_scene
 from service.jobs.analysis_work import database_of
 from service.jobs.catalogue import ANALYZE
-from service.jobs.key import content_key
 from service.jobs.order import Product, Progress, WorkOrder
 from service.problems import BadInput
 from service.schemas.scene import MeshInput, SceneInput
@@ -37,7 +36,7 @@ def _table(
     store = stored_results(order.data_directory)
     if mesh.case is None:
         return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path)
-    key = content_key(ANALYZE.id, ANALYZE.version, {"case": case_json(mesh.case)})
+    key = ANALYZE.key({"case": case_json(mesh.case)})
     if store.find(key, "database") is not None:
         return SteDatabase.from_netcdf(store.verified(key, "database").path)
 

@@ -7,7 +7,6 @@ from typing import Any, Literal, cast
 from fastapi import APIRouter, Response
 from pydantic import BaseModel, Field, create_model
 
-from service.jobs.key import content_key
 from service.jobs.process import Process, Registry
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
@@ -81,7 +80,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
 
 def _submit(context: Context, process: Process, inputs: dict[str, Any]) -> StatusInfo:
     """Enter a job and wake the scheduler."""
-    key = content_key(process.id, process.version, inputs)
+    key = process.key(inputs)
     stored = context.store.find(key, process.kind) is not None
     job = context.submissions.submit(process.id, key, inputs, stored=stored)
     context.scheduler.wake()

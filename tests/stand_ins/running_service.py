@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from service.jobs.claims import Claims
-from service.jobs.key import content_key
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Job, Submissions
@@ -30,7 +29,7 @@ class Bench:
     def submit(self, **wish: Any) -> Job:
         """Enter a wish as the execution route does."""
         inputs = {"wish": {"mode": "write", "text": "", "number": 0.0, **wish}}
-        key = content_key("standin", "1", inputs)
+        key = self._registry()["standin"].key(inputs)
         stored = self.store.find(key, "database") is not None
         job = self.submissions.submit("standin", key, inputs, stored=stored)
         self.scheduler.wake()

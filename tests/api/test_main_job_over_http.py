@@ -1,0 +1,121 @@
+"""The real processes, end to end over HTTP: a case to its database, a scene to its run."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from fe_contact.analysis import analyze
+from service.app import create_app
+from service.client import JobState, LineOfActionClient
+from service.convert.case import analysis_arguments, gear_pair
+from service.problems import BadInput
+from service.schemas import Case, validated
+from service.settings import Settings
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+def table(name: str) -> dict[str, Any]:
+    """Return an example."""
+    return tomllib.loads((EXAMPLES / name).read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def case() -> dict[str, Any]:
+    """The paper's pair, few points on the coarsest mesh."""
+    found = table("palermo_spur_20_20.toml")
+    found["load"] = {"torque_n_m": [50, 100, 200]}
+    found["accuracy"] = {"level": "draft", "positions": 16}
+    return found
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LineOfActionClient]:
+    """A client of a running service with its real processes."""
+    directory = tmp_path_factory.mktemp("service")
+    with TestClient(create_app(Settings(data_directory=directory / "data"))) as service:
+        transport = service._transport
+        with LineOfActionClient(
+            "http://testserver", cache_dir=directory / "tables", transport=transport
+        ) as found:
+            yield found
+
+
+def scene(case: dict[str, Any]) -> dict[str, Any]:
+    """Return the paper's scene at 400 rpm for 20 ms, with the case written out."""
+    found = table("palermo_scene.toml")
+    del found["meshes"][0]["case_file"]
+    found["meshes"][0]["case"] = case
+    found["run"]["duration_s"] = 0.02
+    found["drives"][0] |= {"time_s": [0.0], "speed_rpm": [400.0]}
+    return found
+
+
+def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: dict[str, Any]) -> None:
+    seen: list[JobState] = []
+    served = client.analyze(case, seen.append)
+    model = validated(Case, case)
+    here = analyze(gear_pair(model), **analysis_arguments(model))
+    assert np.array_equal(served.static_transmission_error, here.static_transmission_error)
+    assert served.metadata.case == here.metadata.case
+    progress = [state.progress for state in seen]
+    assert progress == sorted(progress) and progress[-1] == 100
+
+
+def test_a_database_carries_the_hash_it_is_found_under(
+    client: LineOfActionClient, case: dict[str, Any]
+) -> None:
+    key = client.analysis_key(case)
+    assert client.fetch(key).metadata.content_hash == key
+
+
+def test_a_scene_runs_on_the_stored_table(client: LineOfActionClient, case: dict[str, Any]) -> None:
+    run = client.simulate(scene(case))
+    force = run.to_xarray()["mesh_force"].to_numpy()
+    assert force.mean() == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=0.02)
+
+
+def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dict[str, Any]) -> None:
+    by_hash = scene(case)
+    del by_hash["meshes"][0]["case"]
+    by_hash["meshes"][0]["database_hash"] = client.analysis_key(case)
+    run, other = client.simulate(by_hash).to_xarray(), client.simulate(scene(case)).to_xarray()
+    assert np.array_equal(run["mesh_force"].to_numpy(), other["mesh_force"].to_numpy())
+
+
+def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(
+    client: LineOfActionClient, case: dict[str, Any]
+) -> None:
+    wrong = copy.deepcopy(scene(case))
+    wrong["shafts"][1]["origin_mm"] = [81.0, 0.0, 0.0]
+    with pytest.raises(BadInput, match=r"shafts\[1\]\.origin_mm"):
+        client.submit_scene(wrong)
+    wrong = copy.deepcopy(scene(case))
+    wrong["meshes"][0]["case"]["pair"]["pinion"]["bore_diameter_mm"] = 95.0
+    with pytest.raises(BadInput, match=r"meshes\[0\]\.case\.pair\.pinion\.bore_diameter_mm = 95\.0"):
+        client.submit_scene(wrong)
+
+
+def test_the_service_opens_no_file_for_a_caller(client: LineOfActionClient, case: dict[str, Any]) -> None:
+    for field in ("case_file", "database_file"):
+        wrong = scene(case)
+        del wrong["meshes"][0]["case"]
+        wrong["meshes"][0][field] = "/etc/hostname"
+        with pytest.raises(BadInput, match="reads no files of its callers"):
+            client.submit("simulate", {"scene": wrong})
+
+
+def test_a_hash_nobody_knows_is_refused(client: LineOfActionClient, case: dict[str, Any]) -> None:
+    wrong = scene(case)
+    del wrong["meshes"][0]["case"]
+    wrong["meshes"][0]["database_hash"] = "ab" * 32
+    with pytest.raises(BadInput, match="the hash of a stored database"):
+        client.submit_scene(wrong)
