@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import gear_pair_scene, square_wave_table
+from geared_scenes import gear_pair_scene, spring_table, square_wave_table
 
 from dynamics.errors import SolveError
 from dynamics.integrators import static_equilibrium
@@ -32,6 +32,14 @@ def test_a_complete_run_covers_its_duration_and_tells_how():
     assert result.statistics.accepted > 100
     assert 0.0 < result.statistics.smallest_step <= result.statistics.largest_step <= 1e-3
     assert 1.0 <= result.statistics.newton_mean <= result.statistics.newton_most <= 25
+
+
+def test_no_step_jumps_over_a_part_of_the_table():
+    """With a stiff, silent system the error would allow steps of many base pitches."""
+    silent = replace(SCENE, meshes=(replace(SCENE.meshes[0], table=spring_table(4e8)),), duration=0.2)
+    statistics = simulate(replace(silent, integration=Integration(largest_step=0.1))).statistics
+    assert statistics.largest_step * 300.0 <= 1.0 / 64.0
+    assert statistics.largest_step * 300.0 > 0.5 / 64.0
 
 
 def test_an_exception_in_the_progress_callback_ends_the_run():
