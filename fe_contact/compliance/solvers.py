@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -89,7 +90,13 @@ class Pardiso:
             solver.factorize(upper)
         except PyPardisoError as error:
             raise SolveError(f"{self.name}: {error}") from error
-        return lambda right: np.asarray(solver.solve(upper, np.asfortranarray(right)))
+
+        def solve(right: FloatArray) -> FloatArray:
+            return np.asarray(solver.solve(upper, np.asfortranarray(right)))
+
+        # MKL keeps its factor until told; pypardiso does not tell it.
+        weakref.finalize(solve, solver.free_memory, everything=True)
+        return solve
 
 
 def nested_dissection(matrix: sp.csc_array, block: int) -> IntArray:
