@@ -13,7 +13,7 @@ from fe_contact.analysis.error_estimate import ErrorSources, error_sources
 from fe_contact.analysis.plane_contact import PlaneContact, plane_compliances
 from fe_contact.analysis.position_nodes import PositionNodes, adaptive_nodes, fixed_nodes
 from fe_contact.analysis.request import Request, load_levels, refuse_beyond_plane
-from fe_contact.analysis.tabulate import contact_fields, pair_facts
+from fe_contact.analysis.tabulate import contact_fields, pair_facts, support_fields
 from fe_contact.contact import ContactModel, ContactSolution
 from fe_contact.effects import EFFECTS, ContactScene, LedgerEntry, compose
 from fe_contact.geometry import GearPair
@@ -97,6 +97,7 @@ def analyze(
         nodes = _nodes(fine, plan)
         report("contact", 0.5)
         candidates, solution = fine.solve(nodes.position, plan.load)
+        _, support = fine.solve(nodes.position, plan.support)
         report("contact", 1.0)
     coarse = _plane_contact(
         request, plan, contact_model, plan.coarse_recipes, clock, "error estimate", report, cache
@@ -104,7 +105,7 @@ def analyze(
     with clock.stage("error estimate"):
         rough = coarse.solve(nodes.position, plan.load)[1].deflection
         errors = error_sources(solution, rough, nodes.error)
-    fields = contact_fields(candidates, solution, fine.contact_modulus)
+    fields = contact_fields(candidates, solution, fine.contact_modulus) | support_fields(support)
     return SteDatabase(
         position=nodes.position,
         force=plan.load,
@@ -116,7 +117,7 @@ def analyze(
         error_estimate=errors.total[:, :, None, None],
         facts=pair_facts(pair),
         metadata=_metadata(case or request.to_json(), plan, ledger, clock, errors, solution),
-        **{name: np.asarray(values)[:, :, None, None] for name, values in fields.items()},
+        **fields,
     )
 
 

@@ -38,7 +38,7 @@ def contact_fields(candidates: Candidates, solution: ContactSolution, modulus: f
     total = np.where(good, loaded.sum(axis=2), 1.0)
     line_load = solution.force / candidates.width
     pressure = peak_pressure(line_load, candidates.radius[:, None, :], modulus)
-    return {
+    fields = {
         "static_transmission_error": solution.deflection,
         "tangent_compliance": solution.tangent,
         "load_share": loaded / total[..., None],
@@ -47,4 +47,18 @@ def contact_fields(candidates: Candidates, solution: ContactSolution, modulus: f
         "pairs_in_contact": (solution.force > 0.0).sum(axis=2),
         "status": solution.status,
         "residuals": solution.residuals,
+    }
+    return {name: values[:, :, None, None] for name, values in fields.items()}
+
+
+def support_fields(solution: ContactSolution) -> dict[str, Any]:
+    """Support loads that converged everywhere, and their arrays (P, S, 1, 1)."""
+    good = np.all(solution.status == Status.CONVERGED, axis=0)
+    fields = {
+        "support_transmission_error": solution.deflection,
+        "support_tangent_compliance": solution.tangent,
+        "support_pairs_in_contact": (solution.force > 0.0).sum(axis=2),
+    }
+    return {"support_force": solution.load[good]} | {
+        name: values[:, good, None, None] for name, values in fields.items()
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 
 import numpy as np
@@ -26,8 +27,12 @@ EDGE_PATCH = 0.0125
 move STE in corner contact by about 0.1 %)."""
 
 BASE_POSITIONS = 64
-SMALL_LOAD = 1e-3
-"""Lowest level of every table over the largest load: it carries the extraction down to lift-off."""
+SMALLEST_SUPPORT = 1e-3
+"""Lowest support load over the largest load."""
+LARGEST_SUPPORT = 2.0
+"""Highest support load over the largest load: dynamic forces exceed the static ones."""
+SUPPORT_RATIO = 5.0
+"""Largest ratio of neighbouring support loads."""
 
 MODELS = {
     "auto": PlaneHypothesis.PLANE_STRAIN,
@@ -124,7 +129,9 @@ class Plan:
     positions : int or None
         Fixed number, or None for adaptive nodes.
     load : ndarray
-        F_bn levels in N: the requested ones and the small one.
+        Requested normal forces F_bn in N.
+    support : ndarray
+        Further loads in N that carry the force extraction down to lift-off and into overload.
     """
 
     hypothesis: PlaneHypothesis
@@ -133,6 +140,7 @@ class Plan:
     patch: PatchRule
     positions: int | None
     load: FloatArray
+    support: FloatArray
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -142,6 +150,7 @@ class Plan:
             "patch": asdict(self.patch),
             "positions": self.positions or "adaptive",
             "load": self.load.tolist(),
+            "support_load": self.support.tolist(),
         }
 
 
@@ -162,9 +171,10 @@ def make_plan(pair: GearPair, load: FloatArray, accuracy: Accuracy) -> Plan:
         MODELS[accuracy.model],
         (recipes[0], recipes[1]),
         (coarse[0], coarse[1]),
-        _patch_rule(pair, levels[-1], max(recipe.flank_size for recipe in coarse)),
+        _patch_rule(pair, LARGEST_SUPPORT * levels[-1], max(recipe.flank_size for recipe in coarse)),
         accuracy.positions,
-        _with_small_load(levels),
+        levels,
+        _support_loads(levels),
     )
 
 
@@ -174,10 +184,11 @@ def _recipe(gear: Gear, refinement: float) -> MeshRecipe:
     return standard if refinement == 1.0 else standard.refined(refinement)
 
 
-def _with_small_load(levels: FloatArray) -> FloatArray:
-    """Put one small level below the requested ones, so that every table reaches down to lift-off."""
-    small = SMALL_LOAD * levels[-1]
-    return levels if levels[0] <= 2.0 * small else np.concatenate([[small], levels])
+def _support_loads(levels: FloatArray) -> FloatArray:
+    """Return loads below the lowest and above the highest of `levels`."""
+    low, high = SMALLEST_SUPPORT * levels[-1], levels[0]
+    below = max(math.ceil(math.log(high / low) / math.log(SUPPORT_RATIO)), 0) if high > low else 0
+    return np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
 
 
 def _patch_rule(pair: GearPair, force: float, element: float) -> PatchRule:

@@ -104,11 +104,12 @@ def _evaluate(
     transverse = math.cos(database.facts.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
     error = error_band(database, position, point)
-    if point.force >= database.force[0]:
+    smallest_load = min([database.force[0], *database.support_force[:1]])
+    if point.force >= smallest_load:
         return ste, error
     # below the smallest load the law is a convention; the truth lies between lift-off and that load
     lift_off, _ = force.deflection_at(position, 0.0, *alignment)
-    smallest, _ = force.deflection_at(position, database.force[0] * transverse, *alignment)
+    smallest, _ = force.deflection_at(position, smallest_load * transverse, *alignment)
     return ste, error + np.maximum(ste - lift_off, smallest - ste)
 
 

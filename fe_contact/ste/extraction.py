@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.fields import SteFields
@@ -49,19 +51,34 @@ def force_table(database: SteFields) -> ForceTable:
 
 
 def _stored_levels(database: SteFields) -> LoadLevels:
-    """Lift-off and the stored loads, with stiffness limited at the knots."""
+    """Lift-off, the stored and the support loads, with stiffness limited at the knots."""
     to_transverse = math.cos(database.facts.base_helix_angle)
-    deflection = deflection_levels(database)
-    _require_increasing(database, deflection)
-    tangent = np.moveaxis(to_transverse / database.tangent_compliance, 1, -1)
-    stiffness = np.concatenate([np.zeros_like(tangent[..., :1]), tangent], axis=-1)
-    level = np.concatenate([[0.0], database.force * to_transverse])
+    force, order = _all_loads(database)
+    tangent = _merged(database.tangent_compliance, database.support_tangent_compliance, order)
+    loaded = _merged(database.static_transmission_error, database.support_transmission_error, order)
+    deflection = np.concatenate([database.no_load_transmission_error[..., None], loaded], axis=-1)
+    _require_increasing(database, force, deflection)
+    stiffness = np.concatenate([np.zeros_like(tangent[..., :1]), to_transverse / tangent], axis=-1)
+    level = np.concatenate([[0.0], force * to_transverse])
     return LoadLevels(level, deflection, np.minimum(stiffness, _knot_limit(deflection, level)))
+
+
+def _all_loads(database: SteFields) -> tuple[FloatArray, IntArray]:
+    """Sort stored and support loads, N; return them and where each stood among the two in a row."""
+    force = np.concatenate([database.force, database.support_force])
+    order = np.argsort(force)
+    return force[order], order
+
+
+def _merged(stored: NDArray[Any], support: NDArray[Any], order: IntArray) -> NDArray[Any]:
+    """Merge stored (P, F, M, D) and support values in order of load, (P, M, D, F + S)."""
+    return np.moveaxis(np.concatenate([stored, support], axis=1)[:, order], 1, -1)
 
 
 def _pairs_in_contact(database: SteFields) -> IntArray:
     """Count the pairs that carry load at every level, none at lift-off."""
-    loaded = np.moveaxis(database.pairs_in_contact, 1, -1).astype(np.int64)
+    _, order = _all_loads(database)
+    loaded = _merged(database.pairs_in_contact, database.support_pairs_in_contact, order).astype(np.int64)
     return np.concatenate([np.zeros_like(loaded[..., :1]), loaded], axis=-1)
 
 
@@ -71,17 +88,17 @@ def deflection_levels(database: SteFields) -> FloatArray:
     return np.concatenate([database.no_load_transmission_error[..., None], loaded], axis=-1)
 
 
-def _require_increasing(database: SteFields, deflection: FloatArray) -> None:
+def _require_increasing(database: SteFields, force: FloatArray, deflection: FloatArray) -> None:
     """Refuse noise that breaks the order of the levels, naming where it is worst."""
     gaps = np.diff(deflection, axis=-1)
     if np.all(gaps > 0.0):
         return
     i, m, c, k = np.unravel_index(np.argmin(gaps), gaps.shape)
-    lower = f"force {database.force[k - 1]:g} N" if k else "no load"
+    lower = f"force {force[k - 1]:g} N" if k else "no load"
     falling = np.count_nonzero(gaps <= 0.0)
     raise DatabaseError(
         f"the transmission error falls with load at {falling} of {gaps.size} steps, worst from "
-        f"{lower} to {database.force[k]:g} N at position {database.position[i]:.6g}, misalignment "
+        f"{lower} to {force[k]:g} N at position {database.position[i]:.6g}, misalignment "
         f"{database.misalignment[m]:g} m, center-distance change {database.center_distance_change[c]:g} m: "
         f"{gaps[i, m, c, k]:.3g} m. monotone_repaired() mends it by isotonic regression and says by how much."
     )

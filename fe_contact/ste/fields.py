@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import numpy as np
@@ -14,6 +14,7 @@ from fe_contact.ste.facts import Metadata, PairFacts
 from fe_contact.types import BoolArray, FloatArray, Status
 
 GRID = ("position", "force", "misalignment", "center_distance_change")
+SUPPORT = ("position", "support_force", "misalignment", "center_distance_change")
 RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
 
 # dimensions of every stored array, in order
@@ -34,10 +35,15 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "status": GRID,
     "error_estimate": GRID,
     "residuals": (*GRID, "residual"),
+    "support_force": ("support_force",),
+    "support_transmission_error": SUPPORT,
+    "support_tangent_compliance": SUPPORT,
+    "support_pairs_in_contact": SUPPORT,
 }
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
     "pairs_in_contact": np.int16,
+    "support_pairs_in_contact": np.int16,
     "status": np.int8,
 }
 
@@ -80,6 +86,11 @@ class SteFields:
         Equilibrium, penetration, tension, complementarity of the contact solution.
     facts : PairFacts
     metadata : Metadata
+    support_force : (S,) array
+        Further loads in N, not among `force`, solved only to carry the force extraction down to lift-off and
+        beyond the highest load; S may be 0.
+    support_transmission_error, support_tangent_compliance, support_pairs_in_contact : (P, S, M, D) arrays
+        As the arrays of the same names without `support`.
 
     Raises
     ------
@@ -105,13 +116,25 @@ class SteFields:
     residuals: FloatArray
     facts: PairFacts
     metadata: Metadata
+    support_force: FloatArray = field(default_factory=lambda: np.empty(0))
+    support_transmission_error: FloatArray = field(default_factory=lambda: np.empty(0))
+    support_tangent_compliance: FloatArray = field(default_factory=lambda: np.empty(0))
+    support_pairs_in_contact: NDArray[np.int16] = field(default_factory=lambda: np.empty(0, np.int16))
 
     def __post_init__(self) -> None:
+        self._default_support()
         for name in DIMENSIONS:
             object.__setattr__(self, name, _frozen_copy(name, getattr(self, name)))
         _check_shapes(self)
         _check_axes(self)
         _check_values(self)
+
+    def _default_support(self) -> None:
+        """Give a table without support loads empty arrays."""
+        if np.size(self.support_force) == 0:
+            shape = tuple(np.size(getattr(self, name)) for name in SUPPORT)
+            for name in ("transmission_error", "tangent_compliance", "pairs_in_contact"):
+                object.__setattr__(self, f"support_{name}", np.empty(shape))
 
     @property
     def failed(self) -> BoolArray:
@@ -173,7 +196,9 @@ def _frozen_copy(name: str, values: Any) -> NDArray[Any]:
 
 def _check_shapes(table: SteFields) -> None:
     """Every array has the shape its dimensions say."""
-    sizes = {name: getattr(table, name).size for name in (*GRID, "pair")} | {"residual": len(RESIDUALS)}
+    sizes = {name: getattr(table, name).size for name in (*GRID, "pair", "support_force")} | {
+        "residual": len(RESIDUALS)
+    }
     for name, dimensions in DIMENSIONS.items():
         expected = tuple(sizes[dimension] for dimension in dimensions)
         actual = getattr(table, name).shape
@@ -187,6 +212,11 @@ def _check_axes(table: SteFields) -> None:
         axis = getattr(table, name)
         _refuse(axis.size == 0 or not np.all(np.isfinite(axis)), name, "be non-empty and finite")
         _refuse(bool(np.any(np.diff(axis) <= 0)), name, "be strictly increasing")
+    _refuse(
+        np.intersect1d(table.force, table.support_force).size > 0, "support_force", "repeat no stored load"
+    )
+    _refuse(bool(np.any(np.diff(table.support_force) <= 0.0)), "support_force", "be strictly increasing")
+    _refuse(not np.all(table.support_force > 0.0), "support_force", "be above 0 N")
     _refuse(table.position[0] < 0.0 or table.position[-1] >= 1.0, "position", "lie in [0, 1)")
     _refuse(table.force[0] <= 0.0, "force", "be above 0 N")
     _refuse(bool(np.any(np.diff(table.pair) != 1)), "pair", "be consecutive")
@@ -214,6 +244,8 @@ def _check_values(table: SteFields) -> None:
     )
     _refuse(not np.all(compliance[good] > 0.0), "tangent_compliance", "be above 0 m/N where converged")
     _refuse(not np.all(np.isfinite(compliance[good])), "tangent_compliance", "be finite where converged")
+    for name in ("support_transmission_error", "support_tangent_compliance"):
+        _refuse(not np.all(np.isfinite(getattr(table, name))), name, "be finite")
     share = table.load_share[good]
     _refuse(not np.all(share >= 0.0), "load_share", "be >= 0 where converged")
     _refuse(

@@ -69,7 +69,8 @@ def monotone_repaired(table: Table) -> tuple[Table, Repair]:
     """Make the transmission error increase with load by isotonic regression, and report the change.
 
     Only the load series that fall somewhere are touched. The change is added to their error estimate and
-    the report to the receipt, as ``monotone_repair``.
+    the report to the receipt, as ``monotone_repair``. Support loads are dropped: beside mended ones they
+    might fall.
 
     Raises
     ------
@@ -92,6 +93,7 @@ def monotone_repaired(table: Table) -> tuple[Table, Repair]:
         no_load_transmission_error=mended[..., 0],
         error_estimate=table.error_estimate + change,
         metadata=metadata,
+        support_force=np.empty(0),
     )
     return repaired, report
 

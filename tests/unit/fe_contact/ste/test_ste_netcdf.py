@@ -65,6 +65,7 @@ def test_other_programs_read_names_units_and_documents(stored):
             "misalignment",
             "center_distance_change",
             "pair",
+            "support_force",
             "residual",
         }
         assert dataset.static_transmission_error.dims == (
