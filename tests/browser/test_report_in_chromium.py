@@ -2,19 +2,33 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import ModuleType
 
-import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page
 
-from service.report import palette
-from service.report.facts import facts
-from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, Table
-from service.report.image import png
-from service.report.page import Headline, Section, html
-from service.report.page import Page as Report
+from service.report import write_report
+
+# curves of every figure; all panels together
+CURVES = {
+    "ste": 3,
+    "load_sharing": 9,
+    "mesh_stiffness": 3,
+    "dynamic_error": 6,
+    "bearing_force": 2,
+    "bearing_spectrum": 1,
+}
+PANELS = {
+    "ste": 1,
+    "load_sharing": 3,
+    "mesh_stiffness": 1,
+    "dynamic_error": 3,
+    "bearing_force": 2,
+    "bearing_spectrum": 1,
+}
 
 
 @dataclass
@@ -26,32 +40,12 @@ class Visit:
     requests: list[str] = field(default_factory=list)
 
 
-def curves() -> Figure:
-    x = np.linspace(0.0, 2.0, 101)
-    lines = tuple(
-        Line(f"{10 * k} N m", x, k * (1 + 0.2 * np.sin(6.28 * x)), palette.ordered(k, 5)) for k in range(5)
-    )
-    panel = Panel(Axis("position, base pitches"), Axis("STE, µm"), lines, (Reference("handover", 0.5),))
-    table = Table("Numbers", ("load", "mean"), (("10 N m", "0.680"),))
-    return Figure("ste", "Static transmission error", "Caption.", "Curves.", (panel, panel), table)
-
-
-def surface() -> Figure:
-    x, y = np.linspace(0, 2, 41), np.linspace(100, 1000, 6)
-    axes = (Axis("position"), Axis("normal force, N"), Axis("STE, µm"))
-    solid = Surface(x, y, np.outer(y, 1 + 0.2 * np.sin(6.28 * x)), axes)
-    return Figure("database", "The STE database", "Caption.", "A surface.", solid)
-
-
 @pytest.fixture(scope="module")
-def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    figures = (curves(), surface())
-    table = facts("Case", {"center_distance_mm": 80.0})
-    section = Section("Static", figures=figures, tables=(table,))
-    page = Report("Report", "A pair.", (Headline("mean", "6.2 µm"),), (section,))
-    path = tmp_path_factory.mktemp("report") / "report.html"
-    path.write_text(html(page, {f.key: png(f) for f in figures}), encoding="utf-8")
-    return path
+def report(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("report")
+    closed_forms.closed_form().to_netcdf(folder / "ste.nc")
+    closed_forms.run_up().to_netcdf(folder / "run.nc")
+    return write_report([folder / "ste.nc", folder / "run.nc"], folder / "report.html")[0]
 
 
 @pytest.fixture(scope="module")
@@ -65,13 +59,23 @@ def visit(browser: Browser, report: Path) -> Visit:
     return seen
 
 
-def test_every_curve_is_drawn(visit: Visit) -> None:
-    drawn = visit.page.locator("#ste .plot .scatterlayer .trace path.js-line")
-    assert drawn.count() == 10
-    for index in range(10):
-        box = drawn.nth(index).bounding_box()
-        assert box is not None
-        assert box["width"] > 300
+@pytest.mark.parametrize("key", CURVES)
+def test_every_curve_is_drawn(visit: Visit, key: str) -> None:
+    drawn = visit.page.locator(f"#{key} .plot .scatterlayer .trace path.js-line")
+    assert drawn.count() == CURVES[key]
+    boxes = [drawn.nth(index).bounding_box() for index in range(CURVES[key])]
+    assert all(box is not None and box["width"] > 100 for box in boxes)
+
+
+@pytest.mark.parametrize("key", PANELS)
+def test_every_panel_has_both_axes_named_once(visit: Visit, key: str) -> None:
+    named = visit.page.eval_on_selector_all(
+        f"#{key} .plot text", "nodes => nodes.map(n => [n.getAttribute('class') || '', n.textContent])"
+    )
+    vertical = [text for name, text in named if re.fullmatch(r"y\d*title", name) and text]
+    assert len(vertical) == PANELS[key]
+    assert all("," in text or "share" in text for text in vertical)  # quantity and unit
+    assert any(text for name, text in named if re.fullmatch(r"x\d*title", name))
 
 
 def test_the_surface_is_drawn_or_stands_as_an_image(visit: Visit) -> None:
@@ -80,9 +84,29 @@ def test_the_surface_is_drawn_or_stands_as_an_image(visit: Visit) -> None:
     assert canvas.is_visible() != still.is_visible()
 
 
+def test_no_text_of_a_plot_lies_on_another(visit: Visit) -> None:
+    for key in CURVES:
+        texts = visit.page.locator(f"#{key} .plot").locator("[class*=title], .annotation-text, .legendtext")
+        found = [
+            (t.text_content(), t.bounding_box()) for t in texts.all() if (t.text_content() or "").strip()
+        ]
+        boxes = {(text, round(box["x"]), round(box["y"])): box for text, box in found if box and box["width"]}
+        names = list(boxes)
+        for index, one in enumerate(names):
+            for other in names[index + 1 :]:
+                assert not overlap(boxes[one], boxes[other]), (key, one, other)
+
+
+def overlap(one: dict[str, float], other: dict[str, float]) -> bool:
+    """Whether two boxes share more than a pixel in both directions."""
+    across = min(one["x"] + one["width"], other["x"] + other["width"]) - max(one["x"], other["x"])
+    along = min(one["y"] + one["height"], other["y"] + other["height"]) - max(one["y"], other["y"])
+    return across > 1 and along > 1
+
+
 def test_the_still_images_load(visit: Visit) -> None:
     widths = visit.page.eval_on_selector_all("img.still", "nodes => nodes.map(n => n.naturalWidth)")
-    assert widths == [1350, 1350]
+    assert widths == [1350] * 7
 
 
 def test_nothing_is_complained_about(visit: Visit) -> None:
@@ -111,8 +135,19 @@ def test_the_numbers_open_by_keyboard(visit: Visit) -> None:
     assert table.is_visible()
 
 
-def test_print_shows_the_images(visit: Visit) -> None:
+def test_print_shows_the_images_and_all_numbers(visit: Visit) -> None:
     visit.page.emulate_media(media="print")
     assert visit.page.locator("#ste .still").is_visible()
     assert not visit.page.locator("#ste .plot").is_visible()
+    visit.page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert visit.page.locator("details:not([open])").count() == 0
     visit.page.emulate_media(media="screen")
+
+
+def test_without_scripts_the_images_stand_in(browser: Browser, report: Path) -> None:
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(report.as_uri())
+    assert page.locator("#ste .still").is_visible()
+    assert page.locator("h1").text_content() == "Gear pair 20/20"
+    context.close()

@@ -60,3 +60,17 @@ def test_commands_named_in_the_readme_exist() -> None:
     assert scripts >= {"scripts/run", "scripts/test", "scripts/bench"}
     for script in scripts:
         assert os.access(ROOT / script, os.X_OK), script
+
+
+@pytest.mark.parametrize("page", sorted(ROOT.glob("docs/*.md")), ids=lambda page: page.name)
+def test_links_between_the_pages_lead_somewhere(page: Path) -> None:
+    targets = re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8"))
+    missing = [t for t in targets if "://" not in t and not (page.parent / t).exists()]
+    assert missing == []
+
+
+def test_every_page_is_in_the_index() -> None:
+    index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    pages = sorted(path for room in ("", "theory", "effects") for path in (ROOT / "docs" / room).glob("*.md"))
+    missing = [str(p.relative_to(ROOT / "docs")) for p in pages if p.name != "index.md"]
+    assert [name for name in missing if f"({name})" not in index] == []
