@@ -73,10 +73,12 @@ def test_a_contact_enters_when_its_gap_closes():
     reach = d_alone - compliance[1, 0] * load
     apart = solve(point(compliance, [0.0, reach * (1.0 + 1e-9)]), load)
     touching = solve(point(compliance, [0.0, reach * (1.0 - 1e-3)]), load)
+    barely = solve(point(compliance, [0.0, reach * (1.0 - 1e-9)]), load)
     assert apart[5][1] == 0.0
     assert apart[0] == pytest.approx(d_alone, rel=1e-15)
     assert 0.0 < touching[5][1] < 0.01 * load
     assert touching[0] < d_alone
+    assert 0.0 < barely[5][1] < 1e-8 * load
 
 
 def test_two_contacts_balance_their_approach():
