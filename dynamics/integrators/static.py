@@ -14,6 +14,8 @@ from dynamics.types import FloatArray, StaticStatus
 
 ITERATION_LIMIT = 50
 RESIDUAL_LIMIT = 1e-10  # of the largest force
+LEAST_TOUCH = 1e-3  # of the first level: force of the first guess where there is no load
+LOST_CONTACT = 1e-6  # of the largest force: below it a search without end has run out of contact
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,7 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
         matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", arrays.direction, stiffness, arrays.direction)
         update = np.linalg.lstsq(matrix, residual, rcond=1e-14)[0]
         q, residual, stiffness, force = _line_search(arrays, time, q, update, external, size)
-    lost = bool(np.any(stiffness <= 0.0))
+    lost = bool(np.any(force <= LOST_CONTACT * scale))
     status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
     return StaticSolution(status, q, force, size, ITERATION_LIMIT)
 
@@ -77,7 +79,10 @@ def _first_guess(system: System, time: float, external: FloatArray) -> FloatArra
     n, m = external.size, flanks.nominal_force.size
     position = _observe(arrays, time, np.zeros(n))[0]
     table = arrays.flank.table
-    deflection = [table_deflection(table, f, position[f], flanks.nominal_force[f]) for f in range(m)]
+    # at lift-off a table may have no stiffness to start from, so unloaded flanks start a little pressed
+    touch = LEAST_TOUCH * table.level[table.offset[:, 4] + 1]
+    force = np.maximum(flanks.nominal_force, touch)
+    deflection = [table_deflection(table, f, position[f], force[f]) for f in range(m)]
     matrix = np.block(
         [[arrays.stiffness, arrays.direction.T], [arrays.direction, np.zeros((m, m))]],
     )
@@ -104,10 +109,12 @@ def _residual(
 def _line_search(
     arrays: SystemArrays, time: float, q: FloatArray, update: FloatArray, external: FloatArray, size: float
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Halve the update until it lowers the residual (or is too small to matter)."""
+    """Halve the update until it lowers the residual with all flanks in contact (or is tiny)."""
     for halving in range(30):
         trial = q + update * 0.5**halving
         residual, stiffness, force = _residual(arrays, time, trial, external)
-        if float(np.max(np.abs(residual / arrays.scale))) < size:
+        better = float(np.max(np.abs(residual / arrays.scale))) < size
+        # beyond lift-off there is no stiffness to come back by, however small the residual is there
+        if better and (np.all(stiffness > 0.0) or np.max(np.abs(residual)) == 0.0):
             break
     return trial, residual, stiffness, force

@@ -38,6 +38,23 @@ def test_a_wrong_nominal_force_only_costs_iterations():
     assert found.mesh_force[0] == pytest.approx(FORCE, rel=1e-8)
 
 
+def test_a_mesh_that_softens_is_not_thrown_out_of_contact():
+    """From far above the load, a full Newton step on the soft branch lands beyond lift-off."""
+    level, deflection, stiffness = [0.0, 1e3, 1e4], [0.0, 1e-6, 1e-4], [1e9, 1e8, 9e7]
+    fields = {
+        "deflection": deflection,
+        "stiffness": stiffness,
+        "deflection_slope": 0.0,
+        "stiffness_slope": 0.0,
+    }
+    shaped = {name: np.broadcast_to(value, (1, 1, 1, 3)).copy() for name, value in fields.items()}
+    table = replace(spring_table(1e8), position=np.zeros(1), level=np.array(level), **shaped)
+    scene = with_mesh(gear_pair_scene(table, torque=500.0 * BASE_RADIUS), nominal_force=9000.0)
+    found = static_equilibrium(assemble(scene))
+    assert found.status is StaticStatus.CONVERGED
+    assert found.mesh_force[0] == pytest.approx(500.0, rel=1e-8)
+
+
 def test_axial_and_tilting_shafts_carry_a_helical_mesh():
     helix = 0.3
     scene = gear_pair_scene(square_wave_table())
@@ -61,6 +78,14 @@ def test_no_load_rests_at_lift_off():
     found = static_equilibrium(assemble(gear_pair_scene(spring_table(4e8, 1e-6), torque=0.0)))
     assert found.status is StaticStatus.CONVERGED
     assert found.mesh_force[0] == pytest.approx(0.0, abs=1e-6)
+
+
+def test_inertia_alone_loads_an_unloaded_pair():
+    """Speeding up without a load; the table has no stiffness at lift-off."""
+    speed = TimeLaw.ramp(0.0, 100.0, 1.0)
+    found = static_equilibrium(assemble(gear_pair_scene(square_wave_table(), torque=0.0, speed=speed)))
+    assert found.status is StaticStatus.CONVERGED
+    assert found.mesh_force[0] == pytest.approx(1.1344291072112745e-3 * 100.0 / BASE_RADIUS, rel=1e-8)
 
 
 def test_a_load_that_pulls_the_flanks_apart_has_no_equilibrium():

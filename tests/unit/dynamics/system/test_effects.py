@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 from geared_scenes import gear_pair_scene, with_bushings, with_gear
 
+from dynamics.bodies import Inertia
 from dynamics.errors import InputError
 from dynamics.system.assemble import assemble
 from dynamics.system.effects import EFFECTS, LEFT_OUT
@@ -28,6 +29,11 @@ def test_a_gear_off_the_middle_tilts_its_shaft_only():
     scene = with_gear(replace(scene, shafts=(scene.shafts[0], shaft)), 1, position=0.09)
     assert kinds(scene) == ["x", "y", "tilt_x", "tilt_y", "rotation"]
     assert kinds(scene, "input") == ["x", "y"]
+    massless = with_gear(scene, 1, inertia=Inertia())  # the centre of mass stays in the middle
+    entries = assemble(massless).ledger.entries
+    reasons = {entry.shaft: (entry.on, entry.reason) for entry in entries if entry.effect == "tilt"}
+    assert reasons["output"] == (True, "a mesh is off the supports' centre")
+    assert not reasons["input"][0]
 
 
 def test_a_helical_pair_moves_along_and_tilts():
