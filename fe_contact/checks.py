@@ -47,5 +47,7 @@ def increasing(field: str, values: Sequence[float] | FloatArray, suggestion: str
     if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
         raise InputError(field, values, "a non-empty list of finite numbers", suggestion)
     if np.any(np.diff(array) <= 0.0):
-        raise InputError(field, values, "strictly increasing", suggestion or "Sort the list and drop repeats.")
+        raise InputError(
+            field, values, "strictly increasing", suggestion or "Sort the list and drop repeats."
+        )
     return array

@@ -21,7 +21,7 @@ class Status(IntEnum):
     CONVERGED = 0
     ITERATION_LIMIT = 1  # Newton and its fallback both ran out of iterations
     SINGULAR = 2  # the contact matrix lost positive definiteness
-    OUT_OF_MODEL = 3  # converged, but the load needs contact the model does not hold (e.g. beyond the meshed teeth)
+    OUT_OF_MODEL = 3  # converged, but the load needs contact that the model does not hold
     NOT_COMPUTED = 4  # the sweep ended before this point
 
     @property

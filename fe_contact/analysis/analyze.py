@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis.error_estimate import ErrorSources, error_sources
-from fe_contact.analysis.plane_contact import PlaneContact, plane_compliances
+from fe_contact.analysis.pair_contact import PairContact, plane_compliances
 from fe_contact.analysis.position_nodes import PositionNodes, adaptive_nodes, fixed_nodes
 from fe_contact.analysis.request import Request, load_levels, refuse_beyond_plane
 from fe_contact.analysis.tabulate import contact_fields, pair_facts, support_fields
@@ -92,18 +92,16 @@ def analyze(
     request = Request(pair, load_levels(pair, torques, normal_forces), accuracy, dict(effects or {}))
     contact_model, ledger = compose(ContactScene(pair, request.torque), request.effects, EFFECTS)
     plan = make_plan(pair, request.load, accuracy)
-    fine = _plane_contact(request, plan, contact_model, plan.recipes, clock, "compliance", report, cache)
+    fine = _pair_contact(request, plan, plan.recipes, clock, "compliance", report, cache)
     with clock.stage("contact"):
-        nodes = _nodes(fine, plan)
+        nodes = _nodes(fine, contact_model, plan)
         report("contact", 0.5)
-        candidates, solution = fine.solve(nodes.position, plan.load)
-        _, support = fine.solve(nodes.position, plan.support)
+        candidates, solution = fine.solve(contact_model, nodes.position, plan.load)
+        _, support = fine.solve(contact_model, nodes.position, plan.support)
         report("contact", 1.0)
-    coarse = _plane_contact(
-        request, plan, contact_model, plan.coarse_recipes, clock, "error estimate", report, cache
-    )
+    coarse = _pair_contact(request, plan, plan.coarse_recipes, clock, "error estimate", report, cache)
     with clock.stage("error estimate"):
-        rough = coarse.solve(nodes.position, plan.load)[1].deflection
+        rough = coarse.solve(contact_model, nodes.position, plan.load)[1].deflection
         errors = error_sources(solution, rough, nodes.error)
     fields = contact_fields(candidates, solution, fine.contact_modulus) | support_fields(support)
     return SteDatabase(
@@ -121,29 +119,28 @@ def analyze(
     )
 
 
-def _plane_contact(
+def _pair_contact(
     request: Request,
     plan: Plan,
-    model: ContactModel,
     recipes: tuple[MeshRecipe, MeshRecipe],
     clock: StageClock,
     stage: str,
     report: Progress,
     cache: Path | None,
-) -> PlaneContact:
+) -> PairContact:
     """Compute or fetch the compliances of both gears."""
     report(stage, 0.0)
     with clock.stage(stage):
         compliances = plane_compliances(request.pair, plan, recipes, cache)
     report(stage, 1.0)
-    return PlaneContact(request.pair, model, plan, compliances)
+    return PairContact(request.pair, plan, compliances)
 
 
-def _nodes(contact: PlaneContact, plan: Plan) -> PositionNodes:
+def _nodes(contact: PairContact, model: ContactModel, plan: Plan) -> PositionNodes:
     """Place the positions."""
 
     def solve(position: FloatArray) -> FloatArray:
-        return contact.solve(position, plan.load)[1].deflection
+        return contact.solve(model, position, plan.load)[1].deflection
 
     if plan.positions is not None:
         return fixed_nodes(plan.positions, solve)

@@ -1,9 +1,10 @@
 """Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
 
 from fe_contact.contact.assembly import contact_problem
+from fe_contact.contact.candidates import PatchRule, contact_candidates, with_gaps
 from fe_contact.contact.model import ContactModel, GapTerm
-from fe_contact.contact.plane_candidates import PatchRule, plane_candidates
 from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution import ContactSolution
 from fe_contact.contact.sweep import solve_contact
 
@@ -14,7 +15,9 @@ __all__ = [
     "ContactSolution",
     "GapTerm",
     "PatchRule",
+    "Slices",
+    "contact_candidates",
     "contact_problem",
-    "plane_candidates",
     "solve_contact",
+    "with_gaps",
 ]

@@ -41,7 +41,8 @@ def contact_problem(
     on tooth +j of gear 2.
     """
     compliance = np.zeros((*candidates.gap.shape, candidates.pair.size))
-    sides = ((candidates.patch_1, candidates.lever_1), (candidates.patch_2, candidates.lever_2))
+    touch = candidates.touch
+    sides = ((candidates.patch_1, touch.lever_1), (candidates.patch_2, touch.lever_2))
     for flank, (patch, lever), direction in zip(compliances, sides, (-1, 1), strict=True):
         blocks = _tooth_blocks(flank, direction * candidates.pair)
         _add_gear(
@@ -55,7 +56,7 @@ def contact_problem(
             couple_teeth,
             compliance,
         )
-    compliance /= candidates.width[np.newaxis, np.newaxis, :]
+    compliance /= candidates.width
     first, second = (flank.contact_modulus for flank in compliances)
     contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
     return ContactProblem(

@@ -10,10 +10,24 @@ from fe_contact.types import FloatArray
 
 
 class GapTerm(Protocol):
-    """A rigid gap on the line of action, added to the conjugate (zero) or corner gap."""
+    """A rigid gap on the line of action, added to the conjugate (zero) or corner gap.
 
-    def __call__(self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
-        """Gap in m, >= 0 where material is missing, at the touching roll lengths of the two flanks."""
+    `along_profile` says whether it depends on the roll lengths: only then can it move the touching point.
+    """
+
+    @property
+    def along_profile(self) -> bool:
+        """Whether the gap depends on the roll lengths."""
+        ...
+
+    def __call__(
+        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+    ) -> FloatArray:
+        """Gap in m, > 0 where material is missing.
+
+        Taken at the touching roll lengths of the two flanks and at `face`, the distance from the pinion's
+        mid-face, in m; the three broadcast.
+        """
         ...
 
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from fe_contact.contact.patch import Patches
+from fe_contact.contact.touch import Touch
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -20,45 +24,61 @@ class Candidates:
     position : ndarray, shape (P,)
         Base pitches, by the driving gear's angle.
     pair : ndarray of int, shape (n,)
-        Pair index; +1 is ahead.
+        Pair index; +1 is ahead. Candidates of one pair stand together.
+    face_position : ndarray, shape (n,)
+        Distance of the slice's middle from the pinion's mid-face, m.
+    touch : Touch
+        Touching points of the rigid flanks, arrays (P, n).
     patch_1, patch_2 : Patches
         Load patches on the driving and the driven gear, arrays (P, n).
-    gap : ndarray, shape (P, n)
-        Rigid gap on the line of action in m, as deflection of the driven gear that closes it.
-    lever_1, lever_2 : ndarray, shape (P, n)
-        Lever arm of the contact normal about either gear over its base radius; 1 on the line of action.
-    radius : ndarray, shape (P, n)
-        Relative radius of curvature, m.
-    edge_slope : ndarray, shape (P, n)
-        Angle between the flanks at the tip edge in rad (see `fe_contact.hertz.edge_contact`); NaN = no edge
-        law.
-    width : ndarray, shape (n,)
-        Width of the slice along the contact line, m.
-    base_helix_cosine : float
-        cos(beta_b).
+    slice_width : float
+        Along the face, m.
+    base_helix_angle : float
+        beta_b of gear 1 in rad, > 0 right hand.
     """
 
     position: FloatArray
     pair: IntArray
+    face_position: FloatArray
+    touch: Touch
     patch_1: Patches
     patch_2: Patches
-    gap: FloatArray
-    lever_1: FloatArray
-    lever_2: FloatArray
-    radius: FloatArray
-    edge_slope: FloatArray
-    width: FloatArray
-    base_helix_cosine: float = 1.0
+    slice_width: float
+    base_helix_angle: float = 0.0
+
+    @property
+    def gap(self) -> FloatArray:
+        """Rigid gap (P, n) on the line of action in m, as deflection of the driven gear that closes it."""
+        return self.touch.gap
+
+    @property
+    def width(self) -> float:
+        """Width of a slice along the contact line, m."""
+        return self.slice_width / math.cos(self.base_helix_angle)
+
+    @property
+    def radius(self) -> FloatArray:
+        """Relative radius of curvature (P, n) in the normal section, m."""
+        return self.touch.radius / math.cos(self.base_helix_angle)
+
+    @property
+    def edge_slope(self) -> FloatArray:
+        """Angle (P, n) between the flanks at the nearer tip edge, rad (see `hertz.edge_contact`)."""
+        return -np.minimum(self.touch.offset_1, self.touch.offset_2) / self.radius
 
     @property
     def motion_arm(self) -> FloatArray:
         """Normal approach per unit deflection of the driven gear (P, n)."""
-        return self.lever_2 * self.base_helix_cosine
+        return self.touch.lever_2 * math.cos(self.base_helix_angle)
 
     @property
     def torque_share(self) -> FloatArray:
         """Share of T_1/(r_b1 cos beta_b) per unit normal force (P, n)."""
-        return self.lever_1
+        return self.touch.lever_1
+
+    def touching(self, touch: Touch) -> Candidates:
+        """Return the same candidates with other touching points."""
+        return replace(self, touch=touch)
 
 
 @dataclass(frozen=True)
@@ -81,3 +101,7 @@ class ContactProblem:
     modulus: float
     half_plane_1: float
     half_plane_2: float
+
+    def touching(self, candidates: Candidates) -> ContactProblem:
+        """Return the same compliance with candidates of other gaps."""
+        return replace(self, candidates=candidates)

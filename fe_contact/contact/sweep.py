@@ -37,7 +37,7 @@ def solve_contact(problem: ContactProblem, loads: FloatArray) -> ContactSolution
     normal_gap = c.gap * c.motion_arm
     _sweep(
         problem.compliance, normal_gap, c.motion_arm, c.torque_share,
-        c.radius, c.edge_slope, c.width, c.patch_1.law_width, c.patch_2.law_width,
+        c.radius, c.edge_slope, np.full(n, c.width), c.patch_1.law_width, c.patch_2.law_width,
         problem.modulus, problem.half_plane_1, problem.half_plane_2, loads,
         deflection, tangent, force, status, iterations, residuals, beyond,
     )  # fmt: skip

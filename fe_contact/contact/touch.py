@@ -90,7 +90,7 @@ def flank_coordinate(gear: Gear, roll: FloatArray | float) -> FloatArray:
     return np.asarray(np.square(roll) / (2.0 * gear.base_radius))
 
 
-def modified_touch(pair: GearPair, touch: Touch, gaps: tuple[GapTerm, ...]) -> Touch:
+def modified_touch(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
     """Touching points of modified flanks.
 
     Sloping modifications move the touching point off the line of action: over the distance x along the flank
@@ -102,54 +102,79 @@ def modified_touch(pair: GearPair, touch: Touch, gaps: tuple[GapTerm, ...]) -> T
     pair : GearPair
     touch : Touch
         Of plain involutes.
+    face : ndarray, shape (n,)
+        Distance of each candidate from the pinion's mid-face, m.
     gaps : tuple of GapTerm
         At least one.
     """
+    moving = tuple(term for term in gaps if term.along_profile)
+    steady = tuple(term for term in gaps if not term.along_profile)
+    found = _shifted(pair, touch, face, moving) if moving else touch
+    roll_1, roll_2 = _rolls(pair, found.s_1, found.s_2)
+    return replace(found, gap=found.gap + sum(term(pair, roll_1, roll_2, face) for term in steady))
+
+
+def _shifted(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
+    """Move the touching points to where conjugate gap and `gaps` together are least."""
     possible = np.isfinite(touch.gap)
-    low = np.where(possible, touch.s_2 - flank_coordinate(pair.wheel, pair.wheel.tip_roll_length), 0.0)
-    high = np.where(possible, flank_coordinate(pair.pinion, pair.pinion.tip_roll_length) - touch.s_1, 0.0)
+    here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
+    along = np.broadcast_to(face, possible.shape)[possible][:, None]
+    low = here.s_2 - flank_coordinate(pair.wheel, pair.wheel.tip_roll_length)
+    high = flank_coordinate(pair.pinion, pair.pinion.tip_roll_length) - here.s_1
 
     def gap(shift: FloatArray) -> FloatArray:
-        return _gap_beside(pair, touch, gaps, shift)
+        return _gap_beside(pair, here, along, gaps, shift)
 
-    amount = np.abs(gap(np.zeros((*low.shape, 1)))[possible]).max()
+    amount = np.abs(gap(np.zeros((low.size, 1)))).max()
     if amount == 0.0:
         return touch
-    reach = np.sqrt(4.0 * touch.radius * amount)
+    reach = np.sqrt(4.0 * here.radius * amount)
     shift = _least(gap, np.maximum(low, -reach), np.minimum(high, reach))
     step = 1e-3 * reach
-    at = gap(np.stack([shift, np.minimum(shift + step, high), np.maximum(shift - step, low)], axis=2))
+    at = gap(np.stack([shift, np.minimum(shift + step, high), np.maximum(shift - step, low)], axis=1))
     # at an edge the flanks open by the slope of the gap there; elsewhere the distance to it is what matters
-    opening_1 = np.maximum(at[..., 2] - at[..., 0], 0.0) / step * touch.radius
-    opening_2 = np.maximum(at[..., 1] - at[..., 0], 0.0) / step * touch.radius
-    return replace(
-        touch,
-        s_1=touch.s_1 + shift,
-        s_2=touch.s_2 - shift,
-        offset_1=np.where(shift < high, high - shift, -opening_1),
-        offset_2=np.where(shift > low, shift - low, -opening_2),
-        gap=touch.gap + at[..., 0],
+    opening_1 = np.maximum(at[:, 2] - at[:, 0], 0.0) / step * here.radius
+    opening_2 = np.maximum(at[:, 1] - at[:, 0], 0.0) / step * here.radius
+    moved = {
+        "s_1": here.s_1 + shift,
+        "s_2": here.s_2 - shift,
+        "offset_1": np.where(shift < high, high - shift, -opening_1),
+        "offset_2": np.where(shift > low, shift - low, -opening_2),
+        "gap": here.gap + at[:, 0],
+    }
+    result = {name: getattr(touch, name).copy() for name in moved}
+    for name, values in moved.items():
+        result[name][possible] = values
+    return replace(touch, **result)
+
+
+def _rolls(pair: GearPair, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Roll lengths in m of flank coordinates."""
+    return (
+        np.sqrt(2.0 * pair.pinion.base_radius * np.maximum(s_1, 0.0)),
+        np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(s_2, 0.0)),
     )
 
 
-def _gap_beside(pair: GearPair, touch: Touch, gaps: tuple[GapTerm, ...], shift: FloatArray) -> FloatArray:
-    """Gap in m over the conjugate one at `shift` (P, n, k) from the touching point towards tip 1."""
-    roll_1 = np.sqrt(2.0 * pair.pinion.base_radius * np.maximum(touch.s_1[..., None] + shift, 0.0))
-    roll_2 = np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(touch.s_2[..., None] - shift, 0.0))
+def _gap_beside(
+    pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...], shift: FloatArray
+) -> FloatArray:
+    """Gap in m over the conjugate one at `shift` (n, k) from the touching points (n,) towards tip 1."""
+    roll_1, roll_2 = _rolls(pair, touch.s_1[:, None] + shift, touch.s_2[:, None] - shift)
     # beside an edge the flanks open by phi = -offset/R
-    opening = np.maximum(-touch.offset_1, 0.0)[..., None] * np.maximum(-shift, 0.0)
-    opening += np.maximum(-touch.offset_2, 0.0)[..., None] * np.maximum(shift, 0.0)
-    rigid = (0.5 * shift**2 + opening) / touch.radius[..., None]
-    return np.asarray(rigid + sum(term(pair, roll_1, roll_2) for term in gaps))
+    opening = np.maximum(-touch.offset_1, 0.0)[:, None] * np.maximum(-shift, 0.0)
+    opening += np.maximum(-touch.offset_2, 0.0)[:, None] * np.maximum(shift, 0.0)
+    rigid = (0.5 * shift**2 + opening) / touch.radius[:, None]
+    return np.asarray(rigid + sum(term(pair, roll_1, roll_2, face) for term in gaps))
 
 
 def _least(gap: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
-    """Where the gap is least between `low` and `high` (P, n): nested searches; a tie goes to the middle."""
+    """Where the gap is least between `low` and `high` (n,): nested searches; a tie goes to the middle."""
     fraction = np.linspace(0.0, 1.0, _SAMPLES)
     for _ in range(3):
-        shift = low[..., None] + (high - low)[..., None] * fraction
-        best = np.argmin(gap(shift) + 1e-15 * np.abs(fraction - 0.5), axis=2)[..., None]
+        shift = low[:, None] + (high - low)[:, None] * fraction
+        best = np.argmin(gap(shift) + 1e-15 * np.abs(fraction - 0.5), axis=1)[:, None]
         low, high = (
-            np.take_along_axis(shift, np.clip(best + k, 0, _SAMPLES - 1), axis=2)[..., 0] for k in (-1, 1)
+            np.take_along_axis(shift, np.clip(best + k, 0, _SAMPLES - 1), axis=1)[:, 0] for k in (-1, 1)
         )
-    return np.asarray(np.take_along_axis(shift, best, axis=2)[..., 0])
+    return np.asarray(np.take_along_axis(shift, best, axis=1)[:, 0])

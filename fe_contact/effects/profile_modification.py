@@ -11,12 +11,20 @@ from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import FloatArray
 
 
-def modification_gap(pair: GearPair, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
-    """Material removed from both flanks in m at the touching roll lengths."""
-    pinion, wheel = pair.pinion, pair.wheel
-    return pinion.modification.material_removed(pinion, roll_1) + wheel.modification.material_removed(
-        wheel, roll_2
-    )
+@dataclass(frozen=True)
+class ModificationGap:
+    """Material removed from both flanks in m at the touching points."""
+
+    along_profile: bool
+
+    def __call__(
+        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+    ) -> FloatArray:
+        """Sum over both flanks."""
+        pinion, wheel = pair.pinion, pair.wheel
+        return pinion.modification.material_removed(
+            pinion, roll_1, face
+        ) + wheel.modification.material_removed(wheel, roll_2, face - pair.axial_offset)
 
 
 @dataclass(frozen=True)
@@ -44,4 +52,6 @@ class ProfileModification:
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of both flanks."""
-        return replace(model, gaps=(*model.gaps, modification_gap))
+        gears = (scene.pair.pinion, scene.pair.wheel)
+        term = ModificationGap(any(gear.modification.varies_along_profile for gear in gears))
+        return replace(model, gaps=(*model.gaps, term))

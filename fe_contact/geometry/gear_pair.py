@@ -30,6 +30,8 @@ class GearPair:
     center_distance : float, optional
         a in m; default: the distance without backlash of gears without thickness allowance, so that the
         allowances become backlash.
+    axial_offset : float
+        Distance in m of the wheel's mid-face from the pinion's, along the pinion's axis.
 
     Raises
     ------
@@ -43,6 +45,7 @@ class GearPair:
     pinion: Gear
     wheel: Gear
     center_distance: float = None  # type: ignore[assignment]  # a float after construction
+    axial_offset: float = 0.0
 
     def __post_init__(self) -> None:
         refuse_strangers(self.pinion, self.wheel)
@@ -79,9 +82,21 @@ class GearPair:
         return self.pinion.base_radius / cosine, self.wheel.base_radius / cosine
 
     @property
+    def common_face(self) -> tuple[float, float]:
+        """Ends of the common face, as distances from the pinion's mid-face, m."""
+        half_1, half_2 = 0.5 * self.pinion.face_width, 0.5 * self.wheel.face_width
+        return max(-half_1, self.axial_offset - half_2), min(half_1, self.axial_offset + half_2)
+
+    @property
     def face_width(self) -> float:
         """Common face width, m."""
-        return min(self.pinion.face_width, self.wheel.face_width)
+        low, high = self.common_face
+        return high - low
+
+    @property
+    def common_face_center(self) -> float:
+        """Middle of the common face, as a distance from the pinion's mid-face, m."""
+        return 0.5 * sum(self.common_face)
 
     # Path of contact
 
@@ -178,4 +193,4 @@ class GearPair:
 
     def swapped(self) -> GearPair:
         """Return the same pair with the wheel driving."""
-        return replace(self, pinion=self.wheel, wheel=self.pinion)
+        return replace(self, pinion=self.wheel, wheel=self.pinion, axial_offset=-self.axial_offset)

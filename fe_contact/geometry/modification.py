@@ -86,6 +86,11 @@ class FlankModification:
         return self.profile_crowning, self.profile_slope
 
     @property
+    def varies_along_profile(self) -> bool:
+        """Whether the modification depends on the roll length."""
+        return bool(self.tip_relief or self.root_relief or any(self._profile_shape))
+
+    @property
     def varies_along_face(self) -> bool:
         """Whether the modification depends on the face position."""
         return bool(self.helix_crowning or self.helix_slope or self.end_relief)
@@ -119,7 +124,7 @@ class FlankModification:
         """
         roll, face = np.broadcast_arrays(np.asarray(roll_length, float), np.asarray(face_position, float))
         removed = np.zeros(roll.shape)
-        if self.tip_relief or self.root_relief or any(self._profile_shape):
+        if self.varies_along_profile:
             removed += self._along_profile(gear, np.clip(roll, gear.form_roll_length, gear.tip_roll_length))
         if self.varies_along_face:
             removed += self._along_face(gear, face)

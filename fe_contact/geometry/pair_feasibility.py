@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import positive
+from fe_contact.checks import finite, positive
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.backlash import shift_sum, tight_center_distance, tight_shift_sum
 from fe_contact.geometry.fillet_interference import fillet_penetration
@@ -41,11 +41,23 @@ def refuse_strangers(pinion: Gear, wheel: Gear) -> None:
 def refuse_infeasible_pair(pair: GearPair) -> None:
     """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
     positive("center_distance", pair.center_distance, "In m: 80 mm is 0.08.")
+    _refuse_face_overlap(pair)
     _refuse_jamming(pair)
     _refuse_contact_ratio(pair)
     _refuse_tip_clearance(pair)
     _refuse_interference(pair)
     _refuse_fillet_interference(pair)
+
+
+def _refuse_face_overlap(pair: GearPair) -> None:
+    """Refuse gears that pass beside each other."""
+    finite("axial_offset", pair.axial_offset, "In m: 5 mm is 0.005.")
+    low, high = pair.common_face
+    if high <= low:
+        limit = 0.5 * (pair.pinion.face_width + pair.wheel.face_width)
+        raise InfeasibleGeometry(
+            "face overlap", "axial_offset", pair.axial_offset, f"less than {limit:.9g} m in size"
+        )
 
 
 def _refuse_jamming(pair: GearPair) -> None:

@@ -40,7 +40,7 @@ def patch(nodes, center, half_width, share=0.0):
 def test_moments_of_the_semi_ellipse(nodes, center, half_width):
     # quadratic shape functions reproduce 1, s and s^2
     forces = patch(nodes, center, half_width)
-    assert forces.sum() == pytest.approx(1.0, rel=1e-13)
+    assert forces.sum() == pytest.approx(1.0, rel=1e-13, abs=0.0)
     assert forces @ (nodes - center) == pytest.approx(0.0, abs=1e-13 * 10e-3)
     assert forces @ (nodes - center) ** 2 == pytest.approx(half_width**2 / 4.0, abs=1e-13 * 1e-4)
 
@@ -53,16 +53,16 @@ def test_moments_of_a_patch_at_an_edge(nodes, share):
     forces = patch(nodes, tip - 0.5 * c, 0.5 * c, share)
     first = (1.0 - share) / 2.0 + share / 4.0
     second = (1.0 - share) * 5.0 / 16.0 + share / 8.0
-    assert forces.sum() == pytest.approx(1.0, rel=1e-12)
-    assert forces @ (tip - nodes) == pytest.approx(c * first, rel=1e-10)
-    assert forces @ (tip - nodes) ** 2 == pytest.approx(c**2 * second, rel=1e-9)
+    assert forces.sum() == pytest.approx(1.0, rel=1e-12, abs=0.0)
+    assert forces @ (tip - nodes) == pytest.approx(c * first, rel=1e-10, abs=0.0)
+    assert forces @ (tip - nodes) ** 2 == pytest.approx(c**2 * second, rel=1e-9, abs=0.0)
 
 
 def test_a_smooth_field_is_weighed_alike_on_every_mesh():
     def work(nodes, center):
         return patch(nodes, center, 3e-4) @ np.cos(500.0 * nodes)
 
-    assert work(UNIFORM, 5.123e-3) == pytest.approx(work(GRADED, 5.123e-3), rel=2e-6)
+    assert work(UNIFORM, 5.123e-3) == pytest.approx(work(GRADED, 5.123e-3), rel=2e-6, abs=0.0)
 
 
 def test_moving_the_patch_through_an_element_does_not_ripple():
@@ -102,7 +102,7 @@ def test_mirror(nodes):
 def test_patch_at_the_end_of_the_flank():
     tip = UNIFORM[-1]
     forces = patch(UNIFORM, tip - 2e-4, 2e-4, 1.0)
-    assert forces.sum() == pytest.approx(1.0, rel=1e-13)
+    assert forces.sum() == pytest.approx(1.0, rel=1e-13, abs=0.0)
 
 
 TIP, HALF, EDGE_LENGTH = 9e-3, 3e-4, 2e-4
@@ -115,7 +115,7 @@ def at(offset):
 
 def test_patches_far_from_the_tip_are_the_plain_ones():
     found = at([1e-3, 4e-4])
-    assert found.center == pytest.approx(TIP - np.array([1e-3, 4e-4]), rel=1e-15)
+    assert found.center == pytest.approx(TIP - np.array([1e-3, 4e-4]), rel=1e-15, abs=0.0)
     assert found.half_width.tolist() == [HALF, HALF]
     assert found.edge_share.tolist() == [0.0, 0.0]
 
@@ -143,14 +143,14 @@ def test_edge_share_is_that_of_the_edge_pressure(offset):
     weight = 0.5 * c * np.sin(angle) * np.sqrt((c - x) / x)
     whole = np.sum(weight * (-offset + x + 0.5 * c) / radius)
     singular = np.sum(weight * (-offset + 0.5 * c) / radius)
-    assert at(offset).edge_share[0] == pytest.approx(singular / whole, rel=1e-9)
+    assert at(offset).edge_share[0] == pytest.approx(singular / whole, rel=1e-9, abs=0.0)
 
 
 def test_centroid_is_that_of_the_nodal_forces():
     for offset in (-1e-3, -1e-5, 0.0, 5e-5):
         found = at(offset)
         forces = patch(UNIFORM, found.center[0], found.half_width[0], found.edge_share[0])
-        assert forces @ UNIFORM == pytest.approx(found.centroid[0], rel=1e-12)
+        assert forces @ UNIFORM == pytest.approx(found.centroid[0], rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 0.9, 1.0])
@@ -165,4 +165,4 @@ def test_law_width_gives_the_patch_self_approach(share):
     half = 1.3e-4
     mean = math.log(2.0) + series - math.log(half)
     patches = Patches(np.array([0.0]), np.array([half]), np.array([share]))
-    assert -(math.log(patches.law_width[0]) - 0.25 - math.log(2.0)) == pytest.approx(mean, rel=1e-12)
+    assert -(math.log(patches.law_width[0]) - 0.25 - math.log(2.0)) == pytest.approx(mean, rel=1e-12, abs=0.0)

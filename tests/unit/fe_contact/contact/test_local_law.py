@@ -56,7 +56,7 @@ def test_value_is_that_of_the_hertz_room(slope, second):
     inside = LINE_LOADS[(law.low[0] < LINE_LOADS) & (law.high[0] > LINE_LOADS)]
     assert inside.size > 5
     for p in inside:
-        assert value(law, p) == pytest.approx(hertz_room(p, slope, STEEL, second), rel=1e-11)
+        assert value(law, p) == pytest.approx(hertz_room(p, slope, STEEL, second), rel=1e-11, abs=0.0)
 
 
 @pytest.mark.parametrize("slope", SLOPES)
@@ -66,7 +66,7 @@ def test_slope_is_the_derivative(slope):
     for p in loads[(np.abs(loads / law.low[0] - 1.0) > 0.01) & (np.abs(loads / law.high[0] - 1.0) > 0.01)]:
         step = 1e-5 * p
         difference = (value(law, p + step) - value(law, p - step)) / (2.0 * step * WIDTH)
-        assert approach(law, 0, p * WIDTH)[1] == pytest.approx(difference, rel=1e-6)
+        assert approach(law, 0, p * WIDTH)[1] == pytest.approx(difference, rel=1e-6, abs=0.0)
 
 
 @pytest.mark.parametrize("slope", SLOPES)
@@ -83,9 +83,11 @@ def test_increasing_and_concave(slope):
 def test_guards_join_continuously(slope):
     law = law_of(slope)
     for p in (law.low[0], law.high[0]):
-        assert value(law, p * (1.0 + 1e-12)) == pytest.approx(value(law, p * (1.0 - 1e-12)), rel=1e-10)
+        assert value(law, p * (1.0 + 1e-12)) == pytest.approx(
+            value(law, p * (1.0 - 1e-12)), rel=1e-10, abs=0.0
+        )
     above, below = (approach(law, 0, law.high[0] * WIDTH * f)[1] for f in (1.0 + 1e-9, 1.0 - 1e-9))
-    assert above == pytest.approx(below, rel=1e-7)
+    assert above == pytest.approx(below, rel=1e-7, abs=0.0)
 
 
 def test_guards_lie_at_their_strips():
@@ -93,14 +95,16 @@ def test_guards_lie_at_their_strips():
     patch = math.sqrt(PATCH_1 * PATCH_2)  # equal bodies weigh alike
     modulus = contact_modulus(STEEL, STEEL)
     for found, share in ((law.low[0], SMALLEST_STRIP), (law.high[0], LARGEST_STRIP)):
-        assert found == pytest.approx(line_load_at_half_width(share * patch, RADIUS, modulus), rel=1e-12)
+        assert found == pytest.approx(
+            line_load_at_half_width(share * patch, RADIUS, modulus), rel=1e-12, abs=0.0
+        )
 
 
 @pytest.mark.parametrize("slope", [0.05, 0.0, -0.005])
 def test_an_edge_strip_counts_with_half_its_length(slope):
     law = law_of(slope)
     length = edge_contact_length(law.high[0], slope, RADIUS, contact_modulus(STEEL, STEEL))
-    assert length == pytest.approx(2.0 * LARGEST_STRIP * math.sqrt(PATCH_1 * PATCH_2), rel=1e-12)
+    assert length == pytest.approx(2.0 * LARGEST_STRIP * math.sqrt(PATCH_1 * PATCH_2), rel=1e-12, abs=0.0)
 
 
 def test_outgrown_patch_is_flagged_and_nothing_else():
@@ -117,15 +121,15 @@ def test_straight_below_the_smallest_strip(slope):
     secant = value(law, law.low[0]) / law.low[0]
     for share in (1e-6, 0.3, 0.99):
         found, stiffness, _ = approach(law, 0, share * law.low[0] * WIDTH)
-        assert found == pytest.approx(secant * share * law.low[0], rel=1e-12)
-        assert stiffness == pytest.approx(secant / WIDTH, rel=1e-12)
+        assert found == pytest.approx(secant * share * law.low[0], rel=1e-12, abs=0.0)
+        assert stiffness == pytest.approx(secant / WIDTH, rel=1e-12, abs=0.0)
 
 
 def test_no_force_no_approach_and_straight_through_zero():
     law = law_of(0.02)
     at_zero, slope, _ = approach(law, 0, 0.0)
     assert at_zero == 0.0
-    assert approach(law, 0, -1e-9)[0] == pytest.approx(-1e-9 * slope, rel=1e-12)
+    assert approach(law, 0, -1e-9)[0] == pytest.approx(-1e-9 * slope, rel=1e-12, abs=0.0)
 
 
 def test_equal_patches_far_from_the_edge_give_hertz():
@@ -141,8 +145,8 @@ def test_lengths_scale_and_forces_with_their_square(slope):
     for p in np.geomspace(1e-2 * small.low[0], 1e2 * small.high[0], 20):
         expected, stiffness, beyond = approach(small, 0, p * WIDTH)
         found = approach(large, 0, s * s * p * WIDTH)
-        assert found[0] == pytest.approx(s * expected, rel=1e-11)
-        assert found[1] == pytest.approx(stiffness / s, rel=1e-11)
+        assert found[0] == pytest.approx(s * expected, rel=1e-11, abs=0.0)
+        assert found[1] == pytest.approx(stiffness / s, rel=1e-11, abs=0.0)
         assert found[2] == beyond
 
 
@@ -155,7 +159,7 @@ def test_blunt_wedge_keeps_its_digits():
     p = 1.5 * law.low[0]
     half_width_at_edge = 2.0 * p / (math.pi * modulus * wedge) * math.exp(-0.5)
     expected = 2.0 * k * p * (math.log(patch / half_width_at_edge) + 0.25)
-    assert value(law, p) == pytest.approx(expected, rel=1e-10)
+    assert value(law, p) == pytest.approx(expected, rel=1e-10, abs=0.0)
     assert approach(law, 0, p * WIDTH)[1] * WIDTH == pytest.approx(
-        2.0 * k * (math.log(patch / half_width_at_edge) - 0.75), rel=1e-10
+        2.0 * k * (math.log(patch / half_width_at_edge) - 0.75), rel=1e-10, abs=0.0
     )

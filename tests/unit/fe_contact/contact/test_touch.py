@@ -21,7 +21,21 @@ def pair(**modification: object) -> GearPair:
     return GearPair(gear, gear, 80e-3)
 
 
-def removed(gears, roll_1, roll_2):
+class Removed:
+    """Material removed from both flanks."""
+
+    along_profile = True
+
+    def __call__(self, gears, roll_1, roll_2, face):
+        return material_removed(gears, roll_1, roll_2)
+
+
+class Constant(Removed):
+    def __call__(self, gears, roll_1, roll_2, face):
+        return np.full(roll_1.shape, 3e-6)
+
+
+def material_removed(gears, roll_1, roll_2):
     return gears.pinion.modification.material_removed(
         gears.pinion, roll_1
     ) + gears.wheel.modification.material_removed(gears.wheel, roll_2)
@@ -30,18 +44,19 @@ def removed(gears, roll_1, roll_2):
 def touches(gears, position, terms):
     roll_1, roll_2 = gears.roll_lengths(np.asarray(position)[:, None])
     plain = conjugate_touch(gears, roll_1, roll_2, corners=True)
-    return plain, modified_touch(gears, plain, terms)
+    return plain, modified_touch(gears, plain, np.zeros(1), terms)
 
 
 def test_no_modification_moves_nothing():
     gears = pair()
-    plain, modified = touches(gears, np.linspace(-0.9, 0.9, 41), (removed,))
-    assert modified is plain
+    plain, modified = touches(gears, np.linspace(-0.9, 0.9, 41), (Removed(),))
+    for name in plain.__dataclass_fields__:
+        assert np.array_equal(getattr(modified, name), getattr(plain, name))
 
 
 def test_constant_gap_only_adds():
     gears = pair()
-    plain, modified = touches(gears, [0.0, 0.3], (lambda pair, a, b: np.full(a.shape, 3e-6),))
+    plain, modified = touches(gears, [0.0, 0.3], (Constant(),))
     assert modified.gap == pytest.approx(plain.gap + 3e-6, abs=1e-15)
     assert modified.s_1 == pytest.approx(plain.s_1, abs=1e-12)
 
@@ -50,7 +65,7 @@ def test_a_relief_of_slope_m_touches_r_m_off_the_line_of_action_and_r_m2_over_2_
     """The least of (x - x0)^2/(2R) + m x is m x0 - R m^2/2 at x0 - R m."""
     gears = pair(tip_relief=10e-6, tip_relief_length=1.2e-3)
     position = [0.62]  # well within the relief of gear 1, away from its edge
-    plain, modified = touches(gears, position, (removed,))
+    plain, modified = touches(gears, position, (Removed(),))
     gear = gears.pinion
 
     def at(s):
@@ -67,13 +82,13 @@ def test_a_relief_of_slope_m_touches_r_m_off_the_line_of_action_and_r_m2_over_2_
 @pytest.mark.parametrize("position", [-0.72, -0.5, 0.3, 0.55, 0.7, 0.77])
 def test_against_a_direct_search(position):
     gears = pair(tip_relief=15e-6, tip_relief_length=0.9e-3, profile_crowning=4e-6)
-    plain, modified = touches(gears, [position], (removed,))
+    plain, modified = touches(gears, [position], (Removed(),))
     s_1, s_2, radius = (float(value[0, 0]) for value in (plain.s_1, plain.s_2, plain.radius))
     tip = float(flank_coordinate(gears.pinion, gears.pinion.tip_roll_length))
 
     def gap(x):
         roll = np.sqrt(2 * gears.pinion.base_radius * np.array([s_1 + x, s_2 - x]))
-        return x**2 / (2 * radius) + float(removed(gears, roll[:1], roll[1:])[0])
+        return x**2 / (2 * radius) + float(material_removed(gears, roll[:1], roll[1:])[0])
 
     found = min(
         minimize_scalar(gap, bounds=bounds, method="bounded", options={"xatol": 1e-12}).fun
@@ -85,14 +100,14 @@ def test_against_a_direct_search(position):
 def test_the_gap_has_no_jump_where_the_relief_starts():
     gears = pair(tip_relief=20e-6, tip_relief_length=1.0e-3)
     position = np.linspace(0.3, 0.778, 2000)
-    _, modified = touches(gears, position, (removed,))
+    _, modified = touches(gears, position, (Removed(),))
     assert np.abs(np.diff(modified.gap[:, 0])).max() < 0.1e-6
     assert np.all(modified.gap >= 0.0)
 
 
 def test_offsets_measure_the_way_to_the_tip_edge():
     gears = pair(tip_relief=15e-6, tip_relief_length=0.9e-3)
-    _, modified = touches(gears, np.linspace(-0.7, 0.7, 30), (removed,))
+    _, modified = touches(gears, np.linspace(-0.7, 0.7, 30), (Removed(),))
     tip = float(flank_coordinate(gears.pinion, gears.pinion.tip_roll_length))
     assert modified.offset_1 == pytest.approx(tip - modified.s_1, abs=1e-12)
     assert modified.offset_2 == pytest.approx(tip - modified.s_2, abs=1e-12)
@@ -101,6 +116,6 @@ def test_offsets_measure_the_way_to_the_tip_edge():
 def test_corner_contact_keeps_its_gap_and_adds_the_edge_relief():
     """Past E the edge is what touches unless the relief opens faster than the flanks."""
     gears = pair(tip_relief=2e-6, tip_relief_length=1.2e-3)
-    plain, modified = touches(gears, [0.81], (removed,))
+    plain, modified = touches(gears, [0.81], (Removed(),))
     assert 0.0 < plain.gap[0, 0] < modified.gap[0, 0] <= plain.gap[0, 0] + 2e-6 + 1e-12
     assert modified.offset_1[0, 0] < 0.0

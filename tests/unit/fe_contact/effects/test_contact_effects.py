@@ -7,8 +7,8 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
+from fe_contact.contact import PatchRule, Slices, contact_candidates, with_gaps
 from fe_contact.contact.model import ContactModel
-from fe_contact.contact.plane_candidates import PatchRule, plane_candidates
 from fe_contact.effects import ContactScene
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.profile_modification import ProfileModification
@@ -29,7 +29,8 @@ def scene(
 
 
 def candidates(case: ContactScene, model: ContactModel):
-    return plane_candidates(case.pair, model, POSITIONS, RULE)
+    plain = contact_candidates(case.pair, model, POSITIONS, RULE, Slices.of_pair(case.pair, 1))
+    return with_gaps(case.pair, plain, model)
 
 
 def assert_identical(first, second):

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 
@@ -213,3 +214,18 @@ def test_tip_that_cuts_the_mating_fillet_off_the_line_of_action_is_refused(
         teeth=39, profile_shift_coefficient=0.51, tip_diameter=2 * pinion.tip_radius - 4e-4, **rack
     )
     GearPair(lower, shorter)
+
+
+def test_the_common_face_follows_the_axial_offset():
+    narrow = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
+    wide = dataclasses.replace(narrow, face_width=30e-3)
+    shifted = GearPair(narrow, wide, 80e-3, axial_offset=10e-3)
+    assert shifted.common_face == pytest.approx((-5e-3, 10e-3))
+    assert shifted.face_width == pytest.approx(15e-3)
+    assert shifted.swapped().common_face == pytest.approx((-15e-3, 0.0))
+
+
+def test_gears_beside_each_other_are_refused():
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
+    with pytest.raises(InfeasibleGeometry, match="face overlap"):
+        GearPair(gear, gear, 80e-3, axial_offset=20e-3)

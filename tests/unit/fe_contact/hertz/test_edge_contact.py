@@ -18,7 +18,7 @@ SLOPES = [0.3, 0.02, 1e-4, 0.0, -1e-4, -0.02]
 def test_length_satisfies_equilibrium(slope):
     c = edge_contact_length(LOADS, slope, RADIUS, MODULUS)
     carried = 0.25 * math.pi * MODULUS * c * (slope + 0.75 * c / RADIUS)
-    assert carried == pytest.approx(LOADS, rel=1e-10)
+    assert carried == pytest.approx(LOADS, rel=1e-10, abs=0.0)
 
 
 @pytest.mark.parametrize("slope", SLOPES)
@@ -29,7 +29,7 @@ def test_length_grows_with_load(slope):
 def test_steep_edge_keeps_its_digits():
     # p -> 0: c = 4 p/(pi E* phi), far below where root - phi would have cancelled
     assert edge_contact_length(1e-6, 0.3, RADIUS, MODULUS) == pytest.approx(
-        4e-6 / (math.pi * MODULUS * 0.3), rel=1e-12
+        4e-6 / (math.pi * MODULUS * 0.3), rel=1e-12, abs=0.0
     )
 
 
@@ -41,19 +41,21 @@ def test_lengths_scale_with_size():
     s = 4.2
     for slope in (0.02, 0.0):
         c = edge_contact_length(LOADS, slope, RADIUS, MODULUS)
-        assert edge_contact_length(s * LOADS, slope, s * RADIUS, MODULUS) == pytest.approx(s * c, rel=1e-13)
+        assert edge_contact_length(s * LOADS, slope, s * RADIUS, MODULUS) == pytest.approx(
+            s * c, rel=1e-13, abs=0.0
+        )
         assert edge_half_width(s * c, slope, s * RADIUS) == pytest.approx(
-            s * edge_half_width(c, slope, RADIUS), rel=1e-13
+            s * edge_half_width(c, slope, RADIUS), rel=1e-13, abs=0.0
         )
 
 
 def test_parallel_flanks_at_the_edge():
     # phi = 0: pressure sqrt((c-x)/x)(x + c/2), shares 2 to 1, so w = -1/2 and b_eff = c/2
     c = edge_contact_length(LOADS, 0.0, RADIUS, MODULUS)
-    assert edge_half_width(c, 0.0, RADIUS) == pytest.approx(0.5 * c, rel=1e-14)
-    assert c == pytest.approx(2.0 / math.sqrt(3.0) * half_width(LOADS, RADIUS, MODULUS), rel=1e-14)
+    assert edge_half_width(c, 0.0, RADIUS) == pytest.approx(0.5 * c, rel=1e-14, abs=0.0)
+    assert c == pytest.approx(2.0 / math.sqrt(3.0) * half_width(LOADS, RADIUS, MODULUS), rel=1e-14, abs=0.0)
 
 
 def test_blunt_wedge_does_not_know_the_radius():
     # phi R >> c: pressure ~ sqrt((c-x)/x), w = -1
-    assert edge_half_width(1e-6, 0.5, 1.0) == pytest.approx(0.5e-6 * math.exp(-0.5), rel=1e-5)
+    assert edge_half_width(1e-6, 0.5, 1.0) == pytest.approx(0.5e-6 * math.exp(-0.5), rel=1e-5, abs=0.0)

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import MeshError
-from fe_contact.mesh.triangulation import WORKER, Region, triangulate
+from fe_contact.mesh.gmsh_child import WORKER
+from fe_contact.mesh.triangulation import Region, triangulate
 
 SQUARE = Region((np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]),))
 RING = Region(

@@ -1,19 +1,22 @@
-"""Contact of a pair in the plane: from positions and loads to a solution, with the compliance at hand."""
+"""Contact of a pair whose compliance is at hand: from positions and loads to a solution."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from fe_contact.compliance import FlankCompliance, flank_compliances
 from fe_contact.contact import (
     Candidates,
     ContactModel,
+    ContactProblem,
     ContactSolution,
+    Slices,
+    contact_candidates,
     contact_problem,
-    plane_candidates,
     solve_contact,
+    with_gaps,
 )
 from fe_contact.geometry import GearPair
 from fe_contact.mesh import MeshRecipe
@@ -22,21 +25,20 @@ from fe_contact.types import FloatArray
 
 
 @dataclass(frozen=True)
-class PlaneContact:
+class PairContact:
     """A pair whose flank compliances are known; every question about it is cheap.
 
     Attributes
     ----------
     pair : GearPair
-    model : ContactModel
     plan : Plan
     compliances : (FlankCompliance, FlankCompliance)
     """
 
     pair: GearPair
-    model: ContactModel
     plan: Plan
     compliances: tuple[FlankCompliance, FlankCompliance]
+    _problems: dict[tuple[bytes, bool, bool], ContactProblem] = field(default_factory=dict, repr=False)
 
     @property
     def contact_modulus(self) -> float:
@@ -44,15 +46,22 @@ class PlaneContact:
         first, second = self.compliances
         return 1.0 / (1.0 / first.contact_modulus + 1.0 / second.contact_modulus)
 
-    def candidates(self, position: FloatArray) -> Candidates:
-        """Candidates at positions (P,)."""
-        return plane_candidates(self.pair, self.model, position, self.plan.patch)
-
-    def solve(self, position: FloatArray, load: FloatArray) -> tuple[Candidates, ContactSolution]:
+    def solve(
+        self, model: ContactModel, position: FloatArray, load: FloatArray
+    ) -> tuple[Candidates, ContactSolution]:
         """Solve positions (P,) at normal forces (L,) in N."""
-        candidates = self.candidates(position)
-        problem = contact_problem(candidates, self.compliances, self.model.couple_teeth)
-        return candidates, solve_contact(problem, load)
+        problem = self._problem(model, position)
+        candidates = with_gaps(self.pair, problem.candidates, model)
+        return candidates, solve_contact(problem.touching(candidates), load)
+
+    def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
+        """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
+        key = (position.tobytes(), model.corner_contact, model.couple_teeth)
+        if key not in self._problems:
+            slices = Slices.of_pair(self.pair, 1)
+            candidates = contact_candidates(self.pair, model, position, self.plan.patch, slices)
+            self._problems[key] = contact_problem(candidates, self.compliances, model.couple_teeth)
+        return self._problems[key]
 
 
 def plane_compliances(

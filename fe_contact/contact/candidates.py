@@ -1,0 +1,120 @@
+"""Contact candidates: one per tooth pair and slice, on the line of action or at a tip edge."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.contact.patch import Patches, tip_patches
+from fe_contact.contact.problem import Candidates
+from fe_contact.contact.slices import Slices
+from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
+from fe_contact.geometry import GearPair
+from fe_contact.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class PatchRule:
+    """How wide the load patches are.
+
+    Attributes
+    ----------
+    half_width : float
+        Away from the tip edges, m.
+    edge_length : float
+        Length of the patch at a tip edge, m.
+    """
+
+    half_width: float
+    edge_length: float
+
+
+def contact_candidates(
+    pair: GearPair, model: ContactModel, position: FloatArray, rule: PatchRule, slices: Slices
+) -> Candidates:
+    """Find where the tooth pairs can touch at each position.
+
+    Parameters
+    ----------
+    pair : GearPair
+    model : ContactModel
+        Whether tip edges may touch; its gaps are added by `with_gaps`.
+    position : ndarray, shape (P,)
+        Base pitches by the driving gear's angle.
+    rule : PatchRule
+    slices : Slices
+
+    Returns
+    -------
+    Candidates
+        Of plain involutes: n = pairs x slices, pairs that touch nowhere left out.
+    """
+    index = _pair_indices(pair, position, slices)
+    pairs, face = np.repeat(index, slices.center.size), np.tile(slices.center, index.size)
+    roll_1, _ = pair.roll_lengths(position[:, None], pairs)
+    # on a right-hand driving gear the contact line runs towards the root as the face position grows
+    roll_1 = roll_1 - face * math.tan(pair.base_helix_angle)
+    touch = conjugate_touch(pair, roll_1, pair.common_tangent - roll_1, model.corner_contact)
+    touching = np.any(np.isfinite(touch.gap), axis=0).reshape(index.size, -1).any(axis=1)
+    keep = np.repeat(touching, slices.center.size)
+    return _candidates(pair, position, pairs[keep], face[keep], touch.columns(keep), rule, slices.width)
+
+
+def with_gaps(pair: GearPair, candidates: Candidates, model: ContactModel) -> Candidates:
+    """Add the gaps of the model: how far apart the rigid flanks are, and how they open at a tip edge.
+
+    The load patches stay where plain involutes touch, so that the compliance between the candidates depends
+    on the macro geometry alone and serves every modification, misalignment and load.
+    """
+    if not model.gaps:
+        return candidates
+    touch = modified_touch(pair, candidates.touch, candidates.face_position, model.gaps)
+    return candidates.touching(touch)
+
+
+def _pair_indices(pair: GearPair, position: FloatArray, slices: Slices) -> IntArray:
+    """Return all pairs between A and E in any slice, and one more beyond either end."""
+    path = pair.path_of_contact
+    lead = slices.center * math.tan(pair.base_helix_angle)
+    first = np.floor((path.start - path.pitch_point + lead.min()) / path.base_pitch - position.max())
+    last = np.ceil((path.end - path.pitch_point + lead.max()) / path.base_pitch - position.min())
+    return np.arange(int(first), int(last) + 1)
+
+
+def _candidates(
+    pair: GearPair,
+    position: FloatArray,
+    pairs: IntArray,
+    face: FloatArray,
+    touch: Touch,
+    rule: PatchRule,
+    slice_width: float,
+) -> Candidates:
+    """Turn touching points into patches."""
+    tip_1 = float(flank_coordinate(pair.pinion, pair.pinion.tip_roll_length))
+    tip_2 = float(flank_coordinate(pair.wheel, pair.wheel.tip_roll_length))
+    shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, rule)
+    shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, rule)
+    return Candidates(
+        position=position,
+        pair=pairs,
+        face_position=face,
+        touch=touch,
+        patch_1=_patches(touch.s_1, touch.offset_1, tip_1, shift_1, rule),
+        patch_2=_patches(touch.s_2, touch.offset_2, tip_2, shift_2, rule),
+        slice_width=slice_width,
+        base_helix_angle=pair.base_helix_angle,
+    )
+
+
+def _shift(s: FloatArray, offset: FloatArray, tip: float, rule: PatchRule) -> FloatArray:
+    """How far the partner's edge moves the load's centroid to its root, m: both forces must be in line."""
+    return np.maximum(s - tip_patches(s, offset, tip, rule.half_width, rule.edge_length).centroid, 0.0)
+
+
+def _patches(s: FloatArray, offset: FloatArray, tip: float, shift: FloatArray, rule: PatchRule) -> Patches:
+    """Patches of one gear; beside the partner's edge they follow its load towards the own tip."""
+    return tip_patches(s + shift, offset - shift, tip, rule.half_width, rule.edge_length)

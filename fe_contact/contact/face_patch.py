@@ -1,0 +1,271 @@
+"""Load patches on a flank of finite width: their nodal forces, and the compliance between them.
+
+A patch is the plane patch of `fe_contact.contact.patch` along the profile times a box along the face. The
+flank is a grid of 8-node faces whose shape functions are sums of products of one-dimensional terms, so their
+integrals come from three moments of either factor.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from fe_contact.types import FloatArray, IntArray
+
+_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+
+class FaceGrid(NamedTuple):
+    """Nodes of one flank.
+
+    Attributes
+    ----------
+    s : ndarray, shape (k,)
+        Flank coordinates, corner and mid-side nodes in turn, m.
+    z : ndarray, shape (L + 1,)
+        Ends of the layers along the face, m.
+    freedom : ndarray of int, shape (2 L + 1, k)
+        Freedom at each plane (layer ends and middles in turn) and profile node; -1 at the centres of faces.
+    """
+
+    s: FloatArray
+    z: FloatArray
+    freedom: IntArray
+
+
+class FaceLoads(NamedTuple):
+    """Nodal forces of n unit patches: freedoms and forces (n, w); the first `used` (n,) of each count."""
+
+    nodes: IntArray
+    forces: FloatArray
+    used: IntArray
+
+
+@njit(cache=True)
+def face_loads(
+    grid: FaceGrid,
+    center: FloatArray,
+    half_width: FloatArray,
+    edge_share: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+) -> FaceLoads:
+    """Nodal forces of unit patches.
+
+    Parameters
+    ----------
+    grid : FaceGrid
+    center, half_width, edge_share : ndarray, shape (n,)
+        See `fe_contact.contact.patch.Patches`.
+    low, high : ndarray, shape (n,)
+        Range along the face, m, within `grid.z`.
+    """
+    n = center.size
+    width = 0
+    for p in range(n):
+        along = _touched(grid.s[::2], center[p] - half_width[p], center[p] + half_width[p])
+        across = _touched(grid.z, low[p], high[p])
+        width = max(width, (2 * along + 1) * (2 * across + 1))
+    nodes = np.full((n, width), -1, dtype=np.int64)
+    forces = np.zeros((n, width))
+    count = np.zeros(n, dtype=np.int64)
+    along_moments, across_moments = np.zeros(3), np.zeros(3)
+    for p in range(n):
+        for e in range((grid.s.size - 1) // 2):
+            if not _overlaps(
+                grid.s[2 * e], grid.s[2 * e + 2], center[p] - half_width[p], center[p] + half_width[p]
+            ):
+                continue
+            _profile_moments(
+                grid.s[2 * e], grid.s[2 * e + 2], center[p], half_width[p], edge_share[p], along_moments
+            )
+            for k in range(grid.z.size - 1):
+                if _overlaps(grid.z[k], grid.z[k + 1], low[p], high[p]):
+                    _box_moments(grid.z[k], grid.z[k + 1], low[p], high[p], across_moments)
+                    _add_face(
+                        grid.freedom,
+                        e,
+                        k,
+                        along_moments,
+                        across_moments,
+                        nodes[p],
+                        forces[p],
+                        count[p : p + 1],
+                    )
+    return FaceLoads(nodes, forces, count)
+
+
+@njit(cache=True)
+def _overlaps(left: float, right: float, low: float, high: float) -> bool:
+    """Whether two intervals share more than a point."""
+    return right > low and left < high
+
+
+@njit(cache=True)
+def _touched(ends: FloatArray, low: float, high: float) -> int:
+    """Count the elements between consecutive ends that the interval overlaps."""
+    count = 0
+    for e in range(ends.size - 1):
+        count += _overlaps(ends[e], ends[e + 1], low, high)
+    return count
+
+
+@njit(cache=True)
+def _profile_moments(
+    left: float, right: float, center: float, half_width: float, edge_share: float, out: FloatArray
+) -> None:
+    """Moments 0 to 2 of the load on one element, in its coordinate from -1 to 1."""
+    start = math.asin(min(max((left - center) / half_width, -1.0), 1.0))
+    stop = math.asin(min(max((right - center) / half_width, -1.0), 1.0))
+    out[:] = 0.0
+    for g in range(_GAUSS_POINTS.size):
+        sine = math.sin(0.5 * (start + stop) + 0.5 * (stop - start) * _GAUSS_POINTS[g])
+        density = (1.0 - edge_share) * 2.0 * (1.0 - sine * sine) + edge_share * (1.0 + sine)
+        weight = density / math.pi * 0.5 * (stop - start) * _GAUSS_WEIGHTS[g]
+        x = 2.0 * (center + half_width * sine - left) / (right - left) - 1.0
+        out[0] += weight
+        out[1] += weight * x
+        out[2] += weight * x * x
+
+
+@njit(cache=True)
+def _box_moments(left: float, right: float, low: float, high: float, out: FloatArray) -> None:
+    """Moments 0 to 2 of a unit box load on one layer, in its coordinate from -1 to 1."""
+    start = 2.0 * (max(left, low) - left) / (right - left) - 1.0
+    stop = 2.0 * (min(right, high) - left) / (right - left) - 1.0
+    density = 0.5 * (right - left) / (high - low)
+    out[0] = density * (stop - start)
+    out[1] = density * (stop**2 - start**2) / 2.0
+    out[2] = density * (stop**3 - start**3) / 3.0
+
+
+@njit(cache=True)
+def _add_face(
+    index: IntArray,
+    e: int,
+    k: int,
+    x: FloatArray,
+    y: FloatArray,
+    nodes: IntArray,
+    forces: FloatArray,
+    count: IntArray,
+) -> None:
+    """Add the eight nodal forces of one face, joining nodes already there."""
+    for i in range(3):
+        for j in range(3):
+            if i == 1 and j == 1:
+                continue
+            a, b = i - 1.0, j - 1.0
+            if a != 0.0 and b != 0.0:  # (1 + a x)(1 + b y)(a x + b y - 1)/4
+                force = 0.25 * (
+                    x[2] * y[0]
+                    + x[0] * y[2]
+                    - x[0] * y[0]
+                    + a * b * x[1] * y[1]
+                    + b * x[2] * y[1]
+                    + a * x[1] * y[2]
+                )
+            elif b != 0.0:  # (1 - x^2)(1 + b y)/2
+                force = 0.5 * (x[0] - x[2]) * (y[0] + b * y[1])
+            else:  # (1 + a x)(1 - y^2)/2
+                force = 0.5 * (x[0] + a * x[1]) * (y[0] - y[2])
+            node = index[2 * k + j, 2 * e + i]
+            place = 0
+            while place < count[0] and nodes[place] != node:
+                place += 1
+            if place == count[0]:
+                nodes[place] = node
+                count[0] += 1
+            forces[place] += force
+
+
+def responses(blocks: FloatArray) -> FloatArray:
+    """Displacements by force: row a of entry r + m is what a unit force at a on tooth j moves on tooth j + m.
+
+    Parameters
+    ----------
+    blocks : ndarray, shape (r + 1, f, f)
+        blocks[m]: displacement on tooth j + m per force on tooth j; its transpose for -m.
+
+    Returns
+    -------
+    ndarray, shape (2 r + 1, f, f)
+    """
+    return np.ascontiguousarray(np.concatenate([blocks[:0:-1], blocks.transpose(0, 2, 1)]))
+
+
+@njit(cache=True)
+def add_compliance(
+    response: FloatArray,
+    tooth: IntArray,
+    loads: FaceLoads,
+    lever: FloatArray,
+    present: IntArray,
+    out: FloatArray,
+) -> None:
+    """Add lever_i lever_j f_i' S f_j to `out` (n, n).
+
+    Parameters
+    ----------
+    response : ndarray, shape (2 r + 1, f, f)
+        See `responses`.
+    tooth : ndarray of int, shape (n,)
+        Tooth of each patch, counted counter-clockwise; patches of one tooth stand together.
+    loads : FaceLoads
+    lever : ndarray, shape (n,)
+    present : ndarray of int, shape (m,)
+        Patches to take, increasing.
+    """
+    reach = response.shape[0] // 2
+    moved = np.zeros(response.shape[1])
+    needed = np.zeros(response.shape[1], dtype=np.int64)
+    for jj in range(present.size):
+        j = present[jj]
+        for ii in range(jj, present.size):
+            i = present[ii]
+            apart = tooth[i] - tooth[j]
+            if abs(apart) > reach:
+                continue
+            if ii == jj or tooth[i] != tooth[present[ii - 1]]:
+                count = _needed(tooth, loads, present, ii, needed)
+                _displace(response[reach + apart], loads, j, needed[:count], moved)
+            value = 0.0
+            for p in range(loads.used[i]):
+                value += moved[loads.nodes[i, p]] * loads.forces[i, p]
+            value *= lever[i] * lever[j]
+            out[i, j] += value
+            if i != j:
+                out[j, i] += value
+
+
+@njit(cache=True)
+def _needed(tooth: IntArray, loads: FaceLoads, present: IntArray, first: int, out: IntArray) -> int:
+    """List the freedoms that the patches of one tooth, from `first` on, load; return how many."""
+    seen = np.zeros(out.size, dtype=np.bool_)
+    count = 0
+    for ii in range(first, present.size):
+        i = present[ii]
+        if tooth[i] != tooth[present[first]]:
+            break
+        for p in range(loads.used[i]):
+            node = loads.nodes[i, p]
+            if not seen[node]:
+                seen[node] = True
+                out[count] = node
+                count += 1
+    return count
+
+
+@njit(cache=True)
+def _displace(response: FloatArray, loads: FaceLoads, j: int, needed: IntArray, moved: FloatArray) -> None:
+    """Displacement of the freedoms `needed` under patch j."""
+    for a in needed:
+        moved[a] = 0.0
+    for q in range(loads.used[j]):
+        row = response[loads.nodes[j, q]]
+        force = loads.forces[j, q]
+        for a in needed:
+            moved[a] += row[a] * force
