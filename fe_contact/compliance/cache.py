@@ -8,18 +8,20 @@ import os
 import sys
 import tempfile
 import zipfile
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
+from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.types import Json
 
 ENVIRONMENT = "LINEOFACTION_CACHE"
 OFF = ("", "0", "off", "none")
-ARRAYS = ("s", "teeth", "matrix")
+NOT_ARRAYS = ("facts", "checksum")
+Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D)
 
 
 def default_cache_directory() -> Path | None:
@@ -44,27 +46,29 @@ def content_hash(content: Json) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-def read_compliance(directory: Path, key: str) -> FlankCompliance | None:
+def read_compliance(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
     """Return the compliance kept under `key`, or None if there is none or its file is damaged."""
     try:
         # NumPy leaves a file it opened itself open when the content is damaged.
         with _file(directory, key).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in ARRAYS}
+            arrays = {name: file[name] for name in file.files if name not in NOT_ARRAYS}
             facts = str(file["facts"])
             intact = str(file["checksum"]) == _checksum(arrays, facts)
-        return _restored(arrays, json.loads(facts)) if intact else None
+        return _restored(kind, arrays, json.loads(facts)) if intact else None
     # What a truncated, overwritten or foreign file makes NumPy, zipfile, json and the constructors raise.
     except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
         return None
 
 
-def write_compliance(directory: Path, key: str, compliance: FlankCompliance) -> None:
+def write_compliance(directory: Path, key: str, compliance: FlankCompliance | FlankCompliance3D) -> None:
     """Keep a compliance under `key`; a reader sees the whole file or none.
 
     A directory that cannot be written is no reason to lose the result: it is left as it is.
     """
-    arrays = {name: np.asarray(getattr(compliance, name)) for name in ARRAYS}
-    facts = json.dumps({k: v for k, v in asdict(compliance).items() if k not in (*ARRAYS, "from_cache")})
+    content = {f.name: getattr(compliance, f.name) for f in fields(compliance) if f.name != "from_cache"}
+    arrays = {name: value for name, value in content.items() if isinstance(value, np.ndarray)}
+    plain = {name: value for name, value in content.items() if name not in arrays}
+    facts = json.dumps(plain | {"checks": asdict(compliance.checks)})
     try:
         directory.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=directory, suffix=".partial")
@@ -86,15 +90,15 @@ def _file(directory: Path, key: str) -> Path:
 def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
     """Return the SHA-256 of what a file holds."""
     digest = hashlib.sha256(facts.encode())
-    for name in ARRAYS:
-        array = np.ascontiguousarray(arrays[name])
+    for name, value in arrays.items():
+        array = np.ascontiguousarray(value)
         digest.update(f"{name} {array.dtype.str} {array.shape}".encode())
         digest.update(array.tobytes())
     return digest.hexdigest()
 
 
-def _restored(arrays: dict[str, np.ndarray[Any, Any]], facts: Json) -> FlankCompliance:
+def _restored(kind: type[Kept], arrays: dict[str, np.ndarray[Any, Any]], facts: Json) -> Kept:
     """Build the compliance again."""
     checks = ComplianceChecks(**facts.pop("checks"))
-    fields: dict[str, Any] = arrays | facts | {"checks": checks, "from_cache": True}
-    return FlankCompliance(**fields)
+    content: dict[str, Any] = arrays | facts | {"checks": checks, "from_cache": True}
+    return kind(**content)

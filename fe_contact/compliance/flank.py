@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
 
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, IntArray
@@ -93,7 +94,18 @@ class FlankCompliance:
         return self.matrix[rows : rows + k, columns : columns + k]
 
 
-def refuse_broken_laws(compliance: FlankCompliance, limits: ComplianceChecks = LIMITS) -> FlankCompliance:
+class HasChecks(Protocol):
+    """Any compliance, of the transverse section or over the face."""
+
+    @property
+    def checks(self) -> ComplianceChecks:
+        """Laws kept."""
+
+
+Checked = TypeVar("Checked", bound=HasChecks)
+
+
+def refuse_broken_laws(compliance: Checked, limits: ComplianceChecks = LIMITS) -> Checked:
     """Return a compliance whose checks keep `limits`.
 
     Raises

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import time
 from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
@@ -18,6 +16,7 @@ from fe_contact.compliance.plane import PlaneHypothesis
 from fe_contact.compliance.ring_2d import Ring, assemble_ring, flank_matrix
 from fe_contact.compliance.sector_2d import condense_sector
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
+from fe_contact.compliance.stage_clock import StageClock
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
@@ -66,7 +65,7 @@ def flank_compliance(
     recipe, solver = recipe or MeshRecipe.standard(gear), solver or SuperLuMetis()
     count = condensed_teeth(gear, recipe, teeth)
     key = compliance_key(gear, recipe, hypothesis, count, solver)
-    kept = read_compliance(cache, key) if cache is not None else None
+    kept = read_compliance(cache, key, FlankCompliance) if cache is not None else None
     if kept is not None:
         return kept
     result = compute_flank_compliance(gear, recipe, hypothesis, count, solver)
@@ -181,21 +180,3 @@ def tooth_indices(mesh: GearMesh, teeth: int) -> IntArray:
     """Return where the `teeth` teeth around tooth 0 stand in `mesh.teeth`."""
     centre = int(np.flatnonzero(mesh.teeth == 0)[0])
     return centre + np.arange(teeth) - (teeth - 1) // 2
-
-
-class StageClock:
-    """CPU seconds of this process and its finished children, stage by stage."""
-
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
-        self._last = self._now()
-
-    def finish(self, stage: str) -> None:
-        """Book the time since the last stage."""
-        now = self._now()
-        self.seconds[stage], self._last = now - self._last, now
-
-    @staticmethod
-    def _now() -> float:
-        times = os.times()
-        return time.process_time() + times.children_user + times.children_system

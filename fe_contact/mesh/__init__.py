@@ -1,16 +1,28 @@
-"""Meshes: gmsh triangles on exact tooth profiles, made in a child process, checked for quality."""
+"""Meshes on exact tooth profiles, made by gmsh in a child process, checked for quality."""
 
+from fe_contact.mesh.bore_support import BoreSupport, ClampedBore, PlaneStrain
 from fe_contact.mesh.gear_mesh import FlankNodes, GearMesh
 from fe_contact.mesh.meshing import mesh_gear
+from fe_contact.mesh.quad_sector import QuadSector, quad_sector
 from fe_contact.mesh.quality import MeshQuality, QualityLimits, mesh_quality
 from fe_contact.mesh.recipe import MeshRecipe
+from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 
 __all__ = [
+    "BoreSupport",
+    "ClampedBore",
     "FlankNodes",
     "GearMesh",
     "MeshQuality",
     "MeshRecipe",
+    "PlaneStrain",
+    "QuadSector",
     "QualityLimits",
+    "SectorRecipe",
+    "SweptSector",
     "mesh_gear",
     "mesh_quality",
+    "quad_sector",
+    "swept_sector",
 ]

@@ -1,6 +1,6 @@
-"""Child process that turns polygons into triangles with gmsh, and does nothing else.
+"""Child process that meshes polygons with gmsh, and does nothing else.
 
-Run as a script by `fe_contact.mesh.triangulation`, never imported by it: gmsh changes signal handlers, may
+Run as a script by `fe_contact.mesh.gmsh_child`, never imported by it: gmsh changes signal handlers, may
 crash on hard input and keeps global state, so it lives and dies here. It reads one JSON object from
 standard input and writes one to standard output::
 
@@ -8,7 +8,13 @@ standard input and writes one to standard output::
     {"regions": [{"points": [[x, y], ...], "triangles": [[i, j, k], ...]}, ...]}   or   {"error": "..."}
 
 The first loop of a region is its outer boundary, further ones are holes. The loops' points come first in
-``points``, in their order; no edge of a loop is divided. Keep the imports few: they are most of the run time.
+``points``, in their order; no edge of a loop is divided. Or it fills four-sided blocks with quadrilaterals::
+
+    {"blocks": [[bottom, right, top, left], ...], "seconds": 60}    side = [[x, y], ...], counter-clockwise
+    {"blocks": [[row, ...], ...]}                                   row = [[x, y], ...], from left to right
+
+Opposite sides have as many points; rows run from the bottom to the top, both included.
+Keep the imports few: they are most of the run time.
 """
 
 from __future__ import annotations
@@ -24,6 +30,7 @@ RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 
 
 FRONTAL_DELAUNAY = 6
+QUADRILATERAL = 3
 
 
 def start_gmsh() -> Any:
@@ -103,6 +110,55 @@ def triangulate(
     return {"points": points, "triangles": [corners[i : i + 3] for i in range(0, len(corners), 3)]}
 
 
+def fill_block(gmsh: Any, sides: list[list[list[float]]]) -> list[list[list[float]]]:
+    """Fill a four-sided block by transfinite interpolation; return its rows of points."""
+    gmsh.clear()
+    gmsh.model.add("block")
+    tags, loop = add_loop(gmsh, [xy for side in sides for xy in side[:-1]])
+    geo, corners = gmsh.model.geo, [0]
+    surface = geo.addPlaneSurface([loop])
+    for side in sides:
+        corners.append(corners[-1] + len(side) - 1)
+    geo.mesh.setTransfiniteSurface(surface, cornerTags=[tags[i] for i in corners[:4]])
+    geo.mesh.setRecombine(2, surface)
+    geo.synchronize()
+    gmsh.model.mesh.generate(2)
+    flat = [int(tag) for tag in gmsh.model.mesh.getElementsByType(QUADRILATERAL)[1]]
+    bottom = [int(gmsh.model.mesh.getNodes(0, tag)[0][0]) for tag in tags[: len(sides[0])]]
+    rows = rows_above(bottom, [flat[i : i + 4] for i in range(0, len(flat), 4)])
+    numbers, xyz, _ = gmsh.model.mesh.getNodes()
+    where = {int(tag): [xyz[3 * i], xyz[3 * i + 1]] for i, tag in enumerate(numbers)}
+    return [[where[tag] for tag in row] for row in rows]
+
+
+def rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:
+    """Order the nodes of a structured mesh in rows, walking up from the bottom one.
+
+    Relies on nothing but which quadrilaterals share a side.
+    """
+    beside: dict[frozenset[int], list[int]] = {}
+    for number, quad in enumerate(quads):
+        for a, b in zip(quad, quad[1:] + quad[:1], strict=True):
+            beside.setdefault(frozenset((a, b)), []).append(number)
+    rows: list[list[int]] = [bottom]
+    used: set[int] = set()
+    while len(used) < len(quads):
+        row: list[int] = []
+        for a, b in zip(rows[-1], rows[-1][1:], strict=False):
+            (number,) = set(beside[frozenset((a, b))]) - used
+            used.add(number)
+            row += [neighbour(quads[number], a, b)] if not row else []
+            row.append(neighbour(quads[number], b, a))
+        rows.append(row)
+    return rows
+
+
+def neighbour(quad: list[int], node: int, other: int) -> int:
+    """Return the neighbour of a corner that is not `other`."""
+    i = quad.index(node)
+    return quad[i - 1] if quad[i - 1] != other else quad[(i + 1) % 4]
+
+
 def main() -> None:
     """Answer the one request on standard input."""
     answer_to = os.dup(1)
@@ -112,7 +168,8 @@ def main() -> None:
     try:
         gmsh = start_gmsh()
         answer: dict[str, Any] = {
-            "regions": [triangulate(gmsh, loops, request["growth"]) for loops in request["regions"]]
+            "regions": [triangulate(gmsh, loops, request["growth"]) for loops in request.get("regions", [])],
+            "blocks": [fill_block(gmsh, sides) for sides in request.get("blocks", [])],
         }
     except Exception as error:  # noqa: BLE001 - gmsh raises bare Exception; the parent turns the text into a MeshError
         answer = {"error": str(error) or type(error).__name__}

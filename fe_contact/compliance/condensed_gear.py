@@ -1,0 +1,64 @@
+"""A whole gear with all teeth real, solved on the freedoms of one tooth sector."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.compliance.checks_3d import CondensedGear, probe_loads
+from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
+from fe_contact.compliance.elimination_tree import EliminationTree, elimination_tree
+from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
+from fe_contact.compliance.stage_clock import StageClock
+from fe_contact.compliance.substructure import condense
+from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.mesh.bore_support import BoreSupport
+from fe_contact.mesh.quad_sector import QuadSector
+from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.mesh.swept_sector import SweptSector, swept_sector
+from fe_contact.types import FloatArray
+
+
+def sector_tree(sector: SweptSector) -> EliminationTree:
+    """Return the elimination that keeps flank normals, left cut and right cut, in this order."""
+    kept = np.concatenate([sector.flank, sector.left, sector.right])
+    free = sector.freedoms.max(axis=1) >= 0
+    nodes = np.where(free[sector.elements], sector.elements, -1)
+    return elimination_tree(nodes, sector.element_freedoms, sector.place, kept)
+
+
+def condensed_gear(
+    gear: Gear, section: QuadSector, recipe: SectorRecipe, reach: int, support: BoreSupport, clock: StageClock
+) -> tuple[CondensedGear, FloatArray]:
+    """Sweep, condense one sector and close the ring.
+
+    Parameters
+    ----------
+    gear : Gear
+        Right hand or spur.
+    section : QuadSector
+        Mesh of its transverse section.
+    recipe : SectorRecipe
+        Layers.
+    reach : int
+        Largest distance in teeth that is kept.
+    support : BoreSupport
+        How the bore is held.
+    clock : StageClock
+        Gets the stages ``assembly``, ``condensation``, ``ring``.
+
+    Returns
+    -------
+    CondensedGear, (nf, 2) array
+        The solution and the probe loads it was solved for, N.
+    """
+    sector = swept_sector(section.grid, gear.face_width, recipe, support)
+    stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
+    clock.finish("assembly")
+    condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness)
+    clock.finish("condensation")
+    held = hold_sector(condensation.matrix, len(sector.flank))
+    s_form = tooth_profile(gear).s_form
+    loads = probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
+    ring = close_ring(held, gear.teeth, reach, loads)
+    clock.finish("ring")
+    return CondensedGear(sector, stiffness, condensation, held, ring), loads

@@ -1,0 +1,190 @@
+"""Nested bisection of a structured mesh: in which order freedoms are eliminated, and what that costs.
+
+The symbolic half of the substructuring; it needs the topology only. A *front* gathers the freedoms of a group
+of elements; those that no other element has are eliminated, the others go up to the group it is half of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+LEAF = 16  # elements gathered in one front: fewer cost more interpreter time, more cost more operations
+OFF_CENTRE = 8.0  # dislike of unequal halves against a short cut
+
+
+@dataclass(frozen=True)
+class Front:
+    """One group of elements.
+
+    Attributes
+    ----------
+    elements : int array
+        Elements gathered here; empty if there are children.
+    children : tuple of Front
+        The halves of the group.
+    inner, border : int arrays
+        Freedoms eliminated here, and those that go up, both by increasing position in the elimination.
+    """
+
+    elements: IntArray
+    children: tuple[Front, ...]
+    inner: IntArray
+    border: IntArray
+
+    def fronts(self) -> Iterator[Front]:
+        """Yield all fronts, children before their parent."""
+        for child in self.children:
+            yield from child.fronts()
+        yield self
+
+
+@dataclass(frozen=True)
+class EliminationTree:
+    """The order of an elimination.
+
+    Attributes
+    ----------
+    root : Front
+        Its border are the kept freedoms.
+    order : (n,) int array
+        Position of each freedom in the elimination; kept ones are last, in the order they were asked for.
+    """
+
+    root: Front
+    order: IntArray
+
+    @property
+    def operations(self) -> float:
+        """Multiplications with additions of the dense factorisations: Cholesky, triangular solve, update."""
+        sizes = ((float(len(f.inner)), float(len(f.border))) for f in self.root.fronts())
+        return sum(i**3 / 6.0 + 0.5 * i * i * b + 0.5 * i * b * b for i, b in sizes)
+
+    @property
+    def factor_entries(self) -> int:
+        """Numbers held by the factors."""
+        return sum(len(f.inner) * (len(f.inner) + len(f.border)) for f in self.root.fronts())
+
+    @property
+    def front_entries(self) -> int:
+        """Numbers copied in gathering the fronts."""
+        return sum((len(f.inner) + len(f.border)) ** 2 for f in self.root.fronts())
+
+    @property
+    def front_count(self) -> int:
+        """Number of fronts."""
+        return sum(1 for _ in self.root.fronts())
+
+    def working_entries(self) -> int:
+        """Most numbers held at a time besides factors, and what they leave behind."""
+        return _working(self.root)
+
+
+def _working(front: Front) -> int:
+    """Return the peak of one front: its children's results wait for it, then it is copied once."""
+    peak = held = 0
+    for child in front.children:
+        peak = max(peak, held + _working(child))
+        held += len(child.border) ** 2
+    return max(peak, held + 2 * (len(front.inner) + len(front.border)) ** 2)
+
+
+def elimination_tree(
+    nodes: IntArray, freedoms: IntArray, place: FloatArray, kept: IntArray, leaf: int = LEAF
+) -> EliminationTree:
+    """Bisect the elements along grid lines and eliminate every freedom as soon as it is complete.
+
+    Parameters
+    ----------
+    nodes : (e, p) int array
+        Nodes of the elements, -1 where nothing is free.
+    freedoms : (e, q) int array
+        Freedoms of the elements, 0 .. n - 1, -1 where held.
+    place : (e, d) array
+        Position of each element on the logical grid.
+    kept : int array
+        Freedoms not to be eliminated.
+    leaf : int
+        Most elements gathered in one front.
+    """
+    builder = _Builder(nodes, freedoms, place, kept, leaf)
+    draft = builder.build(np.arange(len(nodes)))
+    builder.order[kept] = builder.done + np.arange(len(kept))
+    return EliminationTree(_sorted(draft, builder.order), builder.order)
+
+
+@dataclass(frozen=True)
+class _Draft:
+    """A front before the whole order is known; `count` says in how many elements border freedoms occurred."""
+
+    elements: IntArray
+    children: tuple[_Draft, ...]
+    inner: IntArray
+    border: IntArray
+    count: IntArray
+
+
+def _sorted(draft: _Draft, order: IntArray) -> Front:
+    """Return the front with its border in the order of elimination."""
+    border = draft.border[np.argsort(order[draft.border])]
+    return Front(draft.elements, tuple(_sorted(c, order) for c in draft.children), draft.inner, border)
+
+
+class _Builder:
+    """Counts occurrences of freedoms while the tree grows."""
+
+    def __init__(
+        self, nodes: IntArray, freedoms: IntArray, place: FloatArray, kept: IntArray, leaf: int
+    ) -> None:
+        self.nodes, self.freedoms, self.place, self.leaf = nodes, freedoms, place, leaf
+        self.occurrences = np.bincount(freedoms[freedoms >= 0])
+        self.occurrences[kept] += 1  # never complete
+        self.order = np.full(len(self.occurrences), -1)
+        self.done = 0
+        self._seen = np.zeros(nodes.max() + 1, dtype=bool)
+
+    def build(self, group: IntArray) -> _Draft:
+        """Return the front of a group of elements and number what it eliminates."""
+        if len(group) <= self.leaf:
+            children: tuple[_Draft, ...] = ()
+            own = self.freedoms[group]
+            freedoms, count = np.unique(own[own >= 0], return_counts=True)
+        else:
+            children = tuple(self.build(half) for half in self._halves(group))
+            freedoms, inverse = np.unique(np.concatenate([c.border for c in children]), return_inverse=True)
+            count = np.bincount(inverse, np.concatenate([c.count for c in children])).astype(np.int64)
+        complete = count == self.occurrences[freedoms]
+        inner = freedoms[complete]
+        self.order[inner] = self.done + np.arange(len(inner))
+        self.done += len(inner)
+        return _Draft(
+            group[: 0 if children else None], children, inner, freedoms[~complete], count[~complete]
+        )
+
+    def _halves(self, group: IntArray) -> tuple[IntArray, IntArray]:
+        """Cut a group along the grid line that leaves the fewest shared nodes and fair halves."""
+        cuts: list[tuple[float, int, BoolArray]] = []
+        for line in self.place[group].T:
+            values, count = np.unique(line, return_counts=True)
+            if len(values) < 2:
+                continue
+            share = np.cumsum(count)[:-1] / len(group)
+            i = int(np.argmin(np.abs(share - 0.5)))
+            low = line <= values[i]
+            shared = self._shared(group[low], group[~low])
+            cuts.append((shared * (1.0 + OFF_CENTRE * (share[i] - 0.5) ** 2), len(cuts), low))
+        _, _, low = min(cuts, key=lambda cut: cut[:2])
+        return group[low], group[~low]
+
+    def _shared(self, group: IntArray, other: IntArray) -> int:
+        """Return the number of nodes that two groups share."""
+        mine, theirs = self.nodes[group], self.nodes[other]
+        mine = mine[mine >= 0]
+        self._seen[mine] = True
+        count = int(self._seen[np.unique(theirs[theirs >= 0])].sum())
+        self._seen[mine] = False
+        return count

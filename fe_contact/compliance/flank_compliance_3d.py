@@ -1,0 +1,154 @@
+"""From a gear to its flank compliance over the face width: mesh, condense a sector, close the ring, check."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+
+from fe_contact.checks import integer
+from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
+from fe_contact.compliance.flank import refuse_broken_laws
+from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.compliance.stage_clock import StageClock
+from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
+from fe_contact.mesh.quad_sector import quad_sector
+from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.types import Json
+
+MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found
+SOLVER = "dense substructures and cyclic harmonics (LAPACK)"
+
+
+def flank_compliance_3d(
+    gear: Gear,
+    recipe: SectorRecipe | None = None,
+    *,
+    reach: int | None = None,
+    support: BoreSupport | None = None,
+    cache: Path | None = None,
+) -> FlankCompliance3D:
+    """Return the compliance of the right flanks of a gear over its face width; all teeth are real.
+
+    Gears of opposite hand are mirror images to the last bit: the left-hand one is made from the other.
+
+    Parameters
+    ----------
+    gear : Gear
+        Modification plays no part.
+    recipe : SectorRecipe, optional
+        Default `SectorRecipe.standard(gear)`.
+    reach : int, optional
+        Largest distance in teeth that is kept, from 0 to half the teeth; default `usual_reach`.
+    support : BoreSupport, optional
+        Default `ClampedBore()`.
+    cache : Path, optional
+        Directory of kept results (see `default_cache_directory`); None: neither read nor written.
+
+    Raises
+    ------
+    InputError
+        `reach` is out of its bounds.
+    MeshError
+        No acceptable mesh.
+    SolveError
+        The stiffness is singular, or the result breaks a law.
+    """
+    recipe, support = recipe or SectorRecipe.standard(gear), support or ClampedBore()
+    reach = usual_reach(gear) if reach is None else integer("reach", reach, 0, gear.teeth // 2)
+    key = compliance_key_3d(gear, recipe, reach, support)
+    result = read_compliance(cache, key, FlankCompliance3D) if cache is not None else None
+    if result is None:
+        right_hand = replace(gear, helix_angle=abs(gear.helix_angle))
+        result = compute_flank_compliance_3d(right_hand, recipe, reach, support)
+        if cache is not None:
+            write_compliance(cache, key, result)
+    return result.mirrored() if gear.helix_angle < 0.0 else result
+
+
+def flank_compliances_3d(
+    gears: Sequence[Gear],
+    recipes: Sequence[SectorRecipe] | None = None,
+    *,
+    support: BoreSupport | None = None,
+    cache: Path | None = None,
+) -> tuple[FlankCompliance3D, ...]:
+    """Return the compliance of each gear; gears alike, or alike but for the hand, are computed once.
+
+    Parameters are those of `flank_compliance_3d`, with one recipe per gear.
+    """
+    recipes = recipes or [SectorRecipe.standard(gear) for gear in gears]
+    found: dict[str, FlankCompliance3D] = {}
+    results = []
+    for gear, recipe in zip(gears, recipes, strict=True):
+        key = compliance_key_3d(gear, recipe, usual_reach(gear), support or ClampedBore())
+        if key not in found:
+            found[key] = flank_compliance_3d(gear, recipe, support=support, cache=cache)
+        alike = found[key].base_helix_angle * gear.helix_angle >= 0.0
+        results.append(found[key] if alike else found[key].mirrored())
+    return tuple(results)
+
+
+def usual_reach(gear: Gear) -> int:
+    """Return the largest distance of two teeth that can carry load at once.
+
+    That is the length of the involute and the lead of the helix over the face, in base pitches.
+    """
+    across = abs(math.tan(gear.base_helix_angle)) * gear.face_width
+    length = gear.tip_roll_length - gear.form_roll_length + across
+    return min(max(1, math.ceil(length / gear.base_pitch)), gear.teeth // 2)
+
+
+def compliance_key_3d(gear: Gear, recipe: SectorRecipe, reach: int, support: BoreSupport) -> str:
+    """Return the hash of all that decides a compliance but for the hand of the helix."""
+    geometry = gear.macro_geometry()
+    content: Json = {
+        "model": ["cyclic sector", MODEL_VERSION],
+        "gmsh": version("gmsh"),
+        "geometry": geometry | {"helix_angle": abs(geometry["helix_angle"])},
+        "material": [gear.material.youngs_modulus, gear.material.poissons_ratio],
+        "recipe": recipe.content(),
+        "reach": reach,
+        "support": support.name,
+        "solver": SOLVER,
+    }
+    return content_hash(content)
+
+
+def compute_flank_compliance_3d(
+    gear: Gear, recipe: SectorRecipe, reach: int, support: BoreSupport
+) -> FlankCompliance3D:
+    """Mesh, condense, close the ring and check; no cache."""
+    # A cached result needs neither skfem nor numba.
+    from fe_contact.compliance.checks_3d import gear_checks  # noqa: PLC0415
+    from fe_contact.compliance.condensed_gear import condensed_gear  # noqa: PLC0415
+
+    clock = StageClock()
+    section = quad_sector(gear, recipe)
+    clock.finish("mesh")
+    profile = tooth_profile(gear)
+    solved, loads = condensed_gear(gear, section, recipe, reach, support, clock)
+    lever = gear.base_radius * math.cos(gear.base_helix_angle)
+    checks = gear_checks(solved, loads, lever, 0.5 * gear.bore_diameter)
+    clock.finish("checks")
+    blocks = solved.ring.blocks
+    blocks[0] = 0.5 * (blocks[0] + blocks[0].T)
+    result = FlankCompliance3D(
+        s=section.s,
+        z=solved.sector.layers.ends,
+        index=solved.sector.flank_index,
+        blocks=blocks,
+        s_form=profile.s_form,
+        s_tip=profile.s_tip,
+        contact_modulus=gear.material.plane_strain_modulus,
+        base_helix_angle=gear.base_helix_angle,
+        teeth=gear.teeth,
+        checks=checks,
+        unknowns=gear.teeth * (solved.sector.size - solved.held.cut_size),
+        seconds=clock.seconds,
+        solver=SOLVER,
+    )
+    return refuse_broken_laws(result)

@@ -1,0 +1,96 @@
+"""Transverse section of one tooth sector in eight-node quadrilaterals, nodes on the exact profile."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.mesh.quad_quality import refuse_poor_quads
+from fe_contact.mesh.quality import QualityLimits
+from fe_contact.mesh.sector_grid import SectorGrid
+from fe_contact.mesh.sector_outline import SectorOutline, sector_outline
+from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.mesh.transfinite_block import Block, fill_blocks
+from fe_contact.types import FloatArray
+
+QUAD_LIMITS = QualityLimits(angle=np.radians(15.0), scaled_jacobian=0.1)
+
+
+@dataclass(frozen=True)
+class QuadSector:
+    """One pitch of the gear in the tooth frame, from mid space to mid space, bore to tip.
+
+    Attributes
+    ----------
+    points : (n, 2) array
+        Nodes, m.
+    grid : SectorGrid
+        Elements and where nodes lie. The left cut turned clockwise by one pitch is the right one.
+    s : (k,) array
+        Flank coordinates of `grid.flank`, m: corner, mid-side (at the exact middle), corner ...
+    normals : (k, 2) array
+        Outward unit normals of the exact profile there.
+    """
+
+    points: FloatArray
+    grid: SectorGrid
+    s: FloatArray
+    normals: FloatArray
+
+
+def quad_sector(
+    gear: Gear, recipe: SectorRecipe, limits: QualityLimits = QUAD_LIMITS, seconds: float = 60.0
+) -> QuadSector:
+    """Mesh the transverse section of one tooth sector.
+
+    Parameters
+    ----------
+    gear : Gear
+        Its modification, face width and hand play no part.
+    recipe : SectorRecipe
+        Element sizes.
+    limits : QualityLimits
+        Least acceptable element quality.
+    seconds : float
+        Time limit of gmsh, which runs in a child process.
+
+    Raises
+    ------
+    MeshError
+        gmsh failed, was killed or ran out of time, or an element misses its quality limit.
+    """
+    outline = sector_outline(tooth_profile(gear), recipe)
+    grid = outline.grid
+    points = sector_points(outline, grid, seconds)
+    refuse_poor_quads(points, grid.quads, limits)
+    return QuadSector(points, grid, outline.s, outline.profile.normal(outline.s))
+
+
+def sector_points(outline: SectorOutline, grid: SectorGrid, seconds: float) -> FloatArray:
+    """Place all nodes: corners by gmsh, middles of inner sides between them, the rest on exact curves."""
+    tooth, body = fill_blocks(_blocks(outline), outline.profile.gear.normal_module, seconds)
+    points, number, low = np.empty((grid.nodes, 2)), grid.number, 2 * grid.body_rows
+    # The blocks run from the bore up and from the right cut to the left one, as the grid does.
+    points[number[: low + 1 : 2, ::2]] = body
+    stem = number[low:, 2 * grid.land : 2 * (grid.land + grid.across) + 1]
+    points[stem[::2, ::2]] = tooth
+    ends = np.stack([grid.quads[:, :4], np.roll(grid.quads[:, :4], -1, axis=1)])
+    points[grid.quads[:, 4:]] = points[ends].mean(axis=0)
+    points[stem[:, 0]] = outline.right_flank
+    points[stem[:, -1]] = outline.right_flank * [-1.0, 1.0]
+    points[stem[-1]] = outline.tip
+    points[number[low, : 2 * grid.land + 1]] = outline.right_land
+    points[number[low, -2 * grid.land - 1 :]] = (outline.right_land * [-1.0, 1.0])[::-1]
+    points[grid.bore] = outline.bore
+    return points
+
+
+def _blocks(outline: SectorOutline) -> tuple[Block, Block]:
+    """Return tooth and body by their corner points; their left is the loaded side, as in the grid."""
+    flank, cut = outline.right_flank[::2], outline.right_cut[::-2]
+    mirror = np.array([-1.0, 1.0])
+    tooth = Block(outline.base[::2], flank * mirror, outline.tip[::2], flank)
+    body = Block(outline.bore[::2], cut * mirror, outline.body_top[::2], cut)
+    return tooth, body

@@ -1,0 +1,102 @@
+"""The logical T-shaped grid of one tooth sector: a tooth standing in the middle of the body below it.
+
+Columns run from the right cut to the left cut, rows from the bore to the tip. The topology follows from four
+numbers of elements, so that the cost of a solution is known before there is a mesh.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fe_contact.types import BoolArray, IntArray
+
+# Corners of a quadrilateral and the middles of its sides 0-1, 1-2, 2-3, 3-0 as (row, column) of the grid of
+# nodes, counter-clockwise when the columns run from right to left.
+OFFSETS = np.array([(0, 2), (0, 0), (2, 0), (2, 2), (0, 1), (1, 0), (2, 1), (1, 2)])
+
+
+@dataclass(frozen=True)
+class SectorGrid:
+    """Eight-node quadrilaterals on a T-shaped grid, mid space to mid space.
+
+    Attributes
+    ----------
+    body_rows, tooth_rows : int
+        Rows of elements from the bore to the split point, and from there to the tip.
+    land : int
+        Columns of elements on each side of the tooth.
+    across : int
+        Columns of elements across the tooth.
+    """
+
+    body_rows: int
+    tooth_rows: int
+    land: int
+    across: int
+
+    @property
+    def columns(self) -> int:
+        """Columns of elements of the body."""
+        return self.across + 2 * self.land
+
+    @cached_property
+    def cells(self) -> IntArray:
+        """Column and row of each element, (m, 2); rows of the body are negative, -1 the highest."""
+        body = [(i, j) for j in range(-self.body_rows, 0) for i in range(self.columns)]
+        tooth = [(self.land + i, j) for j in range(self.tooth_rows) for i in range(self.across)]
+        return np.array(body + tooth)
+
+    @cached_property
+    def _places(self) -> IntArray:
+        """Place of each element's nodes in the flattened grid of nodes, (m, 8)."""
+        low = 2 * (self.cells + np.array([0, self.body_rows]))
+        row = low[:, 1, None] + OFFSETS[:, 0]
+        return np.asarray(row * (2 * self.columns + 1) + low[:, 0, None] + OFFSETS[:, 1])
+
+    @cached_property
+    def number(self) -> IntArray:
+        """Node at each place of the grid of nodes, (2 rows + 1, 2 columns + 1); -1 where there is none."""
+        number = np.full((2 * (self.body_rows + self.tooth_rows) + 1, 2 * self.columns + 1), -1)
+        used = np.unique(self._places)
+        number.flat[used] = np.arange(len(used))
+        return number
+
+    @cached_property
+    def quads(self) -> IntArray:
+        """Nodes of each element, (m, 8): corners counter-clockwise, middles of sides 0-1, 1-2, 2-3, 3-0."""
+        return np.asarray(self.number.ravel()[self._places])
+
+    @property
+    def nodes(self) -> int:
+        """Number of nodes."""
+        return int(self.number.max()) + 1
+
+    @cached_property
+    def corner(self) -> BoolArray:
+        """Whether a node is a corner of elements, (n,)."""
+        corner = np.zeros(self.nodes, dtype=bool)
+        corner[self.quads[:, :4]] = True
+        return corner
+
+    @property
+    def right(self) -> IntArray:
+        """Nodes of the right cut from the bore to the root."""
+        return self.number[: 2 * self.body_rows + 1, 0]
+
+    @property
+    def left(self) -> IntArray:
+        """Nodes of the left cut from the bore to the root: the right ones of the next sector."""
+        return self.number[: 2 * self.body_rows + 1, -1]
+
+    @property
+    def bore(self) -> IntArray:
+        """Nodes on the bore."""
+        return np.asarray(self.number[0])
+
+    @property
+    def flank(self) -> IntArray:
+        """Nodes of the right flank from the split point to the tip."""
+        return self.number[2 * self.body_rows :, 2 * self.land]

@@ -1,0 +1,160 @@
+"""Outline of one tooth sector in two four-sided blocks: the tooth, and the body below it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from fe_contact.geometry import Gear, ToothProfile
+from fe_contact.mesh.grading import middles
+from fe_contact.mesh.sector_grid import SectorGrid
+from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.types import FloatArray
+
+DIP = 0.12  # of the line between tooth and body below the split points, in modules: makes its angles even
+THIN = 0.25  # largest such dip, in parts of the rim's thickness
+DEEP = 0.25  # height of body elements deep below the root, in parts of their depth
+TAPER = 0.5  # largest height of body elements, in parts of the radius of their upper end
+
+
+@dataclass(frozen=True)
+class SectorOutline:
+    """Divisions of one tooth sector; every other entry is a mid-side node, at the middle parameter.
+
+    Attributes
+    ----------
+    profile : ToothProfile
+        The exact right flank.
+    s : (k,) array
+        Flank coordinates of the loaded flank from the split point to the tip, m.
+    land : (2 land_elements + 1,) array
+        Flank coordinates from the middle of the tooth space to the split point, m.
+    across : (p,) array
+        Fractions across the tooth from the right flank (0) to the left one (1).
+    depth : (q,) array
+        Fractions from the root (0) to the bore (1).
+    """
+
+    profile: ToothProfile
+    s: FloatArray
+    land: FloatArray
+    across: FloatArray
+    depth: FloatArray
+
+    @property
+    def grid(self) -> SectorGrid:
+        """The logical grid."""
+        return SectorGrid(len(self.depth) // 2, len(self.s) // 2, len(self.land) // 2, len(self.across) // 2)
+
+    @property
+    def right_flank(self) -> FloatArray:
+        """Points of the loaded flank, (k, 2)."""
+        return self.profile.flank(self.s)
+
+    @property
+    def tip(self) -> FloatArray:
+        """Points of the tip land from right to left, (p, 2)."""
+        return self.profile.tip_land(self.across)
+
+    @property
+    def base(self) -> FloatArray:
+        """Points between tooth and body from right to left, (p, 2)."""
+        right, t = self.profile.flank(self.s[:1])[0], self.across[:, None]
+        gear = self.profile.gear
+        rim = gear.root_radius - 0.5 * gear.bore_diameter
+        dip = 4.0 * min(DIP * gear.normal_module, THIN * rim) * t * (1.0 - t)
+        return np.asarray((1.0 - t) * right + t * right * [-1.0, 1.0] - dip * [0.0, 1.0])
+
+    @property
+    def right_land(self) -> FloatArray:
+        """Points of the right half of the tooth space, (2 land_elements + 1, 2)."""
+        return self.profile.flank(self.land)
+
+    @property
+    def body_top(self) -> FloatArray:
+        """Points above the body from the right cut to the left one."""
+        right, base = self.right_land, self.base
+        return np.concatenate([right[:-1], base, (right * [-1.0, 1.0])[-2::-1]])
+
+    @property
+    def bore(self) -> FloatArray:
+        """Points of the bore from the right cut to the left one."""
+        half = 0.5 * self.profile.pitch_angle
+        angle = np.linspace(half, -half, 2 * self.grid.columns + 1)
+        return 0.5 * self.profile.gear.bore_diameter * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+
+    @property
+    def right_cut(self) -> FloatArray:
+        """Points of the right cut from the root down to the bore, (q, 2)."""
+        gear, angle = self.profile.gear, 0.5 * self.profile.pitch_angle
+        radius = (1.0 - self.depth) * gear.root_radius + self.depth * 0.5 * gear.bore_diameter
+        return np.asarray(radius[:, None] * np.array([np.sin(angle), np.cos(angle)]))
+
+
+def sector_outline(profile: ToothProfile, recipe: SectorRecipe) -> SectorOutline:
+    """Divide the outline of one tooth sector."""
+    gear = profile.gear
+    split = profile.s_form - recipe.split * profile.fillet_length
+    half_width = profile.flank(np.array([0.5 * (profile.s_form + profile.s_tip)]))[0, 0]
+    return SectorOutline(
+        profile=profile,
+        s=with_middles(flank_divisions(profile, split, recipe)),
+        land=with_middles(np.linspace(profile.s_space, split, recipe.land_elements + 1)),
+        across=with_middles(tooth_divisions(half_width, recipe)),
+        depth=with_middles(body_divisions(gear, recipe)),
+    )
+
+
+def with_middles(x: FloatArray) -> FloatArray:
+    """Return the divisions with the middle of each part between them."""
+    out = np.empty(2 * len(x) - 1)
+    out[::2], out[1::2] = x, middles(x)
+    return out
+
+
+def graded(length: float, size: Callable[[float], float]) -> FloatArray:
+    """Divide 0 .. length into parts of about size(x), x where a part begins."""
+    x = [0.0]
+    while x[-1] < length:
+        x.append(x[-1] + size(x[-1]))
+    if len(x) > 2 and x[-1] - length > 0.5 * (x[-1] - x[-2]):
+        x.pop()
+    return np.array(x) * (length / x[-1])
+
+
+def flank_divisions(profile: ToothProfile, split: float, recipe: SectorRecipe) -> FloatArray:
+    """Divide the flank from `split` to the tip, a corner on the form point, where the curvature jumps."""
+
+    def size(x: float) -> float:
+        return min(recipe.flank_size, recipe.tip_size + recipe.tip_growth * x)
+
+    below = max(1, int(np.ceil((profile.s_form - split) / recipe.flank_size)))
+    involute = profile.s_tip - graded(profile.s_tip - profile.s_form, size)[::-1]
+    return np.concatenate([np.linspace(split, profile.s_form, below + 1)[:-1], involute])
+
+
+def tooth_divisions(half_width: float, recipe: SectorRecipe) -> FloatArray:
+    """Divide 0 .. 1 across a tooth: fine below the loaded flank, coarser below the other."""
+
+    def size(x: float, factor: float) -> float:
+        return min(recipe.depth_limit, factor * recipe.depth_size + recipe.depth_growth * x)
+
+    loaded, coast = (graded(half_width, partial(size, factor=factor)) for factor in (1.0, 1.5))
+    return np.concatenate([loaded, 2.0 * half_width - coast[-2::-1]]) / (2.0 * half_width)
+
+
+def body_divisions(gear: Gear, recipe: SectorRecipe) -> FloatArray:
+    """Divide 0 .. 1 from the root to the bore.
+
+    Deep in the body the field changes over its depth, and around a small bore over the radius.
+    """
+
+    def size(x: float) -> float:
+        largest = max(recipe.body_limit, DEEP * x)
+        return min(largest, recipe.body_size + recipe.body_growth * x, TAPER * (gear.root_radius - x))
+
+    depth = gear.root_radius - 0.5 * gear.bore_diameter
+    return graded(depth, size) / depth

@@ -1,0 +1,188 @@
+"""One tooth sector swept across the face into 20-node hexahedra: numbering of nodes and freedoms.
+
+Every layer is a copy of the section, turned along the helix. Freedoms are components in each node's own
+cylindrical frame (radial, tangential, axial), so layers and sectors share element matrices. Deep in the
+body two layers become one; nodes left hanging on the finer side do not exist: their displacement is that of
+the coarser face.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
+from fe_contact.mesh.layers import Layers, layers_across
+from fe_contact.mesh.sector_grid import SectorGrid
+from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+# Nodes of an element that lie above the side 0-1 of its quadrilateral, towards the bore.
+LOWER_FACE = [0, 1, 4, 5, 8, 12, 16, 17]
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Elements above some quadrilaterals that share their matrices layer by layer.
+
+    Attributes
+    ----------
+    quads : (m,) int array
+        Quadrilaterals of the section.
+    thickness : float
+        Of the layer, m.
+    half : int
+        0: conforming. -1, +1: the lower face is the lower or upper half of a face of the next coarser layer.
+    elements : (c, m) int array
+        Rows of `SweptSector.elements`, one line for each of the c layers.
+    """
+
+    quads: IntArray
+    thickness: float
+    half: int
+    elements: IntArray
+
+
+@dataclass(frozen=True)
+class SweptSector:
+    """Hexahedra of one tooth sector.
+
+    Attributes
+    ----------
+    grid : SectorGrid
+        The section.
+    layers : Layers
+        The layers of the tooth, L of them.
+    nodes : (2 L + 1, n) int array
+        Node above each section node in each plane (layer ends and middles), -1 where there is none.
+    elements : (e, 20) int array
+        Nodes: bottom corners, top corners, bottom middles, top middles, middles between bottom and top;
+        each four in the order of `SectorGrid.quads`.
+    place : (e, 3) array
+        Column, row and layer of each element on the logical grid.
+    batches : tuple of Batch
+        The elements by equal matrices.
+    freedoms : (N, 3) int array
+        Number of each node's freedoms, -1 where held.
+    """
+
+    grid: SectorGrid
+    layers: Layers
+    nodes: IntArray
+    elements: IntArray
+    place: FloatArray
+    batches: tuple[Batch, ...]
+    freedoms: IntArray
+
+    @property
+    def size(self) -> int:
+        """Number of free freedoms."""
+        return int(self.freedoms.max()) + 1
+
+    @cached_property
+    def element_freedoms(self) -> IntArray:
+        """Freedoms of each element, (e, 60), node by node; -1 where held."""
+        return self.freedoms[self.elements].reshape(len(self.elements), 60)
+
+    @cached_property
+    def flank_index(self) -> IntArray:
+        """Number of each flank node among the flank freedoms, (2 L + 1, k), -1 at the centres of faces."""
+        exists = self.nodes[:, self.grid.flank] >= 0
+        return np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
+
+    @property
+    def flank(self) -> IntArray:
+        """Freedoms along the flank normal, plane by plane; the first of the three of a flank node."""
+        nodes = self.nodes[:, self.grid.flank]
+        return np.asarray(self.freedoms[nodes[nodes >= 0], 0])
+
+    @property
+    def left(self) -> IntArray:
+        """Freedoms on the left cut: the right ones of the next sector counter-clockwise."""
+        return self._cut(self.grid.left)
+
+    @property
+    def right(self) -> IntArray:
+        """Freedoms on the right cut, in the order of the left ones."""
+        return self._cut(self.grid.right)
+
+    def _cut(self, column: IntArray) -> IntArray:
+        """Return the free freedoms above a column of section nodes."""
+        nodes = self.nodes[:, column]
+        freedoms = self.freedoms[nodes[nodes >= 0]].ravel()
+        return freedoms[freedoms >= 0]
+
+
+def swept_sector(
+    grid: SectorGrid, face_width: float, recipe: SectorRecipe, support: BoreSupport | None = None
+) -> SweptSector:
+    """Sweep the section `grid` across `face_width`.
+
+    Parameters
+    ----------
+    grid : SectorGrid
+        Topology of the section.
+    face_width : float
+        m.
+    recipe : SectorRecipe
+        Layers, and where they are merged.
+    support : BoreSupport, optional
+        Default `ClampedBore()`.
+    """
+    layers = layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth)
+    planes = 2 * recipe.layers + 1
+    level = np.sum(grid.cells[:, 1, None] < np.array(recipe.merge_rows, dtype=int), axis=1)
+    node_level = np.zeros(grid.nodes, dtype=np.int64)
+    np.maximum.at(node_level, grid.quads.ravel(), np.repeat(level, 8))
+    exists = _existing(grid, node_level, planes)
+    nodes = np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
+    batches, elements, place = _elements(grid, layers, nodes, level, node_level)
+    free = ~(support or ClampedBore()).held(grid, planes)[exists]
+    freedoms = np.where(free, np.cumsum(free).reshape(free.shape) - 1, -1)
+    return SweptSector(grid, layers, nodes, elements, place, batches, freedoms)
+
+
+def _existing(grid: SectorGrid, node_level: IntArray, planes: int) -> BoolArray:
+    """Return where a section node has a node above it: corners also between bottom and top of an element."""
+    step = np.where(grid.corner, 1, 2) * 2**node_level
+    return np.asarray(np.arange(planes)[:, None] % step == 0)
+
+
+def _elements(
+    grid: SectorGrid, layers: Layers, nodes: IntArray, level: IntArray, node_level: IntArray
+) -> tuple[tuple[Batch, ...], IntArray, FloatArray]:
+    """Stack the elements layer by layer."""
+    hanging = node_level[grid.quads[:, 0]] > level
+    elements: list[IntArray] = []
+    place: list[FloatArray] = []
+    batches: list[Batch] = []
+    count = 0
+    for lv in range(level.max(initial=0) + 1):
+        for hangs in (False, True):
+            quads = np.flatnonzero((level == lv) & (hanging == hangs))
+            sharing: dict[tuple[int, int], list[IntArray]] = {}
+            for k in range(len(layers.kind) >> lv if len(quads) else 0):
+                first = k << lv
+                half = (-1, 1)[k % 2] if hangs else 0
+                elements.append(_layer(nodes, grid.quads[quads], 2 * first, 2 << lv, half))
+                place.append(np.column_stack([grid.cells[quads], np.full(len(quads), first + 0.5 * 2**lv)]))
+                numbers = count + np.arange(len(quads))
+                sharing.setdefault((int(layers.kind[first]), half), []).append(numbers)
+                count += len(quads)
+            for (kind, half), rows in sharing.items():
+                batches.append(Batch(quads, 2.0**lv * layers.thickness[kind], half, np.array(rows)))
+    return tuple(batches), np.concatenate(elements), np.concatenate(place)
+
+
+def _layer(nodes: IntArray, quads: IntArray, low: int, height: int, half: int) -> IntArray:
+    """Return the nodes of the elements from plane `low` to `low + height`."""
+    corners, middles = quads[:, :4], quads[:, 4:]
+    middle, high = low + height // 2, low + height
+    parts = [(low, corners), (high, corners), (low, middles), (high, middles), (middle, corners)]
+    elements = np.concatenate([nodes[plane][on] for plane, on in parts], axis=1)
+    if half:
+        coarse = _layer(nodes, quads, low if half < 0 else low - height, 2 * height, 0)
+        elements[:, LOWER_FACE] = coarse[:, LOWER_FACE]
+    return elements
