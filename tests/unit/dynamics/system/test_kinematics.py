@@ -81,22 +81,38 @@ def test_a_load_that_drives_is_refused():
         assemble(gear_pair_scene(torque=-5.0))
 
 
+def two_stages(speed):
+    """17 on 23; on the same shaft 13 drives 41: base pitches per turn of the drive are 17 and 17 * 13 / 23."""
+    scene = train([17, 23, 41], [(0, 1)], speed)
+    second = GearBody("h1", "s1", 0.09, 13, RB * 13, 0.02, 0.0, INERTIA)
+    last = replace(scene.gears[2], position=0.09)
+    mesh = GearMesh("m12", "h1", "g2", spring_table(1e8), nominal_force=1.0)
+    return replace(scene, gears=(*scene.gears[:2], last, second), meshes=(*scene.meshes, mesh))
+
+
+def test_two_stages_multiply():
+    kinematics = solve_kinematics(two_stages(10.0))
+    assert kinematics.ratio == (1, Fraction(-17, 23), Fraction(17 * 13, 23 * 41))
+
+
 def test_position_keeps_nine_digits_of_a_base_pitch_after_ten_million_steps():
-    """Step 1e-5 s at 955 rpm through the ratio 17/23: compared with exact rational arithmetic."""
+    """Step 1e-5 s at 955 rpm through two stages: compared with exact rational arithmetic."""
     speed = 955.0 * RPM
-    reference = assemble(train([17, 23, 41], [(0, 1), (1, 2)], speed=speed)).arrays.reference
+    reference = assemble(two_stages(speed)).arrays.reference
     for steps in (10_000_000, 9_999_999, 12_345_678):
         time = steps * 1e-5
         whole, fraction, _, _ = drive_motion(reference, time)
         turns = Fraction(speed) * Fraction(time) / Fraction(2 * math.pi)
-        for flank, per_turn in enumerate((Fraction(17), Fraction(17 * 23, 23))):
+        for flank, per_turn in enumerate((Fraction(17), Fraction(17 * 13, 23))):
             exact = float(per_turn * turns % 1)
             error = flank_phase(reference, flank, whole, fraction) - exact
             assert abs(error - round(error)) < 1e-9
 
 
 def test_whole_turns_drop_exactly():
-    reference = assemble(train([17, 23, 41, 19], [(0, 1), (1, 2), (2, 3)])).arrays.reference
-    for flank in range(3):
+    reference = assemble(two_stages(10.0)).arrays.reference
+    for flank, repeats in ((0, 1), (1, 23)):
         exact = flank_phase(reference, flank, 0.0, 0.25)
-        assert flank_phase(reference, flank, 23.0 * 41 * 19 * 1e8, 0.25) == exact
+        assert flank_phase(reference, flank, repeats * 1e12, 0.25) == exact
+    behind = flank_phase(reference, 1, 1.0, 0.0) - flank_phase(reference, 1, 0.0, 0.0)
+    assert behind % 1.0 == pytest.approx(17 * 13 % 23 / 23, abs=1e-12)
