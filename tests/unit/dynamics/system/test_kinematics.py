@@ -82,7 +82,7 @@ def test_a_load_that_drives_is_refused():
 
 
 def two_stages(speed):
-    """17 on 23; on the same shaft 13 drives 41: base pitches per turn of the drive are 17 and 17 * 13 / 23."""
+    """17 on 23; on the same shaft 13 drives 41: 17 and 17 * 13 / 23 base pitches per turn of the drive."""
     scene = train([17, 23, 41], [(0, 1)], speed)
     second = GearBody("h1", "s1", 0.09, 13, RB * 13, 0.02, 0.0, INERTIA)
     last = replace(scene.gears[2], position=0.09)
