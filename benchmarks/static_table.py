@@ -39,7 +39,7 @@ def figures() -> list[Figure]:
         Figure(subject, "cold: meshes, finite elements, contact", middle["cold"], "CPU s", 3.0),
         Figure(subject, "with cached compliance", middle["cached"], "CPU s", 0.2),
         Figure(subject, "whole process, both tables, imports", middle["process_cpu_seconds"], "CPU s"),
-        Figure(subject, "points that failed", middle["failed"], "", 0.0),
+        Figure(subject, "failed", middle["failed"], "points", 0.0),
         Figure(subject, "peak memory", middle["peak"] / 2**20, "MiB"),
     ]
 

@@ -109,7 +109,7 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
         dynamic_transmission_error=(static + 0.1e-6 * np.cos(7 * phase))[None],
         static_transmission_error=static[None],
         mesh_force=np.full((1, time.size), 2660.0),
-        speed=np.stack([-speed, speed]),
+        speed=np.stack([-0.5 * speed, speed]),
         drive_torque=np.full(time.size, 100.0),
         bearing_force=force,
         displacement=np.empty((0, time.size)),
