@@ -155,6 +155,9 @@ def test_cholesky_solves_and_refuses():
     assert not factorize(-matrix, 9)
 
 
+ARM = 0.98
+
+
 def two_position_problem() -> ContactProblem:
     """One contact at the first position, two at the second."""
     shape = (2, 2)
@@ -166,7 +169,7 @@ def two_position_problem() -> ContactProblem:
         patch_1=patches,
         patch_2=patches,
         gap=np.array([[1e-6, math.inf], [0.0, 0.0]]),
-        motion_arm=full,
+        motion_arm=ARM * full,
         torque_share=full,
         radius=RADIUS * full,
         edge_slope=math.nan * full,
@@ -186,7 +189,10 @@ def test_sweep_equals_single_solves():
     assert solution.no_load.tolist() == [1e-6, 0.0]
     for p in range(2):
         for k, load in enumerate(LOADS):
-            d, tangent, *_, force, _ = solve(point(problem.compliance[p], problem.candidates.gap[p]), load)
+            # the gap of the candidates is a deflection, that of a point is normal to the flank
+            gap = ARM * problem.candidates.gap[p]
+            single = point(problem.compliance[p], gap, [ARM, ARM], [1.0, 1.0])
+            d, tangent, *_, force, _ = solve(single, load)
             assert solution.deflection[p, k] == pytest.approx(d, rel=1e-12, abs=0.0)
             assert solution.tangent[p, k] == pytest.approx(tangent, rel=1e-9, abs=0.0)
             assert solution.force[p, k] == pytest.approx(force, rel=1e-9, abs=0.0)

@@ -69,6 +69,13 @@ def test_a_new_effect_needs_nothing_but_its_place_in_the_registry():
     assert compose(scene(), {"lapping": "off"}, (*EFFECTS, Lapping()))[0] == compose(scene(), {}, EFFECTS)[0]
 
 
+@pytest.mark.parametrize("registry", [(Lapping(), *EFFECTS), (*EFFECTS, Lapping())], ids=["first", "last"])
+def test_gaps_add_up_whoever_comes_first(registry):
+    model, _ = compose(scene(), {"profile_modification": "on"}, registry)
+    assert lapped in model.gaps
+    assert len(model.gaps) == 2
+
+
 @pytest.mark.parametrize("choice", ["on", "off"])
 @pytest.mark.parametrize("name", NAMES)
 def test_explicit_choices_are_obeyed(name, choice):
