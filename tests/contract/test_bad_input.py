@@ -121,6 +121,14 @@ def test_bounds_are_in_the_units_of_the_field(client: TestClient) -> None:
     assert "70 mm" in fault["bound"]
 
 
+@names(tuple(bad for bad in BAD_INPUTS if bad.name in ("face width no number", "face width infinite")))
+def test_what_is_no_number_is_said_to_be_none(bad: BadInput, client: TestClient) -> None:
+    body = json.dumps({"inputs": {"case": bad.case()}})
+    headers = {"Content-Type": "application/json"}
+    answer = client.post("/v1/processes/analyze/execution", content=body, headers=headers).json()
+    assert answer["errors"][0]["bound"].startswith("a finite number")
+
+
 def test_a_case_that_is_right_is_not_refused() -> None:
     good = BadInput("good", lambda: None, "").case()
     assert check_case(validated(Case, good)).pinion.teeth == 20

@@ -173,7 +173,13 @@ def test_a_defect_is_a_number_and_a_log(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "192.168.1.5", "::", "example.org"])
-def test_the_service_refuses_an_address_that_others_reach(host: str) -> None:
+def test_the_service_refuses_an_address_that_others_reach(host: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def open_nothing(_settings: object) -> None:
+        raise AssertionError("a socket would have been opened")
+
+    monkeypatch.setattr(
+        "service.cli.serve._listener", open_nothing
+    )  # whatever breaks, this test never listens
     result = loa("serve", "--host", host)
     assert result.exit_code == 2
     assert f"host = '{host}': must be a loopback address" in result.stderr
