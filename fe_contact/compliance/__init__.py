@@ -1,6 +1,7 @@
 """Flank compliance by finite elements: assembly, condensation to the flanks, checks, disk cache."""
 
 from fe_contact.compliance.cache import default_cache_directory
+from fe_contact.compliance.cost_3d import PredictedCost, predict_cost
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
@@ -14,6 +15,7 @@ __all__ = [
     "FlankCompliance3D",
     "Pardiso",
     "PlaneHypothesis",
+    "PredictedCost",
     "Solver",
     "SuperLuColamd",
     "SuperLuMetis",
@@ -22,4 +24,5 @@ __all__ = [
     "flank_compliance_3d",
     "flank_compliances",
     "flank_compliances_3d",
+    "predict_cost",
 ]

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from fe_contact.compliance.checks_3d import CondensedGear, probe_loads
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
-from fe_contact.compliance.elimination_tree import EliminationTree, elimination_tree
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
+from fe_contact.compliance.sector_tree import sector_tree
 from fe_contact.compliance.stage_clock import StageClock
 from fe_contact.compliance.substructure import condense
 from fe_contact.geometry import Gear, tooth_profile
@@ -16,14 +14,6 @@ from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 from fe_contact.types import FloatArray
-
-
-def sector_tree(sector: SweptSector) -> EliminationTree:
-    """Return the elimination that keeps flank normals, left cut and right cut, in this order."""
-    kept = np.concatenate([sector.flank, sector.left, sector.right])
-    free = sector.freedoms.max(axis=1) >= 0
-    nodes = np.where(free[sector.elements], sector.elements, -1)
-    return elimination_tree(nodes, sector.element_freedoms, sector.place, kept)
 
 
 def condensed_gear(
