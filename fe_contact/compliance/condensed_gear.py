@@ -12,7 +12,7 @@ from fe_contact.geometry import Gear, tooth_profile
 from fe_contact.mesh.bore_support import BoreSupport
 from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.sector_recipe import SectorRecipe
-from fe_contact.mesh.swept_sector import SweptSector, swept_sector
+from fe_contact.mesh.swept_sector import swept_sector
 from fe_contact.types import FloatArray
 
 

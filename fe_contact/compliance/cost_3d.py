@@ -103,7 +103,7 @@ def ring_operations(sizes: SectorSizes) -> float:
 
 
 def working_bytes(tree: EliminationTree, sizes: SectorSizes) -> int:
-    """Return the bytes of the largest working set: while fronts are factorised, or while the ring is closed."""
+    """Return the bytes of the largest working set: factorising fronts, or closing the ring."""
     nf, nc = sizes.flank, sizes.cut
     rank = RANK_SHARE * nf
     kept = 3600 * sizes.matrices + tree.factor_entries

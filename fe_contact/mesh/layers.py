@@ -48,4 +48,5 @@ def layers_across(width: float, count: int, group: int = 1, growth: float = 1.0)
     relative = growth ** (np.arange(top + 1) / top)
     thickness = relative * width / relative[kind].sum()
     ends = np.concatenate([[0.0], np.cumsum(thickness[kind])]) - 0.5 * width
+    ends[-1] = 0.5 * width
     return Layers(0.5 * (ends - ends[::-1]), kind, thickness)

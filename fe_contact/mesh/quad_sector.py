@@ -78,12 +78,12 @@ def sector_points(outline: SectorOutline, grid: SectorGrid, seconds: float) -> F
     points[stem[::2, ::2]] = tooth
     ends = np.stack([grid.quads[:, :4], np.roll(grid.quads[:, :4], -1, axis=1)])
     points[grid.quads[:, 4:]] = points[ends].mean(axis=0)
-    points[stem[:, 0]] = outline.right_flank
-    points[stem[:, -1]] = outline.right_flank * [-1.0, 1.0]
     points[stem[-1]] = outline.tip
     points[number[low, : 2 * grid.land + 1]] = outline.right_land
     points[number[low, -2 * grid.land - 1 :]] = (outline.right_land * [-1.0, 1.0])[::-1]
     points[grid.bore] = outline.bore
+    points[stem[:, 0]] = outline.right_flank
+    points[stem[:, -1]] = outline.right_flank * [-1.0, 1.0]
     return points
 
 
