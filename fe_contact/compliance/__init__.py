@@ -2,10 +2,10 @@
 
 from fe_contact.compliance.cache import default_cache_directory
 from fe_contact.compliance.cost_3d import PredictedCost, predict_cost
+from fe_contact.compliance.cyclic_compliance import flank_compliance_3d, flank_compliances_3d
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
-from fe_contact.compliance.flank_compliance_3d import flank_compliance_3d, flank_compliances_3d
 from fe_contact.compliance.plane import PlaneHypothesis
 from fe_contact.compliance.solvers import Pardiso, Solver, SuperLuColamd, SuperLuMetis
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import blas
 
+from fe_contact.compliance.cyclic_compliance import usual_reach
 from fe_contact.compliance.elimination_tree import EliminationTree
-from fe_contact.compliance.flank_compliance_3d import usual_reach
 from fe_contact.compliance.sector_tree import sector_tree
 from fe_contact.geometry import Gear, tooth_profile
 from fe_contact.mesh.sector_outline import sector_outline

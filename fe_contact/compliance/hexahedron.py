@@ -99,8 +99,8 @@ def _gradients(nodes: FloatArray) -> tuple[FloatArray, FloatArray]:
         worst = int(determinant.min(axis=1).argmin())
         x, y = 1e3 * nodes[worst, :, :2].mean(axis=0)
         raise MeshError(
-            f"tooth sector: element {worst} at ({x:.4g}, {y:.4g}) mm is folded by the helix. "
-            "Use more layers in the sector recipe."
+            f"tooth sector: element {worst} at ({x:.4g}, {y:.4g}) mm is folded. "
+            "Try other element sizes in the sector recipe."
         )
     gradient = np.linalg.solve(jacobian, np.broadcast_to(slopes, (len(nodes), *slopes.shape)))
     return np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), determinant * weights

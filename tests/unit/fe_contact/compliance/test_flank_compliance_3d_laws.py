@@ -1,0 +1,357 @@
+"""Laws that a three-dimensional flank compliance keeps on every mesh."""
+
+from __future__ import annotations
+
+import math
+import tracemalloc
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+
+import fe_contact.compliance.condensed_gear as gear_module
+import fe_contact.compliance.cost_3d as cost
+import fe_contact.compliance.cyclic_compliance as flow
+import fe_contact.compliance.sector_stiffness as stiffness_module
+from fe_contact.compliance import (
+    FlankCompliance3D,
+    SuperLuMetis,
+    flank_compliance_3d,
+    flank_compliances_3d,
+    predict_cost,
+)
+from fe_contact.compliance.checks_3d import least_eigenvalue, pressure_forces
+from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
+from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
+from fe_contact.errors import InputError, SolveError
+from fe_contact.geometry import Gear
+from fe_contact.material import Material
+from fe_contact.mesh import PlaneStrain, SectorRecipe, quad_sector, swept_sector
+
+SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
+HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
+GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
+
+
+def coarse(gear: Gear, **fields: object) -> SectorRecipe:
+    m = gear.normal_module
+    recipe = SectorRecipe(
+        flank_size=0.5 * m,
+        tip_size=0.3 * m,
+        depth_size=0.6 * m,
+        depth_limit=0.9 * m,
+        body_size=0.5 * m,
+        body_limit=1.5 * m,
+        layers=4,
+        land_elements=1,
+        merge_rows=(-1,),
+    )
+    return replace(recipe, **fields)  # type: ignore[arg-type]
+
+
+def relative(found: np.ndarray, expected: np.ndarray) -> float:
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
+
+
+def global_compliance(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
+    """Flank of every tooth under forces on tooth 0, (z, nf, nf), by one sparse factorisation of all teeth."""
+    section = quad_sector(gear, recipe)
+    sector = swept_sector(section.grid, gear.face_width, recipe)
+    stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
+    teeth, size = gear.teeth, sector.size
+    own = np.setdiff1d(np.arange(size), sector.left)
+    number = np.full((teeth, size), -1)
+    number[:, own] = np.arange(teeth * len(own)).reshape(teeth, -1)
+    number[:, sector.left] = np.roll(number[:, sector.right], -1, axis=0)
+    held = np.append(number, np.full((teeth, 1), -1), axis=1)
+    values = stiffness.matrices[stiffness.of_element]
+    rows, columns, entries = [], [], []
+    for j in range(teeth):
+        dofs = held[j][sector.element_freedoms]
+        i, k = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+        free = (i >= 0) & (k >= 0)
+        rows.append(i[free])
+        columns.append(k[free])
+        entries.append(values[free])
+    coo = (np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns)))
+    matrix = sp.csc_array(sp.coo_array(coo))
+    loads = np.zeros((matrix.shape[0], len(sector.flank)))
+    loads[number[0, sector.flank], np.arange(len(sector.flank))] = 1.0
+    found = SuperLuMetis().factorise(matrix, block=1)(loads)
+    return found[number[:, sector.flank]]
+
+
+@GEARS
+def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
+    found = flank_compliance_3d(gear, coarse(gear), reach=4)
+    direct = global_compliance(gear, coarse(gear))
+    for m in range(-4, 5):
+        assert relative(found.block(m, 0), direct[m]) < 1e-9 * (1 + 9 * (m != 0))
+    assert found.unknowns > 10_000
+
+
+@GEARS
+def test_checks_hold_to_rounding(gear: Gear) -> None:
+    found = flank_compliance_3d(gear, SectorRecipe.draft(gear))
+    assert found.checks.residual < 1e-11
+    assert found.checks.reciprocity < 1e-13
+    assert found.checks.bore_moment < 1e-11
+    assert found.checks.energy < 1e-11
+    assert np.array_equal(found.blocks[0], found.blocks[0].T)
+    values = np.linalg.eigvalsh(found.blocks[0])
+    assert values[0] > 0.0
+    assert found.checks.least_eigenvalue == pytest.approx(values[0], rel=0.02)
+
+
+def test_numbering_of_teeth_closes_the_ring() -> None:
+    found = flank_compliance_3d(HELICAL, coarse(HELICAL), reach=4)
+    assert np.array_equal(found.block(3, 1), found.blocks[2])
+    assert np.array_equal(found.block(1, 3), found.blocks[2].T)
+    assert np.array_equal(found.block(8, 0), found.blocks[1].T)
+    assert np.array_equal(found.block(0, 8), found.blocks[1])
+    near = replace(found, blocks=found.blocks[:2])
+    with pytest.raises(KeyError):
+        near.block(2, 0)
+
+
+def test_opposite_teeth_are_the_same_way_round() -> None:
+    """With an even number of teeth the one opposite is z / 2 steps either way: its block is symmetric."""
+    gear = replace(SPUR, teeth=8)
+    found = flank_compliance_3d(gear, coarse(gear), reach=4)
+    assert relative(found.blocks[4], found.blocks[4].T) < 1e-10
+    assert relative(found.blocks[3], found.blocks[3].T) > 1e-3
+
+
+def test_opposite_hands_are_mirror_images_to_the_last_bit() -> None:
+    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
+    recipe = coarse(HELICAL)
+    right, found = flank_compliance_3d(HELICAL, recipe), flank_compliance_3d(left, recipe)
+    assert (right.base_helix_angle, found.base_helix_angle) == (
+        HELICAL.base_helix_angle,
+        left.base_helix_angle,
+    )
+    order = right.index[::-1][right.index[::-1] >= 0]
+    for m in range(right.reach + 1):
+        assert np.array_equal(found.blocks[m], right.blocks[m][np.ix_(order, order)])
+    assert np.array_equal(found.z, -right.z[::-1])
+    assert relative(found.blocks[1], right.blocks[1]) > 1e-3
+    again = found.mirrored()
+    assert np.array_equal(again.blocks, right.blocks)
+
+
+def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
+    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
+    mirrored = flank_compliance_3d(left, coarse(HELICAL), reach=2)
+    for module in (stiffness_module, gear_module):
+        monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
+    swept = flow.compute_flank_compliance_3d(left, coarse(HELICAL), 2, flow.ClampedBore())
+    assert relative(swept.blocks, mirrored.blocks) < 1e-10
+
+
+def test_a_right_hand_tooth_leans_counter_clockwise() -> None:
+    """Seen from +z a right-hand helix turns counter-clockwise on the way up (ISO 21771-1)."""
+    assert twist(HELICAL) == pytest.approx(
+        math.tan(HELICAL.helix_angle) / HELICAL.reference_radius, rel=1e-15
+    )
+    found = flank_compliance_3d(HELICAL, coarse(HELICAL), reach=1)
+    # The upper end of a flank lies nearer to the lower end of the tooth ahead than the other way round.
+    elements = (len(found.z) - 1, len(found.s) // 2)
+    ends = []
+    for layer in (0, -1):
+        loaded = np.zeros(elements)
+        loaded[layer] = 1.0
+        ends.append(pressure_forces(found.s, found.z, found.index, loaded))
+    low, high = ends
+    assert low @ found.block(1, 0) @ high > 1.05 * (high @ found.block(1, 0) @ low) > 0.0
+
+
+def test_a_spur_gear_is_its_own_mirror_image() -> None:
+    found = flank_compliance_3d(SPUR, coarse(SPUR))
+    assert relative(found.mirrored().blocks, found.blocks) < 1e-10
+
+
+@GEARS
+def test_compliance_goes_with_one_over_modulus_and_length(gear: Gear) -> None:
+    found = flank_compliance_3d(gear, coarse(gear))
+    large = replace(gear, normal_module=32e-3, face_width=160e-3, bore_diameter=96e-3)
+    scaled = flank_compliance_3d(large, coarse(large))
+    assert scaled.z == pytest.approx(8.0 * found.z, rel=1e-12)
+    assert relative(8.0 * scaled.blocks, found.blocks) < 1e-9
+    soft = replace(gear, material=Material(youngs_modulus=21e9))
+    assert relative(0.1 * flank_compliance_3d(soft, coarse(gear)).blocks, found.blocks) < 1e-10
+
+
+def test_modification_plays_no_part_and_face_width_does() -> None:
+    recipe = coarse(SPUR)
+    twins = flank_compliances_3d(
+        [SPUR, replace(SPUR, material=replace(SPUR.material, density=7000.0))], [recipe] * 2
+    )
+    assert twins[0] is twins[1]
+    narrow, wide = flank_compliances_3d([SPUR, replace(SPUR, face_width=30e-3)], [recipe] * 2)
+    uniform = [np.ones(len(c.blocks[0])) @ c.blocks[0] @ np.ones(len(c.blocks[0])) for c in (narrow, wide)]
+    assert uniform[0] > 1.2 * uniform[1]
+
+
+def test_hands_of_one_pair_share_a_computation(monkeypatch: pytest.MonkeyPatch) -> None:
+    computed = count_runs(monkeypatch)
+    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
+    found = flank_compliances_3d([HELICAL, left, HELICAL], [coarse(HELICAL)] * 3)
+    assert len(computed) == 1
+    assert found[0] is found[2]
+    assert found[1].base_helix_angle == -found[0].base_helix_angle
+    assert np.array_equal(found[1].mirrored().blocks, found[0].blocks)
+    backwards = flank_compliances_3d([left, HELICAL], [coarse(HELICAL)] * 2)
+    assert np.array_equal(backwards[0].blocks, found[1].blocks)
+    assert np.array_equal(backwards[1].blocks, found[0].blocks)
+
+
+def count_runs(monkeypatch: pytest.MonkeyPatch) -> list[Gear]:
+    computed: list[Gear] = []
+    genuine = flow.compute_flank_compliance_3d
+
+    def counting(gear: Gear, *arguments: object) -> FlankCompliance3D:
+        computed.append(gear)
+        return genuine(gear, *arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(flow, "compute_flank_compliance_3d", counting)
+    return computed
+
+
+def test_the_cache_returns_the_same_bits(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    computed = count_runs(monkeypatch)
+    recipe = coarse(HELICAL)
+    first = flank_compliance_3d(HELICAL, recipe, cache=tmp_path)
+    second = flank_compliance_3d(HELICAL, recipe, cache=tmp_path)
+    left = flank_compliance_3d(replace(HELICAL, helix_angle=-HELICAL.helix_angle), recipe, cache=tmp_path)
+    assert len(computed) == 1
+    assert (first.from_cache, second.from_cache, left.from_cache) == (False, True, True)
+    for name in ("s", "z", "index", "blocks"):
+        assert np.array_equal(getattr(first, name), getattr(second, name))
+        assert getattr(first, name).dtype == getattr(second, name).dtype
+    plain = (
+        "s_form",
+        "s_tip",
+        "contact_modulus",
+        "base_helix_angle",
+        "teeth",
+        "checks",
+        "unknowns",
+        "seconds",
+        "solver",
+    )
+    assert all(getattr(first, name) == getattr(second, name) for name in plain)
+    assert np.array_equal(left.blocks, first.mirrored().blocks)
+    (file,) = tmp_path.iterdir()
+    content = file.read_bytes()
+    file.write_bytes(content[: len(content) // 2])
+    assert not flank_compliance_3d(HELICAL, recipe, cache=tmp_path).from_cache
+
+
+def test_all_that_decides_the_result_is_in_the_key() -> None:
+    clamped, recipe = flow.ClampedBore(), coarse(SPUR)
+    keys = [
+        flow.compliance_key_3d(SPUR, recipe, 2, clamped),
+        flow.compliance_key_3d(SPUR, recipe, 1, clamped),
+        flow.compliance_key_3d(SPUR, recipe, 2, PlaneStrain()),
+        flow.compliance_key_3d(SPUR, replace(recipe, layers=8), 2, clamped),
+    ]
+    for change in (
+        {"face_width": 21e-3},
+        {"bore_diameter": 13e-3},
+        {"helix_angle": 0.1},
+        {"teeth": 10},
+        {"material": Material(poissons_ratio=0.29)},
+    ):
+        keys.append(flow.compliance_key_3d(replace(SPUR, **change), recipe, 2, clamped))  # type: ignore[arg-type]
+    assert len(set(keys)) == len(keys)
+    hands = [flow.compliance_key_3d(replace(SPUR, helix_angle=a), recipe, 2, clamped) for a in (0.1, -0.1)]
+    assert hands[0] == hands[1]
+
+
+def test_reach_is_bounded_by_the_ring_and_sufficient() -> None:
+    for wrong in (-1, 5):
+        with pytest.raises(InputError) as refusal:
+            flank_compliance_3d(SPUR, coarse(SPUR), reach=wrong)
+        assert refusal.value.field == "reach"
+    assert flow.usual_reach(SPUR) == 2
+    assert flow.usual_reach(replace(HELICAL, face_width=60e-3)) == 4
+    assert flank_compliance_3d(SPUR, coarse(SPUR), reach=0).blocks.shape[0] == 1
+
+
+@pytest.mark.parametrize("name", ["residual", "reciprocity", "bore_moment", "energy", "least_eigenvalue"])
+def test_a_broken_law_is_refused_by_name(name: str) -> None:
+    found = flank_compliance_3d(SPUR, coarse(SPUR, layers=2), reach=0)
+    broken: ComplianceChecks = replace(found.checks, **{name: -1.0 if name == "least_eigenvalue" else 1e-3})
+    with pytest.raises(SolveError, match=name.replace("_", ".")) as refusal:
+        refuse_broken_laws(replace(found, checks=broken))
+    assert refusal.value.partial is not None
+
+
+def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each check is blind to none of: cuts that do not fit, blocks that do not belong."""
+    genuine = gear_module.close_ring
+    spoil: Callable[..., object]
+
+    def spoiled(*arguments: object) -> object:
+        return spoil(genuine(*arguments))  # type: ignore[arg-type]
+
+    monkeypatch.setattr(gear_module, "close_ring", spoiled)
+    for law, change in {
+        "residual": lambda ring: replace(ring, left=np.roll(ring.left, 1, axis=0)),
+        "energy": lambda ring: replace(ring, blocks=ring.blocks * (1.0 + 1e-6)),
+        "reciprocity": lambda ring: replace(ring, blocks=ring.blocks + 1e-3 * np.triu(ring.blocks, 1)),
+    }.items():
+        spoil = change
+        with pytest.raises(SolveError) as refusal:
+            flank_compliance_3d(HELICAL, coarse(HELICAL), reach=1)
+        checks = refusal.value.partial.checks  # type: ignore[attr-defined]
+        assert getattr(checks, law) > 1e-7, law
+
+
+def test_least_eigenvalue_of_known_matrices() -> None:
+    basis, _ = np.linalg.qr(np.random.default_rng(3).normal(size=(30, 30)))
+    values = np.linspace(0.5, 4.0, 30)
+    assert least_eigenvalue(basis * values @ basis.T) == pytest.approx(0.5, rel=0.02)
+    values[3] = -1e-3
+    assert least_eigenvalue(basis * values @ basis.T) < 0.0
+
+
+def test_pressure_is_shared_consistently() -> None:
+    """Nodal forces of a pressure do its work on every quadratic field of s and z."""
+    s, z = np.array([0.0, 0.5, 1.0, 2.0, 3.0]), np.array([-1.0, 0.0, 2.0])
+    planes = np.array([-1.0, -0.5, 0.0, 1.0, 2.0])
+    index = np.full((5, 5), -1)
+    exists = (np.arange(5)[:, None] % 2 == 0) | (np.arange(5) % 2 == 0)
+    index[exists] = np.arange(exists.sum())
+    loaded = np.array([[1.0, 0.0], [0.0, 2.0]])
+    forces = pressure_forces(s, z, index, loaded)
+    grid_s, grid_z = np.broadcast_arrays(s, planes[:, None])
+    for p, q in ((0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)):
+
+        def integral(low: float, high: float, power: int) -> float:
+            return float((high ** (power + 1) - low ** (power + 1)) / (power + 1))
+
+        exact = integral(0, 1, p) * integral(-1, 0, q) + 2.0 * integral(1, 3, p) * integral(0, 2, q)
+        field = (grid_s**p * grid_z**q)[exists]
+        assert forces @ field == pytest.approx(exact, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    "gear", [replace(SPUR, teeth=20, bore_diameter=40e-3), HELICAL], ids=["spur", "helical"]
+)
+def test_cost_is_known_before_the_run(gear: Gear) -> None:
+    recipe = SectorRecipe.draft(gear)
+    flank_compliance_3d(gear, recipe)  # compiled code and libraries are loaded
+    spent = min(sum(flank_compliance_3d(gear, recipe).seconds.values()) for _ in range(2))
+    cost.dense_rate.cache_clear()
+    predicted = predict_cost(gear, recipe)
+    assert 0.4 < predicted.seconds / spent < 2.5
+    tracemalloc.start()
+    flank_compliance_3d(gear, recipe)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert 0.8 < predicted.bytes / peak < 1.8
+    assert predict_cost(gear).seconds > predicted.seconds
