@@ -7,19 +7,16 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 
-import numpy as np
-
-from fe_contact.analysis.error_estimate import ErrorSources, error_sources
-from fe_contact.analysis.pair_contact import PairContact, plane_compliances
-from fe_contact.analysis.position_nodes import PositionNodes, adaptive_nodes, fixed_nodes
-from fe_contact.analysis.request import Request, load_levels, refuse_beyond_plane
-from fe_contact.analysis.tabulate import contact_fields, pair_facts, support_fields
-from fe_contact.contact import ContactModel, ContactSolution
-from fe_contact.effects import EFFECTS, ContactScene, LedgerEntry, compose
+from fe_contact.analysis.error_estimate import ErrorSources, estimate_errors, worst_residual
+from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.position_nodes import table_nodes
+from fe_contact.analysis.request import Request, axis, load_levels, refuse_beyond_plane
+from fe_contact.analysis.table_places import Places, table_places
+from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.effects import EFFECTS, LedgerEntry, compose
 from fe_contact.geometry import GearPair
-from fe_contact.mesh import MeshRecipe
-from fe_contact.planning import Accuracy, StageClock, make_plan
-from fe_contact.planning.plan import BASE_POSITIONS, TABLE_TOLERANCE, Plan
+from fe_contact.planning import Accuracy, Plan, StageClock, make_plan
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
@@ -52,17 +49,19 @@ def analyze(
     Parameters
     ----------
     pair : GearPair
-        Spur gears in this version.
+        External gears on parallel axes, spur or helical.
     torques : sequence of float
         Torques on the driving gear in N m, increasing, > 0; or `normal_forces` in N.
     tolerance, level, time_budget
         Asked accuracy: relative error, "draft" | "standard" | "fine", or seconds; at most one.
     model : str
-        "auto" (plane strain), "plane_strain" or "plane_stress".
+        "auto" (three dimensions where the scene acts across the face, else plane strain), "plane_strain",
+        "plane_stress" or "3d".
     positions : int, optional
         Equally spaced positions; default: nodes placed so that interpolation keeps 0.2 % of peak-to-peak.
     misalignments, center_distance_changes : sequence of float
-        m; only (0.0,) in a plane model.
+        Table axes in m, increasing. Misalignment is the growth of the gap over the common face width in the
+        plane of action, zero at its middle.
     effects : mapping, optional
         Effect name to "on", "off" or "auto".
     case : dict, optional
@@ -87,64 +86,48 @@ def analyze(
     """
     clock = StageClock()
     report = progress or (lambda stage, fraction: None)
-    refuse_beyond_plane(pair, misalignments, center_distance_changes)
     accuracy = Accuracy(tolerance, time_budget, level, model, positions)
-    request = Request(pair, load_levels(pair, torques, normal_forces), accuracy, dict(effects or {}))
-    contact_model, ledger = compose(ContactScene(pair, request.torque), request.effects, EFFECTS)
-    plan = make_plan(pair, request.load, accuracy)
-    fine = _pair_contact(request, plan, plan.recipes, clock, "compliance", report, cache)
+    axes = (axis("misalignments", misalignments), axis("center_distance_changes", center_distance_changes))
+    request = Request(pair, load_levels(pair, torques, normal_forces), accuracy, *axes, dict(effects or {}))
+    contact_model, ledger = compose(request.scene, request.choices, EFFECTS)
+    if not contact_model.across_face:
+        refuse_beyond_plane(request.scene)
+    plan = make_plan(pair, request.load, accuracy, contact_model)
+    fine = _places(request, plan, clock, report, cache, coarse=False)
     with clock.stage("contact"):
-        nodes = _nodes(fine, contact_model, plan)
-        report("contact", 0.5)
-        candidates, solution = fine.solve(contact_model, nodes.position, plan.load)
-        _, support = fine.solve(contact_model, nodes.position, plan.support)
+        nodes = table_nodes(fine, plan)
+        report("contact", 0.3)
+        solved = [place.solve(nodes.position, plan.load) for place in fine.places]
+        support = [place.solve(nodes.position, plan.support) for place in fine.places]
         report("contact", 1.0)
-    coarse = _pair_contact(request, plan, plan.coarse_recipes, clock, "error estimate", report, cache)
+    coarse = _places(request, plan, clock, report, cache, coarse=True)
     with clock.stage("error estimate"):
-        rough = coarse.solve(contact_model, nodes.position, plan.load)[1].deflection
-        errors = error_sources(solution, rough, nodes.error)
-    fields = contact_fields(candidates, solution, fine.contact_modulus) | support_fields(support)
+        rough = [place.solve(nodes.position, plan.load)[1] for place in coarse.places]
+        errors = estimate_errors(fine, [solution for _, solution in solved], rough, nodes, plan)
     return SteDatabase(
         position=nodes.position,
         force=plan.load,
         torque=pair.torque(plan.load),
-        misalignment=np.zeros(1),
-        center_distance_change=np.zeros(1),
-        pair=candidates.pair,
-        no_load_transmission_error=solution.no_load[:, None, None],
-        error_estimate=errors.total[:, :, None, None],
+        misalignment=request.misalignment,
+        center_distance_change=request.center_distance_change,
         facts=pair_facts(pair),
-        metadata=_metadata(case or request.to_json(), plan, ledger, clock, errors, solution),
-        **fields,
+        error_estimate=errors.total,
+        metadata=_metadata(case or request.to_json(), plan, ledger, clock, errors, solved),
+        **table_fields(fine, solved),
+        **table_support(fine, support),
     )
 
 
-def _pair_contact(
-    request: Request,
-    plan: Plan,
-    recipes: tuple[MeshRecipe, MeshRecipe],
-    clock: StageClock,
-    stage: str,
-    report: Progress,
-    cache: Path | None,
-) -> PairContact:
-    """Compute or fetch the compliances of both gears."""
+def _places(
+    request: Request, plan: Plan, clock: StageClock, report: Progress, cache: Path | None, *, coarse: bool
+) -> Places:
+    """Compute or fetch the compliances of both gears, and lay out the table over them."""
+    stage = "error estimate" if coarse else "compliance"
     report(stage, 0.0)
     with clock.stage(stage):
-        compliances = plane_compliances(request.pair, plan, recipes, cache)
+        nominal = pair_contact(request.pair, plan, cache, coarse)
     report(stage, 1.0)
-    return PairContact(request.pair, plan, compliances)
-
-
-def _nodes(contact: PairContact, model: ContactModel, plan: Plan) -> PositionNodes:
-    """Place the positions."""
-
-    def solve(position: FloatArray) -> FloatArray:
-        return contact.solve(model, position, plan.load)[1].deflection
-
-    if plan.positions is not None:
-        return fixed_nodes(plan.positions, solve)
-    return adaptive_nodes(BASE_POSITIONS, solve, TABLE_TOLERANCE)
+    return table_places(request.scene, request.choices, nominal)
 
 
 def _metadata(
@@ -153,15 +136,15 @@ def _metadata(
     ledger: tuple[LedgerEntry, ...],
     clock: StageClock,
     errors: ErrorSources,
-    solution: ContactSolution,
+    solved: list[tuple[ContactProblem, ContactSolution]],
 ) -> Metadata:
     """Everything about the making of the table."""
     receipt = clock.to_json() | {
         "error_by_source": errors.to_json(),
         "plan": plan.to_json(),
-        "newton_iterations_max": int(solution.iterations.max()),
-        "residuals_max": solution.residuals.max(axis=(0, 1)).tolist(),
-        "patch_outgrown_points": int(solution.beyond.sum()),
+        "newton_iterations_max": max(int(solution.iterations.max()) for _, solution in solved),
+        "residuals_max": max(worst_residual(solution) for _, solution in solved),
+        "patch_outgrown_points": sum(int(solution.beyond.sum()) for _, solution in solved),
     }
     return Metadata(
         case=case,

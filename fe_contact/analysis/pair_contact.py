@@ -6,7 +6,12 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from fe_contact.compliance import FlankCompliance, flank_compliances
+from fe_contact.compliance import (
+    FlankCompliance,
+    FlankCompliance3D,
+    flank_compliances,
+    flank_compliances_3d,
+)
 from fe_contact.contact import (
     Candidates,
     ContactModel,
@@ -15,13 +20,17 @@ from fe_contact.contact import (
     Slices,
     contact_candidates,
     contact_problem,
+    face_contact_problem,
     solve_contact,
     with_gaps,
 )
 from fe_contact.geometry import GearPair
 from fe_contact.mesh import MeshRecipe
-from fe_contact.planning import Plan
+from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation
 from fe_contact.types import FloatArray
+
+PlaneFlanks = tuple[FlankCompliance, FlankCompliance]
+FaceFlanks = tuple[FlankCompliance3D, FlankCompliance3D]
 
 
 @dataclass(frozen=True)
@@ -32,46 +41,70 @@ class PairContact:
     ----------
     pair : GearPair
     plan : Plan
-    compliances : (FlankCompliance, FlankCompliance)
+    plane, face : pair of compliances or None
+        Of both gears, in the plane or over the face width; exactly one of the two.
     """
 
     pair: GearPair
     plan: Plan
-    compliances: tuple[FlankCompliance, FlankCompliance]
+    plane: PlaneFlanks | None = None
+    face: FaceFlanks | None = None
     _problems: dict[tuple[bytes, bool, bool], ContactProblem] = field(default_factory=dict, repr=False)
-
-    @property
-    def contact_modulus(self) -> float:
-        """E* in Pa."""
-        first, second = self.compliances
-        return 1.0 / (1.0 / first.contact_modulus + 1.0 / second.contact_modulus)
 
     def solve(
         self, model: ContactModel, position: FloatArray, load: FloatArray
-    ) -> tuple[Candidates, ContactSolution]:
+    ) -> tuple[ContactProblem, ContactSolution]:
         """Solve positions (P,) at normal forces (L,) in N."""
         problem = self._problem(model, position)
-        candidates = with_gaps(self.pair, problem.candidates, model)
-        return candidates, solve_contact(problem.touching(candidates), load)
+        problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
+        return problem, solve_contact(problem, load)
 
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
         key = (position.tobytes(), model.corner_contact, model.couple_teeth)
         if key not in self._problems:
-            slices = Slices.of_pair(self.pair, 1)
+            slices = Slices.of_pair(self.pair, self.plan.discretisation.slices)
             candidates = contact_candidates(self.pair, model, position, self.plan.patch, slices)
-            self._problems[key] = contact_problem(candidates, self.compliances, model.couple_teeth)
+            self._problems[key] = self._assembled(candidates, model.couple_teeth)
         return self._problems[key]
 
+    def _assembled(self, candidates: Candidates, couple_teeth: bool) -> ContactProblem:
+        """Assemble the compliance between the candidates."""
+        if self.face is not None:
+            return face_contact_problem(candidates, self.face, self.pair.axial_offset, couple_teeth)
+        if self.plane is not None:
+            return contact_problem(candidates, self.plane, couple_teeth)
+        raise ValueError("a pair contact needs the compliance of its gears")
 
-def plane_compliances(
-    pair: GearPair, plan: Plan, recipes: tuple[MeshRecipe, MeshRecipe], cache: Path | None
-) -> tuple[FlankCompliance, FlankCompliance]:
-    """Compliance of both gears with all teeth that can touch; identical gears are computed once."""
+
+def pair_contact(pair: GearPair, plan: Plan, cache: Path | None, coarse: bool = False) -> PairContact:
+    """Compute or fetch the compliance of both gears; identical gears are computed once.
+
+    Parameters
+    ----------
+    pair : GearPair
+    plan : Plan
+    cache : Path, optional
+        Directory of stored compliances; None computes afresh.
+    coarse : bool
+        Take the coarse meshes, which serve the error estimate.
+    """
+    made = plan.discretisation
+    gears = (pair.pinion, pair.wheel)
+    if isinstance(made, FaceDiscretisation):
+        over_face = flank_compliances_3d(gears, made.coarse_recipes if coarse else made.recipes, cache=cache)
+        return PairContact(pair, plan, face=(over_face[0], over_face[1]))
+    recipes = made.coarse_recipes if coarse else made.recipes
+    return PairContact(pair, plan, plane=_plane_flanks(pair, made, recipes, cache))
+
+
+def _plane_flanks(
+    pair: GearPair, made: PlaneDiscretisation, recipes: tuple[MeshRecipe, MeshRecipe], cache: Path | None
+) -> PlaneFlanks:
+    """Condense all teeth that can touch at once."""
     reach = 2 * math.ceil(pair.transverse_contact_ratio) + 1
     fits = min(pair.pinion.teeth, pair.wheel.teeth)
     teeth = min(reach, fits - 1 + fits % 2)
-    first, second = flank_compliances(
-        (pair.pinion, pair.wheel), recipes, plan.hypothesis, teeth=teeth, cache=cache
-    )
+    gears = (pair.pinion, pair.wheel)
+    first, second = flank_compliances(gears, recipes, made.hypothesis, teeth=teeth, cache=cache)
     return first, second

@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.analysis.table_places import Places
+from fe_contact.planning import NodeRule, Plan
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray
 
-MAX_NODES = 768
 MAX_ROUNDS = 10
 
 
@@ -41,17 +42,28 @@ def fixed_nodes(count: int, solve: Callable[[FloatArray], FloatArray]) -> Positi
     return PositionNodes(nodes, _middle_error(nodes, solve(nodes), solve)[1])
 
 
-def adaptive_nodes(start: int, solve: Callable[[FloatArray], FloatArray], tolerance: float) -> PositionNodes:
+def table_nodes(places: Places, plan: Plan) -> PositionNodes:
+    """Place the positions of a table: the number asked for, or where the curves of its judged places bend."""
+
+    def solve(position: FloatArray) -> FloatArray:
+        """STE (P, places x L) in m."""
+        curves = [place.solve(position, plan.load)[1].deflection for place in places.judged]
+        return np.concatenate(curves, axis=1)
+
+    if plan.positions is not None:
+        return fixed_nodes(plan.positions, solve)
+    return adaptive_nodes(plan.nodes, solve)
+
+
+def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
     """Bisect the intervals whose middle the interpolant misses.
 
     Parameters
     ----------
-    start : int
-        Equally spaced nodes to begin with.
+    rule : NodeRule
+        Nodes to begin with, largest error, largest number.
     solve : callable
         Positions (P,) to STE (P, L) in m.
-    tolerance : float
-        Largest error as a fraction of each level's peak-to-peak value.
 
     Notes
     -----
@@ -59,15 +71,15 @@ def adaptive_nodes(start: int, solve: Callable[[FloatArray], FloatArray], tolera
     hundred nodes gather at the handovers. The search ends with the tolerance met, after `MAX_ROUNDS`, or at
     `MAX_NODES`; the error says which.
     """
-    nodes = np.arange(start) / start
+    nodes = np.arange(rule.start) / rule.start
     values = solve(nodes)
-    settled = np.zeros(start, dtype=bool)
+    settled = np.zeros(rule.start, dtype=bool)
     error = np.full_like(values, np.inf)
     for remaining in reversed(range(MAX_ROUNDS)):
-        allowed = np.maximum(tolerance * np.ptp(values, axis=0), 1e-6 * np.abs(values).max(axis=0))
+        allowed = np.maximum(rule.tolerance * np.ptp(values, axis=0), 1e-6 * np.abs(values).max(axis=0))
         middles, error, found = _middle_error(nodes, values, solve, settled, error)
         missed = np.any(error > allowed, axis=1)
-        if not missed.any() or not remaining or nodes.size + missed.sum() > MAX_NODES:
+        if not missed.any() or not remaining or nodes.size + missed.sum() > rule.most:
             break
         nodes, values, settled, error = _inserted(nodes, values, missed, middles, found, error)
     return PositionNodes(nodes, error)

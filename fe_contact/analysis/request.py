@@ -7,11 +7,15 @@ from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
-from fe_contact.checks import finite, increasing, positive
+from fe_contact.checks import increasing, positive, within
+from fe_contact.effects import ContactScene, FaceLoadDistribution
 from fe_contact.errors import InputError
 from fe_contact.geometry import GearPair
 from fe_contact.planning import Accuracy
 from fe_contact.types import FloatArray, Json
+
+LARGEST_DEVIATION = 0.01
+"""m; larger values of an axis are micrometres given as metres."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +28,8 @@ class Request:
     load : ndarray
         Normal forces F_bn in N, increasing.
     accuracy : Accuracy
+    misalignment, center_distance_change : ndarray
+        Table axes, m.
     effects : mapping
         Effect name to "on", "off" or "auto".
     """
@@ -31,6 +37,8 @@ class Request:
     pair: GearPair
     load: FloatArray
     accuracy: Accuracy
+    misalignment: FloatArray
+    center_distance_change: FloatArray
     effects: Mapping[str, str] = field(default_factory=dict)
 
     @property
@@ -38,12 +46,25 @@ class Request:
         """Torques on the driving gear in N m."""
         return self.pair.torque(self.load)
 
+    @property
+    def scene(self) -> ContactScene:
+        """What the effects judge by."""
+        return ContactScene(self.pair, self.torque, self.misalignment, self.center_distance_change)
+
+    @property
+    def choices(self) -> dict[str, str]:
+        """Choice of each effect; an explicit model decides about the face load distribution."""
+        asked = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.accuracy.model)
+        return dict(self.effects) | ({FaceLoadDistribution.name: asked} if asked else {})
+
     def to_json(self) -> Json:
         """Return plain JSON in SI units: what decides the result."""
         return {
             "pair": asdict(self.pair),
             "normal_force": self.load.tolist(),
             "accuracy": asdict(self.accuracy),
+            "misalignment": self.misalignment.tolist(),
+            "center_distance_change": self.center_distance_change.tolist(),
             "effects": dict(sorted(self.effects.items())),
         }
 
@@ -70,27 +91,28 @@ def load_levels(
     return pair.normal_force(levels) if torques is not None else levels
 
 
-def refuse_beyond_plane(
-    pair: GearPair, misalignments: Sequence[float], center_distance_changes: Sequence[float]
-) -> None:
+def axis(name: str, values: Sequence[float] | FloatArray) -> FloatArray:
+    """Return a table axis in m, increasing.
+
+    Raises
+    ------
+    InputError
+        Not increasing, not finite, or larger than 1 cm: micrometres given as metres.
+    """
+    levels = increasing(name, values)
+    for i, value in enumerate(levels):
+        within(f"{name}[{i}]", float(value), -LARGEST_DEVIATION, LARGEST_DEVIATION, "In m: 30 um is 3e-5.")
+    return levels
+
+
+def refuse_beyond_plane(scene: ContactScene) -> None:
     """Refuse what a plane model cannot hold, naming the field."""
+    pair, advice = scene.pair, "Use the 3-D model for it."
     if pair.pinion.helix_angle != 0.0:
-        raise InputError(
-            "pinion.helix_angle",
-            pair.pinion.helix_angle,
-            "0 for a plane model",
-            "Helical gears need the 3-D model.",
-        )
+        raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         if gear.modification.varies_along_face:
-            raise InputError(
-                f"{name}.modification", gear.modification, "constant along the face for a plane model",
-                "Helix crowning, helix slope and end relief need the 3-D model.",
-            )  # fmt: skip
-    for name, values in (
-        ("misalignments", misalignments),
-        ("center_distance_changes", center_distance_changes),
-    ):
-        array = np.asarray([finite(f"{name}[{i}]", v) for i, v in enumerate(values)])
-        if array.size != 1 or array[0] != 0.0:
-            raise InputError(name, list(values), "[0.0] for a plane model", "This axis needs the 3-D model.")
+            bound = "constant along the face for a plane model"
+            raise InputError(f"{name}.modification", gear.modification, bound, advice)
+    if np.any(scene.misalignment != 0.0):
+        raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)

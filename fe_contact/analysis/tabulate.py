@@ -1,16 +1,18 @@
-"""From a contact solution to the arrays of the STE database."""
+"""From contact solutions to the arrays of the STE database."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from fe_contact.contact import Candidates, ContactSolution
+from fe_contact.analysis.table_places import Places
+from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.geometry import GearPair
 from fe_contact.hertz import peak_pressure
 from fe_contact.ste import PairFacts
-from fe_contact.types import Status
+from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 
 
 def pair_facts(pair: GearPair) -> PairFacts:
@@ -27,38 +29,74 @@ def pair_facts(pair: GearPair) -> PairFacts:
     )
 
 
-def contact_fields(candidates: Candidates, solution: ContactSolution, modulus: float) -> dict[str, Any]:
-    """Arrays (P, F, ...) of one misalignment and centre distance, by name in the database.
+def table_fields(
+    places: Places, solved: list[tuple[ContactProblem, ContactSolution]]
+) -> dict[str, NDArray[Any]]:
+    """Arrays of the database at the asked loads, (P, F, M, D, ...), and its pair axis."""
+    seen = np.concatenate([problem.candidates.pair for problem, _ in solved])
+    pairs = np.arange(seen.min(), seen.max() + 1)
+    fields = [contact_fields(problem, solution, pairs) for problem, solution in solved]
+    no_load = places.gathered([solution.no_load[:, None] for _, solution in solved])[:, 0]
+    gathered = {name: places.gathered([place[name] for place in fields]) for name in fields[0]}
+    return gathered | {"pair": pairs, "no_load_transmission_error": no_load}
+
+
+def table_support(
+    places: Places, solved: list[tuple[ContactProblem, ContactSolution]]
+) -> dict[str, NDArray[Any]]:
+    """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
+    fields = [support_fields(problem, solution) for problem, solution in solved]
+    good = np.all([solution.status == Status.CONVERGED for _, solution in solved], axis=(0, 1))
+    gathered = {name: places.gathered([place[name][:, good] for place in fields]) for name in fields[0]}
+    return gathered | {"support_force": solved[0][1].load[good]}
+
+
+def contact_fields(
+    problem: ContactProblem, solution: ContactSolution, pairs: IntArray
+) -> dict[str, NDArray[Any]]:
+    """Arrays (P, F, ...) of one place of the table, by name in the database.
 
     The peak pressure is Hertz's for the load and curvature of each contact; at a tip edge the true pressure
     is singular.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    solution : ContactSolution
+    pairs : ndarray of int, shape (N,)
+        Pair indices of the table.
     """
+    candidates = problem.candidates
     good = solution.status == Status.CONVERGED
     loaded = solution.force * candidates.torque_share[:, None, :]
     total = np.where(good, loaded.sum(axis=2), 1.0)
-    line_load = solution.force / candidates.width
-    pressure = peak_pressure(line_load, candidates.radius[:, None, :], modulus)
-    fields = {
+    pressure = peak_pressure(
+        solution.force / candidates.width, candidates.radius[:, None, :], problem.modulus
+    )
+    of_pair = candidates.pair[:, None] == pairs
+    return {
         "static_transmission_error": solution.deflection,
         "tangent_compliance": solution.tangent,
-        "load_share": loaded / total[..., None],
-        "face_centroid": np.zeros_like(solution.deflection),
+        "load_share": (loaded @ of_pair) / total[..., None],
+        "face_centroid": (loaded @ candidates.face_position) / total,
         "max_pressure": np.where(good, pressure.max(axis=2), np.nan),
-        "pairs_in_contact": (solution.force > 0.0).sum(axis=2),
+        "pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
         "status": solution.status,
         "residuals": solution.residuals,
     }
-    return {name: values[:, :, None, None] for name, values in fields.items()}
 
 
-def support_fields(solution: ContactSolution) -> dict[str, Any]:
-    """Support loads that converged everywhere, and their arrays (P, S, 1, 1)."""
-    good = np.all(solution.status == Status.CONVERGED, axis=0)
-    fields = {
+def support_fields(problem: ContactProblem, solution: ContactSolution) -> dict[str, NDArray[Any]]:
+    """Arrays (P, S) of one place at the support loads."""
+    pair = problem.candidates.pair
+    of_pair = pair[:, None] == np.unique(pair)
+    return {
         "support_transmission_error": solution.deflection,
         "support_tangent_compliance": solution.tangent,
-        "support_pairs_in_contact": (solution.force > 0.0).sum(axis=2),
+        "support_pairs_in_contact": _pairs_in_contact(solution.force, of_pair),
     }
-    return {"support_force": solution.load[good]} | {
-        name: values[:, good, None, None] for name, values in fields.items()
-    }
+
+
+def _pairs_in_contact(force: FloatArray, of_pair: BoolArray) -> IntArray:
+    """Count the pairs (P, F) of which any candidate carries load."""
+    return np.asarray((((force > 0.0).astype(float) @ of_pair) > 0.0).sum(axis=2))

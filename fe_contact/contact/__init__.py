@@ -2,6 +2,7 @@
 
 from fe_contact.contact.assembly import contact_problem
 from fe_contact.contact.candidates import PatchRule, contact_candidates, with_gaps
+from fe_contact.contact.face_assembly import face_contact_problem
 from fe_contact.contact.model import ContactModel, GapTerm
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.contact.slices import Slices
@@ -18,6 +19,7 @@ __all__ = [
     "Slices",
     "contact_candidates",
     "contact_problem",
+    "face_contact_problem",
     "solve_contact",
     "with_gaps",
 ]

@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from fe_contact.contact.patch import GAUSS_POINTS, GAUSS_WEIGHTS
 from fe_contact.types import FloatArray, IntArray
-
-_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 class FaceGrid(NamedTuple):
@@ -121,10 +120,10 @@ def _profile_moments(
     start = math.asin(min(max((left - center) / half_width, -1.0), 1.0))
     stop = math.asin(min(max((right - center) / half_width, -1.0), 1.0))
     out[:] = 0.0
-    for g in range(_GAUSS_POINTS.size):
-        sine = math.sin(0.5 * (start + stop) + 0.5 * (stop - start) * _GAUSS_POINTS[g])
+    for g in range(GAUSS_POINTS.size):
+        sine = math.sin(0.5 * (start + stop) + 0.5 * (stop - start) * GAUSS_POINTS[g])
         density = (1.0 - edge_share) * 2.0 * (1.0 - sine * sine) + edge_share * (1.0 + sine)
-        weight = density / math.pi * 0.5 * (stop - start) * _GAUSS_WEIGHTS[g]
+        weight = density / math.pi * 0.5 * (stop - start) * GAUSS_WEIGHTS[g]
         x = 2.0 * (center + half_width * sine - left) / (right - left) - 1.0
         out[0] += weight
         out[1] += weight * x
@@ -203,7 +202,6 @@ def add_compliance(
     tooth: IntArray,
     loads: FaceLoads,
     lever: FloatArray,
-    present: IntArray,
     out: FloatArray,
 ) -> None:
     """Add lever_i lever_j f_i' S f_j to `out` (n, n).
@@ -216,21 +214,17 @@ def add_compliance(
         Tooth of each patch, counted counter-clockwise; patches of one tooth stand together.
     loads : FaceLoads
     lever : ndarray, shape (n,)
-    present : ndarray of int, shape (m,)
-        Patches to take, increasing.
     """
     reach = response.shape[0] // 2
     moved = np.zeros(response.shape[1])
     needed = np.zeros(response.shape[1], dtype=np.int64)
-    for jj in range(present.size):
-        j = present[jj]
-        for ii in range(jj, present.size):
-            i = present[ii]
+    for j in range(tooth.size):
+        for i in range(j, tooth.size):
             apart = tooth[i] - tooth[j]
             if abs(apart) > reach:
                 continue
-            if ii == jj or tooth[i] != tooth[present[ii - 1]]:
-                count = _needed(tooth, loads, present, ii, needed)
+            if i == j or tooth[i] != tooth[i - 1]:
+                count = _needed(tooth, loads, i, needed)
                 _displace(response[reach + apart], loads, j, needed[:count], moved)
             value = 0.0
             for p in range(loads.used[i]):
@@ -242,13 +236,12 @@ def add_compliance(
 
 
 @njit(cache=True)
-def _needed(tooth: IntArray, loads: FaceLoads, present: IntArray, first: int, out: IntArray) -> int:
+def _needed(tooth: IntArray, loads: FaceLoads, first: int, out: IntArray) -> int:
     """List the freedoms that the patches of one tooth, from `first` on, load; return how many."""
     seen = np.zeros(out.size, dtype=np.bool_)
     count = 0
-    for ii in range(first, present.size):
-        i = present[ii]
-        if tooth[i] != tooth[present[first]]:
+    for i in range(first, tooth.size):
+        if tooth[i] != tooth[first]:
             break
         for p in range(loads.used[i]):
             node = loads.nodes[i, p]

@@ -41,9 +41,12 @@ class ContactModel:
         Load on one tooth moves its neighbours.
     corner_contact : bool
         Tip edges may touch off the line of action, before A and after E.
+    across_face : bool
+        Load distributes over the face width: three dimensions instead of the plane.
     gaps : tuple of GapTerm
     """
 
     couple_teeth: bool = False
     corner_contact: bool = False
+    across_face: bool = False
     gaps: tuple[GapTerm, ...] = ()

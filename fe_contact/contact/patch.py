@@ -23,7 +23,7 @@ from numba import njit
 
 from fe_contact.types import FloatArray
 
-_GAUSS_POINTS, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(13)
+GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(13)
 
 
 @dataclass(frozen=True)
@@ -136,11 +136,11 @@ def _add_element(
     start = math.asin(min(max((left - center) / half_width, -1.0), 1.0))
     stop = math.asin(min(max((right - center) / half_width, -1.0), 1.0))
     middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
-    for g in range(_GAUSS_POINTS.size):
-        theta = middle + half * _GAUSS_POINTS[g]
+    for g in range(GAUSS_POINTS.size):
+        theta = middle + half * GAUSS_POINTS[g]
         sine = math.sin(theta)
         density = (1.0 - edge_share) * 2.0 * (1.0 - sine * sine) + edge_share * (1.0 + sine)
-        weight = density / math.pi * half * _GAUSS_WEIGHTS[g]
+        weight = density / math.pi * half * GAUSS_WEIGHTS[g]
         xi = 2.0 * (center + half_width * sine - left) / (right - left) - 1.0
         out[2 * e] += weight * 0.5 * xi * (xi - 1.0)
         out[2 * e + 1] += weight * (1.0 - xi * xi)

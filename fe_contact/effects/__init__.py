@@ -2,6 +2,7 @@
 
 from fe_contact.effects.composer import LedgerEntry, compose
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
+from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.registry import EFFECTS
 
-__all__ = ["EFFECTS", "ContactScene", "Effect", "LedgerEntry", "Verdict", "compose"]
+__all__ = ["EFFECTS", "ContactScene", "Effect", "FaceLoadDistribution", "LedgerEntry", "Verdict", "compose"]

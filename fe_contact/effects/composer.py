@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Effect, Verdict
@@ -75,7 +75,8 @@ def compose(
         if on:
             model = effect.contribute(scene, model)
         ledger.append(LedgerEntry(effect.name, on, choice, verdict, effect.cost))
-    return model, tuple(ledger)
+    # a fixed order of the sum, so that the order of the registry changes no bit
+    return replace(model, gaps=tuple(sorted(model.gaps, key=repr))), tuple(ledger)
 
 
 def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:

@@ -6,8 +6,10 @@ order. Neutral settings (nothing to contribute) leave the results bit-identical.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar, Protocol
+
+import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.geometry import GearPair
@@ -23,10 +25,17 @@ class ContactScene:
     pair : GearPair
     torque : ndarray
         Torques on the driving gear, N m.
+    misalignment : ndarray
+        Misalignments of the table axis, m: growth of the gap over the common face width in the plane of
+        action, zero at its middle.
+    center_distance_change : ndarray
+        Changes of the table axis, m.
     """
 
     pair: GearPair
     torque: FloatArray
+    misalignment: FloatArray = field(default_factory=lambda: np.zeros(1))
+    center_distance_change: FloatArray = field(default_factory=lambda: np.zeros(1))
 
 
 @dataclass(frozen=True)

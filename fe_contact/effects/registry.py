@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.effect import Effect
+from fe_contact.effects.face_load_distribution import FaceLoadDistribution
+from fe_contact.effects.lead_modification import LeadModification
+from fe_contact.effects.misalignment import Misalignment
 from fe_contact.effects.profile_modification import ProfileModification
 from fe_contact.effects.tooth_coupling import ToothCoupling
 
@@ -11,4 +14,7 @@ EFFECTS: tuple[Effect, ...] = (
     ToothCoupling(),
     CornerContact(),
     ProfileModification(),
+    FaceLoadDistribution(),
+    LeadModification(),
+    Misalignment(),
 )

@@ -6,7 +6,7 @@ action).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -94,6 +94,17 @@ class FlankModification:
     def varies_along_face(self) -> bool:
         """Whether the modification depends on the face position."""
         return bool(self.helix_crowning or self.helix_slope or self.end_relief)
+
+    @property
+    def along_profile(self) -> FlankModification:
+        """The part that depends on the roll length only."""
+        return replace(self, helix_crowning=0.0, helix_slope=0.0, end_relief=0.0, end_relief_length=0.0)
+
+    @property
+    def along_face(self) -> FlankModification:
+        """The part that depends on the face position only."""
+        names = ("helix_crowning", "helix_slope", "end_relief", "end_relief_length", "end_relief_shape")
+        return FlankModification(**{name: getattr(self, name) for name in names})
 
     def check_fits(self, gear: Gear) -> None:
         """Raise `InputError` if a relief is longer than the involute is high or half the face is wide."""

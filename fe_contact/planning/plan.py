@@ -1,4 +1,4 @@
-"""From a pair and an accuracy to the discretisation of a run."""
+"""From a pair, an accuracy and a contact model to the discretisation of a run."""
 
 from __future__ import annotations
 
@@ -7,26 +7,19 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from fe_contact.checks import increasing, integer, positive, within
+from fe_contact.checks import increasing
 from fe_contact.compliance import PlaneHypothesis
-from fe_contact.contact import PatchRule
-from fe_contact.errors import InputError
-from fe_contact.geometry import Gear, GearPair
+from fe_contact.contact import ContactModel, PatchRule
+from fe_contact.geometry import GearPair
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
-from fe_contact.mesh import MeshRecipe
+from fe_contact.planning.accuracy import Accuracy
+from fe_contact.planning.discretisation import Discretisation, face_discretisation, plane_discretisation
 from fe_contact.types import FloatArray, Json
-
-LEVELS = {"draft": 0.6, "standard": 1.0, "fine": 2.0}
-"""Refinement of the standard mesh at each level."""
-
-TABLE_TOLERANCE = 0.002
-"""Interpolation error in position kept by adaptive nodes, as a fraction of each load's peak-to-peak STE."""
 
 EDGE_PATCH = 0.0125
 """Length of the patch at a tip edge in modules: the contact length there under rated load (factors of two
 move STE in corner contact by about 0.1 %)."""
 
-BASE_POSITIONS = 64
 SMALLEST_SUPPORT = 1e-3
 """Lowest support load over the largest load."""
 LARGEST_SUPPORT = 2.0
@@ -34,84 +27,29 @@ LARGEST_SUPPORT = 2.0
 SUPPORT_RATIO = 5.0
 """Largest ratio of neighbouring support loads."""
 
-MODELS = {
-    "auto": PlaneHypothesis.PLANE_STRAIN,
-    "plane_strain": PlaneHypothesis.PLANE_STRAIN,
-    "plane_stress": PlaneHypothesis.PLANE_STRESS,
-}
-
 
 @dataclass(frozen=True)
-class Accuracy:
-    """What the caller asked for: exactly one of the first three, or none (then `level` = "standard").
+class NodeRule:
+    """How densely positions are placed where none are asked for.
 
     Attributes
     ----------
-    tolerance : float, optional
-        Relative error on mean and peak-to-peak STE.
-    time_budget : float, optional
-        Seconds.
-    level : str, optional
-        "draft", "standard" or "fine".
-    model : str
-        "auto", "plane_strain", "plane_stress" or "3d".
-    positions : int, optional
-        Fixed number of equally spaced positions; without it nodes are placed where the curve bends.
+    start : int
+        Equally spaced nodes to begin with.
+    tolerance : float
+        Interpolation error to keep, as a fraction of each load's peak-to-peak STE.
+    most : int
+        Largest number of nodes.
     """
 
-    tolerance: float | None = None
-    time_budget: float | None = None
-    level: str | None = None
-    model: str = "auto"
-    positions: int | None = None
+    start: int
+    tolerance: float
+    most: int
 
-    def __post_init__(self) -> None:
-        asked = [n for n in ("tolerance", "time_budget", "level") if getattr(self, n) is not None]
-        if len(asked) > 1:
-            raise InputError(
-                asked[1],
-                getattr(self, asked[1]),
-                f"left out when {asked[0]} is given",
-                "Ask for one of them.",
-            )
-        if self.tolerance is not None:
-            within("tolerance", self.tolerance, 1e-4, 0.5, "0.01 means one per cent.")
-        if self.time_budget is not None:
-            positive("time_budget", self.time_budget, "Seconds.")
-        if self.level is not None and self.level not in LEVELS:
-            raise InputError("level", self.level, f"one of {', '.join(LEVELS)}")
-        if self.model == "3d":
-            raise InputError(
-                "model",
-                self.model,
-                f"one of {', '.join(MODELS)}",
-                "Three-dimensional models are not in this version.",
-            )
-        if self.model not in MODELS:
-            raise InputError("model", self.model, f"one of {', '.join(MODELS)}")
-        if self.positions is not None:
-            integer(
-                "positions",
-                self.positions,
-                8,
-                4096,
-                "64 resolve a spur pair; leave it out for adaptive nodes.",
-            )
 
-    @property
-    def refinement(self) -> float:
-        """Refinement of the standard mesh.
-
-        The error of the standard mesh is a few 1e-4 and the mesh costs little in 2-D, so a looser tolerance
-        or a shorter time is met by the draft mesh and only a tolerance below 0.002 asks for the fine one.
-        """
-        if self.level is not None:
-            return LEVELS[self.level]
-        if self.tolerance is not None:
-            return LEVELS["fine"] if self.tolerance < 0.002 else LEVELS["standard"]
-        if self.time_budget is not None:
-            return LEVELS["draft"] if self.time_budget < 3.0 else LEVELS["standard"]
-        return LEVELS["standard"]
+PLANE_NODES = NodeRule(64, 0.002, 768)
+FACE_NODES = NodeRule(64, 0.005, 192)
+"""Positions cost a hundred times as much over the face, and its curves are smoother."""
 
 
 @dataclass(frozen=True)
@@ -120,33 +58,28 @@ class Plan:
 
     Attributes
     ----------
-    hypothesis : PlaneHypothesis
-    recipes : (MeshRecipe, MeshRecipe)
-        Driving and driven gear.
-    coarse_recipes : (MeshRecipe, MeshRecipe)
-        Half as fine, for the discretisation error.
+    discretisation : PlaneDiscretisation or FaceDiscretisation
     patch : PatchRule
     positions : int or None
         Fixed number, or None for adaptive nodes.
+    nodes : NodeRule
+        How those are placed.
     load : ndarray
         Requested normal forces F_bn in N.
     support : ndarray
         Further loads in N that carry the force extraction down to lift-off and into overload.
     """
 
-    hypothesis: PlaneHypothesis
-    recipes: tuple[MeshRecipe, MeshRecipe]
-    coarse_recipes: tuple[MeshRecipe, MeshRecipe]
+    discretisation: Discretisation
     patch: PatchRule
     positions: int | None
+    nodes: NodeRule
     load: FloatArray
     support: FloatArray
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        return {
-            "model": self.hypothesis.value,
-            "mesh": [r.content() for r in self.recipes],
+        return self.discretisation.to_json() | {
             "patch": asdict(self.patch),
             "positions": self.positions or "adaptive",
             "load": self.load.tolist(),
@@ -154,8 +87,8 @@ class Plan:
         }
 
 
-def make_plan(pair: GearPair, load: FloatArray, accuracy: Accuracy) -> Plan:
-    """Choose meshes, patches, positions and load levels.
+def make_plan(pair: GearPair, load: FloatArray, accuracy: Accuracy, model: ContactModel) -> Plan:
+    """Choose meshes, slices, patches, positions and support loads.
 
     Parameters
     ----------
@@ -163,25 +96,20 @@ def make_plan(pair: GearPair, load: FloatArray, accuracy: Accuracy) -> Plan:
     load : ndarray
         Requested normal forces in N, increasing, > 0.
     accuracy : Accuracy
+    model : ContactModel
+        `across_face` asks for three dimensions.
     """
     levels = increasing("load", load)
-    recipes = tuple(_recipe(gear, accuracy.refinement) for gear in (pair.pinion, pair.wheel))
-    coarse = tuple(recipe.refined(0.5) for recipe in recipes)
-    return Plan(
-        MODELS[accuracy.model],
-        (recipes[0], recipes[1]),
-        (coarse[0], coarse[1]),
-        _patch_rule(pair, LARGEST_SUPPORT * levels[-1], max(recipe.flank_size for recipe in coarse)),
-        accuracy.positions,
-        levels,
-        _support_loads(levels),
-    )
-
-
-def _recipe(gear: Gear, refinement: float) -> MeshRecipe:
-    """Return the standard recipe of `gear`, refined."""
-    standard = MeshRecipe.standard(gear)
-    return standard if refinement == 1.0 else standard.refined(refinement)
+    discretisation: Discretisation
+    if model.across_face:
+        discretisation = face_discretisation(pair, accuracy.mesh_level)
+    else:
+        stress = accuracy.model == "plane_stress"
+        hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
+        discretisation = plane_discretisation(pair, accuracy.mesh_level, hypothesis)
+    patch = _patch_rule(pair, LARGEST_SUPPORT * levels[-1], discretisation.least_patch)
+    nodes = FACE_NODES if model.across_face else PLANE_NODES
+    return Plan(discretisation, patch, accuracy.positions, nodes, levels, _support_loads(levels))
 
 
 def _support_loads(levels: FloatArray) -> FloatArray:
@@ -191,17 +119,16 @@ def _support_loads(levels: FloatArray) -> FloatArray:
     return np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
 
 
-def _patch_rule(pair: GearPair, force: float, element: float) -> PatchRule:
-    """Return patches wider than any contact strip and than one and a half elements of either mesh."""
+def _patch_rule(pair: GearPair, force: float, least: float) -> PatchRule:
+    """Return patches wider than any contact strip and than the meshes ask for."""
     edge = EDGE_PATCH * pair.pinion.normal_module
-    return PatchRule(max(1.5 * element, _widest_strip(pair, force) / 0.6), edge)
+    return PatchRule(max(least, _widest_strip(pair, force) / 0.6), edge)
 
 
 def _widest_strip(pair: GearPair, force: float) -> float:
     """Hertz half-width in m at the pitch point under the whole force; no aligned contact is much wider."""
     roll_1, roll_2 = pair.roll_lengths(0.0, 0)
-    width = min(pair.pinion.face_width, pair.wheel.face_width)
-    radius = relative_radius(roll_1, roll_2)
-    return float(
-        half_width(force / width, radius, contact_modulus(pair.pinion.material, pair.wheel.material))
-    )
+    cosine = math.cos(pair.base_helix_angle)
+    radius = relative_radius(roll_1, roll_2) / cosine
+    modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
+    return float(half_width(force * cosine / pair.face_width, radius, modulus))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair
-from fe_contact.analysis.pair_contact import PairContact, plane_compliances
+from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.planning import Accuracy, make_plan
 
@@ -22,13 +22,13 @@ def contact(tmp_path_factory):
     cache: Path = tmp_path_factory.mktemp("compliance")
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, 80e-3)
-    plan = make_plan(pair, LOAD, Accuracy())
     model, _ = compose(ContactScene(pair, pair.torque(LOAD)), {}, EFFECTS)
+    plan = make_plan(pair, LOAD, Accuracy(), model)
 
     def solve(factor: float, position: np.ndarray, load: np.ndarray) -> np.ndarray:
-        first, second = (recipe.refined(factor) for recipe in plan.recipes)
-        finer = dataclasses.replace(plan, recipes=(first, second))
-        contact = PairContact(pair, finer, plane_compliances(pair, finer, finer.recipes, cache))
+        first, second = (recipe.refined(factor) for recipe in plan.discretisation.recipes)
+        made = dataclasses.replace(plan.discretisation, recipes=(first, second))
+        contact = pair_contact(pair, dataclasses.replace(plan, discretisation=made), cache)
         return contact.solve(model, position, load)[1].deflection
 
     return solve

@@ -135,11 +135,12 @@ def test_progress_reaches_the_end_of_every_stage(pair, cache):
         ({"tolerance": 0.01}, "level"),
         ({"level": "finest"}, "level"),
         ({"level": None, "time_budget": -1.0}, "time_budget"),
-        ({"model": "3d"}, "model"),
+        ({"model": "4d"}, "model"),
         ({"positions": 3}, "positions"),
         ({"positions": 6.5}, "positions"),
-        ({"misalignments": [1e-5]}, "misalignments"),
-        ({"center_distance_changes": [0.0, 1e-5]}, "center_distance_changes"),
+        ({"misalignments": [1e-5], "model": "plane_strain"}, "misalignments"),
+        ({"misalignments": [30.0]}, "misalignments[0]"),
+        ({"center_distance_changes": [1e-5, 0.0]}, "center_distance_changes"),
         ({"effects": {"corner_contact": "maybe"}}, "effects.corner_contact"),
         ({"effects": {"magnetism": "on"}}, "effects.magnetism"),
     ],
@@ -153,10 +154,10 @@ def test_bad_options_are_refused_by_name(pair, cache, options, field):
 def test_lead_modification_is_refused_in_the_plane(cache):
     crowned = gear(modification=FlankModification(helix_crowning=5e-6))
     with pytest.raises(InputError, match=r"pinion\.modification"):
-        draft(GearPair(crowned, gear(), 80e-3), cache)
+        draft(GearPair(crowned, gear(), 80e-3), cache, model="plane_strain")
 
 
 def test_helical_gears_are_refused_in_the_plane(cache):
     pair = GearPair(gear(helix_angle=0.2), gear(helix_angle=-0.2))
     with pytest.raises(InputError, match="helix_angle"):
-        draft(pair, cache)
+        draft(pair, cache, model="plane_strain")

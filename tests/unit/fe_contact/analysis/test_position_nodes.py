@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from fe_contact.analysis.position_nodes import MAX_NODES, adaptive_nodes, fixed_nodes
+from fe_contact.analysis.position_nodes import adaptive_nodes, fixed_nodes
+from fe_contact.planning import NodeRule
 from fe_contact.ste.interpolation import Axis, interpolate
 
 
@@ -21,14 +22,14 @@ def held_out(nodes: np.ndarray) -> np.ndarray:
 
 
 def test_adaptive_nodes_meet_their_tolerance_at_held_out_positions():
-    nodes = adaptive_nodes(32, trapezoid_wave, 0.002)
+    nodes = adaptive_nodes(NodeRule(32, 0.002, 768), trapezoid_wave)
     assert np.all(nodes.error <= 0.002 * np.array([1e-6, 3e-6]))
     # the middles of the intervals are not the worst places, so some slack over the stated error
     assert np.all(held_out(nodes.position) <= 2.0 * 0.002 * np.array([1e-6, 3e-6]))
 
 
 def test_nodes_gather_at_the_kinks():
-    nodes = adaptive_nodes(32, trapezoid_wave, 0.002).position
+    nodes = adaptive_nodes(NodeRule(32, 0.002, 768), trapezoid_wave).position
     spacing = np.diff(nodes, append=nodes[0] + 1.0)
     near = np.abs((nodes + 0.5) % 1.0 - 0.5)
     assert spacing[(near > 0.2) & (near < 0.25)].min() < spacing[near < 0.15].min() / 8.0
@@ -37,7 +38,7 @@ def test_nodes_gather_at_the_kinks():
 def test_fixed_nodes_state_a_larger_error():
     assert np.all(
         fixed_nodes(32, trapezoid_wave).error.max(axis=0)
-        > adaptive_nodes(32, trapezoid_wave, 0.002).error.max(axis=0)
+        > adaptive_nodes(NodeRule(32, 0.002, 768), trapezoid_wave).error.max(axis=0)
     )
 
 
@@ -45,13 +46,13 @@ def test_a_jump_ends_at_the_node_limit_with_a_finite_error():
     def jump(position):
         return np.where(position < 0.3, 0.0, 1.0)[:, None] + 0.01 * np.sin(2 * np.pi * position)[:, None]
 
-    nodes = adaptive_nodes(16, jump, 1e-9)
-    assert nodes.position.size <= MAX_NODES
+    nodes = adaptive_nodes(NodeRule(16, 1e-9, 768), jump)
+    assert nodes.position.size <= 768
     assert np.all(np.isfinite(nodes.error))
     assert nodes.error.max() > 0.1
 
 
 def test_constant_curves_need_no_nodes():
-    nodes = adaptive_nodes(16, lambda x: np.ones((x.size, 1)), 0.002)
+    nodes = adaptive_nodes(NodeRule(16, 0.002, 768), lambda x: np.ones((x.size, 1)))
     assert nodes.position.size == 16
     assert nodes.error == pytest.approx(0.0, abs=1e-12)

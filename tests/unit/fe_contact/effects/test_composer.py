@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 from dataclasses import dataclass, replace
 
@@ -48,7 +47,9 @@ def lapped(pair, roll_1, roll_2):
 
 
 @pytest.mark.parametrize(
-    "order", list(itertools.permutations(EFFECTS)), ids=lambda o: "-".join(e.name for e in o)
+    "order",
+    [turned[::way] for k in range(len(EFFECTS)) for turned in [EFFECTS[k:] + EFFECTS[:k]] for way in (1, -1)],
+    ids=lambda order: "-".join(effect.name for effect in order),
 )
 @pytest.mark.parametrize("choices", [{}, EVERYTHING_ON])
 def test_order_does_not_matter(order, choices):

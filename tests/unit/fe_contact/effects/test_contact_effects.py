@@ -82,8 +82,10 @@ def test_modification_opens_a_gap_of_the_material_removed():
 
 def test_both_gears_contribute():
     one, other, both = (scene(RELIEF, None), scene(None, RELIEF), scene(RELIEF, RELIEF))
-    model = ContactModel(gaps=ProfileModification().contribute(one, ContactModel()).gaps)
-    first, second, sum_ = (candidates(case, model).gap for case in (one, other, both))
+    first, second, sum_ = (
+        candidates(case, ProfileModification().contribute(case, ContactModel())).gap
+        for case in (one, other, both)
+    )
     touching = np.isfinite(sum_)
     assert sum_[touching] == pytest.approx((first + second)[touching], abs=1e-12)
     assert first[touching].max() > 25e-6

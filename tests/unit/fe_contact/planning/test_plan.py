@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair
+from fe_contact.contact import ContactModel
 from fe_contact.errors import InputError
 from fe_contact.hertz import half_width, relative_radius
-from fe_contact.planning import Accuracy, StageClock, make_plan
+from fe_contact.planning import Accuracy, FaceDiscretisation, Plan, StageClock, make_plan
 
 
 @pytest.fixture(scope="module")
@@ -17,23 +18,35 @@ def pair():
     return GearPair(gear, gear, 80e-3)
 
 
+def plan(pair, model: ContactModel | None = None, **accuracy: object) -> Plan:
+    return make_plan(pair, np.array([1e3]), Accuracy(**accuracy), model or ContactModel())
+
+
 def test_levels_are_nested_refinements(pair):
     sizes = [
-        make_plan(pair, np.array([1e3]), Accuracy(level=name)).recipes[0].flank_size
-        for name in ("draft", "standard", "fine")
+        plan(pair, level=name).discretisation.recipes[0].flank_size for name in ("draft", "standard", "fine")
     ]
     assert sizes[0] > sizes[1] > sizes[2]
 
 
 def test_the_coarse_mesh_is_half_as_fine(pair):
-    plan = make_plan(pair, np.array([1e3]), Accuracy())
-    assert plan.coarse_recipes[1].flank_size == pytest.approx(2.0 * plan.recipes[1].flank_size)
+    made = plan(pair).discretisation
+    assert made.coarse_recipes[1].flank_size == pytest.approx(2.0 * made.recipes[1].flank_size)
 
 
 def test_patches_are_wider_than_the_contact_under_the_largest_load(pair):
     loads = np.array([1e3, 5e5])
     strip = half_width(loads[-1] / pair.face_width, relative_radius(*pair.roll_lengths(0.0)), 115e9)
-    assert make_plan(pair, loads, Accuracy()).patch.half_width >= strip / 0.66
+    assert make_plan(pair, loads, Accuracy(), ContactModel()).patch.half_width >= strip / 0.66
+
+
+def test_three_dimensions_have_fewer_slices_than_half_layers(pair):
+    """More slices than freedoms along the face would make the compliance between them singular."""
+    for level in ("draft", "standard", "fine"):
+        made = plan(pair, ContactModel(across_face=True), level=level).discretisation
+        assert isinstance(made, FaceDiscretisation)
+        assert made.slices <= min(2 * recipe.layers for recipe in made.recipes)
+        assert made.coarse_recipes[0].layers < made.recipes[0].layers
 
 
 def test_one_way_of_asking_at_a_time():

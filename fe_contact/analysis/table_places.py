@@ -1,0 +1,87 @@
+"""The sweep over misalignment and centre distance: one contact problem per place of the table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.analysis.pair_contact import PairContact
+from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
+from fe_contact.effects import EFFECTS, ContactScene, compose
+from fe_contact.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Place:
+    """One misalignment at one change of the centre distance."""
+
+    contact: PairContact
+    model: ContactModel
+
+    def solve(self, position: FloatArray, load: FloatArray) -> tuple[ContactProblem, ContactSolution]:
+        """Solve positions (P,) at normal forces (L,) in N."""
+        return self.contact.solve(self.model, position, load)
+
+
+@dataclass(frozen=True)
+class Places:
+    """All places of the table, centre distance running fastest.
+
+    Attributes
+    ----------
+    shape : (int, int)
+        Numbers of misalignments and centre distances.
+    places : tuple of Place
+        Those of one centre distance share their compliance.
+    """
+
+    shape: tuple[int, int]
+    places: tuple[Place, ...]
+
+    @property
+    def judged(self) -> tuple[Place, ...]:
+        """First, middle and last place: by them the positions of the table are chosen."""
+        last = len(self.places) - 1
+        return tuple(self.places[i] for i in sorted({0, last // 2, last}))
+
+    def gathered(self, values: list[NDArray[Any]]) -> NDArray[Any]:
+        """Stack arrays (P, L, ...) of all places into (P, L, M, D, ...)."""
+        stacked = np.stack(values, axis=2)
+        return stacked.reshape(*stacked.shape[:2], *self.shape, *stacked.shape[3:])
+
+
+def table_places(scene: ContactScene, choices: Mapping[str, str], nominal: PairContact) -> Places:
+    """Lay out the places of a scene.
+
+    Parameters
+    ----------
+    scene : ContactScene
+        With its axes.
+    choices : mapping
+        Effect name to "on", "off" or "auto".
+    nominal : PairContact
+        The pair at its nominal centre distance.
+    """
+    _, ledger = compose(scene, choices, EFFECTS)
+    decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
+    contacts = list(_contacts(nominal, scene.center_distance_change))
+    places = []
+    for misalignment in scene.misalignment:
+        for contact in contacts:
+            here = ContactScene(contact.pair, scene.torque, np.array([misalignment]))
+            places.append(Place(contact, compose(here, decided, EFFECTS)[0]))
+    return Places((scene.misalignment.size, len(contacts)), tuple(places))
+
+
+def _contacts(nominal: PairContact, changes: FloatArray) -> Iterator[PairContact]:
+    """Yield the pair at each centre distance: other contact, same gears, same compliance."""
+    for change in changes:
+        if change == 0.0:
+            yield nominal
+        else:
+            distance = nominal.pair.center_distance + float(change)
+            yield replace(nominal, pair=replace(nominal.pair, center_distance=distance), _problems={})

@@ -1,0 +1,78 @@
+"""Compliance between the contact candidates of gears of finite width."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from fe_contact.compliance import FlankCompliance3D
+from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads, responses
+from fe_contact.contact.patch import Patches
+from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.types import FloatArray, IntArray
+
+
+def face_contact_problem(
+    candidates: Candidates,
+    compliances: tuple[FlankCompliance3D, FlankCompliance3D],
+    axial_offset: float = 0.0,
+    couple_teeth: bool = True,
+) -> ContactProblem:
+    """Assemble the compliance of slices from the condensed flanks; pairs and teeth as in `contact_problem`.
+
+    Parameters
+    ----------
+    candidates : Candidates
+        n candidates, one per tooth pair and slice.
+    compliances : (FlankCompliance3D, FlankCompliance3D)
+        Driving and driven gear.
+    axial_offset : float
+        Distance of the driven gear's mid-face from the driving gear's, m.
+    couple_teeth : bool
+        False drops what the load on one tooth moves on another.
+    """
+    compliance = np.zeros((*candidates.gap.shape, candidates.pair.size))
+    touch, face = candidates.touch, candidates.face_position
+    sides = (
+        (candidates.patch_1, touch.lever_1, -candidates.pair, face),
+        (candidates.patch_2, touch.lever_2, candidates.pair, face - axial_offset),
+    )
+    for flank, (patches, lever, teeth, along) in zip(compliances, sides, strict=True):
+        reach = flank.blocks if couple_teeth else flank.blocks[:1]
+        grid = FaceGrid(flank.s, flank.z, flank.index)
+        low, high = along - 0.5 * candidates.slice_width, along + 0.5 * candidates.slice_width
+        bounds = (np.maximum(low, flank.z[0]), np.minimum(high, flank.z[-1]))
+        _add_gear(grid, responses(reach), patches, lever, teeth, bounds, candidates.gap, compliance)
+    first, second = (flank.contact_modulus for flank in compliances)
+    contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
+    return ContactProblem(
+        candidates, compliance, contact_modulus, 2.0 / (math.pi * first), 2.0 / (math.pi * second)
+    )
+
+
+def _add_gear(
+    grid: FaceGrid,
+    response: FloatArray,
+    patches: Patches,
+    lever: FloatArray,
+    teeth: IntArray,
+    bounds: tuple[FloatArray, FloatArray],
+    gap: FloatArray,
+    out: FloatArray,
+) -> None:
+    """Add the compliance of one gear at every position."""
+    low, high = bounds
+    for p in range(len(gap)):
+        present = np.flatnonzero(np.isfinite(gap[p]))
+        loads = face_loads(
+            grid,
+            patches.center[p, present],
+            patches.half_width[p, present],
+            patches.edge_share[p, present],
+            low[present],
+            high[present],
+        )
+        local = np.zeros((present.size, present.size))
+        add_compliance(response, teeth[present], loads, lever[p, present], local)
+        out[p][np.ix_(present, present)] += local

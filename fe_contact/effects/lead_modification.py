@@ -1,0 +1,36 @@
+"""Lead modification: helix crowning and slope, end relief as gaps over the face width."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.effects.modification_gap import ModificationGap
+
+
+@dataclass(frozen=True)
+class LeadModification:
+    """Designed deviations of either flank from the helix."""
+
+    name: ClassVar[str] = "lead_modification"
+    needs: ClassVar[tuple[str, ...]] = ("face position",)
+    adds: ClassVar[tuple[str, ...]] = ("gap",)
+    cost: ClassVar[str] = "none beside the three-dimensional model it needs"
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects/lead_modification.md", "ISO 21771-1")
+    valid_for: ClassVar[str] = "every pair in three dimensions"
+
+    def called_for(self, scene: ContactScene) -> Verdict:
+        """On where either gear has a modification along its face."""
+        gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
+        modified = [name for name, gear in gears if gear.modification.varies_along_face]
+        if not modified:
+            return Verdict(False, "both leads are plain", "nothing")
+        return Verdict(True, f"modified lead on {' and '.join(modified)}", "up to the modification itself")
+
+    def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
+        """Add the gap of both flanks."""
+        gears = (scene.pair.pinion, scene.pair.wheel)
+        term = ModificationGap(*(gear.modification.along_face for gear in gears))
+        return replace(model, gaps=(*model.gaps, term))

@@ -1,0 +1,54 @@
+"""Misalignment: flanks inclined to each other in the plane of action, a table axis."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.geometry import GearPair
+from fe_contact.types import FloatArray
+
+
+@dataclass(frozen=True)
+class MisalignmentGap:
+    """Gap that grows by `growth` (m) over the common face width, zero at its middle."""
+
+    growth: float
+    along_profile: ClassVar[bool] = False
+
+    def __call__(
+        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+    ) -> FloatArray:
+        """Gap in m, negative on the side that comes closer."""
+        return np.asarray(self.growth * (face - pair.common_face_center) / pair.face_width + 0.0 * roll_1)
+
+
+@dataclass(frozen=True)
+class Misalignment:
+    """Contributes the gap of the scene's single misalignment value; the table runs over its axis."""
+
+    name: ClassVar[str] = "misalignment"
+    needs: ClassVar[tuple[str, ...]] = ("face position",)
+    adds: ClassVar[tuple[str, ...]] = ("gap", "table axis")
+    cost: ClassVar[str] = "one more contact sweep per value; no finite-element work"
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects/misalignment.md",)
+    valid_for: ClassVar[str] = "every pair in three dimensions"
+
+    def called_for(self, scene: ContactScene) -> Verdict:
+        """On where any value of the axis is not zero."""
+        largest = float(np.abs(scene.misalignment).max())
+        if largest == 0.0:
+            return Verdict(False, "the gears are aligned", "nothing")
+        worth = "peak-to-peak up to several times the aligned one for helical pairs"
+        return Verdict(True, f"misalignment up to {1e6 * largest:.4g} um over the face", worth)
+
+    def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
+        """Add the gap of the scene's one value."""
+        growth = float(scene.misalignment[0])
+        if growth == 0.0:
+            return model
+        return replace(model, gaps=(*model.gaps, MisalignmentGap(growth)))

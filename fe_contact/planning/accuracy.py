@@ -1,0 +1,68 @@
+"""What accuracy, time or model the caller asks for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fe_contact.checks import integer, positive, within
+from fe_contact.errors import InputError
+
+LEVELS = ("draft", "standard", "fine")
+MODELS = ("auto", "plane_strain", "plane_stress", "3d")
+FINE_TOLERANCE = 0.002
+"""Below this relative error the fine mesh is needed; the standard one keeps a few 1e-4 in 2-D."""
+SHORT_BUDGET = 3.0
+"""Seconds below which only the draft mesh fits."""
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """What the caller asked for: exactly one of the first three, or none (then `level` = "standard").
+
+    Attributes
+    ----------
+    tolerance : float, optional
+        Relative error on mean and peak-to-peak STE.
+    time_budget : float, optional
+        Seconds.
+    level : str, optional
+        "draft", "standard" or "fine".
+    model : str
+        "auto", "plane_strain", "plane_stress" or "3d".
+    positions : int, optional
+        Fixed number of equally spaced positions; without it nodes are placed where the curve bends.
+    """
+
+    tolerance: float | None = None
+    time_budget: float | None = None
+    level: str | None = None
+    model: str = "auto"
+    positions: int | None = None
+
+    def __post_init__(self) -> None:
+        asked = [n for n in ("tolerance", "time_budget", "level") if getattr(self, n) is not None]
+        if len(asked) > 1:
+            bound = f"left out when {asked[0]} is given"
+            raise InputError(asked[1], getattr(self, asked[1]), bound, "Ask for one of them.")
+        if self.tolerance is not None:
+            within("tolerance", self.tolerance, 1e-4, 0.5, "0.01 means one per cent.")
+        if self.time_budget is not None:
+            positive("time_budget", self.time_budget, "Seconds.")
+        if self.level is not None and self.level not in LEVELS:
+            raise InputError("level", self.level, f"one of {', '.join(LEVELS)}")
+        if self.model not in MODELS:
+            raise InputError("model", self.model, f"one of {', '.join(MODELS)}")
+        if self.positions is not None:
+            advice = "64 resolve a spur pair; leave it out for adaptive nodes."
+            integer("positions", self.positions, 8, 4096, advice)
+
+    @property
+    def mesh_level(self) -> str:
+        """The level itself, or the coarsest one that meets the tolerance or fits the time."""
+        if self.level is not None:
+            return self.level
+        if self.tolerance is not None and self.tolerance < FINE_TOLERANCE:
+            return "fine"
+        if self.time_budget is not None and self.time_budget < SHORT_BUDGET:
+            return "draft"
+        return "standard"

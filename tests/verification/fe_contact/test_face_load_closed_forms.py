@@ -1,0 +1,162 @@
+"""Contact over the face against closed forms: uncoupled slices, and the length of the contact lines."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact import FlankModification, Gear, GearPair
+from fe_contact.contact import (
+    ContactModel,
+    ContactProblem,
+    PatchRule,
+    Slices,
+    contact_candidates,
+    solve_contact,
+    with_gaps,
+)
+from fe_contact.effects.misalignment import MisalignmentGap
+from fe_contact.effects.modification_gap import ModificationGap
+
+SOURCE = "thin slices, closed form"
+WIDTH, STIFFNESS, FORCE = 20e-3, 15e9, 3000.0  # m, N/m per m of face, N
+
+
+def slice_pair(**modification: float) -> GearPair:
+    gear = Gear(
+        teeth=20,
+        normal_module=4e-3,
+        face_width=WIDTH,
+        bore_diameter=40e-3,
+        modification=FlankModification(**modification),
+    )
+    return GearPair(gear, dataclasses.replace(gear, modification=FlankModification()), 80e-3)
+
+
+def uncoupled(pair: GearPair, *gaps: object) -> tuple[float, np.ndarray]:
+    """Deflection and line load of one pair at the pitch point whose slices are springs of their own."""
+    model = ContactModel(gaps=gaps)
+    count = 400
+    plain = contact_candidates(pair, model, np.zeros(1), PatchRule(1e-3, 1e-4), Slices.of_pair(pair, count))
+    candidates = with_gaps(pair, plain, model)
+    only = candidates.pair == 0
+    gap = np.where(only, candidates.gap, np.inf)
+    candidates = candidates.touching(dataclasses.replace(candidates.touch, gap=gap))
+    spring = np.eye(only.size)[None] / (STIFFNESS * WIDTH / count)
+    # bodies a billion times stiffer than steel: no local approach
+    solution = solve_contact(ContactProblem(candidates, spring, 1e20, 1e-20, 1e-20), np.array([FORCE]))
+    assert solution.converged
+    load = solution.force[0, 0, only] / (WIDTH / count)
+    return float(solution.deflection[0, 0]), load
+
+
+@pytest.mark.parametrize(
+    ("misalignment", "k_h_beta", "side", "fraction"),
+    [
+        (5e-6, 1.25, 12.5e-6, 1.0),
+        (10e-6, 1.5, 15e-6, 1.0),
+        (20e-6, 2.0, 20e-6, 1.0),
+        (40e-6, 2.828427, 28.284271e-6, 0.707107),
+        (80e-6, 4.0, 40e-6, 0.5),
+    ],
+)
+def test_misalignment_of_uncoupled_slices(misalignment, k_h_beta, side, fraction, record_figure):
+    """Largest over mean line load, deflection of the loaded side, part of the face in contact."""
+    deflection, load = uncoupled(slice_pair(), MisalignmentGap(misalignment))
+    # the gap is zero at mid-face; the loaded side is half the misalignment closer
+    at_end = deflection + misalignment / 2
+    largest = at_end * STIFFNESS / (FORCE / WIDTH)
+    record_figure(f"K_Hbeta of thin slices, {1e6 * misalignment:g} um", largest, k_h_beta, "-", SOURCE)
+    assert largest == pytest.approx(k_h_beta, rel=1e-3)
+    assert at_end == pytest.approx(side, rel=1e-3)
+    assert np.mean(load > 0.0) == pytest.approx(fraction, abs=2.5e-3)
+
+
+@pytest.mark.parametrize(
+    ("crown", "expected"),
+    [(5e-6, 11.66667e-6), (10e-6, 13.33333e-6), (15e-6, 15e-6), (20e-6, 16.50964e-6), (40e-6, 20.80084e-6)],
+)
+def test_crowning_of_uncoupled_slices(crown, expected, record_figure):
+    pair = slice_pair(helix_crowning=crown)
+    lead = ModificationGap(pair.pinion.modification, pair.wheel.modification)
+    deflection, _ = uncoupled(pair, lead)
+    record_figure(
+        f"deflection of crowned thin slices, {1e6 * crown:g} um",
+        1e6 * deflection,
+        1e6 * expected,
+        "um",
+        SOURCE,
+    )
+    assert deflection == pytest.approx(expected, rel=1e-3)
+
+
+def helical_pair(overlap: float) -> GearPair:
+    """Return the pair of ISO/TR 6336-30 example 1 with the face width that gives an overlap ratio."""
+    angle = math.radians(15.8)
+    width = overlap * math.pi * 8e-3 / math.sin(angle)
+    pinion = Gear(
+        teeth=17,
+        normal_module=8e-3,
+        face_width=width,
+        bore_diameter=60e-3,
+        helix_angle=angle,
+        profile_shift_coefficient=0.145,
+        dedendum_coefficient=1.4,
+    )
+    wheel = dataclasses.replace(pinion, teeth=103, helix_angle=-angle, profile_shift_coefficient=0.0)
+    return GearPair(pinion, wheel, 0.5)
+
+
+@pytest.mark.parametrize("overlap", [0.4, 0.5, 1.0, 1.0834])
+def test_length_of_contact_lines(overlap, record_figure):
+    """Overlap of two trapezoids of the phase: mean eps_alpha eps_beta; ends from the fractional parts.
+
+    In units of axial pitch over cos(beta_b), the length at phase x is the measure of phases in [x, x +
+    eps_beta] that fall into [0, eps_alpha] modulo one pitch.
+    """
+    pair = helical_pair(overlap)
+    position = np.linspace(0.0, 1.0, 101)
+    candidates = contact_candidates(
+        pair, ContactModel(), position, PatchRule(2e-3, 1e-4), Slices.of_pair(pair, 2000)
+    )
+    axial_pitch = math.pi * pair.pinion.normal_module / math.sin(pair.pinion.helix_angle)
+    lines = np.isfinite(candidates.gap).sum(axis=1) * candidates.slice_width / axial_pitch
+    alpha, beta = pair.transverse_contact_ratio, pair.overlap_ratio
+    mean, low, high = alpha * beta, *closed_form_extremes(alpha, beta)
+    record_figure(
+        f"mean contact length, eps_beta {overlap:g}",
+        float(lines[:-1].mean()),
+        mean,
+        "p_x/cos(beta_b)",
+        "closed form",
+    )
+    assert lines[:-1].mean() == pytest.approx(mean, rel=1e-3)
+    assert lines.min() == pytest.approx(low, abs=2e-3)
+    assert lines.max() == pytest.approx(high, abs=2e-3)
+
+
+def closed_form_extremes(alpha: float, beta: float) -> tuple[float, float]:
+    """Least and largest length from the whole and fractional parts of the two ratios."""
+    whole_a, whole_b = math.floor(alpha), math.floor(beta)
+    part_a, part_b = alpha - whole_a, beta - whole_b
+    base = whole_a * whole_b + whole_a * part_b + whole_b * part_a
+    return base + max(part_a + part_b - 1.0, 0.0), base + min(part_a, part_b)
+
+
+@pytest.mark.parametrize(
+    ("alpha", "beta", "mean", "low", "high"),
+    [
+        (1.6586, 1.3327, 2.21042, 1.9913, 2.3240),
+        (1.5, 0.5, 0.75, 0.5, 1.0),
+        (1.7, 0.4, 0.68, 0.5, 0.8),
+        (1.549, 1.083, 1.67757, 1.632, 1.715),
+        (1.62, 1.0, 1.62, 1.62, 1.62),
+    ],
+)
+def test_the_closed_form_is_the_published_table(alpha, beta, mean, low, high):
+    found = closed_form_extremes(alpha, beta)
+    assert alpha * beta == pytest.approx(mean, abs=1e-4)
+    assert found == pytest.approx((low, high), abs=1e-3)
