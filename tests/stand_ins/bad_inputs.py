@@ -79,6 +79,16 @@ def pair(pinion: Table | None = None, wheel: Table | None = None, distance: floa
     return GearPair(gear(**pinion or {}), gear(**wheel or {}), distance)
 
 
+def helical() -> GearPair:
+    """Return helical gears of the good pair's teeth."""
+    return GearPair(gear(helix_angle=15 * DEG), gear(helix_angle=-15 * DEG), 80 * MM / math.cos(15 * DEG))
+
+
+def crowned() -> GearPair:
+    """Return the good pair with a crowned pinion."""
+    return pair({"modification": FlankModification(helix_crowning=5 * UM)})
+
+
 def run(**arguments: Any) -> object:
     """Call the main flow on the good pair."""
     return analyze(pair(), **({"torques": [10.0, 100.0]} | arguments))
@@ -104,7 +114,8 @@ def of_run(name: str, si: Table, at: str, shown: Table, case_at: str) -> BadInpu
 
 
 NAN = float("nan")
-MISALIGNED = {"errors.misalignment_um": [0.0, 30.0]}
+PLANE = {"model": "plane_strain"}
+MISALIGNED = {"accuracy.model": "plane_strain", "errors.misalignment_um": [0.0, 30.0]}
 
 BAD_INPUTS: tuple[BadInput, ...] = (
     of_gear("too few teeth", "teeth", 3, "teeth", 3),
@@ -269,7 +280,6 @@ BAD_INPUTS: tuple[BadInput, ...] = (
     ),
     of_run("unknown level", {"level": "superb"}, "level", {"accuracy.level": "superb"}, "accuracy.level"),
     of_run("unknown model", {"model": "4d"}, "model", {"accuracy.model": "4d"}, "accuracy.model"),
-    of_run("model not there yet", {"model": "3d"}, "model", {"accuracy.model": "3d"}, "accuracy.model"),
     of_run(
         "no time",
         {"time_budget": -1.0},
@@ -296,10 +306,35 @@ BAD_INPUTS: tuple[BadInput, ...] = (
     ),
     of_run(
         "misalignment in a plane model",
-        {"misalignments": (0.0, 30 * UM)},
+        PLANE | {"misalignments": (0.0, 30 * UM)},
         "misalignments",
         MISALIGNED,
         "errors.misalignment_um",
+    ),
+    of_run(
+        "misalignments out of order",
+        {"misalignments": (30 * UM, 0.0)},
+        "misalignments",
+        {"errors.misalignment_um": [30.0, 0.0]},
+        "errors.misalignment_um",
+    ),
+    BadInput(
+        "helical gears in a plane model",
+        lambda: analyze(helical(), torques=[100.0], model="plane_strain"),
+        "pinion.helix_angle",
+        {
+            "pair.helix_angle_deg": 15.0,
+            "pair.center_distance_mm": 80.0 / math.cos(15 * DEG),
+            "accuracy.model": "plane_strain",
+        },
+        "pair.helix_angle_deg",
+    ),
+    BadInput(
+        "lead crowning in a plane model",
+        lambda: analyze(crowned(), torques=[100.0], model="plane_strain"),
+        "pinion.modification",
+        {"pair.pinion.helix_crowning_um": 5.0, "accuracy.model": "plane_strain"},
+        "pair.pinion.helix_crowning_um",
     ),
 )
 

@@ -15,6 +15,7 @@ from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
 from fe_contact.errors import InputError, MeshError
 from service.convert.case import analysis_arguments, case_json, gear_pair
+from service.convert.checks import check_case
 from service.convert.errors import translated
 from service.convert.units import factor
 from service.jobs.key import content_key
@@ -136,6 +137,17 @@ def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else() -> Non
     assert keys[0] == keys[1]
     assert content_key("analyze", "2", case_json(case())) != keys[0]
     assert content_key("analyze", "1", case_json(case(bore_diameter_mm=40.001))) != keys[0]
+
+
+def test_a_change_of_centre_distance_at_which_the_gears_do_not_mesh_is_refused_by_its_place() -> None:
+    good = copy.deepcopy(GOOD) | {"errors": {"center_distance_change_mm": [0.0, 0.1]}}
+    assert check_case(validated(Case, good)).center_distance == pytest.approx(0.08)
+    wrong = copy.deepcopy(GOOD) | {"errors": {"center_distance_change_mm": [0.0, 8.0]}}
+    with pytest.raises(BadInput) as caught:
+        check_case(validated(Case, wrong))
+    (fault,) = caught.value.faults
+    assert (fault.field, fault.value) == ("errors.center_distance_change_mm[1]", 8.0)
+    assert "contact ratio" in fault.bound or "at which the gears mesh" in fault.bound
 
 
 def test_the_example_is_the_papers_pair() -> None:

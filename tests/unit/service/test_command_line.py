@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import errno
 import io
 import json
 import math
@@ -191,6 +192,7 @@ def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     process = started("serve", "--port", "0", "--data-directory", str(tmp_path / "served"))
     assert process.stdout is not None
     line = process.stdout.readline()
+    assert line, process.communicate()
     yield process, line.rpartition(" ")[2].strip()
     if process.poll() is None:
         process.kill()
@@ -260,9 +262,23 @@ def test_interrupting_is_clean(tmp_path: Path) -> None:
     fifo = tmp_path / "case.toml"
     os.mkfifo(fifo)  # the command waits for its case, so the signal comes while it works
     process = started("analyze", str(fifo), "-o", str(tmp_path / "ste.nc"))
-    writer = os.open(fifo, os.O_WRONLY)  # returns when the command has opened it
-    process.send_signal(signal.SIGINT)
-    _, error = process.communicate(timeout=30)
-    os.close(writer)
+    writer: list[int] = []
+
+    def reads() -> bool:
+        assert process.poll() is None, process.communicate()
+        try:
+            writer.append(os.open(fifo, os.O_WRONLY | os.O_NONBLOCK))
+        except OSError as error:
+            assert error.errno == errno.ENXIO  # nobody reads yet
+        return bool(writer)
+
+    try:
+        until(reads)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+    finally:
+        process.kill()
+        for descriptor in writer:
+            os.close(descriptor)
     assert process.returncode == 130
-    assert error == "interrupted\n"
+    assert said == "interrupted\n"
