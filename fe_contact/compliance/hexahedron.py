@@ -18,7 +18,7 @@ REFERENCE = np.array(
 )
 SECTION = np.array([0, 1, 2, 3, 0, 1, 2, 3, 4, 5, 6, 7, 4, 5, 6, 7, 0, 1, 2, 3])
 """Node of the quadrilateral that each node of the hexahedron stands above."""
-QUADRATURE_ORDER = 3  # three Gauss points each way
+QUADRATURE_ORDER = 5  # three Gauss points each way
 
 
 def layer_nodes(section: FloatArray, thickness: float, turn: float) -> FloatArray:

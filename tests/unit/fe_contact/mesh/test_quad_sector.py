@@ -27,6 +27,7 @@ ODD = {
     "no bore to speak of": gear(9, bore=1e-3, profile_shift_coefficient=0.4),
     "thin rim": gear(40, bore=142e-3),
     "hardly a rim": gear(40, bore=148e-3),
+    "a sleeve": gear(40, bore=149.4e-3),
     "high teeth": gear(
         40, 3e-3, 60e-3, addendum_coefficient=1.25, dedendum_coefficient=1.5, root_radius_coefficient=0.25
     ),
@@ -114,6 +115,10 @@ def test_quality_of_known_quadrilaterals() -> None:
     points = np.concatenate([np.concatenate([corners, middles]), slant, folded])
     quality = quad_quality(points, np.arange(24).reshape(3, 8))
     assert np.degrees(quality.angle[:2]) == pytest.approx([90.0, 45.0])
+    kite = np.array([[0.0, 0.0], [1.0, -1.0], [2.0, 0.0], [1.0, 0.1]])
+    kite = np.concatenate([kite, 0.5 * (kite + np.roll(kite, -1, axis=0))])
+    flat = quad_quality(kite, np.arange(8)[None])
+    assert flat.angle[0] == pytest.approx(2.0 * np.arctan(0.1))  # what the blunt corner lacks to 180 degrees
     assert quality.scaled_jacobian[:2] == pytest.approx([1.0, 1.0])
     assert quality.scaled_jacobian[2] < 0.0
 

@@ -45,7 +45,7 @@ def test_is_the_transfinite_interpolation_of_the_sides() -> None:
 
 
 def test_keeps_the_given_sides_bit_for_bit() -> None:
-    found, small = fill_blocks([BENT, SQUARE], 3e-3)
+    found, small = fill_blocks([BENT, SQUARE], 0.7)
     assert np.array_equal(found[0], BENT.bottom)
     assert np.array_equal(found[-1], BENT.top)
     assert np.array_equal(found[:, 0], BENT.left)
