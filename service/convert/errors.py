@@ -24,7 +24,9 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _LENGTH = re.compile(rf"({_NUMBER}) m\b(?!/)")
 _ANGLE = re.compile(rf"({_NUMBER}) rad\b(?!/)")
 _MODULUS = re.compile(rf"({_NUMBER}) Pa\b")
-_PLAIN = re.compile(rf"(?<![\w.]){_NUMBER}(?![\w.])")
+_PLAIN = re.compile(_NUMBER)
+_SIDE = rf"(?:above|below|at least|at most) {_NUMBER}"
+_RANGE = re.compile(rf"{_NUMBER}(?: or above)?|from {_NUMBER} to {_NUMBER}|{_SIDE}(?: and {_SIDE})?")
 
 
 def translated(error: Exception) -> ServiceError | None:
@@ -64,18 +66,23 @@ def _named_modification(
 
 
 def _scaled(value: object, unit: float) -> object:
-    """SI value in the boundary's unit, rounded to what was typed."""
+    """SI value in the boundary's unit, rounded to what was typed; lists element by element."""
+    if isinstance(value, list | tuple):
+        return [_scaled(item, unit) for item in value]
     if isinstance(value, bool) or not isinstance(value, int | float) or unit == 1.0:
         return value
     return float(f"{value / unit:.12g}") if math.isfinite(value) else value
 
 
 def _in_boundary_units(text: str, unit: float) -> str:
-    """Bound with its numbers in boundary units: those with a unit by that unit, bare ones by the field's."""
-    converted = _quantities(text)
-    if unit == 1.0 or converted != text:
-        return converted
-    return _PLAIN.sub(lambda match: boundary_text(float(match.group()) / unit), text)
+    """Bound with its numbers in boundary units.
+
+    A number with a unit is converted by it. A bare one is the field's only where the bound is nothing but a
+    range; inside a sentence it may be anything, such as a contact ratio.
+    """
+    if unit != 1.0 and _RANGE.fullmatch(text):
+        return _PLAIN.sub(lambda match: boundary_text(float(match.group()) / unit), text)
+    return _quantities(text)
 
 
 def _quantities(text: str) -> str:

@@ -113,6 +113,18 @@ def test_both_doors_of_a_case_say_the_same(bad: BadInput, client: TestClient, tm
     assert said == f"error: {answer['detail']}\n"
 
 
+def test_the_value_shown_is_the_value_given(client: TestClient) -> None:
+    for bad in BAD_INPUTS:
+        if len(bad.changes) != 1 or bad.case_field not in bad.changes:
+            continue
+        given = bad.changes[bad.case_field]
+        body = json.dumps({"inputs": {"case": bad.case()}})
+        headers = {"Content-Type": "application/json"}
+        answer = client.post("/v1/processes/analyze/execution", content=body, headers=headers).json()
+        shown = answer["errors"][0]["value"]
+        assert shown == given or shown == repr(given), bad.name
+
+
 def test_bounds_are_in_the_units_of_the_field(client: TestClient) -> None:
     (bad,) = [case for case in BAD_INPUTS if case.name == "bore beyond the root"]
     body = {"inputs": {"case": bad.case()}}

@@ -147,7 +147,7 @@ def test_a_change_of_centre_distance_at_which_the_gears_do_not_mesh_is_refused_b
         check_case(validated(Case, wrong))
     (fault,) = caught.value.faults
     assert (fault.field, fault.value) == ("errors.center_distance_change_mm[1]", 8.0)
-    assert "contact ratio" in fault.bound or "at which the gears mesh" in fault.bound
+    assert fault.bound.startswith("a change at which the gears mesh") and fault.bound.endswith("below 1")
 
 
 def test_the_example_is_the_papers_pair() -> None:
@@ -174,6 +174,10 @@ def test_the_example_is_the_papers_pair() -> None:
         ),
         (InputError("torques[2]", 1.0, "above 2"), "load.torque_n_m[2] = 1.0: must be above 2"),
         (InputError("misalignments[1]", 3e-5, "0"), "errors.misalignment_um[1] = 30.0: must be 0"),
+        (
+            InputError("misalignments", [0.0, 3e-5], "[0.0] for a plane model"),
+            "errors.misalignment_um = [0.0, 30.0]: must be [0.0]",
+        ),
         (InputError("effects.magic", "on", "known"), "effects.magic = 'on': must be known"),
         (
             DynamicsInputError("bushings[0].radial_stiffness", -1.0, "0 or above"),
@@ -190,6 +194,25 @@ def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: s
     found = translated(error)
     assert isinstance(found, BadInput)
     assert str(found).startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("bound", "shown"),
+    [
+        ("from 0.01 to 0.02", "from 10 to 20"),
+        ("above 0", "above 0"),
+        ("at least 0.01 and below 0.02", "at least 10 and below 20"),
+        ("0.001 or above", "1 or above"),
+        ("below the root diameter 0.07 m", "below the root diameter 70 mm"),
+        ("larger: the tips cut 1.2e-05 m deep", "larger: the tips cut 12 um deep"),
+        ("smaller: the contact ratio is 0.93, below 1", "smaller: the contact ratio is 0.93, below 1"),
+        ("a finite number", "a finite number"),
+    ],
+)
+def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: str, shown: str) -> None:
+    found = translated(InputError("center_distance", 0.08, bound))
+    assert isinstance(found, BadInput)
+    assert found.faults[0].bound == shown
 
 
 def test_suggestions_never_explain_si_to_someone_who_does_not_use_it() -> None:
