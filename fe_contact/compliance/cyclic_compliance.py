@@ -19,7 +19,7 @@ from fe_contact.mesh.quad_sector import quad_sector
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.types import Json
 
-MODEL_VERSION = 2  # raise it whenever the same input gives another result: old cache files are then not found
+MODEL_VERSION = 3  # raise it whenever the same input gives another result: old cache files are then not found
 SOLVER = "dense substructures and cyclic harmonics (LAPACK)"
 
 

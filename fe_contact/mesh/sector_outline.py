@@ -17,6 +17,8 @@ from fe_contact.types import FloatArray
 DIP = 0.12  # of the line between tooth and body below the split points, in modules: makes its angles even
 THIN = 0.25  # largest such dip, in parts of the rim's thickness
 DEEP = 0.25  # height of body elements deep below the root, in parts of their depth
+LEAN = 0.4  # least slope of the fillet where tooth and body part: sine of its angle to the centre line
+LOWEST_SPLIT = 0.9  # lowest such point, in parts of the fillet
 TAPER = 0.5  # largest height of body elements, in parts of the radius of their upper end
 
 
@@ -97,7 +99,7 @@ class SectorOutline:
 def sector_outline(profile: ToothProfile, recipe: SectorRecipe) -> SectorOutline:
     """Divide the outline of one tooth sector."""
     gear = profile.gear
-    split = profile.s_form - recipe.split * profile.fillet_length
+    split = split_point(profile, recipe)
     half_width = profile.flank(np.array([0.5 * (profile.s_form + profile.s_tip)]))[0, 0]
     return SectorOutline(
         profile=profile,
@@ -106,6 +108,19 @@ def sector_outline(profile: ToothProfile, recipe: SectorRecipe) -> SectorOutline
         across=with_middles(tooth_divisions(half_width, recipe)),
         depth=with_middles(body_divisions(gear, recipe)),
     )
+
+
+def split_point(profile: ToothProfile, recipe: SectorRecipe) -> float:
+    """Return the flank coordinate where tooth and body part.
+
+    Below the waist of an undercut tooth the fillet rises steeply: there the point moves down to where the
+    fillet leans outwards, so that the body's elements beside it keep their angles.
+    """
+    fractions = np.linspace(recipe.split, LOWEST_SPLIT, 41)
+    lean = profile.normal(profile.s_form - fractions * profile.fillet_length)[:, 1]
+    enough = np.flatnonzero(lean >= LEAN)
+    fraction = fractions[enough[0]] if len(enough) else LOWEST_SPLIT
+    return float(profile.s_form - fraction * profile.fillet_length)
 
 
 def with_middles(x: FloatArray) -> FloatArray:

@@ -50,7 +50,7 @@ class SectorRecipe:
     land_elements : int
         Elements along half the tooth space, below the point where tooth and body part.
     split : float
-        Where on the fillet tooth and body part: 0 form point, 1 root.
+        Where on the fillet tooth and body part: 0 form point, 1 root. Undercut teeth part lower down.
     layers : int
         Layers of elements across the face of the tooth.
     layer_growth : float
