@@ -10,13 +10,13 @@ from pathlib import Path
 from fe_contact.analysis.error_estimate import ErrorSources, estimate_errors, worst_residual
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.position_nodes import table_nodes
-from fe_contact.analysis.request import Request, axis, load_levels, refuse_beyond_plane
+from fe_contact.analysis.request import Request, check_request
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.effects import EFFECTS, LedgerEntry, compose
+from fe_contact.effects import LedgerEntry
 from fe_contact.geometry import GearPair
-from fe_contact.planning import Accuracy, Plan, StageClock, make_plan
+from fe_contact.planning import Plan, StageClock, make_plan
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
@@ -86,13 +86,21 @@ def analyze(
     """
     clock = StageClock()
     report = progress or (lambda stage, fraction: None)
-    accuracy = Accuracy(tolerance, time_budget, level, model, positions)
-    axes = (axis("misalignments", misalignments), axis("center_distance_changes", center_distance_changes))
-    request = Request(pair, load_levels(pair, torques, normal_forces), accuracy, *axes, dict(effects or {}))
-    contact_model, ledger = compose(request.scene, request.choices, EFFECTS)
-    if not contact_model.across_face:
-        refuse_beyond_plane(request.scene)
-    plan = make_plan(pair, request.load, accuracy, contact_model)
+    checked = check_request(
+        pair,
+        torques=torques,
+        normal_forces=normal_forces,
+        tolerance=tolerance,
+        level=level,
+        time_budget=time_budget,
+        model=model,
+        positions=positions,
+        misalignments=misalignments,
+        center_distance_changes=center_distance_changes,
+        effects=effects,
+    )
+    request = checked.request
+    plan = make_plan(pair, request.load, request.accuracy, checked.model)
     fine = _places(request, plan, clock, report, cache, coarse=False)
     with clock.stage("contact"):
         nodes = table_nodes(fine, plan)
@@ -112,7 +120,7 @@ def analyze(
         center_distance_change=request.center_distance_change,
         facts=pair_facts(pair),
         error_estimate=errors.total,
-        metadata=_metadata(case or request.to_json(), plan, ledger, clock, errors, solved),
+        metadata=_metadata(case or request.to_json(), plan, checked.ledger, clock, errors, solved),
         **table_fields(fine, solved),
         **table_support(fine, support),
     )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
 from fe_contact.checks import increasing, positive, within
-from fe_contact.effects import ContactScene, FaceLoadDistribution
+from fe_contact.contact import ContactModel
+from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, LedgerEntry, compose
 from fe_contact.errors import InputError
 from fe_contact.geometry import GearPair
 from fe_contact.planning import Accuracy
@@ -67,6 +68,62 @@ class Request:
             "center_distance_change": self.center_distance_change.tolist(),
             "effects": dict(sorted(self.effects.items())),
         }
+
+
+@dataclass(frozen=True)
+class Checked:
+    """A request that can be computed, with the model its effects compose and their ledger."""
+
+    request: Request
+    model: ContactModel
+    ledger: tuple[LedgerEntry, ...]
+
+
+def check_request(
+    pair: GearPair,
+    *,
+    torques: Sequence[float] | FloatArray | None = None,
+    normal_forces: Sequence[float] | FloatArray | None = None,
+    tolerance: float | None = None,
+    level: str | None = None,
+    time_budget: float | None = None,
+    model: str = "auto",
+    positions: int | None = None,
+    misalignments: Sequence[float] | FloatArray = (0.0,),
+    center_distance_changes: Sequence[float] | FloatArray = (0.0,),
+    effects: Mapping[str, str] | None = None,
+) -> Checked:
+    """Check everything that `analyze` is given, without computing anything; parameters are its.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    """
+    request = Request(
+        pair,
+        load_levels(pair, torques, normal_forces),
+        Accuracy(tolerance, time_budget, level, model, positions),
+        axis("misalignments", misalignments),
+        axis("center_distance_changes", center_distance_changes),
+        dict(effects or {}),
+    )
+    composed, ledger = compose(request.scene, request.choices, EFFECTS)
+    if not composed.across_face:
+        refuse_beyond_plane(request.scene)
+    _refuse_distances(request)
+    return Checked(request, composed, ledger)
+
+
+def _refuse_distances(request: Request) -> None:
+    """Refuse a change of the centre distance at which the gears do not mesh, by its place in the list."""
+    for i, change in enumerate(request.center_distance_change):
+        try:
+            replace(request.pair, center_distance=request.pair.center_distance + float(change))
+        except InputError as error:
+            bound = f"a change at which the gears mesh: {error.field} {error.bound}"
+            field_name = f"center_distance_changes[{i}]"
+            raise InputError(field_name, float(change), bound, error.suggestion) from None
 
 
 def load_levels(

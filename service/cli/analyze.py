@@ -9,7 +9,7 @@ from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
 from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.convert.answers import summary_json
-from service.convert.case import analysis_arguments, boundary_errors
+from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
 from service.problems import JobFailed
 from service.schemas import Case, read_model
@@ -38,7 +38,13 @@ def analyzed(case: Case, report: Report) -> SteDatabase:
     """Return the database of a case, computed here; condensed gears are kept in the user's cache."""
     pair = check_case(case)
     with boundary_errors():
-        return analyze(pair, **analysis_arguments(case), cache=cache_home() / "compliance", progress=report)
+        return analyze(
+            pair,
+            **analysis_arguments(case),
+            case=case_json(case),
+            cache=cache_home() / "compliance",
+            progress=report,
+        )
 
 
 def _show(summary: dict[str, Any]) -> None:

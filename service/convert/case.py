@@ -97,7 +97,7 @@ def _material(given: MaterialInput) -> Material:
 
 
 def analysis_arguments(case: Case) -> Json:
-    """Return the keyword arguments of `fe_contact.analyze` for a case, in SI."""
+    """Return what `fe_contact.analyze` is asked for a case, as keyword arguments in SI."""
     accuracy, load, errors = case.accuracy, case.load, case.errors
     return {
         "torques": None if load.torque_n_m is None else list(load.torque_n_m),
@@ -110,7 +110,6 @@ def analysis_arguments(case: Case) -> Json:
         "model": accuracy.model,
         "positions": accuracy.positions,
         "effects": dict(case.effects),
-        "case": case_json(case),
     }
 
 

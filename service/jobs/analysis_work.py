@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
-from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
 from service.jobs.order import Product, Progress, WorkOrder
 from service.schemas import Case
 
@@ -23,4 +23,5 @@ def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 def database_of(case: Case, cache: Path, progress: Progress) -> SteDatabase:
     """Return the STE database of a case; condensed gears are kept in `cache`."""
     with boundary_errors():
-        return analyze(gear_pair(case), **analysis_arguments(case), cache=cache, progress=progress)
+        arguments = analysis_arguments(case)
+        return analyze(gear_pair(case), **arguments, case=case_json(case), cache=cache, progress=progress)

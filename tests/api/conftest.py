@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -11,7 +10,6 @@ import pytest
 import structlog.testing
 
 STAND_INS = str(Path(__file__).resolve().parents[1] / "stand_ins")
-sys.path.insert(0, STAND_INS)
 
 
 @pytest.fixture(autouse=True)

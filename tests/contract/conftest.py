@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 import structlog.testing
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stand_ins"))
 
 
 @pytest.fixture(autouse=True)

@@ -159,11 +159,11 @@ def deflection(compliance: np.ndarray, force: float, width: float) -> float:
     return float(total)
 
 
-@pytest.mark.parametrize(("level", "expected"), [("draft", 1.0283), ("standard", 1.0295)])
+@pytest.mark.parametrize("level", ["draft", "standard"])
 def test_mesh_deflection_is_three_percent_above_plane_strain(
-    level: str, expected: float, record_figure: Callable[..., None]
+    level: str, record_figure: Callable[..., None]
 ) -> None:
-    """20/20 spur pair, 100 N m, pitch point: resolved contact says 1.028 to 1.030."""
+    """20/20 spur pair, 100 N m, pitch point: resolved contact says 1.028 to 1.030, the fine recipe 1.0290."""
     recipe = getattr(SectorRecipe, level)(GEAR)
     force, slices = 100.0 / GEAR.base_radius, 15
     edges = np.linspace(-0.5, 0.5, slices + 1) * GEAR.face_width
@@ -171,7 +171,7 @@ def test_mesh_deflection_is_three_percent_above_plane_strain(
     loads = np.array([patch(solid, low, high) for low, high in pairwise(edges)])
     three = deflection(loads @ solid.blocks[0] @ loads.T, force, GEAR.face_width / slices)
     two = deflection(np.array([[per_width(plane) / GEAR.face_width]]), force, GEAR.face_width)
-    assert three / two == pytest.approx(expected, abs=7e-4)
+    assert three / two == pytest.approx(1.0290, abs=4e-4)
     record_figure(
         f"20/20 spur pair, pitch point: 3-D over plane strain, {level}",
         three / two, "1.028 to 1.030", "1", "resolved contact in 3-D",
