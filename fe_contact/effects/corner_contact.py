@@ -5,8 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import ClassVar
 
+import numpy as np
+
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.geometry import Gear
+
+_ALONG_EDGE = 33
 
 
 @dataclass(frozen=True)
@@ -24,13 +29,10 @@ class CornerContact:
         """On unless tip relief larger than any deflection keeps the edges apart."""
         pair = scene.pair
         deflection = _largest_deflection(scene)
-        relief = min(
-            gear.modification.material_removed(gear, gear.tip_roll_length)
-            for gear in (pair.pinion, pair.wheel)
-        )
-        clear = float(relief) > 2.0 * deflection
+        relief = min(_least_tip_relief(gear) for gear in (pair.pinion, pair.wheel))
+        clear = relief > 2.0 * deflection
         reason = (
-            f"tip relief {1e6 * float(relief):.1f} um exceeds twice the bending of {1e6 * deflection:.1f} um"
+            f"tip relief {1e6 * relief:.1f} um exceeds twice the bending of {1e6 * deflection:.1f} um"
             if clear
             else f"deflections up to {1e6 * deflection:.1f} um close the gap at the tip edges"
         )
@@ -41,6 +43,12 @@ class CornerContact:
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Let tip edges touch."""
         return replace(model, corner_contact=True)
+
+
+def _least_tip_relief(gear: Gear) -> float:
+    """Least material removed at the tip edge, m: the edge must be clear all over the face."""
+    face = np.linspace(-0.5, 0.5, _ALONG_EDGE) * gear.face_width
+    return float(gear.modification.material_removed(gear, gear.tip_roll_length, face).min())
 
 
 def _largest_deflection(scene: ContactScene) -> float:

@@ -1,4 +1,4 @@
-"""Lead modification: helix crowning and slope, end relief as gaps over the face width."""
+"""Lead modification: helix crowning and slope, end relief, twist as gaps over the face width."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ from fe_contact.effects.modification_gap import ModificationGap
 
 @dataclass(frozen=True)
 class LeadModification:
-    """Designed deviations of either flank from the helix."""
+    """Designed deviations of either flank that differ over its face."""
 
     name: ClassVar[str] = "lead_modification"
     needs: ClassVar[tuple[str, ...]] = ("face position",)
     adds: ClassVar[tuple[str, ...]] = ("gap",)
-    cost: ClassVar[str] = "none beside the three-dimensional model it needs"
+    cost: ClassVar[str] = "none beside the three-dimensional model; twist: a search for touching points"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/lead_modification.md", "ISO 21771-1")
     valid_for: ClassVar[str] = "every pair in three dimensions"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On where either gear has a modification along its face."""
+        """On where either gear has a modification that differs over its face."""
         gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
         modified = [name for name, gear in gears if gear.modification.varies_along_face]
         if not modified:

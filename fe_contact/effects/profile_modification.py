@@ -24,7 +24,7 @@ class ProfileModification:
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either gear has a modification along its profile."""
         gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
-        modified = [name for name, gear in gears if gear.modification.varies_along_profile]
+        modified = [name for name, gear in gears if not gear.modification.along_profile.neutral]
         if not modified:
             return Verdict(False, "both profiles are plain involutes", "nothing")
         return Verdict(True, f"modified profile on {' and '.join(modified)}", "up to the modification itself")

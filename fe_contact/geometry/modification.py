@@ -21,6 +21,14 @@ if TYPE_CHECKING:
 
 Shape = Literal["linear", "parabolic"]
 SHAPES: tuple[Shape, ...] = ("linear", "parabolic")
+_ACROSS_FACE = (
+    "helix_crowning",
+    "helix_slope",
+    "end_relief",
+    "end_relief_length",
+    "end_relief_shape",
+    "flank_twist",
+)
 _LARGEST = 0.01  # m; catches micrometres given as metres
 
 
@@ -51,6 +59,10 @@ class FlankModification:
         Amount removed at both ends of the face, m, >= 0, and its extent along the face, m.
     end_relief_shape : {"linear", "parabolic"}
         Course over the face.
+    flank_twist : float
+        Removed in m at the tip end of positive face position and at the opposite corner, added at the other
+        two; bilinear over roll length and face, zero at the middle of either. The profile slope so grows by
+        four times the amount from one end of the face to the other.
     """
 
     tip_relief: float = 0.0
@@ -66,45 +78,41 @@ class FlankModification:
     end_relief: float = 0.0
     end_relief_length: float = 0.0
     end_relief_shape: Shape = "linear"
+    flank_twist: float = 0.0
 
     def __post_init__(self) -> None:
         for kind in ("tip", "root", "end"):
             _check_relief(self, f"{kind}_relief")
         for crowning in ("profile_crowning", "helix_crowning"):
             within(crowning, getattr(self, crowning), 0.0, _LARGEST, "In m: 5 um is 5e-6.")
-        for slope in ("profile_slope", "helix_slope"):
+        for slope in ("profile_slope", "helix_slope", "flank_twist"):
             within(slope, getattr(self, slope), -_LARGEST, _LARGEST, "In m: 5 um is 5e-6.")
 
     @property
     def neutral(self) -> bool:
         """Whether nothing is removed anywhere."""
-        amounts = (self.tip_relief, self.root_relief, self.end_relief)
-        return not any((*amounts, *self._profile_shape, self.helix_crowning, self.helix_slope))
-
-    @property
-    def _profile_shape(self) -> tuple[float, float]:
-        return self.profile_crowning, self.profile_slope
+        return not (self.varies_along_profile or self.varies_along_face)
 
     @property
     def varies_along_profile(self) -> bool:
-        """Whether the modification depends on the roll length."""
-        return bool(self.tip_relief or self.root_relief or any(self._profile_shape))
+        """Whether the modification depends on the roll length, at any place of the face."""
+        alone = (self.tip_relief, self.root_relief, self.profile_crowning, self.profile_slope)
+        return any((*alone, self.flank_twist))
 
     @property
     def varies_along_face(self) -> bool:
-        """Whether the modification depends on the face position."""
-        return bool(self.helix_crowning or self.helix_slope or self.end_relief)
+        """Whether the modification depends on the face position, at any roll length."""
+        return any((self.helix_crowning, self.helix_slope, self.end_relief, self.flank_twist))
 
     @property
     def along_profile(self) -> FlankModification:
-        """The part that depends on the roll length only."""
-        return replace(self, helix_crowning=0.0, helix_slope=0.0, end_relief=0.0, end_relief_length=0.0)
+        """The part that is the same all over the face."""
+        return replace(self, **{name: getattr(UNMODIFIED, name) for name in _ACROSS_FACE})
 
     @property
     def along_face(self) -> FlankModification:
-        """The part that depends on the face position only."""
-        names = ("helix_crowning", "helix_slope", "end_relief", "end_relief_length", "end_relief_shape")
-        return FlankModification(**{name: getattr(self, name) for name in names})
+        """The part that differs over the face; where it twists the flank, it varies along the profile too."""
+        return FlankModification(**{name: getattr(self, name) for name in _ACROSS_FACE})
 
     def check_fits(self, gear: Gear) -> None:
         """Raise `InputError` if a relief is longer than the involute is high or half the face is wide."""
@@ -131,20 +139,23 @@ class FlankModification:
         Returns
         -------
         array
-            m, >= 0 except where a slope adds material; exactly zero for a neutral modification.
+            m, >= 0 except where a slope or twist adds material; exactly zero for a neutral modification.
         """
         roll, face = np.broadcast_arrays(np.asarray(roll_length, float), np.asarray(face_position, float))
         removed = np.zeros(roll.shape)
+        roll = np.clip(roll, gear.form_roll_length, gear.tip_roll_length)
         if self.varies_along_profile:
-            removed += self._along_profile(gear, np.clip(roll, gear.form_roll_length, gear.tip_roll_length))
+            removed += self._along_profile(gear, roll)
         if self.varies_along_face:
             removed += self._along_face(gear, face)
+        if self.flank_twist:
+            removed += self.flank_twist * _across_profile(gear, roll) * _across_face(gear, face)
         return removed
 
     def _along_profile(self, gear: Gear, roll: FloatArray) -> FloatArray:
         """Reliefs, crowning and slope over the roll length."""
         form, tip = gear.form_roll_length, gear.tip_roll_length
-        across = (2.0 * roll - form - tip) / (tip - form)  # -1 at the form point, +1 at the tip
+        across = _across_profile(gear, roll)
         removed = self.profile_crowning * across**2 + 0.5 * self.profile_slope * across
         if self.tip_relief:
             start = gear.roll_length(gear.tip_radius - self.tip_relief_length)
@@ -156,12 +167,23 @@ class FlankModification:
 
     def _along_face(self, gear: Gear, face: FloatArray) -> FloatArray:
         """End relief, crowning and slope over the face."""
-        across = 2.0 * face / gear.face_width  # -1 and +1 at the ends
+        across = _across_face(gear, face)
         removed = self.helix_crowning * across**2 + 0.5 * self.helix_slope * across
         if self.end_relief:
             from_start = (np.abs(face) - 0.5 * gear.face_width) / self.end_relief_length + 1.0
             removed = removed + self.end_relief * _course(self.end_relief_shape, from_start)
         return np.asarray(removed, dtype=float)
+
+
+def _across_profile(gear: Gear, roll: FloatArray) -> FloatArray:
+    """Place on the involute: -1 at the form point, +1 at the tip, linear over the roll length."""
+    form, tip = gear.form_roll_length, gear.tip_roll_length
+    return np.asarray((2.0 * roll - form - tip) / (tip - form))
+
+
+def _across_face(gear: Gear, face: FloatArray) -> FloatArray:
+    """Place on the face: -1 and +1 at its ends."""
+    return np.asarray(2.0 * face / gear.face_width)
 
 
 def _course(shape: Shape, fraction: FloatArray) -> FloatArray:

@@ -24,6 +24,7 @@ _AMOUNTS = (
     "profile_slope",
     "helix_crowning",
     "helix_slope",
+    "flank_twist",
 )
 _RELIEFS = ("tip_relief", "root_relief", "end_relief")
 _COEFFICIENTS = (

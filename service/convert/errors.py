@@ -59,7 +59,7 @@ def _named_modification(
     error: ContactInputError | DynamicsInputError, value: FlankModification
 ) -> ContactInputError:
     """Name the amount that a refused modification varies along the face by."""
-    along_face = ("helix_crowning", "helix_slope", "end_relief")
+    along_face = ("helix_crowning", "helix_slope", "end_relief", "flank_twist")
     name = next((amount for amount in along_face if getattr(value, amount)), "modification")
     field = f"{error.field}.{name}"
     return ContactInputError(field, getattr(value, name, None), f"0: {error.bound}", error.suggestion)

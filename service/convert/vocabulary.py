@@ -35,6 +35,7 @@ _LAST = {
     "profile_slope": "profile_slope_um",
     "helix_crowning": "helix_crowning_um",
     "helix_slope": "helix_slope_um",
+    "flank_twist": "flank_twist_um",
     "end_relief": "end_relief_um",
     "end_relief_length": "end_relief_length_mm",
     "youngs_modulus": "youngs_modulus_gpa",

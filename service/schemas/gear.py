@@ -119,6 +119,13 @@ class GearInput(BoundaryModel):
     end_relief_shape: Shape = Field(
         default="linear", description="End relief over its length", examples=["linear"]
     )
+    flank_twist_um: float = Field(
+        default=0.0,
+        ge=-1000.0,
+        le=1000.0,
+        description="Twist in um at the corners of the flank; > 0 removes at the tip where z is positive",
+        examples=[5.0],
+    )
     material: MaterialInput | None = Field(
         default=None,
         description="Material of this gear; left out: the case's",

@@ -42,6 +42,7 @@ MODIFIED: dict[str, Any] = {
     "profile_slope_um": -4.0,
     "helix_crowning_um": 5.0,
     "helix_slope_um": -6.0,
+    "flank_twist_um": 2.5,
     "end_relief_um": 7.0,
     "end_relief_length_mm": 2.0,
     "end_relief_shape": "parabolic",

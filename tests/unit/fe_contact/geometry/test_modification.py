@@ -78,6 +78,37 @@ def test_end_relief_acts_at_both_ends_only(make_gear: Callable[..., Gear], shape
     assert removed == pytest.approx([12e-6, middle, 0.0, 0.0, 0.0, middle, 12e-6], rel=1e-9, abs=1e-18)
 
 
+def test_twist_is_a_profile_slope_that_grows_along_the_face(make_gear: Callable[..., Gear]) -> None:
+    gear = make_gear()
+    twisted = FlankModification(flank_twist=4e-6)
+    roll, face = over_profile(gear, 5)[:, None], np.linspace(-12.5e-3, 12.5e-3, 3)
+    removed = twisted.material_removed(gear, roll, face)
+    across = np.linspace(-1.0, 1.0, 5)
+    assert removed == pytest.approx(4e-6 * np.outer(across, [-1.0, 0.0, 1.0]), rel=1e-12, abs=1e-20)
+    end = FlankModification(profile_slope=8e-6).material_removed(gear, roll, 0.0)
+    assert removed[:, 2:] == pytest.approx(end, rel=1e-12, abs=1e-20)
+    beyond = twisted.material_removed(gear, [0.0, 1.0], 12.5e-3)
+    assert beyond == pytest.approx([-4e-6, 4e-6], rel=1e-12, abs=0.0)
+
+
+def test_what_differs_over_the_face_and_what_does_not_add_up_to_all(make_gear: Callable[..., Gear]) -> None:
+    gear = make_gear()
+    whole = FlankModification(
+        tip_relief=20e-6, tip_relief_length=1e-3, profile_slope=3e-6, helix_crowning=5e-6, flank_twist=4e-6
+    )
+    roll, face = over_profile(gear, 9)[:, None], np.linspace(-12.5e-3, 12.5e-3, 5)
+    parts = [part.material_removed(gear, roll, face) for part in (whole.along_profile, whole.along_face)]
+    assert sum(parts) == pytest.approx(whole.material_removed(gear, roll, face), rel=1e-12, abs=1e-20)
+    assert np.all(np.ptp(parts[0], axis=1) == 0.0)
+    assert not whole.along_profile.varies_along_face
+    twist = FlankModification(flank_twist=-1e-6)
+    assert twist.along_profile.neutral
+    assert twist.along_face == twist
+    assert twist.varies_along_profile
+    assert twist.varies_along_face
+    assert not twist.neutral
+
+
 def test_effects_add_and_broadcast(make_gear: Callable[..., Gear]) -> None:
     gear = make_gear()
     tip = FlankModification(tip_relief=20e-6, tip_relief_length=1e-3)
@@ -118,6 +149,7 @@ def test_beyond_the_involute_the_end_value_holds(make_gear: Callable[..., Gear])
         ({"profile_slope": math.nan}, "profile_slope"),
         ({"helix_crowning": 5.0}, "helix_crowning"),
         ({"helix_slope": -5.0}, "helix_slope"),
+        ({"flank_twist": 5.0}, "flank_twist"),
     ],
 )
 def test_unusable_modification_names_its_field(fields: dict[str, Any], named: str) -> None:
