@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from fe_contact.analysis import analyze
+    from fe_contact.analysis import ContactPattern, LoadDistribution, analyze, contact_pattern, flank_results
     from fe_contact.geometry import FlankModification, Gear, GearPair
     from fe_contact.material import STEEL, Material
     from fe_contact.ste import SteDatabase
@@ -18,18 +18,26 @@ if TYPE_CHECKING:
 
 __all__ = [
     "STEEL",
+    "ContactPattern",
     "Estimate",
     "FlankModification",
     "Gear",
     "GearPair",
+    "LoadDistribution",
     "Material",
     "Status",
     "SteDatabase",
     "analyze",
+    "contact_pattern",
+    "flank_results",
 ]
 
 _HOME = {
     "analyze": "fe_contact.analysis",
+    "contact_pattern": "fe_contact.analysis",
+    "flank_results": "fe_contact.analysis",
+    "ContactPattern": "fe_contact.analysis",
+    "LoadDistribution": "fe_contact.analysis",
     "FlankModification": "fe_contact.geometry",
     "Gear": "fe_contact.geometry",
     "GearPair": "fe_contact.geometry",

@@ -1,6 +1,17 @@
-"""The main flow: gear pair in, STE database out."""
+"""The main flow: gear pair in, STE database out; and what happens on its flanks."""
 
 from fe_contact.analysis.analyze import analyze
+from fe_contact.analysis.contact_pattern import ContactPattern, contact_pattern
+from fe_contact.analysis.flank_results import flank_results
+from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.request import check_request
 
-__all__ = ["analyze", "check_request"]
+__all__ = [
+    "ContactPattern",
+    "LoadDistribution",
+    "analyze",
+    "check_request",
+    "contact_pattern",
+    "flank_results",
+    "load_distribution",
+]

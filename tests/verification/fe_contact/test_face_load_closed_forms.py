@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair
+from fe_contact.analysis import LoadDistribution, load_distribution
 from fe_contact.contact import (
     ContactModel,
     ContactProblem,
@@ -36,10 +37,19 @@ def slice_pair(**modification: float) -> GearPair:
     return GearPair(gear, dataclasses.replace(gear, modification=FlankModification()), 80e-3)
 
 
+COUNT = 400
+
+
 def uncoupled(pair: GearPair, *gaps: object) -> tuple[float, np.ndarray]:
     """Deflection and line load of one pair at the pitch point whose slices are springs of their own."""
+    found = springs(pair, *gaps)
+    return float(found.deflection[0]), found.line_load[0, np.flatnonzero(found.pair == 0)[0]]
+
+
+def springs(pair: GearPair, *gaps: object) -> LoadDistribution:
+    """Load distribution of that pair."""
     model = ContactModel(gaps=gaps)
-    count = 400
+    count = COUNT
     plain = contact_candidates(pair, model, np.zeros(1), PatchRule(1e-3, 1e-4), Slices.of_pair(pair, count))
     candidates = with_gaps(pair, plain, model)
     only = candidates.pair == 0
@@ -47,10 +57,10 @@ def uncoupled(pair: GearPair, *gaps: object) -> tuple[float, np.ndarray]:
     candidates = candidates.touching(dataclasses.replace(candidates.touch, gap=gap))
     spring = np.eye(only.size)[None] / (STIFFNESS * WIDTH / count)
     # bodies a billion times stiffer than steel: no local approach
-    solution = solve_contact(ContactProblem(candidates, spring, 1e20, 1e-20, 1e-20), np.array([FORCE]))
+    problem = ContactProblem(candidates, spring, 1e20, 1e-20, 1e-20)
+    solution = solve_contact(problem, np.array([FORCE]))
     assert solution.converged
-    load = solution.force[0, 0, only] / (WIDTH / count)
-    return float(solution.deflection[0, 0]), load
+    return load_distribution(pair, problem, solution)
 
 
 @pytest.mark.parametrize(
@@ -73,6 +83,26 @@ def test_misalignment_of_uncoupled_slices(misalignment, k_h_beta, side, fraction
     assert largest == pytest.approx(k_h_beta, rel=1e-3)
     assert at_end == pytest.approx(side, rel=1e-3)
     assert np.mean(load > 0.0) == pytest.approx(fraction, abs=2.5e-3)
+
+
+@pytest.mark.parametrize(
+    ("misalignment", "k_h_beta", "fraction"),
+    [(0.0, 1.0, 1.0), (5e-6, 1.25, 1.0), (20e-6, 2.0, 1.0), (40e-6, 2.828427, 0.707107), (80e-6, 4.0, 0.5)],
+)
+def test_face_load_factor_and_centroid_of_uncoupled_slices(misalignment, k_h_beta, fraction):
+    """The load falls linearly from the closed side over the part of the face in contact.
+
+    Trapezoid (all in contact): centroid at (K - 1) b/6 from the middle; triangle: a third of its base from
+    the closed side. The outermost slice is half a slice away from the end of the face.
+    """
+    found = springs(slice_pair(), MisalignmentGap(misalignment))
+    slope = misalignment * STIFFNESS * WIDTH / FORCE
+    assert found.face_load_factor[0] == pytest.approx(k_h_beta - 0.5 * slope / COUNT, rel=1e-5)
+    assert found.mean_face_load_factor == pytest.approx(found.face_load_factor[0], rel=1e-12)
+    pair_factor = found.pair_line_load_factor[0, np.flatnonzero(found.pair == 0)[0]]
+    assert pair_factor == pytest.approx(found.face_load_factor[0], rel=1e-9)
+    away = (k_h_beta - 1.0) / 6.0 if fraction == 1.0 else 0.5 - fraction / 3.0
+    assert found.load_centroid[0] == pytest.approx(-away * WIDTH, rel=1e-3, abs=1e-9)
 
 
 @pytest.mark.parametrize(
