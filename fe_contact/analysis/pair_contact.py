@@ -29,6 +29,9 @@ from fe_contact.mesh import MeshRecipe
 from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation
 from fe_contact.types import FloatArray
 
+KEPT_PROBLEMS = 2
+"""Position sets whose compliance is kept: the table's, while another is tried."""
+
 PlaneFlanks = tuple[FlankCompliance, FlankCompliance]
 FaceFlanks = tuple[FlankCompliance3D, FlankCompliance3D]
 
@@ -63,6 +66,8 @@ class PairContact:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
         key = (position.tobytes(), model.corner_contact, model.couple_teeth)
         if key not in self._problems:
+            while len(self._problems) >= KEPT_PROBLEMS:
+                self._problems.pop(next(iter(self._problems)))
             slices = Slices.of_pair(self.pair, self.plan.discretisation.slices)
             candidates = contact_candidates(self.pair, model, position, self.plan.patch, slices)
             self._problems[key] = self._assembled(candidates, model.couple_teeth)

@@ -13,6 +13,8 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray
 
 MAX_ROUNDS = 10
+PROBES = np.array([0.25, 0.5, 0.75])
+"""Where in every interval the interpolant is held against a solution; the middle one becomes a node."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +26,7 @@ class PositionNodes:
     position : ndarray, shape (P,)
         Increasing in [0, 1).
     interval_error : ndarray, shape (P, L)
-        Difference in m between interpolant and solution at the middle of the interval after each node.
+        Difference in m between interpolant and solution in the interval after each node, at the worst probe.
     """
 
     position: FloatArray
@@ -37,9 +39,9 @@ class PositionNodes:
 
 
 def fixed_nodes(count: int, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
-    """`count` equally spaced nodes; the error is measured at the middles of all intervals."""
+    """`count` equally spaced nodes; the error is measured at the probes of all intervals."""
     nodes = np.arange(count) / count
-    return PositionNodes(nodes, _middle_error(nodes, solve(nodes), solve)[1])
+    return PositionNodes(nodes, _probed(nodes, solve(nodes), solve, np.ones(count, dtype=bool))[2])
 
 
 def table_nodes(places: Places, plan: Plan) -> PositionNodes:
@@ -56,7 +58,7 @@ def table_nodes(places: Places, plan: Plan) -> PositionNodes:
 
 
 def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
-    """Bisect the intervals whose middle the interpolant misses.
+    """Bisect the intervals in which the interpolant misses a probe.
 
     Parameters
     ----------
@@ -69,7 +71,7 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     -----
     The slope of STE jumps where a pair comes into contact, at a position that moves with load, so a few
     hundred nodes gather at the handovers. The search ends with the tolerance met, after `MAX_ROUNDS`, or at
-    `MAX_NODES`; the error says which.
+    the largest number; the error says which.
     """
     nodes = np.arange(rule.start) / rule.start
     values = solve(nodes)
@@ -77,7 +79,8 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     error = np.full_like(values, np.inf)
     for remaining in reversed(range(MAX_ROUNDS)):
         allowed = np.maximum(rule.tolerance * np.ptp(values, axis=0), 1e-6 * np.abs(values).max(axis=0))
-        middles, error, found = _middle_error(nodes, values, solve, settled, error)
+        middles, found, probed = _probed(nodes, values, solve, ~settled)
+        error[~settled] = probed[~settled]
         missed = np.any(error > allowed, axis=1)
         if not missed.any() or not remaining or nodes.size + missed.sum() > rule.most:
             break
@@ -85,22 +88,18 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     return PositionNodes(nodes, error)
 
 
-def _middle_error(
-    nodes: FloatArray,
-    values: FloatArray,
-    solve: Callable[[FloatArray], FloatArray],
-    settled: BoolArray | None = None,
-    known: FloatArray | None = None,
+def _probed(
+    nodes: FloatArray, values: FloatArray, solve: Callable[[FloatArray], FloatArray], open_: BoolArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Middles, errors and solutions there, of the intervals not yet settled."""
+    """Middles, solutions there, and largest errors at the probes, of the open intervals (others zero)."""
     axis = Axis(nodes, 1.0)
-    middles = nodes + 0.5 * axis.spacing
-    open_ = np.ones(nodes.size, dtype=bool) if settled is None else ~settled
-    error = np.zeros_like(values) if known is None else known.copy()
-    found = np.zeros_like(values)
-    found[open_] = solve(middles[open_])
-    error[open_] = np.abs(interpolate(axis, values, middles[open_]) - found[open_])
-    return middles, error, found
+    probes = nodes[open_, None] + axis.spacing[open_, None] * PROBES
+    solved = solve(probes.ravel())
+    missed = np.abs(interpolate(axis, values, probes.ravel()) - solved).reshape(*probes.shape, -1)
+    found, error = np.zeros((2, *values.shape))
+    found[open_] = solved.reshape(*probes.shape, -1)[:, PROBES.size // 2]
+    error[open_] = missed.max(axis=1)
+    return nodes + 0.5 * axis.spacing, found, error
 
 
 def _inserted(

@@ -47,7 +47,7 @@ class NodeRule:
     most: int
 
 
-PLANE_NODES = NodeRule(64, 0.002, 768)
+PLANE_NODES = NodeRule(64, 0.0015, 768)
 FACE_NODES = NodeRule(64, 0.005, 192)
 """Positions cost a hundred times as much over the face, and its curves are smoother."""
 

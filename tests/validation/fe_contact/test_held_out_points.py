@@ -1,0 +1,63 @@
+"""The table against solves at positions and loads it does not hold."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair, analyze
+from fe_contact.analysis import check_request
+from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.planning import make_plan
+
+TORQUES = np.geomspace(10.0, 400.0, 12)
+
+
+@pytest.fixture(scope="module")
+def held_out(tmp_path_factory):
+    """Return the loads and a function: errors (positions, loads) over each load's peak-to-peak STE."""
+    cache = tmp_path_factory.mktemp("compliance")
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    pair = GearPair(gear, gear, 80e-3)
+    table = analyze(pair, torques=TORQUES, cache=cache)
+    checked = check_request(pair, torques=TORQUES)
+    plan = make_plan(pair, checked.request.load, checked.request.accuracy, checked.model)
+    contact = pair_contact(pair, plan, cache)
+    position = np.random.default_rng(0).random(800)
+
+    def errors(force: np.ndarray) -> np.ndarray:
+        solved = contact.solve(checked.model, position, force)[1].deflection
+        return np.abs(table.ste(position[:, None], force) - solved) / np.ptp(solved, axis=0)
+
+    return table.force, errors
+
+
+def test_held_out_positions(held_out, record_figure):
+    force, errors = held_out
+    error = errors(force)
+    record_figure(
+        "table at held-out positions, largest", 100 * error.max(), "at most 0.2 %", "% of p-p", "target"
+    )
+    record_figure(
+        "table at held-out positions, rms", 100 * np.sqrt(np.mean(error**2)), "none", "% of p-p", "-"
+    )
+    assert error.max() < 0.002
+
+
+def test_held_out_positions_and_loads(held_out, record_figure):
+    """Midway between the loads the corner of the handover is a little rounded."""
+    force, errors = held_out
+    error = errors(np.sqrt(force[1:] * force[:-1]))
+    rms = np.sqrt(np.mean(error**2))
+    record_figure(
+        "table at held-out positions and loads, rms", 100 * rms, "at most 0.2 %", "% of p-p", "target"
+    )
+    record_figure(
+        "table at held-out positions and loads, largest",
+        100 * error.max(),
+        "0.2 % (missed)",
+        "% of p-p",
+        "target",
+    )
+    assert rms < 0.002
+    assert error.max() < 0.015
