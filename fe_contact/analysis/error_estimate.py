@@ -16,11 +16,9 @@ import numpy as np
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
+from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.planning import Plan
 from fe_contact.types import FloatArray, Json, Status
-
-PLANE_FOR_FINITE_WIDTH = 0.03
-"""Relative excess of a 3-D gear's STE over plane strain: 1.018 to 1.030 for widths of 6 to 20 modules."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +30,7 @@ class ErrorSources:
     discretisation, interpolation, contact : ndarray
         Finite elements, table beside the node, contact solver.
     model : float
-        Relative excess that the plane model leaves out; 0 in three dimensions.
+        Relative excess of the mean STE that the plane model leaves out; 0 in three dimensions.
     """
 
     discretisation: FloatArray
@@ -84,7 +82,7 @@ def estimate_errors(
         places.gathered(differences),
         places.gathered([judged] * len(fine)),
         places.gathered([contact_error(solution) for solution in fine]),
-        0.0 if made.slices > 1 else PLANE_FOR_FINITE_WIDTH,
+        0.0 if made.slices > 1 else finite_width_excess(places.places[0].contact.pair),
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.geometry.finite_width import finite_width_excess
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class FaceLoadDistribution:
         reasons = across_face(scene)
         if reasons:
             return Verdict(True, "; ".join(reasons), "the plane model cannot hold it")
-        worth = "STE of a spur gear of finite width is 2 to 3 % above plane strain"
+        worth = f"mean STE about {100 * finite_width_excess(scene.pair):.2g} % above plane strain"
         return Verdict(False, "a spur pair with nothing acting across the face", worth)
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
