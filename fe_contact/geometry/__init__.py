@@ -2,6 +2,7 @@
 
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap
+from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, iso6336_stiffness
@@ -12,6 +13,7 @@ from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 __all__ = [
     "BasicRack",
     "CornerContact",
+    "FlankGrid",
     "FlankModification",
     "Gear",
     "GearPair",

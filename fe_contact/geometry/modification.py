@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from fe_contact.checks import finite, positive, within
 from fe_contact.errors import InputError
+from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
@@ -63,6 +64,8 @@ class FlankModification:
         Removed in m at the tip end of positive face position and at the opposite corner, added at the other
         two; bilinear over roll length and face, zero at the middle of either. The profile slope so grows by
         four times the amount from one end of the face to the other.
+    flank_grid : FlankGrid, optional
+        Free-form flank, removed besides all of the above.
     """
 
     tip_relief: float = 0.0
@@ -79,6 +82,7 @@ class FlankModification:
     end_relief_length: float = 0.0
     end_relief_shape: Shape = "linear"
     flank_twist: float = 0.0
+    flank_grid: FlankGrid | None = None
 
     def __post_init__(self) -> None:
         for kind in ("tip", "root", "end"):
@@ -97,30 +101,44 @@ class FlankModification:
     def varies_along_profile(self) -> bool:
         """Whether the modification depends on the roll length, at any place of the face."""
         alone = (self.tip_relief, self.root_relief, self.profile_crowning, self.profile_slope)
-        return any((*alone, self.flank_twist))
+        return any((*alone, self.flank_twist)) or any(not grid.neutral for grid in self._grids)
 
     @property
     def varies_along_face(self) -> bool:
         """Whether the modification depends on the face position, at any roll length."""
-        return any((self.helix_crowning, self.helix_slope, self.end_relief, self.flank_twist))
+        alone = (self.helix_crowning, self.helix_slope, self.end_relief)
+        return any((*alone, self.flank_twist)) or any(grid.varies_along_face for grid in self._grids)
 
     @property
     def along_profile(self) -> FlankModification:
         """The part that is the same all over the face."""
-        return replace(self, **{name: getattr(UNMODIFIED, name) for name in _ACROSS_FACE})
+        plain = {name: getattr(UNMODIFIED, name) for name in _ACROSS_FACE}
+        grids = (grid for grid in self._grids if not grid.varies_along_face)
+        return replace(self, **plain, flank_grid=next(grids, None))
 
     @property
     def along_face(self) -> FlankModification:
-        """The part that differs over the face; where it twists the flank, it varies along the profile too."""
-        return FlankModification(**{name: getattr(self, name) for name in _ACROSS_FACE})
+        """The part that differs over the face; twisted or free, it varies along the profile too."""
+        own = {name: getattr(self, name) for name in _ACROSS_FACE}
+        grids = (grid for grid in self._grids if grid.varies_along_face)
+        return FlankModification(**own, flank_grid=next(grids, None))
+
+    @property
+    def _grids(self) -> tuple[FlankGrid, ...]:
+        """The free-form flank, if there is one."""
+        return () if self.flank_grid is None else (self.flank_grid,)
 
     def check_fits(self, gear: Gear) -> None:
-        """Raise `InputError` if a relief is longer than the involute is high or half the face is wide."""
+        """Raise `InputError` if a relief is longer than the involute or half the face, a grid beside it."""
         height = gear.tip_radius - gear.form_radius
         advice = "Lengths are in m: 1 mm is 0.001."
         within("modification.tip_relief_length", self.tip_relief_length, 0.0, height, advice)
         within("modification.root_relief_length", self.root_relief_length, 0.0, height, advice)
         within("modification.end_relief_length", self.end_relief_length, 0.0, 0.5 * gear.face_width, advice)
+        half = 0.5 * gear.face_width
+        for grid in self._grids:
+            _check_reach("modification.flank_grid.roll_length", grid.roll_length, *_involute(gear))
+            _check_reach("modification.flank_grid.face_position", grid.face_position, -half, half)
 
     def material_removed(
         self, gear: Gear, roll_length: ArrayLike, face_position: ArrayLike = 0.0
@@ -143,13 +161,15 @@ class FlankModification:
         """
         roll, face = np.broadcast_arrays(np.asarray(roll_length, float), np.asarray(face_position, float))
         removed = np.zeros(roll.shape)
-        roll = np.clip(roll, gear.form_roll_length, gear.tip_roll_length)
+        roll = np.clip(roll, *_involute(gear))
         if self.varies_along_profile:
             removed += self._along_profile(gear, roll)
         if self.varies_along_face:
             removed += self._along_face(gear, face)
         if self.flank_twist:
             removed += self.flank_twist * _across_profile(gear, roll) * _across_face(gear, face)
+        for grid in self._grids:
+            removed += grid.material_removed(roll, face)
         return removed
 
     def _along_profile(self, gear: Gear, roll: FloatArray) -> FloatArray:
@@ -173,6 +193,12 @@ class FlankModification:
             from_start = (np.abs(face) - 0.5 * gear.face_width) / self.end_relief_length + 1.0
             removed = removed + self.end_relief * _course(self.end_relief_shape, from_start)
         return np.asarray(removed, dtype=float)
+
+
+def _involute(gear: Gear) -> tuple[float, float]:
+    """Least and largest roll length of the involute, m."""
+    ends = gear.form_roll_length, gear.tip_roll_length
+    return min(ends), max(ends)
 
 
 def _across_profile(gear: Gear, roll: FloatArray) -> FloatArray:
@@ -204,6 +230,13 @@ def _check_relief(modification: FlankModification, kind: str) -> None:
         positive(f"{kind}_length", length, f"{kind} needs the length over which it acts, in m.")
     elif length < 0.0:
         raise InputError(f"{kind}_length", length, "at least 0")
+
+
+def _check_reach(field: str, axis: tuple[float, ...], low: float, high: float) -> None:
+    """Refuse an axis of a grid that lies beside the flank: a wrong unit or origin."""
+    if axis[-1] <= low or axis[0] >= high:
+        bound = f"a range that reaches into the flank, which spans {low:.6g} m to {high:.6g} m"
+        raise InputError(field, [axis[0], axis[-1]], bound, "Is the unit or the origin another one?")
 
 
 UNMODIFIED = FlankModification()

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from fe_contact.errors import FeContactError, InputError
-from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair
 from fe_contact.material import Material
 from service.convert.errors import translated
 from service.convert.units import DEGREE, GPA, MM, UM
@@ -89,7 +89,22 @@ def _modification(given: GearInput) -> FlankModification:
     for name in _RELIEFS:
         facts[f"{name}_length"] = getattr(given, f"{name}_length_mm") * MM
         facts[f"{name}_shape"] = getattr(given, f"{name}_shape")
-    return FlankModification(**facts)
+    return FlankModification(**facts, flank_grid=_flank_grid(given))
+
+
+def _flank_grid(given: GearInput) -> FlankGrid | None:
+    """Return the free-form flank of a gear, None if it has none."""
+    grid = given.flank_grid
+    if grid is None:
+        return None
+    try:
+        return FlankGrid(
+            roll_length=tuple(value * MM for value in grid.roll_length_mm),
+            face_position=tuple(value * MM for value in grid.face_position_mm),
+            removed=tuple(tuple(value * UM for value in row) for row in grid.removed_um),
+        )
+    except InputError as error:
+        raise error.within("flank_grid") from None
 
 
 def _material(given: MaterialInput) -> Material:

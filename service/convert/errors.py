@@ -12,7 +12,7 @@ from dynamics.errors import DynamicsError
 from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError
-from fe_contact.geometry import FlankModification
+from fe_contact.geometry import FlankGrid, FlankModification
 from service.convert.units import DEGREE, GPA, MM, UM, boundary_text, factor
 from service.convert.vocabulary import case_field, scene_field
 from service.problems import BadInput, Fault, JobFailed, ServiceError
@@ -59,10 +59,12 @@ def _named_modification(
     error: ContactInputError | DynamicsInputError, value: FlankModification
 ) -> ContactInputError:
     """Name the amount that a refused modification varies along the face by."""
-    along_face = ("helix_crowning", "helix_slope", "end_relief", "flank_twist")
+    along_face = ("helix_crowning", "helix_slope", "end_relief", "flank_twist", "flank_grid")
     name = next((amount for amount in along_face if getattr(value, amount)), "modification")
-    field = f"{error.field}.{name}"
-    return ContactInputError(field, getattr(value, name, None), f"0: {error.bound}", error.suggestion)
+    field, given = f"{error.field}.{name}", getattr(value, name, None)
+    if isinstance(given, FlankGrid):
+        return ContactInputError(f"{field}.removed", given.removed, error.bound, error.suggestion)
+    return ContactInputError(field, given, f"0: {error.bound}", error.suggestion)
 
 
 def _scaled(value: object, unit: float) -> object:

@@ -4,13 +4,23 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, Strict, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
 
 Relief = Annotated[float, Field(ge=0.0, le=1000.0)]
 Length = Annotated[float, Field(ge=0.0, le=10_000.0)]
 Shape = Literal["linear", "parabolic"]
+GridAxis = Annotated[
+    tuple[Annotated[float, Field(ge=-10_000.0, le=10_000.0)], ...],
+    Strict(False),
+    Field(min_length=2, max_length=500),
+]
+GridRow = Annotated[
+    tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...],
+    Strict(False),
+    Field(min_length=2, max_length=500),
+]
 
 
 class MaterialInput(BoundaryModel):
@@ -21,6 +31,23 @@ class MaterialInput(BoundaryModel):
     )
     poissons_ratio: float = Field(
         default=0.3, ge=0.0, le=0.499, description="Poisson's ratio; steel is 0.3", examples=[0.3]
+    )
+
+
+class FlankGridInput(BoundaryModel):
+    """A free-form flank as a grid: one row of removed material per roll length."""
+
+    roll_length_mm: GridAxis = Field(
+        description="Roll lengths of the rows in mm, increasing", examples=[[4.0, 10.0, 16.0]]
+    )
+    face_position_mm: GridAxis = Field(
+        description="Distances of the columns from mid-face in mm, increasing", examples=[[-12.5, 12.5]]
+    )
+    removed_um: Annotated[tuple[GridRow, ...], Strict(False)] = Field(
+        min_length=2,
+        max_length=500,
+        description="Material removed in um, a row per roll length",
+        examples=[[[0.0, 2.0], [0.0, 0.0], [5.0, 7.0]]],
     )
 
 
@@ -125,6 +152,17 @@ class GearInput(BoundaryModel):
         le=1000.0,
         description="Twist in um at the corners of the flank; > 0 removes at the tip where z is positive",
         examples=[5.0],
+    )
+    flank_grid: FlankGridInput | None = Field(
+        default=None,
+        description="Free-form flank, removed besides the amounts above",
+        examples=[
+            {
+                "roll_length_mm": [4.0, 20.0],
+                "face_position_mm": [-12.5, 12.5],
+                "removed_um": [[0.0, 0.0], [5.0, 7.0]],
+            }
+        ],
     )
     material: MaterialInput | None = Field(
         default=None,

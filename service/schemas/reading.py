@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 
 from service.problems import BadInput
 from service.schemas.faults import faults_of
+from service.schemas.flank_grid_csv import with_flank_grids
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -39,7 +40,7 @@ def read_table(path: Path) -> dict[str, Any]:
     BadInput
         The file is missing, too large, no text, or not well formed.
     """
-    text = _text(path)
+    text = read_text(path)
     try:
         table = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
     except (tomllib.TOMLDecodeError, json.JSONDecodeError) as error:
@@ -50,8 +51,8 @@ def read_table(path: Path) -> dict[str, Any]:
     return table
 
 
-def _text(path: Path) -> str:
-    """Text of a file that can be read."""
+def read_text(path: Path) -> str:
+    """Return the text of a file that can be read; raises `BadInput`."""
     try:
         if path.stat().st_size > _LARGEST_FILE:
             raise BadInput.of("file", str(path), f"at most {_LARGEST_FILE} bytes", "Is this the right file?")
@@ -69,6 +70,6 @@ def read_model(model: type[M], path: Path) -> M:
     Raises
     ------
     BadInput
-        The file cannot be read, or with every fault of its contents.
+        The file or a flank grid that it names cannot be read, or with every fault of its contents.
     """
-    return validated(model, read_table(path))
+    return validated(model, with_flank_grids(read_table(path), path.parent, read_text))

@@ -82,6 +82,11 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
         "material": {"youngs_modulus_gpa": 100.0},
+        "flank_grid": {
+            "roll_length_mm": [4.0, 20.0],
+            "face_position_mm": [-12.5, 12.5],
+            "removed_um": [[0.0, 0.0], [5.0, 7.0]],
+        },
     }
     covered = set(changes) | set(MODIFIED) | {"root_relief_shape"}
     assert covered == set(type(case().pair.pinion).model_fields)

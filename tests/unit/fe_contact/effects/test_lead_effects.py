@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.profile_modification import ProfileModification
-from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=24e-3, bore_diameter=40e-3)
 POSITIONS = np.arange(16) / 16
@@ -21,7 +22,7 @@ SLICES = 8
 TWIST = 30e-6
 
 
-def scene(torque: float = 100.0, **modification: float) -> ContactScene:
+def scene(torque: float = 100.0, **modification: Any) -> ContactScene:
     gear = replace(GEAR, modification=FlankModification(**modification))
     return ContactScene(GearPair(gear, GEAR, center_distance=80e-3), np.array([torque]))
 
@@ -57,6 +58,20 @@ def test_each_slice_of_a_twisted_flank_is_a_sloped_profile():
             assert values[0] == pytest.approx(values[1], rel=0.0, abs=3e-7 if name != "gap" else 1e-11)
     plain = candidates(twisted, ContactModel())
     assert np.abs(found.touch.s_1 - plain.touch.s_1)[np.isfinite(found.gap)].max() > 3e-5
+
+
+def test_a_free_flank_made_of_a_twist_is_that_twist():
+    twisted = scene(flank_twist=TWIST)
+    roll = (GEAR.form_roll_length, GEAR.tip_roll_length)
+    face = (-0.5 * GEAR.face_width, 0.5 * GEAR.face_width)
+    free = scene(flank_grid=FlankGrid(roll, face, ((TWIST, -TWIST), (-TWIST, TWIST))))
+    assert LeadModification().called_for(free).on
+    first, second = (
+        candidates(case, LeadModification().contribute(case, ContactModel())).touch
+        for case in (free, twisted)
+    )
+    for name in ("s_1", "s_2", "gap"):
+        assert getattr(first, name) == pytest.approx(getattr(second, name), rel=0.0, abs=1e-12)
 
 
 def test_a_tip_edge_is_clear_only_if_it_is_so_all_over_the_face():

@@ -1,0 +1,146 @@
+"""A free-form flank: material removed, given on a grid over roll length and face position."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numba import njit
+
+from fe_contact.checks import increasing, within
+from fe_contact.errors import InputError
+from fe_contact.types import FloatArray
+
+_LARGEST = 0.01  # m; catches micrometres given as metres
+
+
+@dataclass(frozen=True)
+class FlankGrid:
+    """Material removed at the nodes of a grid; any sequences are taken and kept as tuples.
+
+    Attributes
+    ----------
+    roll_length : tuple of float
+        Roll lengths of the nodes in m, increasing, at least two.
+    face_position : tuple of float
+        Distances of the nodes from mid-face in m, increasing, at least two.
+    removed : tuple of tuple of float
+        Material removed in m, normal to the involute in the transverse plane: one row per roll length.
+
+    Raises
+    ------
+    InputError
+        Axes that do not increase, rows of another length, values that are no numbers or above 1 cm.
+
+    Notes
+    -----
+    Between the nodes: the cubic Hermite interpolant of either direction, with the slopes of the parabola
+    through three neighbouring nodes. It is C1, as the search for the touching point needs (at the kinks of a
+    bilinear surface contact would stay for a while and then jump), reproduces twist and parabolic crowning
+    to rounding, and spreads an error of one node over two cells. Beside a step between even nodes it swings
+    by 2/27 of it, at the border of the grid by 1/8. Beyond the grid the end value holds.
+    """
+
+    roll_length: tuple[float, ...]
+    face_position: tuple[float, ...]
+    removed: tuple[tuple[float, ...], ...]
+
+    def __post_init__(self) -> None:
+        for name in ("roll_length", "face_position"):
+            object.__setattr__(self, name, _axis(name, getattr(self, name)))
+        shape = (len(self.roll_length), len(self.face_position))
+        if len(self.removed) != shape[0]:
+            bound = f"{shape[0]} rows, one per roll length"
+            raise InputError("removed", f"{len(self.removed)} rows", bound)
+        rows = tuple(_row(i, row, shape[1]) for i, row in enumerate(self.removed))
+        object.__setattr__(self, "removed", rows)
+
+    @cached_property
+    def neutral(self) -> bool:
+        """Whether nothing is removed anywhere."""
+        return not any(any(row) for row in self.removed)
+
+    @cached_property
+    def varies_along_face(self) -> bool:
+        """Whether any row differs along the face."""
+        return any(value != row[0] for row in self.removed for value in row)
+
+    def material_removed(self, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """Material removed in m at roll lengths and face positions in m, arrays of equal shape."""
+        flat = (np.ascontiguousarray(place, dtype=float).ravel() for place in (roll_length, face_position))
+        removed = _interpolated(np.array(self.roll_length), np.array(self.face_position), self._nodes, *flat)
+        return np.asarray(removed.reshape(roll_length.shape))
+
+    @cached_property
+    def _nodes(self) -> FloatArray:
+        """Value, slope along the profile, along the face, and mixed slope at the nodes, (4, m, n)."""
+        value = np.array(self.removed)
+        along_roll = _slope(value, self.roll_length, 0)
+        return np.stack(
+            [
+                value,
+                along_roll,
+                _slope(value, self.face_position, 1),
+                _slope(along_roll, self.face_position, 1),
+            ]
+        )
+
+
+def _axis(name: str, values: Sequence[float]) -> tuple[float, ...]:
+    """Check an axis."""
+    nodes = increasing(name, values)
+    if nodes.size < 2:
+        raise InputError(name, list(values), "a list of at least two")
+    return tuple(nodes.tolist())
+
+
+def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
+    """Check a row of the grid."""
+    if len(row) != length:
+        raise InputError(f"removed[{index}]", f"{len(row)} values", f"{length} values, one per face position")
+    advice = "In m: 5 um is 5e-6."
+    return tuple(within(f"removed[{index}][{j}]", v, -_LARGEST, _LARGEST, advice) for j, v in enumerate(row))
+
+
+def _slope(values: FloatArray, axis: tuple[float, ...], direction: int) -> FloatArray:
+    """Slope at the nodes of the parabola through three neighbours; of the straight line where two are all."""
+    order: Literal[1, 2] = 2 if len(axis) > 2 else 1
+    return np.asarray(np.gradient(values, np.array(axis), axis=direction, edge_order=order))
+
+
+@njit(cache=True)
+def _hermite(axis: FloatArray, at: float, weight: FloatArray) -> int:
+    """Fill the weights of value and slope at either end of the cell that holds `at`; return the cell."""
+    x = min(max(at, axis[0]), axis[-1])
+    cell = min(max(np.searchsorted(axis, x) - 1, 0), axis.size - 2)
+    step = axis[cell + 1] - axis[cell]
+    t = (x - axis[cell]) / step
+    weight[0] = (1.0 + 2.0 * t) * (1.0 - t) ** 2
+    weight[1] = t * t * (3.0 - 2.0 * t)
+    weight[2] = step * t * (1.0 - t) ** 2
+    weight[3] = step * t * t * (t - 1.0)
+    return int(cell)
+
+
+@njit(cache=True)
+def _interpolated(
+    roll_axis: FloatArray, face_axis: FloatArray, nodes: FloatArray, roll: FloatArray, face: FloatArray
+) -> FloatArray:
+    """Bicubic Hermite interpolation at points (k,)."""
+    found = np.zeros(roll.size)
+    across, along = np.zeros(4), np.zeros(4)
+    for k in range(roll.size):
+        i = _hermite(roll_axis, roll[k], across)
+        j = _hermite(face_axis, face[k], along)
+        for a in range(2):
+            for b in range(2):
+                found[k] += (
+                    across[a] * along[b] * nodes[0, i + a, j + b]
+                    + across[2 + a] * along[b] * nodes[1, i + a, j + b]
+                    + across[a] * along[2 + b] * nodes[2, i + a, j + b]
+                    + across[2 + a] * along[2 + b] * nodes[3, i + a, j + b]
+                )
+    return found
