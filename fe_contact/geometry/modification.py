@@ -18,7 +18,7 @@ from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
-    from fe_contact.geometry.gear import Gear
+    from fe_contact.geometry.toothing import Toothing
 
 Shape = Literal["linear", "parabolic"]
 SHAPES: tuple[Shape, ...] = ("linear", "parabolic")
@@ -128,9 +128,9 @@ class FlankModification:
         """The free-form flank, if there is one."""
         return () if self.flank_grid is None else (self.flank_grid,)
 
-    def check_fits(self, gear: Gear) -> None:
+    def check_fits(self, gear: Toothing) -> None:
         """Raise `InputError` if a relief is longer than the involute or half the face, a grid beside it."""
-        height = gear.tip_radius - gear.form_radius
+        height = abs(gear.tip_radius - gear.form_radius)
         advice = "Lengths are in m: 1 mm is 0.001."
         within("modification.tip_relief_length", self.tip_relief_length, 0.0, height, advice)
         within("modification.root_relief_length", self.root_relief_length, 0.0, height, advice)
@@ -141,13 +141,13 @@ class FlankModification:
             _check_reach("modification.flank_grid.face_position", grid.face_position, -half, half)
 
     def material_removed(
-        self, gear: Gear, roll_length: ArrayLike, face_position: ArrayLike = 0.0
+        self, gear: Toothing, roll_length: ArrayLike, face_position: ArrayLike = 0.0
     ) -> FloatArray:
         """Material removed normal to the involute, in the transverse plane.
 
         Parameters
         ----------
-        gear : Gear
+        gear : Gear or RingGear
             The gear the modification belongs to.
         roll_length : array_like
             Roll lengths in m; outside the involute its end value is taken.
@@ -172,20 +172,20 @@ class FlankModification:
             removed += grid.material_removed(roll, face)
         return removed
 
-    def _along_profile(self, gear: Gear, roll: FloatArray) -> FloatArray:
+    def _along_profile(self, gear: Toothing, roll: FloatArray) -> FloatArray:
         """Reliefs, crowning and slope over the roll length."""
         form, tip = gear.form_roll_length, gear.tip_roll_length
         across = _across_profile(gear, roll)
         removed = self.profile_crowning * across**2 + 0.5 * self.profile_slope * across
         if self.tip_relief:
-            start = gear.roll_length(gear.tip_radius - self.tip_relief_length)
+            start = gear.roll_length(gear.tip_radius - gear.sign * self.tip_relief_length)
             removed += self.tip_relief * _course(self.tip_relief_shape, (roll - start) / (tip - start))
         if self.root_relief:
-            start = gear.roll_length(gear.form_radius + self.root_relief_length)
+            start = gear.roll_length(gear.form_radius + gear.sign * self.root_relief_length)
             removed += self.root_relief * _course(self.root_relief_shape, (start - roll) / (start - form))
         return np.asarray(removed, dtype=float)
 
-    def _along_face(self, gear: Gear, face: FloatArray) -> FloatArray:
+    def _along_face(self, gear: Toothing, face: FloatArray) -> FloatArray:
         """End relief, crowning and slope over the face."""
         across = _across_face(gear, face)
         removed = self.helix_crowning * across**2 + 0.5 * self.helix_slope * across
@@ -195,19 +195,19 @@ class FlankModification:
         return np.asarray(removed, dtype=float)
 
 
-def _involute(gear: Gear) -> tuple[float, float]:
+def _involute(gear: Toothing) -> tuple[float, float]:
     """Least and largest roll length of the involute, m."""
     ends = gear.form_roll_length, gear.tip_roll_length
     return min(ends), max(ends)
 
 
-def _across_profile(gear: Gear, roll: FloatArray) -> FloatArray:
+def _across_profile(gear: Toothing, roll: FloatArray) -> FloatArray:
     """Place on the involute: -1 at the form point, +1 at the tip, linear over the roll length."""
     form, tip = gear.form_roll_length, gear.tip_roll_length
     return np.asarray((2.0 * roll - form - tip) / (tip - form))
 
 
-def _across_face(gear: Gear, face: FloatArray) -> FloatArray:
+def _across_face(gear: Toothing, face: FloatArray) -> FloatArray:
     """Place on the face: -1 and +1 at its ends."""
     return np.asarray(2.0 * face / gear.face_width)
 

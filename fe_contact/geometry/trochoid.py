@@ -15,13 +15,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.geometry.fillet_curve import FilletCurve
 from fe_contact.types import FloatArray
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 
 
 @dataclass(frozen=True)
-class Trochoid:
+class Trochoid(FilletCurve):
     """Fillet of the right flank, in the tooth frame.
 
     Attributes
@@ -44,6 +43,11 @@ class Trochoid:
     corner_radius: float
     helix_angle: float
 
+    @property
+    def root_angle(self) -> float:
+        """Angle from the tooth's centre line to the fillet's end on the root circle, rad."""
+        return self.corner_distance / self.reference_radius
+
     def height(self, tool_angle: FloatArray) -> FloatArray:
         """Height of the tool's points above the pitch line, m."""
         return self.corner_height - self.corner_radius * np.sin(tool_angle)
@@ -61,13 +65,13 @@ class Trochoid:
         """Points (n, 2) in m."""
         height = self.height(tool_angle)
         x, y = height * self._normal_slope(tool_angle), self.reference_radius + height
-        return _turned_clockwise(x, y, self._rotation(tool_angle))
+        return turned_clockwise(x, y, self._rotation(tool_angle))
 
     def normal(self, tool_angle: FloatArray) -> FloatArray:
         """Outward unit normals (n, 2)."""
         slope = self._normal_slope(tool_angle)
         length = np.hypot(slope, 1.0)
-        return _turned_clockwise(slope / length, 1.0 / length, self._rotation(tool_angle))
+        return turned_clockwise(slope / length, 1.0 / length, self._rotation(tool_angle))
 
     def radius(self, tool_angle: FloatArray) -> FloatArray:
         """Distance from the gear's centre, m; falls monotonically with the tool angle."""
@@ -93,25 +97,8 @@ class Trochoid:
         tangential = along + height * rolled / self.reference_radius
         return np.asarray(tangential * np.hypot(self._normal_slope(tool_angle), 1.0), dtype=float)
 
-    def arc_length(self, start: float, tool_angle: FloatArray) -> FloatArray:
-        """Arc length in m from the tool angle `start` to each of `tool_angle` (Gauss-Legendre, 48 points)."""
-        half = 0.5 * (np.asarray(tool_angle, dtype=float) - start)
-        samples = start + half[..., None] * (1.0 + _NODES)
-        return np.asarray(half * (self.speed(samples) @ _WEIGHTS), dtype=float)
 
-    def angle_at_arc(self, start: float, arc: FloatArray) -> FloatArray:
-        """Tool angles at which the arc length from `start` equals `arc` (Newton from a table)."""
-        if arc.size == 0:
-            return arc
-        table = np.linspace(start, 0.5 * np.pi, 257)
-        angle = np.interp(arc, self.arc_length(start, table), table)
-        for _ in range(4):
-            slope = np.maximum(self.speed(angle), np.finfo(float).tiny)
-            angle = np.clip(angle - (self.arc_length(start, angle) - arc) / slope, start, 0.5 * np.pi)
-        return np.asarray(angle, dtype=float)
-
-
-def _turned_clockwise(x: FloatArray, y: FloatArray, angle: FloatArray) -> FloatArray:
+def turned_clockwise(x: FloatArray, y: FloatArray, angle: FloatArray) -> FloatArray:
     """Turn vectors (x, y) clockwise by `angle`."""
     sine, cosine = np.sin(angle), np.cos(angle)
     return np.stack((x * cosine + y * sine, y * cosine - x * sine), axis=-1)

@@ -1,0 +1,101 @@
+"""Refusal of ring gears that cannot exist or cannot be cut, by the standard term for what is wrong."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from fe_contact.errors import InfeasibleGeometry
+from fe_contact.geometry.trimming import radial_clearance
+
+if TYPE_CHECKING:
+    from fe_contact.geometry.ring_gear import RingGear
+
+_OTHER_CUTTER = "Choose another number of teeth or profile shift of the cutter."
+
+
+def refuse_infeasible_ring(gear: RingGear) -> None:
+    """Raise `InfeasibleGeometry` if no such ring gear can be generated."""
+    _refuse_rim(gear)
+    _refuse_tip_diameter(gear)
+    _refuse_rounding(gear)
+    _refuse_form_circle(gear)
+    _refuse_cut_tips(gear)
+    _refuse_pointed_tooth(gear)
+
+
+def refuse_shift_sum_of_cutter(gear: RingGear, involute: float) -> None:
+    """Refuse a cutter too thick for the tooth space at any centre distance (`involute` below 0)."""
+    if involute <= 0.0:
+        angle = math.tan(gear.transverse_pressure_angle) - gear.transverse_pressure_angle
+        largest = angle * (gear.teeth - gear.cutter_teeth) / (2.0 * math.tan(gear.normal_pressure_angle))
+        raise InfeasibleGeometry(
+            "profile shift sum",
+            "cutter_profile_shift_coefficient",
+            gear.cutter_profile_shift_coefficient,
+            f"below {largest - gear.profile_shift_coefficient:.6g}, where the cutter fills the tooth space",
+            _OTHER_CUTTER,
+        )
+
+
+def _refuse_rim(gear: RingGear) -> None:
+    """Refuse a rim that leaves nothing behind the teeth."""
+    if gear.rim_diameter <= 2.0 * gear.root_radius:
+        bound = f"above the root diameter {2.0 * gear.root_radius:.6g} m"
+        raise InfeasibleGeometry("rim", "rim_diameter", gear.rim_diameter, bound, "Raise the rim diameter.")
+
+
+def _refuse_tip_diameter(gear: RingGear) -> None:
+    """Refuse a tip circle inside the base circle, or inside what the cutter's involute reaches."""
+    if gear.tip_radius >= gear.root_radius:
+        bound = f"below the root diameter {2.0 * gear.root_radius:.6g} m"
+        raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound)
+    advice = "Raise the tip diameter, or lower the addendum or the profile shift."
+    if gear.tip_radius < gear.base_radius:
+        bound = f"at least the base diameter {2.0 * gear.base_radius:.6g} m"
+        raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
+    if gear.tip_roll_length < gear.cutter.common_tangent:
+        smallest = 2.0 * math.hypot(gear.base_radius, gear.cutter.common_tangent)
+        bound = f"at least {smallest:.9g} m, where the cutter's involute ends at its base circle"
+        raise InfeasibleGeometry(
+            "interference", "tip_diameter", 2.0 * gear.tip_radius, bound, f"{advice} {_OTHER_CUTTER}"
+        )
+
+
+def _refuse_rounding(gear: RingGear) -> None:
+    """Refuse a rounding that does not fit on the cutter's tip."""
+    cutter = gear.cutter
+    if cutter.corner_angle < 0.0 or cutter.corner_center_radius < cutter.base_radius:
+        bound = "smaller: the rounding does not fit between the two flanks of the cutter's tooth"
+        advice = "Lower the root radius or the dedendum."
+        raise InfeasibleGeometry(
+            "root radius", "root_radius_coefficient", gear.root_radius_coefficient, bound, advice
+        )
+
+
+def _refuse_form_circle(gear: RingGear) -> None:
+    """Refuse teeth whose fillet begins at their tip."""
+    if gear.form_radius <= gear.tip_radius:
+        bound = f"below the form diameter {2.0 * gear.form_radius:.6g} m, where the fillet begins"
+        raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound)
+
+
+def _refuse_cut_tips(gear: RingGear) -> None:
+    """Refuse a cutter that trims the tips it passes while it is fed in radially."""
+    cutter = gear.cutter
+    at_tips = (
+        math.acos(cutter.base_radius / cutter.tip_radius),
+        math.acos(min(1.0, gear.base_radius / gear.tip_radius)),
+    )
+    if radial_clearance(cutter.ratio, at_tips, cutter.working_pressure_angle) < 0.0:
+        bound = "smaller: the cutter would trim the ring's tips while it is fed in"
+        advice = "Lower the cutter's number of teeth, or raise the tip diameter."
+        raise InfeasibleGeometry("trimming interference", "cutter_teeth", gear.cutter_teeth, bound, advice)
+
+
+def _refuse_pointed_tooth(gear: RingGear) -> None:
+    """Refuse a tooth whose flanks meet before the tip circle."""
+    if gear.tip_tooth_thickness <= 0.0:
+        bound = f"larger: the transverse tip thickness is {gear.tip_tooth_thickness:.3g} m"
+        advice = "Raise the tip diameter, or lower the addendum."
+        raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)

@@ -1,0 +1,167 @@
+"""What external and internal involute toothings share (ISO 21771-1): one signed set of closed forms.
+
+The standard counts the teeth of an internal gear negative, so that one formula serves both kinds. Here all
+numbers and radii are positive and `sign` carries the standard's sign.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar
+
+from fe_contact.geometry.involute import involute_function, roll_length_at_radius
+
+if TYPE_CHECKING:
+    from fe_contact.geometry.fillet_curve import FilletCurve
+    from fe_contact.geometry.form_point import FormPoint
+
+
+@dataclass(frozen=True)
+class Toothing:
+    """Closed forms of a cylindrical involute gear; use `Gear` or `RingGear`.
+
+    Attributes
+    ----------
+    teeth : int
+        Number of teeth, positive for both kinds.
+    normal_module, face_width : float
+        m_n and b in m.
+    """
+
+    teeth: int
+    normal_module: float
+    face_width: float
+
+    sign: ClassVar[int] = 1  # of the tooth number in ISO 21771-1: +1 external, -1 internal
+
+    if TYPE_CHECKING:  # fields of the kinds, whose order in the constructor is theirs
+
+        @property
+        def normal_pressure_angle(self) -> float:
+            """alpha_n, rad."""
+
+        @property
+        def helix_angle(self) -> float:
+            """beta, rad."""
+
+        @property
+        def profile_shift_coefficient(self) -> float:
+            """x, in normal modules."""
+
+        @property
+        def addendum_coefficient(self) -> float:
+            """h_aP / m_n."""
+
+        @property
+        def dedendum_coefficient(self) -> float:
+            """h_fP / m_n."""
+
+        @property
+        def tip_diameter(self) -> float | None:
+            """d_a in m, if given."""
+
+        @property
+        def thickness_allowance(self) -> float:
+            """A_s, m."""
+
+        @property
+        def trochoid(self) -> FilletCurve:
+            """The fillet of the right flank."""
+
+        @property
+        def form_point(self) -> FormPoint:
+            """Where involute and fillet meet."""
+
+    @cached_property
+    def transverse_module(self) -> float:
+        """m_t = m_n / cos(beta), m."""
+        return self.normal_module / math.cos(self.helix_angle)
+
+    @cached_property
+    def transverse_pressure_angle(self) -> float:
+        """alpha_t, rad."""
+        return math.atan(math.tan(self.normal_pressure_angle) / math.cos(self.helix_angle))
+
+    @cached_property
+    def base_helix_angle(self) -> float:
+        """beta_b, rad; with the sign of the helix angle."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.normal_pressure_angle))
+
+    @cached_property
+    def reference_radius(self) -> float:
+        """Reference radius d / 2, m."""
+        return 0.5 * self.teeth * self.transverse_module
+
+    @cached_property
+    def base_radius(self) -> float:
+        """d_b / 2, m."""
+        return self.reference_radius * math.cos(self.transverse_pressure_angle)
+
+    @cached_property
+    def tip_radius(self) -> float:
+        """d_a / 2, m; the teeth of an internal gear point inwards: its smallest radius."""
+        if self.tip_diameter is not None:
+            return 0.5 * self.tip_diameter
+        height = self.addendum_coefficient + self.profile_shift_coefficient
+        return self.reference_radius + self.sign * self.normal_module * height
+
+    @cached_property
+    def root_radius(self) -> float:
+        """d_f / 2: m_n (h_fP - x) below the reference circle (beyond it for an internal gear), m."""
+        depth = self.dedendum_coefficient - self.profile_shift_coefficient
+        return self.reference_radius - self.sign * self.normal_module * depth
+
+    @cached_property
+    def base_pitch(self) -> float:
+        """Transverse base pitch p_bt, m."""
+        return 2.0 * math.pi * self.base_radius / self.teeth
+
+    @cached_property
+    def tooth_thickness(self) -> float:
+        """Transverse tooth thickness s_t at the reference circle (arc), m."""
+        shift = 2.0 * self.profile_shift_coefficient * math.tan(self.normal_pressure_angle)
+        normal = self.normal_module * (0.5 * math.pi + shift) - self.thickness_allowance
+        return normal / math.cos(self.helix_angle)
+
+    @cached_property
+    def base_thickness_half_angle(self) -> float:
+        """Half the tooth's angle at the base circle psi_b, rad.
+
+        The flanks of an internal tooth are extended to the base circle, past its tip; there they may have
+        crossed (< 0).
+        """
+        at_reference = 0.5 * self.tooth_thickness / self.reference_radius
+        return at_reference + self.sign * involute_function(self.transverse_pressure_angle)
+
+    @property
+    def base_tooth_thickness(self) -> float:
+        """Transverse tooth thickness s_bt at the base circle (arc), m."""
+        return 2.0 * self.base_radius * self.base_thickness_half_angle
+
+    @property
+    def tip_tooth_thickness(self) -> float:
+        """Transverse tooth thickness s_at at the tip circle (arc), m; <= 0 is a pointed tooth."""
+        pressure = math.acos(min(1.0, self.base_radius / self.tip_radius))
+        half_angle = self.base_thickness_half_angle - self.sign * involute_function(pressure)
+        return 2.0 * self.tip_radius * half_angle
+
+    @property
+    def form_roll_length(self) -> float:
+        """Roll length of the form point, m, >= 0; the largest of an internal gear."""
+        return self.form_point.roll_length
+
+    @property
+    def form_radius(self) -> float:
+        """d_Ff / 2: radius at which involute and fillet meet, m."""
+        return math.hypot(self.base_radius, self.form_roll_length)
+
+    @cached_property
+    def tip_roll_length(self) -> float:
+        """Roll length of the tip edge, m."""
+        return self.roll_length(self.tip_radius)
+
+    def roll_length(self, radius: float) -> float:
+        """Roll length in m at `radius` >= base radius."""
+        return roll_length_at_radius(self.base_radius, radius)
