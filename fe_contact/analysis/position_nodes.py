@@ -13,6 +13,7 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray
 
 MAX_ROUNDS = 10
+MIDDLE = np.array([0.5])
 PROBES = np.array([0.25, 0.5, 0.75])
 """Where in every interval the interpolant is held against a solution; the middle one becomes a node."""
 
@@ -39,9 +40,9 @@ class PositionNodes:
 
 
 def fixed_nodes(count: int, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
-    """`count` equally spaced nodes; the error is measured at the probes of all intervals."""
+    """`count` equally spaced nodes; the error is measured at the middles of all intervals."""
     nodes = np.arange(count) / count
-    return PositionNodes(nodes, _probed(nodes, solve(nodes), solve, np.ones(count, dtype=bool))[2])
+    return PositionNodes(nodes, _probed(nodes, solve(nodes), solve, np.ones(count, dtype=bool), MIDDLE)[2])
 
 
 def table_nodes(places: Places, plan: Plan) -> PositionNodes:
@@ -79,7 +80,7 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     error = np.full_like(values, np.inf)
     for remaining in reversed(range(MAX_ROUNDS)):
         allowed = np.maximum(rule.tolerance * np.ptp(values, axis=0), 1e-6 * np.abs(values).max(axis=0))
-        middles, found, probed = _probed(nodes, values, solve, ~settled)
+        middles, found, probed = _probed(nodes, values, solve, ~settled, PROBES)
         error[~settled] = probed[~settled]
         missed = np.any(error > allowed, axis=1)
         if not missed.any() or not remaining or nodes.size + missed.sum() > rule.most:
@@ -89,15 +90,19 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
 
 
 def _probed(
-    nodes: FloatArray, values: FloatArray, solve: Callable[[FloatArray], FloatArray], open_: BoolArray
+    nodes: FloatArray,
+    values: FloatArray,
+    solve: Callable[[FloatArray], FloatArray],
+    open_: BoolArray,
+    probes: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Middles, solutions there, and largest errors at the probes, of the open intervals (others zero)."""
     axis = Axis(nodes, 1.0)
-    probes = nodes[open_, None] + axis.spacing[open_, None] * PROBES
-    solved = solve(probes.ravel())
-    missed = np.abs(interpolate(axis, values, probes.ravel()) - solved).reshape(*probes.shape, -1)
+    where = nodes[open_, None] + axis.spacing[open_, None] * probes
+    solved = solve(where.ravel())
+    missed = np.abs(interpolate(axis, values, where.ravel()) - solved).reshape(*where.shape, -1)
     found, error = np.zeros((2, *values.shape))
-    found[open_] = solved.reshape(*probes.shape, -1)[:, PROBES.size // 2]
+    found[open_] = solved.reshape(*where.shape, -1)[:, probes.size // 2]
     error[open_] = missed.max(axis=1)
     return nodes + 0.5 * axis.spacing, found, error
 
