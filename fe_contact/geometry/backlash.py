@@ -13,30 +13,49 @@ from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.involute import inverse_involute, involute_function
 
 if TYPE_CHECKING:
-    from fe_contact.geometry.gear import Gear
+    from fe_contact.geometry.toothing import Toothing
 
 
-def base_circle_backlash(pinion: Gear, wheel: Gear, working_pressure_angle: float) -> float:
-    """Backlash in m along the transverse line of action; negative if the teeth jam."""
-    radii = pinion.base_radius + wheel.base_radius
+_LARGER = (
+    "larger: the teeth are too thin to mesh without backlash at any centre distance",
+    "Raise x_1 + x_2.",
+)
+_SMALLER = (
+    "smaller: the teeth are too thick for the ring's spaces at any centre distance",
+    "Lower x_1 + x_2.",
+)
+
+
+def base_radius_sum(pinion: Toothing, wheel: Toothing) -> float:
+    """r_b1 + r_b2 in m; r_b1 - r_b2, which is negative, for a ring gear."""
+    return pinion.base_radius + wheel.sign * wheel.base_radius
+
+
+def base_circle_backlash(pinion: Toothing, wheel: Toothing, working_pressure_angle: float) -> float:
+    """Backlash in m along the transverse line of action; negative if the teeth jam.
+
+    One formula for external and internal pairs: with a ring gear the sum of base radii is negative, and so is
+    the involute in the ring's thickness at its base circle.
+    """
+    radii = base_radius_sum(pinion, wheel)
     teeth = pinion.base_tooth_thickness + wheel.base_tooth_thickness
     return pinion.base_pitch - teeth + 2.0 * radii * involute_function(working_pressure_angle)
 
 
-def tight_center_distance(pinion: Gear, wheel: Gear) -> float:
+def tight_center_distance(pinion: Toothing, wheel: Toothing) -> float:
     """Centre distance in m at which the teeth, as thick as they are, have no backlash.
 
     Raises
     ------
     InfeasibleGeometry
-        "profile shift sum": teeth too thin to touch both flanks at any distance.
+        "profile shift sum": teeth too thin (internal: too thick) to touch both flanks at any distance.
     """
-    radii = pinion.base_radius + wheel.base_radius
+    radii = base_radius_sum(pinion, wheel)
     teeth = pinion.base_tooth_thickness + wheel.base_tooth_thickness
     return _distance_at(pinion, wheel, (teeth - pinion.base_pitch) / (2.0 * radii))
 
 
-def reference_center_distance(pinion: Gear, wheel: Gear) -> float:
+def reference_center_distance(pinion: Toothing, wheel: Toothing) -> float:
     """Centre distance in m without backlash if neither gear had a thickness allowance.
 
     inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) (x_1 + x_2) / (z_1 + z_2).
@@ -48,29 +67,25 @@ def reference_center_distance(pinion: Gear, wheel: Gear) -> float:
     """
     shift = 2.0 * math.tan(pinion.normal_pressure_angle) * shift_sum(pinion, wheel)
     involute = involute_function(pinion.transverse_pressure_angle)
-    return _distance_at(pinion, wheel, involute + shift / (pinion.teeth + wheel.teeth))
+    return _distance_at(pinion, wheel, involute + shift / (pinion.teeth + wheel.sign * wheel.teeth))
 
 
-def shift_sum(pinion: Gear, wheel: Gear) -> float:
+def shift_sum(pinion: Toothing, wheel: Toothing) -> float:
     """x_1 + x_2."""
     return pinion.profile_shift_coefficient + wheel.profile_shift_coefficient
 
 
-def tight_shift_sum(pinion: Gear, wheel: Gear, working_pressure_angle: float) -> float:
+def tight_shift_sum(pinion: Toothing, wheel: Toothing, working_pressure_angle: float) -> float:
     """Sum of the profile shift coefficients that would leave no backlash, thickness allowances kept."""
     backlash = base_circle_backlash(pinion, wheel, working_pressure_angle)
     thickening = 2.0 * pinion.transverse_module * math.tan(pinion.normal_pressure_angle)
     return shift_sum(pinion, wheel) + backlash / (thickening * math.cos(pinion.transverse_pressure_angle))
 
 
-def _distance_at(pinion: Gear, wheel: Gear, involute: float) -> float:
+def _distance_at(pinion: Toothing, wheel: Toothing, involute: float) -> float:
     """Centre distance whose working pressure angle has this involute function."""
     if involute < 0.0:
-        raise InfeasibleGeometry(
-            "profile shift sum",
-            "profile_shift_coefficient",
-            shift_sum(pinion, wheel),
-            "larger: the teeth are too thin to mesh without backlash at any centre distance",
-            "Raise x_1 + x_2.",
-        )
-    return (pinion.base_radius + wheel.base_radius) / math.cos(inverse_involute(involute))
+        bound, advice = _LARGER if wheel.sign > 0 else _SMALLER
+        total = shift_sum(pinion, wheel)
+        raise InfeasibleGeometry("profile shift sum", "profile_shift_coefficient", total, bound, advice)
+    return abs(base_radius_sum(pinion, wheel)) / math.cos(inverse_involute(involute))
