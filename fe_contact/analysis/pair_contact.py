@@ -22,6 +22,7 @@ from fe_contact.contact import (
     contact_problem,
     face_contact_problem,
     solve_contact,
+    with_compliances,
     with_gaps,
 )
 from fe_contact.geometry import GearPair
@@ -52,7 +53,7 @@ class PairContact:
     plan: Plan
     plane: PlaneFlanks | None = None
     face: FaceFlanks | None = None
-    _problems: dict[tuple[bytes, bool, bool], ContactProblem] = field(default_factory=dict, repr=False)
+    _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
     def solve(
         self, model: ContactModel, position: FloatArray, load: FloatArray
@@ -64,13 +65,14 @@ class PairContact:
 
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
-        key = (position.tobytes(), model.corner_contact, model.couple_teeth)
+        key = (position.tobytes(), model.corner_contact, model.couple_teeth, model.compliances)
         if key not in self._problems:
             while len(self._problems) >= KEPT_PROBLEMS:
                 self._problems.pop(next(iter(self._problems)))
             slices = Slices.of_pair(self.pair, self.plan.discretisation.slices)
             candidates = contact_candidates(self.pair, model, position, self.plan.patch, slices)
-            self._problems[key] = self._assembled(candidates, model.couple_teeth)
+            bodies = self._assembled(candidates, model.couple_teeth)
+            self._problems[key] = with_compliances(self.pair, bodies, model)
         return self._problems[key]
 
     def _assembled(self, candidates: Candidates, couple_teeth: bool) -> ContactProblem:

@@ -171,5 +171,7 @@ def refuse_beyond_plane(scene: ContactScene) -> None:
         if gear.modification.varies_along_face:
             bound = "constant along the face for a plane model"
             raise InputError(f"{name}.modification", gear.modification, bound, advice)
+        if pair.shafts[name == "wheel"] is not None:
+            raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
     if np.any(scene.misalignment != 0.0):
         raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)

@@ -1,9 +1,10 @@
 """Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
 
+from fe_contact.contact.added_compliance import with_compliances
 from fe_contact.contact.assembly import contact_problem
 from fe_contact.contact.candidates import PatchRule, contact_candidates, with_gaps
 from fe_contact.contact.face_assembly import face_contact_problem
-from fe_contact.contact.model import ContactModel, GapTerm
+from fe_contact.contact.model import ComplianceTerm, ContactModel, GapTerm
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution import ContactSolution
@@ -11,6 +12,7 @@ from fe_contact.contact.sweep import solve_contact
 
 __all__ = [
     "Candidates",
+    "ComplianceTerm",
     "ContactModel",
     "ContactProblem",
     "ContactSolution",
@@ -21,5 +23,6 @@ __all__ = [
     "contact_problem",
     "face_contact_problem",
     "solve_contact",
+    "with_compliances",
     "with_gaps",
 ]

@@ -31,6 +31,23 @@ class GapTerm(Protocol):
         ...
 
 
+class ComplianceTerm(Protocol):
+    """Compliance of what carries the gears, added to that of the teeth and bodies.
+
+    Hashable, so that an assembled problem can be kept with the terms that are in it.
+    """
+
+    def __call__(
+        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+    ) -> FloatArray:
+        """Return the normal approach (P, n, n) in m of each candidate per N at each other.
+
+        Symmetric and positive semidefinite; taken at the touching roll lengths (P, n) of the two flanks and
+        at `face` (n,), the distance from the pinion's mid-face, in m.
+        """
+        ...
+
+
 @dataclass(frozen=True)
 class ContactModel:
     """The composed model; neutral as constructed.
@@ -44,9 +61,11 @@ class ContactModel:
     across_face : bool
         Load distributes over the face width: three dimensions instead of the plane.
     gaps : tuple of GapTerm
+    compliances : tuple of ComplianceTerm
     """
 
     couple_teeth: bool = False
     corner_contact: bool = False
     across_face: bool = False
     gaps: tuple[GapTerm, ...] = ()
+    compliances: tuple[ComplianceTerm, ...] = ()

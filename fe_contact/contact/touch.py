@@ -110,7 +110,7 @@ def modified_touch(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[G
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
     found = _shifted(pair, touch, face, moving) if moving else touch
-    roll_1, roll_2 = _rolls(pair, found.s_1, found.s_2)
+    roll_1, roll_2 = rolls_at(pair, found.s_1, found.s_2)
     return replace(found, gap=found.gap + sum(term(pair, roll_1, roll_2, face) for term in steady))
 
 
@@ -148,8 +148,8 @@ def _shifted(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm
     return replace(touch, **result)
 
 
-def _rolls(pair: GearPair, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Roll lengths in m of flank coordinates."""
+def rolls_at(pair: GearPair, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Roll lengths in m of flank coordinates of both gears."""
     return (
         np.sqrt(2.0 * pair.pinion.base_radius * np.maximum(s_1, 0.0)),
         np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(s_2, 0.0)),
@@ -160,7 +160,7 @@ def _gap_beside(
     pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...], shift: FloatArray
 ) -> FloatArray:
     """Gap in m over the conjugate one at `shift` (n, k) from the touching points (n,) towards tip 1."""
-    roll_1, roll_2 = _rolls(pair, touch.s_1[:, None] + shift, touch.s_2[:, None] - shift)
+    roll_1, roll_2 = rolls_at(pair, touch.s_1[:, None] + shift, touch.s_2[:, None] - shift)
     # beside an edge the flanks open by phi = -offset/R
     opening = np.maximum(-touch.offset_1, 0.0)[:, None] * np.maximum(-shift, 0.0)
     opening += np.maximum(-touch.offset_2, 0.0)[:, None] * np.maximum(shift, 0.0)

@@ -75,8 +75,10 @@ def compose(
         if on:
             model = effect.contribute(scene, model)
         ledger.append(LedgerEntry(effect.name, on, choice, verdict, effect.cost))
-    # a fixed order of the sum, so that the order of the registry changes no bit
-    return replace(model, gaps=tuple(sorted(model.gaps, key=repr))), tuple(ledger)
+    # a fixed order of the sums, so that the order of the registry changes no bit
+    gaps = tuple(sorted(model.gaps, key=repr))
+    compliances = tuple(sorted(model.compliances, key=repr))
+    return replace(model, gaps=gaps, compliances=compliances), tuple(ledger)
 
 
 def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:

@@ -8,6 +8,7 @@ from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.misalignment import Misalignment
 from fe_contact.effects.profile_modification import ProfileModification
+from fe_contact.effects.shaft_deflection import ShaftDeflection
 from fe_contact.effects.tooth_coupling import ToothCoupling
 
 EFFECTS: tuple[Effect, ...] = (
@@ -17,4 +18,5 @@ EFFECTS: tuple[Effect, ...] = (
     FaceLoadDistribution(),
     LeadModification(),
     Misalignment(),
+    ShaftDeflection(),
 )

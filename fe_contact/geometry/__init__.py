@@ -8,6 +8,7 @@ from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, iso6336_stiffness
 from fe_contact.geometry.modification import FlankModification
 from fe_contact.geometry.path_of_contact import PathOfContact
+from fe_contact.geometry.shaft import Shaft
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 
 __all__ = [
@@ -19,6 +20,7 @@ __all__ = [
     "GearPair",
     "Iso6336Stiffness",
     "PathOfContact",
+    "Shaft",
     "Side",
     "ToothProfile",
     "corner_contact",

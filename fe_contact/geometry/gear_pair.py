@@ -8,6 +8,7 @@ from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.pair_feasibility import refuse_infeasible_pair, refuse_strangers
 from fe_contact.geometry.parallel_axes import ParallelAxes
+from fe_contact.geometry.shaft import Shafts
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,8 @@ class GearPair(ParallelAxes):
         allowances become backlash.
     axial_offset : float
         Distance in m of the wheel's mid-face from the pinion's, along the pinion's axis.
+    shafts : (Shaft or None, Shaft or None)
+        What carries pinion and wheel between two bearings each; None is rigid.
 
     Raises
     ------
@@ -39,6 +42,7 @@ class GearPair(ParallelAxes):
     wheel: Gear
     center_distance: float = None  # type: ignore[assignment]  # a float after construction
     axial_offset: float = 0.0
+    shafts: Shafts = (None, None)
 
     def __post_init__(self) -> None:
         refuse_strangers(self.pinion, self.wheel)
@@ -48,4 +52,10 @@ class GearPair(ParallelAxes):
 
     def swapped(self) -> GearPair:
         """Return the same pair with the wheel driving."""
-        return replace(self, pinion=self.wheel, wheel=self.pinion, axial_offset=-self.axial_offset)
+        return replace(
+            self,
+            pinion=self.wheel,
+            wheel=self.pinion,
+            axial_offset=-self.axial_offset,
+            shafts=self.shafts[::-1],
+        )

@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from typing import Any
 
 from fe_contact.errors import FeContactError, InputError
-from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair
+from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, Shaft
 from fe_contact.material import Material
 from service.convert.errors import translated
-from service.convert.units import DEGREE, GPA, MM, UM
+from service.convert.units import DEGREE, GPA, MM, N_PER_UM, UM
 from service.problems import BadInput
 from service.schemas import Case, GearInput, MaterialInput, PairInput
 
@@ -46,7 +46,8 @@ def gear_pair(case: Case) -> GearPair:
     with boundary_errors():
         pinion = _gear("pinion", case.pair, case.material, +1.0)
         wheel = _gear("wheel", case.pair, case.material, -1.0)
-        return GearPair(pinion, wheel, case.pair.center_distance_mm * MM)
+        shafts = (_shaft("pinion", case.pair.pinion), _shaft("wheel", case.pair.wheel))
+        return GearPair(pinion, wheel, case.pair.center_distance_mm * MM, shafts=shafts)
 
 
 @contextmanager
@@ -81,6 +82,23 @@ def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> G
         )
     except InputError as error:
         raise error.within(name) from None
+
+
+def _shaft(name: str, gear: GearInput) -> Shaft | None:
+    """Return the shaft of a gear, None for a rigid one."""
+    given = gear.shaft
+    if given is None:
+        return None
+    stiffness = given.bearing_stiffness_n_per_um
+    try:
+        return Shaft(
+            length=given.length_mm * MM,
+            diameter=given.diameter_mm * MM,
+            position=given.position_mm * MM,
+            bearing_stiffness=None if stiffness is None else stiffness * N_PER_UM,
+        )
+    except InputError as error:
+        raise error.within(f"{name}.shaft") from None
 
 
 def _modification(given: GearInput) -> FlankModification:

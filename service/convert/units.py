@@ -14,6 +14,7 @@ N_PER_UM = 1e6
 
 BY_SUFFIX: dict[str, float] = {
     "_mm": MM,
+    "_n_per_um": N_PER_UM,
     "_um": UM,
     "_nm": NM,
     "_gpa": GPA,

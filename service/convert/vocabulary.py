@@ -42,6 +42,8 @@ _LAST = {
     "end_relief": "end_relief_um",
     "end_relief_length": "end_relief_length_mm",
     "youngs_modulus": "youngs_modulus_gpa",
+    "diameter": "diameter_mm",
+    "bearing_stiffness": "bearing_stiffness_n_per_um",
     # scene
     "duration": "duration_s",
     "length": "length_mm",

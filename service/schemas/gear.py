@@ -34,6 +34,28 @@ class MaterialInput(BoundaryModel):
     )
 
 
+class GearShaftInput(BoundaryModel):
+    """A round shaft on two bearings that carries a gear."""
+
+    length_mm: float = Field(
+        gt=0.0, le=50_000.0, description="Distance between the bearings in mm", examples=[200.0]
+    )
+    diameter_mm: float = Field(gt=0.0, le=10_000.0, description="Diameter in mm", examples=[40.0])
+    position_mm: float = Field(
+        ge=-50_000.0,
+        le=100_000.0,
+        description="Mid-face of the gear in mm towards +z from the bearing of smaller z",
+        examples=[60.0],
+    )
+    bearing_stiffness_n_per_um: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e9,
+        description="Radial stiffness of each bearing in N/um; left out: rigid",
+        examples=[400.0],
+    )
+
+
 class FlankGridInput(BoundaryModel):
     """A free-form flank as a grid: one row of removed material per roll length."""
 
@@ -163,6 +185,11 @@ class GearInput(BoundaryModel):
                 "removed_um": [[0.0, 0.0], [5.0, 7.0]],
             }
         ],
+    )
+    shaft: GearShaftInput | None = Field(
+        default=None,
+        description="Steel shaft that bends under the tooth forces; left out: rigid",
+        examples=[{"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0}],
     )
     material: MaterialInput | None = Field(
         default=None,

@@ -82,6 +82,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
         "material": {"youngs_modulus_gpa": 100.0},
+        "shaft": {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0},
         "flank_grid": {
             "roll_length_mm": [4.0, 20.0],
             "face_position_mm": [-12.5, 12.5],
@@ -94,7 +95,8 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         table = copy.deepcopy(GOOD)
         table["pair"]["pinion"][name] = value
         table["pair"]["center_distance_mm"] = 82.1 if name == "teeth" else 80.2
-        assert gear_pair(validated(Case, table)).pinion != plain, name
+        pair = gear_pair(validated(Case, table))
+        assert (pair.pinion, pair.shafts[0]) != (plain, None), name
 
 
 def test_mating_gears_have_opposite_hands() -> None:
@@ -114,6 +116,27 @@ def test_a_gears_own_material_wins() -> None:
     assert (pair.wheel.material.youngs_modulus, pair.wheel.material.poissons_ratio) == pytest.approx(
         (3e9, 0.4)
     )
+
+
+def test_a_shaft_arrives_in_si_on_the_side_of_its_gear() -> None:
+    table = copy.deepcopy(GOOD)
+    shaft: dict[str, Any] = {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": -20.0}
+    shaft |= {"bearing_stiffness_n_per_um": 400.0}
+    table["pair"]["wheel"]["shaft"] = shaft
+    first, second = gear_pair(validated(Case, table)).shafts
+    assert first is None and second is not None
+    assert (second.length, second.diameter, second.position) == pytest.approx((0.2, 0.04, -0.02), rel=1e-12)
+    assert second.bearing_stiffness == pytest.approx(4e8, rel=1e-12)
+    shaft["position_mm"] = 401.0
+    with pytest.raises(BadInput) as caught:
+        gear_pair(validated(Case, table))
+    (fault,) = caught.value.faults
+    assert (fault.field, fault.value) == ("pair.wheel.shaft.position_mm", 401.0)
+    assert fault.bound == "from -200 to 400"
+    shaft["position_mm"] = 100.0
+    with pytest.raises(BadInput) as caught:
+        check_case(validated(Case, table | {"accuracy": {"model": "plane_strain"}}))
+    assert caught.value.faults[0].field == "pair.wheel.shaft"
 
 
 def test_arguments_of_the_analysis_are_si() -> None:
