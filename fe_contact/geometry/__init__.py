@@ -5,11 +5,18 @@ from fe_contact.geometry.corner_contact import CornerContact, Side, corner_conta
 from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
+from fe_contact.geometry.internal_gear_pair import InternalGearPair
 from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, iso6336_stiffness
 from fe_contact.geometry.modification import FlankModification
 from fe_contact.geometry.path_of_contact import PathOfContact
+from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.shaft import Shaft
-from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
+from fe_contact.geometry.tooth_profile import (
+    RingToothProfile,
+    ToothProfile,
+    ring_tooth_profile,
+    tooth_profile,
+)
 
 __all__ = [
     "BasicRack",
@@ -18,13 +25,17 @@ __all__ = [
     "FlankModification",
     "Gear",
     "GearPair",
+    "InternalGearPair",
     "Iso6336Stiffness",
     "PathOfContact",
+    "RingGear",
+    "RingToothProfile",
     "Shaft",
     "Side",
     "ToothProfile",
     "corner_contact",
     "corner_gap",
     "iso6336_stiffness",
+    "ring_tooth_profile",
     "tooth_profile",
 ]

@@ -11,14 +11,17 @@ from fe_contact.geometry.backlash import shift_sum, tight_center_distance, tight
 from fe_contact.geometry.fillet_interference import fillet_penetration
 
 if TYPE_CHECKING:
-    from fe_contact.geometry.gear import Gear
     from fe_contact.geometry.gear_pair import GearPair
+    from fe_contact.geometry.parallel_axes import ParallelAxes
+    from fe_contact.geometry.toothing import Toothing
 
-_FILLET_SLACK = 1e-6  # of the normal module: the resolution of the sampled tip path
-_BACKLASH_SLACK = 1e-6  # of the normal module: what rounding a centre distance to seven digits may cost
+FILLET_SLACK = 1e-6  # of the normal module: the resolution of the sampled tip path
+BACKLASH_SLACK = 1e-6  # of the normal module: what rounding a centre distance to seven digits may cost
+_EXTERNAL = "External gears mesh with equal module and pressure angle and opposite helix angle."
+_INTERNAL = "A ring gear and its pinion mesh with equal module, pressure angle and helix angle."
 
 
-def refuse_strangers(pinion: Gear, wheel: Gear) -> None:
+def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
     """Refuse gears that do not share module, pressure angle and helix angle."""
     compared = (
         ("normal module", "normal_module", wheel.normal_module, pinion.normal_module),
@@ -28,11 +31,11 @@ def refuse_strangers(pinion: Gear, wheel: Gear) -> None:
             wheel.normal_pressure_angle,
             pinion.normal_pressure_angle,
         ),
-        ("helix angle", "helix_angle", wheel.helix_angle, -pinion.helix_angle),
+        ("helix angle", "helix_angle", wheel.helix_angle, -wheel.sign * pinion.helix_angle),
     )
     for name, field, value, wanted in compared:
         if not math.isclose(value, wanted, rel_tol=1e-9, abs_tol=1e-12):
-            advice = "External gears mesh with equal module and pressure angle and opposite helix angle."
+            advice = _EXTERNAL if wheel.sign > 0 else _INTERNAL
             raise InfeasibleGeometry(
                 name, f"wheel.{field}", value, f"{wanted:.9g}, to fit the pinion", advice
             )
@@ -41,7 +44,7 @@ def refuse_strangers(pinion: Gear, wheel: Gear) -> None:
 def refuse_infeasible_pair(pair: GearPair) -> None:
     """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
     positive("center_distance", pair.center_distance, "In m: 80 mm is 0.08.")
-    _refuse_face_overlap(pair)
+    refuse_face_overlap(pair)
     _refuse_jamming(pair)
     _refuse_contact_ratio(pair)
     _refuse_tip_clearance(pair)
@@ -49,7 +52,7 @@ def refuse_infeasible_pair(pair: GearPair) -> None:
     _refuse_fillet_interference(pair)
 
 
-def _refuse_face_overlap(pair: GearPair) -> None:
+def refuse_face_overlap(pair: ParallelAxes) -> None:
     """Refuse gears that pass beside each other."""
     finite("axial_offset", pair.axial_offset, "In m: 5 mm is 0.005.")
     low, high = pair.common_face
@@ -64,7 +67,7 @@ def _refuse_jamming(pair: GearPair) -> None:
     """Refuse negative backlash."""
     pinion, wheel = pair.pinion, pair.wheel
     touching = pair.center_distance <= pinion.base_radius + wheel.base_radius
-    if not touching and pair.transverse_base_backlash >= -_BACKLASH_SLACK * pinion.normal_module:
+    if not touching and pair.transverse_base_backlash >= -BACKLASH_SLACK * pinion.normal_module:
         return
     distance = tight_center_distance(pinion, wheel)
     advice = f"Without backlash: center_distance = {distance:.9g} m"
@@ -121,7 +124,7 @@ def _refuse_fillet_interference(pair: GearPair) -> None:
     gears = (("pinion", pair.pinion, pair.wheel), ("wheel", pair.wheel, pair.pinion))
     for name, gear, mate in gears:
         depth = fillet_penetration(pair, gear, mate)
-        if depth > _FILLET_SLACK * gear.normal_module:
+        if depth > FILLET_SLACK * gear.normal_module:
             bound = f"smaller: the tip cuts the mating fillet by {depth:.3g} m off the line of action"
             advice = "Lower the tip diameter or the addendum, or the mate's root radius."
             raise InfeasibleGeometry(

@@ -1,0 +1,84 @@
+"""A pinion inside a ring gear, on parallel axes (ISO 21771-1)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from fe_contact.geometry.backlash import reference_center_distance
+from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.internal_pair_feasibility import (
+    refuse_infeasible_internal_pair,
+    refuse_tooth_numbers,
+)
+from fe_contact.geometry.pair_feasibility import refuse_strangers
+from fe_contact.geometry.parallel_axes import ParallelAxes
+from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry.trimming import radial_clearance
+
+
+@dataclass(frozen=True)
+class InternalGearPair(ParallelAxes):
+    """The external gear (`pinion`, gear 1) drives the ring gear (`wheel`, gear 2); see `ParallelAxes`.
+
+    When the ring drives, the same contacts are run through in the opposite order.
+
+    Attributes
+    ----------
+    pinion : Gear
+        The external gear.
+    wheel : RingGear
+        Of equal normal module, pressure angle and helix angle: the hand is the same.
+    center_distance : float, optional
+        a in m, > 0 (the standard's -a); default: the distance without backlash of gears without thickness
+        allowance, so that the allowances become backlash. Backlash falls as the distance grows.
+    axial_offset : float
+        Distance in m of the wheel's mid-face from the pinion's, along the pinion's axis.
+    radial_assembly : bool
+        Whether the pinion is put in its place radially, which "trimming interference" may forbid; else it is
+        put in along the axis.
+
+    Raises
+    ------
+    InputError
+        A centre distance that is no positive number.
+    InfeasibleGeometry
+        No such pair: "normal module", "pressure angle", "helix angle", "tooth number difference", "face
+        overlap", "center distance", "profile shift sum", "contact ratio", "tip clearance", "interference",
+        "tip interference", "trochoidal interference", "trimming interference".
+    """
+
+    pinion: Gear
+    wheel: RingGear
+    center_distance: float = None  # type: ignore[assignment]  # a float after construction
+    axial_offset: float = 0.0
+    radial_assembly: bool = False
+
+    def __post_init__(self) -> None:
+        refuse_strangers(self.pinion, self.wheel)
+        refuse_tooth_numbers(self.pinion, self.wheel)
+        if self.center_distance is None:
+            object.__setattr__(self, "center_distance", reference_center_distance(self.pinion, self.wheel))
+        refuse_infeasible_internal_pair(self)
+
+    @property
+    def tooth_number_difference(self) -> int:
+        """Teeth of the ring less teeth of the pinion."""
+        return self.wheel.teeth - self.pinion.teeth
+
+    @property
+    def tip_clearances(self) -> tuple[float, float]:
+        """Distance in m from the pinion's tip to the ring's root circle, and from ring tip to pinion root."""
+        at_pinion_tip = self.wheel.root_radius - self.center_distance - self.pinion.tip_radius
+        return at_pinion_tip, self.wheel.tip_radius - self.center_distance - self.pinion.root_radius
+
+    @property
+    def radial_assembly_clearance(self) -> float:
+        """Play in m on the pinion's base circle when it is put in radially, in the middle of its backlash.
+
+        Negative: it must be put in along the axis. Infinite if the tips do not hold it.
+        """
+        gears = (self.pinion, self.wheel)
+        first, second = (math.acos(min(1.0, gear.base_radius / gear.tip_radius)) for gear in gears)
+        turn = radial_clearance(1.0 / self.speed_ratio, (first, second), self.working_pressure_angle)
+        return self.pinion.base_radius * turn + 0.5 * self.transverse_base_backlash

@@ -1,0 +1,144 @@
+"""Refusal of internal pairs that cannot run or be put together, by the standard term for what is wrong."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from fe_contact.checks import positive
+from fe_contact.errors import InfeasibleGeometry
+from fe_contact.geometry.backlash import (
+    base_radius_sum,
+    shift_sum,
+    tight_center_distance,
+    tight_shift_sum,
+)
+from fe_contact.geometry.internal_interference import tip_interference, trochoidal_interference
+from fe_contact.geometry.pair_feasibility import BACKLASH_SLACK, FILLET_SLACK, refuse_face_overlap
+
+if TYPE_CHECKING:
+    from fe_contact.geometry.gear import Gear
+    from fe_contact.geometry.internal_gear_pair import InternalGearPair
+    from fe_contact.geometry.ring_gear import RingGear
+
+_SHORTER = "Raise the ring's tip diameter, or lower the pinion's"
+
+
+def refuse_tooth_numbers(pinion: Gear, ring: RingGear) -> None:
+    """Refuse a pinion that is no smaller than the ring."""
+    if ring.teeth <= pinion.teeth:
+        bound = f"above the pinion's {pinion.teeth}"
+        advice = "With standard teeth of 20 deg about ten more are needed for the tips to pass each other."
+        raise InfeasibleGeometry("tooth number difference", "wheel.teeth", ring.teeth, bound, advice)
+
+
+def refuse_infeasible_internal_pair(pair: InternalGearPair) -> None:
+    """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
+    positive("center_distance", pair.center_distance, "In m, positive: 80 mm is 0.08.")
+    refuse_face_overlap(pair)
+    _refuse_short_distance(pair)
+    _refuse_jamming(pair)
+    _refuse_tip_clearance(pair)
+    _refuse_contact_ratio(pair)
+    _refuse_interference(pair)
+    _refuse_tip_interference(pair)
+    _refuse_trochoidal_interference(pair)
+    _refuse_trimming_interference(pair)
+
+
+def _refuse_short_distance(pair: InternalGearPair) -> None:
+    """Refuse base circles without a common tangent."""
+    shortest = abs(base_radius_sum(pair.pinion, pair.wheel))
+    if pair.center_distance <= shortest:
+        bound = f"above {shortest:.9g} m, the difference of the base radii"
+        advice = f"Without backlash it is {tight_center_distance(pair.pinion, pair.wheel):.9g} m."
+        raise InfeasibleGeometry("center distance", "center_distance", pair.center_distance, bound, advice)
+
+
+def _refuse_jamming(pair: InternalGearPair) -> None:
+    """Refuse negative backlash."""
+    pinion, ring = pair.pinion, pair.wheel
+    if pair.transverse_base_backlash >= -BACKLASH_SLACK * pinion.normal_module:
+        return
+    distance = tight_center_distance(pinion, ring)
+    tight_sum = tight_shift_sum(pinion, ring, pair.working_pressure_angle)
+    advice = (
+        f"Without backlash: center_distance = {distance:.9g} m, "
+        f"or x_1 + x_2 = {tight_sum:.7g} instead of {shift_sum(pinion, ring):.7g}."
+    )
+    bound = f"at most {distance:.9g} m, where the teeth jam"
+    raise InfeasibleGeometry("profile shift sum", "center_distance", pair.center_distance, bound, advice)
+
+
+def _refuse_contact_ratio(pair: InternalGearPair) -> None:
+    """Refuse a pair that loses contact between one tooth pair and the next."""
+    if pair.total_contact_ratio < 1.0:
+        bound = f"larger: the contact ratio is {pair.total_contact_ratio:.6g}, below 1"
+        advice = "Raise the centre distance or the pinion's tip diameter, or lower the ring's tip diameter."
+        raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, advice)
+
+
+def _refuse_tip_clearance(pair: InternalGearPair) -> None:
+    """Refuse a tip circle that reaches the mating root circle."""
+    at_pinion_tip, at_ring_tip = pair.tip_clearances
+    if at_pinion_tip <= 0.0:
+        largest = 2.0 * (pair.pinion.tip_radius + at_pinion_tip)
+        bound = f"below {largest:.9g} m, where the tip reaches the ring's root circle"
+        advice = "Lower the pinion's tip diameter, or raise the ring's dedendum."
+        value = 2.0 * pair.pinion.tip_radius
+        raise InfeasibleGeometry("tip clearance", "pinion.tip_diameter", value, bound, advice)
+    if at_ring_tip <= 0.0:
+        smallest = 2.0 * (pair.wheel.tip_radius - at_ring_tip)
+        bound = f"above {smallest:.9g} m, where the tip reaches the pinion's root circle"
+        advice = "Raise the ring's tip diameter, or the pinion's dedendum."
+        value = 2.0 * pair.wheel.tip_radius
+        raise InfeasibleGeometry("tip clearance", "wheel.tip_diameter", value, bound, advice)
+
+
+def _refuse_interference(pair: InternalGearPair) -> None:
+    """Refuse a tip that meets the mating flank on the line of action where it is no involute."""
+    pinion, ring, path = pair.pinion, pair.wheel, pair.path_of_contact
+    if path.start < pinion.form_roll_length * (1.0 - 1e-12):
+        smallest = 2.0 * math.hypot(ring.base_radius, pair.common_tangent + pinion.form_roll_length)
+        bound = f"at least {smallest:.9g} m, where the tip meets the pinion's form circle"
+        advice = "Raise the ring's tip diameter, or the pinion's profile shift or number of teeth."
+        value = 2.0 * ring.tip_radius
+        raise InfeasibleGeometry("interference", "wheel.tip_diameter", value, bound, advice)
+    if pair.common_tangent + path.end > ring.form_roll_length * (1.0 + 1e-12):
+        reach = ring.form_roll_length - pair.common_tangent
+        largest = 2.0 * math.hypot(pinion.base_radius, max(reach, 0.0))
+        bound = f"at most {largest:.9g} m, where the tip meets the ring's form circle"
+        advice = "Lower the pinion's tip diameter, or raise the ring's dedendum or lower its root radius."
+        value = 2.0 * pinion.tip_radius
+        raise InfeasibleGeometry("interference", "pinion.tip_diameter", value, bound, advice)
+
+
+def _refuse_tip_interference(pair: InternalGearPair) -> None:
+    """Refuse tips that hit each other as they enter or leave."""
+    depth = tip_interference(pair)
+    if depth > FILLET_SLACK * pair.pinion.normal_module:
+        bound = f"larger: the tips overlap by {depth:.3g} m as they pass each other"
+        advice = f"{_SHORTER}, or raise the difference of the tooth numbers, {pair.tooth_number_difference}."
+        value = 2.0 * pair.wheel.tip_radius
+        raise InfeasibleGeometry("tip interference", "wheel.tip_diameter", value, bound, advice)
+
+
+def _refuse_trochoidal_interference(pair: InternalGearPair) -> None:
+    """Refuse a tip that cuts the mating fillet."""
+    depth = trochoidal_interference(pair)
+    if depth > FILLET_SLACK * pair.pinion.normal_module:
+        bound = f"larger: a tip cuts the mating fillet by {depth:.3g} m off the line of action"
+        advice = f"{_SHORTER}, or lower the mate's root radius or raise its dedendum."
+        value = 2.0 * pair.wheel.tip_radius
+        raise InfeasibleGeometry("trochoidal interference", "wheel.tip_diameter", value, bound, advice)
+
+
+def _refuse_trimming_interference(pair: InternalGearPair) -> None:
+    """Refuse radial assembly past tips that stand in the way."""
+    clearance = pair.radial_assembly_clearance
+    if pair.radial_assembly and clearance < 0.0:
+        bound = f"false: the tips are in the way by {-clearance:.3g} m on the pinion's base circle"
+        advice = (
+            f"Put the pinion in along the axis. {_SHORTER}, or raise the difference of the tooth numbers."
+        )
+        raise InfeasibleGeometry("trimming interference", "radial_assembly", True, bound, advice)
