@@ -10,7 +10,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from fe_contact.analysis import ContactPattern, LoadDistribution, analyze, contact_pattern, flank_results
+    from fe_contact.analysis import (
+        ContactPattern,
+        LoadDistribution,
+        Sensitivity,
+        analyze,
+        contact_pattern,
+        flank_results,
+        study_sensitivity,
+    )
     from fe_contact.geometry import FlankModification, Gear, GearPair
     from fe_contact.material import STEEL, Material
     from fe_contact.ste import SteDatabase
@@ -25,19 +33,23 @@ __all__ = [
     "GearPair",
     "LoadDistribution",
     "Material",
+    "Sensitivity",
     "Status",
     "SteDatabase",
     "analyze",
     "contact_pattern",
     "flank_results",
+    "study_sensitivity",
 ]
 
 _HOME = {
     "analyze": "fe_contact.analysis",
     "contact_pattern": "fe_contact.analysis",
     "flank_results": "fe_contact.analysis",
+    "study_sensitivity": "fe_contact.analysis",
     "ContactPattern": "fe_contact.analysis",
     "LoadDistribution": "fe_contact.analysis",
+    "Sensitivity": "fe_contact.analysis",
     "FlankModification": "fe_contact.geometry",
     "Gear": "fe_contact.geometry",
     "GearPair": "fe_contact.geometry",

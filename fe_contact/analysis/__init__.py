@@ -5,13 +5,17 @@ from fe_contact.analysis.contact_pattern import ContactPattern, contact_pattern
 from fe_contact.analysis.flank_results import flank_results
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.request import check_request
+from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 
 __all__ = [
     "ContactPattern",
     "LoadDistribution",
+    "RippleCurve",
+    "Sensitivity",
     "analyze",
     "check_request",
     "contact_pattern",
     "flank_results",
     "load_distribution",
+    "study_sensitivity",
 ]

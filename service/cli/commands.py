@@ -121,6 +121,25 @@ def report(
     run_report(files, output, images, as_json=json)
 
 
+@app.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")
+@guarded
+def sensitivity(
+    cases: Annotated[list[Path], typer.Argument(help="Case files; each becomes a line in the picture.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="Folder, or a file ending in .png, .csv or .json.")
+    ],
+    misalignment_um: Annotated[str, typer.Option(help="Misalignments in um.")] = "0,15,30,45,60",
+    center_distance_change_percent: Annotated[
+        str, typer.Option(help="Changes of the centre distance in per cent.")
+    ] = "-0.2,-0.1,0,0.1,0.2",
+    json: AsJson = False,
+) -> None:
+    """Vary misalignment and centre distance of a case at its highest load: peak-to-peak STE."""
+    from service.cli.sensitivity import run_sensitivity  # noqa: PLC0415 (start-up time)
+
+    run_sensitivity(cases, output, misalignment_um, center_distance_change_percent, as_json=json)
+
+
 @app.command(epilog="Example: loa serve --port 8321 --workers 2")
 @guarded
 def serve(

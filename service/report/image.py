@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from io import BytesIO
 from typing import Any
 
@@ -16,6 +17,7 @@ from service.report import palette
 from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, repeats_below
 
 _WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
+_LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
@@ -47,16 +49,22 @@ def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
         if repeats_below(panels, index):
             ax.set_xlabel("")
     if len(handles) > 1:
-        columns = min(len(handles), 6)
         sheet.legend(
             handles.values(),
             handles.keys(),
             loc="outside lower left",
-            ncols=columns,
+            ncols=_legend_columns(list(handles)),
             frameon=False,
             fontsize=9,
         )
     return sheet
+
+
+def _legend_columns(names: list[str]) -> int:
+    """As many columns as the width holds, at most six, in rows of equal length."""
+    fit = max(_LEGEND_CHARACTERS // (max(map(len, names)) + _HANDLE_CHARACTERS), 1)
+    rows = math.ceil(len(names) / min(fit, 6))
+    return math.ceil(len(names) / rows)
 
 
 def _draw(ax: Axes, line: Line) -> Any:

@@ -6,10 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from service.report import palette
 from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, number
-from service.report.image import png
+from service.report.image import _panel_sheet, png
 from service.report.interactive import plotly_figure
 
 X = np.linspace(0.0, 2.0, 9)
@@ -82,6 +83,23 @@ def test_an_image_grows_with_its_panels(count: int) -> None:
     width, height = struct.unpack(">II", image[16:24])
     assert width == 1350
     assert height == pytest.approx(150 * (2.7 * count + 1.2), abs=1)
+
+
+@pytest.mark.parametrize("length", [5, 34, 200])
+@pytest.mark.parametrize("count", [2, 4, 5, 7])
+def test_a_legend_stays_within_the_sheet(count: int, length: int) -> None:
+    """Its right end, as drawn; a name that alone is wider than the sheet stands in a column of its own."""
+    x = np.linspace(0.0, 1.0, 3)
+    lines = tuple(Line(f"{i}".ljust(length, "n"), x, x, palette.BLUE) for i in range(count))
+    sheet = _panel_sheet((Panel(Axis("x"), Axis("y"), lines),))
+    canvas = FigureCanvasAgg(sheet)
+    canvas.draw()
+    (legend,) = sheet.legends
+    assert len(legend.get_texts()) == count
+    if length < 100:
+        assert legend.get_window_extent().x1 <= sheet.bbox.x1
+    else:
+        assert legend._ncols == 1
 
 
 def test_ordered_colours_lighten_and_stay_visible_on_white() -> None:

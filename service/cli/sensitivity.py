@@ -1,0 +1,121 @@
+"""``loa sensitivity``."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from pathlib import Path
+
+from service.cli.output import check_writable, console, print_json, progress_bar, table
+from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
+from service.problems import BadInput
+from service.report.image import png
+from service.report.sensitivity import sensitivity_figure, sensitivity_table
+from service.schemas import Case, read_model
+from service.settings import cache_home
+
+_LARGEST_UM, _LARGEST_PERCENT = 10_000.0, 10.0
+
+
+def run_sensitivity(
+    files: Sequence[Path],
+    output: Path,
+    misalignment_um: str,
+    center_distance_change_percent: str,
+    *,
+    as_json: bool,
+) -> None:
+    """Study every case, write, print."""
+    deviations = Deviations(
+        _numbers("--misalignment-um", misalignment_um, _LARGEST_UM),
+        _numbers("--center-distance-change-percent", center_distance_change_percent, _LARGEST_PERCENT),
+    )
+    names = _names(files)
+    cases = [read_model(Case, file) for file in files]
+    targets = _targets(output)
+    cache = cache_home() / "compliance"
+    with progress_bar() as report:
+        studies = [
+            study_case(name, case, deviations, cache, report) for name, case in zip(names, cases, strict=True)
+        ]
+    for target in targets:
+        target.parent.mkdir(exist_ok=True)
+        target.write_bytes(_CONTENT[target.suffix](studies))
+    if as_json:
+        print_json({"written": [str(target) for target in targets], **studies_json(studies)})
+    else:
+        _show(studies, targets)
+
+
+def _names(files: Sequence[Path]) -> list[str]:
+    """Names of the lines: what tells the files apart."""
+    names = [file.stem.removeprefix("sensitivity_").replace("_", " ") for file in files]
+    return [str(file) for file in files] if len(set(names)) < len(names) else names
+
+
+def _numbers(option: str, text: str, largest: float) -> tuple[float, ...]:
+    """Values of an option, increasing."""
+    bound = f"increasing numbers from {-largest:g} to {largest:g}, separated by commas"
+    try:
+        found = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise BadInput.of(option, text, bound, "For example 0,30,60.") from None
+    inside = all(abs(value) <= largest for value in found)  # nan is not
+    if not inside or any(b <= a for a, b in pairwise(found)):
+        raise BadInput.of(option, text, bound, "For example 0,30,60.")
+    return found
+
+
+def _targets(output: Path) -> list[Path]:
+    """Files to write: one by its ending, or all kinds in a folder, which is made if missing.
+
+    Raises
+    ------
+    BadInput
+        Neither, or not writable.
+    """
+    if output.is_dir() or not output.suffix:
+        check_writable(output / "x" if output.is_dir() else output)
+        if output.is_file():
+            raise BadInput.of("output", str(output), "a folder, or a file ending in .png, .csv or .json")
+        return [output / f"sensitivity{ending}" for ending in _CONTENT]
+    if output.suffix not in _CONTENT:
+        endings = ", ".join(_CONTENT)
+        raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
+    check_writable(output)
+    return [output]
+
+
+def _picture(studies: Sequence[PairStudy]) -> bytes:
+    """PNG."""
+    return png(sensitivity_figure(studies))
+
+
+def _csv(studies: Sequence[PairStudy]) -> bytes:
+    """One line per pair, model and deviation."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    found = sensitivity_table(studies)
+    writer.writerow(found.head)
+    writer.writerows(found.rows)
+    return text.getvalue().encode("utf-8")
+
+
+def _json(studies: Sequence[PairStudy]) -> bytes:
+    """JSON."""
+    return (json.dumps(studies_json(studies), allow_nan=False, indent=1) + "\n").encode("utf-8")
+
+
+_CONTENT: dict[str, Callable[[Sequence[PairStudy]], bytes]] = {".png": _picture, ".csv": _csv, ".json": _json}
+
+
+def _show(studies: Sequence[PairStudy], targets: Sequence[Path]) -> None:
+    """Print the table for people."""
+    out = console()
+    found = sensitivity_table(studies)
+    out.print(table(found.head, found.rows, found.caption))
+    for target in targets:
+        out.print(f"written to {target}", highlight=False)

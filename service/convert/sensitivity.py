@@ -1,0 +1,115 @@
+"""Sensitivity studies at the boundary: from a case to curves, and their JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
+from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.convert.units import MM, UM
+from service.schemas import Case
+
+Json = dict[str, Any]
+_PASSED_ON = ("tolerance", "time_budget", "level", "model", "positions", "effects")
+
+
+@dataclass(frozen=True)
+class Deviations:
+    """What is varied: misalignment in um, centre distance in per cent of the nominal one."""
+
+    misalignment_um: tuple[float, ...]
+    center_distance_change_percent: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class PairStudy:
+    """The study of one pair.
+
+    Attributes
+    ----------
+    name : str
+    normal_force, center_distance : float
+        N; m.
+    curves : tuple of Sensitivity
+        Without and with corner contact.
+    """
+
+    name: str
+    normal_force: float
+    center_distance: float
+    curves: tuple[Sensitivity, ...]
+
+
+def study_case(
+    name: str,
+    case: Case,
+    deviations: Deviations,
+    cache: Path | None,
+    progress: Callable[[str, float], None] | None = None,
+) -> PairStudy:
+    """Study a case at its highest load; its own misalignments and centre distances are left aside.
+
+    Raises
+    ------
+    BadInput
+        No such pair, or a deviation at which it cannot run.
+    JobFailed
+        No mesh, or points without a solution.
+    """
+    pair = gear_pair(case)
+    arguments = analysis_arguments(case)
+    torques, forces = case.load.torque_n_m, case.load.normal_force_n
+    force = float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])
+    with boundary_errors():
+        curves = study_sensitivity(
+            pair,
+            normal_force=force,
+            misalignments=[value * UM for value in deviations.misalignment_um],
+            center_distance_changes=[
+                0.01 * value * pair.center_distance for value in deviations.center_distance_change_percent
+            ],
+            progress=progress,
+            cache=cache,
+            **{name: arguments[name] for name in _PASSED_ON},
+        )
+    return PairStudy(name, force, pair.center_distance, curves)
+
+
+def studies_json(studies: Sequence[PairStudy]) -> Json:
+    """Return the figures of all pairs."""
+    return {"pairs": [_pair_json(study) for study in studies]}
+
+
+def _pair_json(study: PairStudy) -> Json:
+    """One pair."""
+    return {
+        "name": study.name,
+        "normal_force_n": study.normal_force,
+        "center_distance_mm": study.center_distance / MM,
+        "curves": [_curves_json(curves, study.center_distance) for curves in study.curves],
+    }
+
+
+def _curves_json(curves: Sensitivity, center_distance: float) -> Json:
+    """Both curves with or without corner contact."""
+    skew, distance = curves.misalignment, curves.center_distance_change
+    return {
+        "corner_contact": curves.corner_contact,
+        "misalignment": {"misalignment_um": (skew.deviation / UM).tolist(), **_ripple_json(skew)},
+        "center_distance": {
+            "center_distance_change_percent": (100.0 * distance.deviation / center_distance).tolist(),
+            **_ripple_json(distance),
+        },
+    }
+
+
+def _ripple_json(curve: RippleCurve) -> Json:
+    """Peak-to-peak with its error, and its change."""
+    return {
+        "peak_to_peak_um": (curve.peak_to_peak / UM).tolist(),
+        "peak_to_peak_error_um": (curve.error / UM).tolist(),
+        "change_percent": (100.0 * curve.relative_change).tolist(),
+    }

@@ -1,0 +1,213 @@
+"""``loa sensitivity``: what it writes and prints, and how it refuses."""
+
+from __future__ import annotations
+
+import csv
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner, Result
+
+from fe_contact.analysis import RippleCurve, Sensitivity, check_request
+from service.cli.commands import app
+from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
+from service.report.figure import Panel
+from service.report.sensitivity import sensitivity_figure, sensitivity_table
+from service.schemas import Case, read_model
+
+ROOT = Path(__file__).parents[3]
+EXAMPLES = sorted((ROOT / "examples").glob("sensitivity_*.toml"))
+SMALL = """
+[pair]
+normal_module_mm = 4.0
+center_distance_mm = 80.0
+[pair.pinion]
+teeth = 20
+face_width_mm = 10.0
+bore_diameter_mm = 40.0
+thickness_allowance_um = 90.0
+[pair.wheel]
+teeth = 20
+face_width_mm = 10.0
+bore_diameter_mm = 40.0
+[load]
+normal_force_n = [500, 1000]
+[errors]
+misalignment_um = [7]
+[accuracy]
+level = "draft"
+positions = 8
+"""
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["sensitivity", *(str(argument) for argument in arguments)])
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Path:
+    file = tmp_path / "small.toml"
+    file.write_text(SMALL)
+    return file
+
+
+def study(name: str = "pair a", factor: float = 1.0) -> PairStudy:
+    """A study of round figures."""
+    skew = RippleCurve(np.array([0.0, 30e-6]), factor * np.array([2e-6, 5e-6]), np.array([1e-7, 2e-7]))
+    distance = RippleCurve(np.array([-1e-4, 0.0]), factor * np.array([1e-6, 2e-6]), np.array([3e-7, 4e-7]))
+    other = RippleCurve(skew.deviation, 0.5 * skew.peak_to_peak, skew.error)
+    return PairStudy(
+        name, 1000.0, 0.1, (Sensitivity(False, skew, distance), Sensitivity(True, other, distance))
+    )
+
+
+def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
+    """Numbers, table and picture say the same; the highest load counts, the case's own errors do not."""
+    result = loa(
+        small, "-o", tmp_path / "out", "--misalignment-um", "0,20",
+        "--center-distance-change-percent", "-0.05,0.1", "--json",
+    )  # fmt: skip
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    written = [Path(file).name for file in answer.pop("written")]
+    assert written == ["sensitivity.png", "sensitivity.csv", "sensitivity.json"]
+    assert json.loads((tmp_path / "out" / "sensitivity.json").read_text()) == answer
+    (found,) = answer["pairs"]
+    assert (found["name"], found["normal_force_n"]) == ("small", 1000.0)
+    assert [curves["corner_contact"] for curves in found["curves"]] == [False, True]
+    for curves in found["curves"]:
+        skew, distance = curves["misalignment"], curves["center_distance"]
+        assert skew["misalignment_um"] == pytest.approx([0.0, 20.0])
+        assert distance["center_distance_change_percent"] == pytest.approx([-0.05, 0.0, 0.1])
+        assert skew["change_percent"][1] == pytest.approx(
+            100.0 * (skew["peak_to_peak_um"][1] / skew["peak_to_peak_um"][0] - 1.0)
+        )
+        assert 0.3 < skew["peak_to_peak_um"][0] < 10.0
+    rows = list(csv.reader((tmp_path / "out" / "sensitivity.csv").read_text().splitlines()))
+    assert len(rows) == 1 + 2 * (2 + 3)
+    assert (tmp_path / "out" / "sensitivity.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--misalignment-um", "0,x"], "--misalignment-um = '0,x': must be increasing numbers"),
+        (["--misalignment-um", "0,nan"], "--misalignment-um = '0,nan'"),
+        (["--misalignment-um", "30,15"], "--misalignment-um = '30,15'"),
+        (["--misalignment-um", "0,20000"], "--misalignment-um = '0,20000'"),
+        (["--center-distance-change-percent", "0,11"], "--center-distance-change-percent = '0,11'"),
+    ],
+)
+def test_bad_deviations_are_one_line(small: Path, tmp_path: Path, arguments: list[str], said: str) -> None:
+    result = loa(small, "-o", tmp_path / "out", *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert result.stderr.startswith(f"error: {said}")
+    assert len(result.stderr.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_distance_at_which_the_teeth_jam_is_said_in_the_units_of_the_case(
+    small: Path, tmp_path: Path
+) -> None:
+    result = loa(small, "-o", tmp_path / "out", "--center-distance-change-percent", "-1")
+    assert result.exit_code == 2
+    assert "center_distance_change_mm" in result.stderr and "jam" in result.stderr
+
+
+@pytest.mark.parametrize("output", ["no/such/folder", "out.pdf", "no/out.png"])
+def test_an_output_that_cannot_be_written_is_said_before_the_work(
+    small: Path, tmp_path: Path, output: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.cli.sensitivity.study_case", None)  # were it called, exit code 5
+    result = loa(small, "-o", tmp_path / output)
+    assert result.exit_code == 2
+    assert "output = " in result.stderr
+
+
+def test_a_file_by_its_ending_is_the_only_one_written(
+    small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.cli.sensitivity.study_case", lambda *_: study())
+    result = loa(small, "-o", tmp_path / "x.csv")
+    assert result.exit_code == 0
+    assert "written to" in result.stdout and "+150.0" in result.stdout
+    assert sorted(file.name for file in tmp_path.iterdir() if file.is_file()) == ["small.toml", "x.csv"]
+
+
+def test_figures_are_in_boundary_units() -> None:
+    (pair,) = studies_json([study()])["pairs"]
+    without = pair["curves"][0]
+    assert pair["center_distance_mm"] == pytest.approx(100.0)
+    assert without["misalignment"]["misalignment_um"] == pytest.approx([0.0, 30.0])
+    assert without["misalignment"]["peak_to_peak_um"] == pytest.approx([2.0, 5.0])
+    assert without["misalignment"]["peak_to_peak_error_um"] == pytest.approx([0.1, 0.2])
+    assert without["misalignment"]["change_percent"] == pytest.approx([0.0, 150.0])
+    assert without["center_distance"]["center_distance_change_percent"] == pytest.approx([-0.1, 0.0])
+    assert without["center_distance"]["change_percent"] == pytest.approx([-50.0, 0.0])
+
+
+def test_the_figure_has_a_line_per_pair_and_model_in_four_panels() -> None:
+    figure = sensitivity_figure([study(), study("pair b", 2.0)])
+    assert isinstance(figure.content, tuple)
+    assert len(figure.content) == 4
+    relative, absolute, *_ = figure.content
+    assert isinstance(relative, Panel) and isinstance(absolute, Panel)
+    assert [line.dash for line in relative.lines] == ["dash", "solid", "dash", "solid"]
+    assert relative.lines[0].colour == relative.lines[1].colour != relative.lines[2].colour
+    assert relative.lines[0].y == pytest.approx([0.0, 150.0])
+    assert absolute.lines[2].y == pytest.approx([4.0, 10.0])
+    assert absolute.lines[2].x == pytest.approx([0.0, 30.0])
+    assert "pair b without corner contact +150 % and -50 %" in figure.alternative
+
+
+def test_the_table_has_every_point() -> None:
+    rows = sensitivity_table([study()]).rows
+    assert rows[1] == ("pair a", "off", "misalignment 30 µm", "5.000", "0.20", "+150.0")
+    assert rows[2] == ("pair a", "off", "centre distance -0.1 %", "1.000", "0.30", "-50.0")
+    assert len(rows) == 8
+
+
+def test_the_picture_is_large_enough_to_read(
+    tmp_path: Path, small: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.cli.sensitivity.study_case", lambda *_: study())
+    assert loa(small, "-o", tmp_path / "x.png").exit_code == 0
+    width, height = struct.unpack(">II", (tmp_path / "x.png").read_bytes()[16:24])
+    assert width >= 1000 and height >= 1000
+
+
+@pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
+def test_the_examples_run_at_every_deviation(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both pairs of the paper's Table 2 exist from -0.2 to +0.2 % of the centre distance."""
+    asked = {}
+
+    def study_nothing(pair: object, **options: object) -> tuple[()]:
+        check_request(
+            pair,  # type: ignore[arg-type]
+            normal_forces=[options["normal_force"]],  # type: ignore[list-item]
+            misalignments=options["misalignments"],  # type: ignore[arg-type]
+            center_distance_changes=options["center_distance_changes"],  # type: ignore[arg-type]
+        )
+        asked.update(options)
+        return ()
+
+    monkeypatch.setattr("service.convert.sensitivity.study_sensitivity", study_nothing)
+    case = read_model(Case, file)
+    found = study_case("x", case, Deviations((0.0, 60.0), (-0.2, 0.0, 0.2)), None)
+    assert found.normal_force in (6000.0, 13300.0)
+    assert asked["center_distance_changes"][0] == pytest.approx(-0.002 * found.center_distance)
+
+
+def test_the_highest_torque_is_the_load(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """20 teeth of module 4 mm: base radius 37.588 mm."""
+    monkeypatch.setattr("service.convert.sensitivity.study_sensitivity", lambda *_, **__: ())
+    small.write_text(SMALL.replace("normal_force_n = [500, 1000]", "torque_n_m = [10, 100]"))
+    found = study_case("x", read_model(Case, small), Deviations((0.0,), (0.0,)), None)
+    assert found.normal_force == pytest.approx(100.0 / 37.5877e-3, rel=1e-5)
+
+
+def test_there_are_examples_of_both_pairs() -> None:
+    assert [file.stem for file in EXAMPLES] == ["sensitivity_automotive", "sensitivity_wind_turbine"]
