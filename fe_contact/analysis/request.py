@@ -100,6 +100,7 @@ def check_request(
     InputError
         A value that cannot be used, by field name.
     """
+    _refuse_internal_pair(pair)
     request = Request(
         pair,
         load_levels(pair, torques, normal_forces),
@@ -113,6 +114,13 @@ def check_request(
         refuse_beyond_plane(request.scene)
     _refuse_distances(request)
     return Checked(request, composed, ledger)
+
+
+def _refuse_internal_pair(pair: object) -> None:
+    """Refuse a pair that is known by its geometry alone: there is no mesh of a ring gear yet."""
+    if not isinstance(pair, GearPair):
+        advice = "Ring gears have their geometry and interference checks, but no contact analysis yet."
+        raise InputError("pair", type(pair).__name__, "a GearPair of two external gears", advice)
 
 
 def _refuse_distances(request: Request) -> None:
