@@ -11,6 +11,8 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from service.report.aligned import load_curve, load_labels, middle_load
 from service.report.database_surface import database_surface
+from service.report.deviation_curves import deviation_curves, has_deviations
+from service.report.face_load import face_load, has_face_load
 from service.report.facts import facts, records, side_by_side
 from service.report.figure import Table, number
 from service.report.load_sharing import load_sharing
@@ -51,7 +53,15 @@ def static_results(database: SteDatabase) -> tuple[Section, ...]:
     stiffness = Section(
         "Mesh stiffness and the table", figures=(mesh_stiffness(database), database_surface(database))
     )
-    return curves, stiffness
+    return (curves, *_across_face(database), stiffness)
+
+
+def _across_face(database: SteDatabase) -> tuple[Section, ...]:
+    """Show the deviations and the face, where the database has any of them."""
+    figures = [deviation_curves(database)] if has_deviations(database) else []
+    figures += [face_load(database)] if has_face_load(database) else []
+    title = "Misalignment, centre distance and the face"
+    return (Section(title, figures=tuple(figures)),) if figures else ()
 
 
 def static_making(database: SteDatabase) -> tuple[Section, ...]:
