@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         flank_results,
         study_sensitivity,
     )
-    from fe_contact.geometry import FlankModification, Gear, GearPair
+    from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, Shaft
     from fe_contact.material import STEEL, Material
     from fe_contact.ste import SteDatabase
     from fe_contact.types import Estimate, Status
@@ -28,12 +28,14 @@ __all__ = [
     "STEEL",
     "ContactPattern",
     "Estimate",
+    "FlankGrid",
     "FlankModification",
     "Gear",
     "GearPair",
     "LoadDistribution",
     "Material",
     "Sensitivity",
+    "Shaft",
     "Status",
     "SteDatabase",
     "analyze",
@@ -50,9 +52,11 @@ _HOME = {
     "ContactPattern": "fe_contact.analysis",
     "LoadDistribution": "fe_contact.analysis",
     "Sensitivity": "fe_contact.analysis",
+    "FlankGrid": "fe_contact.geometry",
     "FlankModification": "fe_contact.geometry",
     "Gear": "fe_contact.geometry",
     "GearPair": "fe_contact.geometry",
+    "Shaft": "fe_contact.geometry",
     "STEEL": "fe_contact.material",
     "Material": "fe_contact.material",
     "SteDatabase": "fe_contact.ste",
