@@ -27,7 +27,11 @@ def table():
     start = cpu()
     database = analyze(pair, normal_forces=loads, misalignments=skew, **common)
     return cpu() - start, database
+from fe_contact.compliance import predict_cost
+from fe_contact.mesh import SectorRecipe
+predicted = sum(predict_cost(g, getattr(SectorRecipe, {level!r})(g)).seconds for g in (pinion, wheel))
 cold, database = table()
+spent = database.metadata.receipt["stages"]["compliance"]["cpu_seconds"]
 cached, _ = table()
 crowned = dataclasses.replace(pinion, modification=FlankModification(helix_crowning=5e-6))
 start = cpu()
@@ -48,6 +52,7 @@ curve = cpu() - start
 aligned = database.curve(force=6000.0, misalignment=0.0)
 mean, ripple = aligned.mean, aligned.peak_to_peak
 measured = {{
+    "prediction": predicted / spent,
     "cold": cold, "cached": cached, "fresh": fresh, "curve": curve, "failed": database.n_failed,
     "peak": database.metadata.receipt["peak_memory_bytes"],
     "mean_error": 100 * mean.error / mean.value, "ripple_error": 100 * ripple.error / ripple.value,
@@ -74,6 +79,7 @@ def _level(level: str) -> list[Figure]:
             "CPU s",
             _TARGETS[level],
         ),
+        Figure(subject, "compliance: predicted over spent", run["prediction"], "-"),
         Figure(subject, "with cached compliance", run["cached"], "CPU s", 3.0),
         Figure(subject, "a new crowning: a database of 64 positions", run["fresh"], "CPU s"),
         Figure(
