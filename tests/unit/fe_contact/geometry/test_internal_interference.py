@@ -142,11 +142,48 @@ def test_trochoidal_interference_is_the_overlap_of_the_turning_outlines() -> Non
     assert worst(pair) == pytest.approx(depth, rel=0.05, abs=0.0)
 
 
-def test_a_tip_that_cuts_a_fillet_off_the_line_of_action_is_refused() -> None:
-    fields: dict[str, Any] = {"addendum_coefficient": 1.1}
+OFF_THE_LINE: list[tuple[tuple[int, int], dict[str, Any], dict[str, Any]]] = [
+    (
+        (12, 115),
+        {"profile_shift_coefficient": 0.39, "root_radius_coefficient": 0.03, "tip_diameter": 58.784e-3},
+        {
+            "profile_shift_coefficient": -0.76,
+            "dedendum_coefficient": 0.95,
+            "root_radius_coefficient": 0.31,
+            "cutter_teeth": 20,
+            "tip_diameter": 457.76e-3,
+        },
+    ),
+    (
+        (63, 108),
+        {
+            "profile_shift_coefficient": -0.45,
+            "dedendum_coefficient": 1.27,
+            "root_radius_coefficient": 0.15,
+            "tip_diameter": 258.594e-3,
+        },
+        {
+            "profile_shift_coefficient": -0.95,
+            "dedendum_coefficient": 1.13,
+            "root_radius_coefficient": 0.07,
+            "cutter_teeth": 35,
+            "tip_diameter": 427.811e-3,
+        },
+    ),
+]
+
+
+@pytest.mark.parametrize(("teeth", "pinion", "wheel"), OFF_THE_LINE)
+def test_a_tip_that_clears_the_form_circle_but_cuts_the_fillet_is_refused(
+    monkeypatch: pytest.MonkeyPatch, teeth: tuple[int, int], pinion: dict[str, Any], wheel: dict[str, Any]
+) -> None:
     with pytest.raises(InfeasibleGeometry) as caught:
-        make_pair((60, 80), fields, {"root_radius_coefficient": 0.3})
-    assert caught.value.name in ("interference", "trochoidal interference")
+        make_pair(teeth, pinion, wheel)
+    assert caught.value.name == "trochoidal interference"
+    monkeypatch.setattr(internal_gear_pair, "refuse_infeasible_internal_pair", lambda pair: None)
+    pair = make_pair(teeth, pinion, wheel)
+    assert tip_interference(pair) < SLACK
+    assert worst(pair) == pytest.approx(trochoidal_interference(pair), rel=0.1, abs=0.0)
 
 
 @pytest.mark.usefixtures("unchecked")
