@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.analyze import Progress, analyze
+from fe_contact.analysis.analyze import analyze
+from fe_contact.analysis.compute_database import Progress
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.geometry import GearPair
 from fe_contact.ste import SteDatabase
@@ -59,7 +60,7 @@ def study_sensitivity(
     model: str = "auto",
     positions: int | None = None,
     effects: Mapping[str, str] | None = None,
-    progress: Progress | None = None,
+    progress: Callable[[str, float], None] | None = None,
     cache: Path | None = None,
 ) -> tuple[Sensitivity, Sensitivity]:
     """Vary misalignment and centre distance, one at a time, without and with corner contact.

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import Field
 
-from fe_contact.analysis.analyze import SOLVER_VERSION
+from fe_contact.analysis.compute_database import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION

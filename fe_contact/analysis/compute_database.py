@@ -1,0 +1,104 @@
+"""The main flow: from a checked request to the STE database."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+
+from fe_contact.analysis.error_estimate import ErrorSources, estimate_errors, worst_residual
+from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.position_nodes import table_nodes
+from fe_contact.analysis.request import Checked, Request
+from fe_contact.analysis.table_places import Places, table_places
+from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.effects import LedgerEntry
+from fe_contact.planning import Plan, StageClock, make_plan
+from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.ste.content_hash import content_hash
+from fe_contact.ste.facts import SCHEMA_VERSION
+from fe_contact.types import Json
+
+Progress = Callable[[str, float], None]
+SOLVER_VERSION = "1"
+PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
+
+
+def compute_database(checked: Checked, case: Json, report: Progress, cache: Path | None) -> SteDatabase:
+    """Compute the table of a checked request.
+
+    Parameters
+    ----------
+    checked : Checked
+    case : dict
+        Echoed into the result and hashed.
+    report : callable
+        Called as report(stage, fraction).
+    cache : Path, optional
+        Directory of flank compliances.
+    """
+    clock = StageClock()
+    request = checked.request
+    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+    fine = _places(request, plan, clock, report, cache, coarse=False)
+    with clock.stage("contact"):
+        nodes = table_nodes(fine, plan)
+        report("contact", 0.3)
+        solved = [place.solve(nodes.position, plan.load) for place in fine.places]
+        support = [place.solve(nodes.position, plan.support) for place in fine.places]
+        report("contact", 1.0)
+    coarse = _places(request, plan, clock, report, cache, coarse=True)
+    with clock.stage("error estimate"):
+        rough = [place.solve(nodes.position, plan.load)[1] for place in coarse.places]
+        errors = estimate_errors(fine, [solution for _, solution in solved], rough, nodes, plan)
+    return SteDatabase(
+        position=nodes.position,
+        force=plan.load,
+        torque=request.torque,
+        misalignment=request.misalignment,
+        center_distance_change=request.center_distance_change,
+        facts=pair_facts(request.pair),
+        error_estimate=errors.total,
+        metadata=_metadata(case, plan, checked.ledger, clock, errors, solved),
+        **table_fields(fine, solved),
+        **table_support(fine, support),
+    )
+
+
+def _places(
+    request: Request, plan: Plan, clock: StageClock, report: Progress, cache: Path | None, *, coarse: bool
+) -> Places:
+    """Compute or fetch the compliances of both gears, and lay out the table over them."""
+    stage = "error estimate" if coarse else "compliance"
+    report(stage, 0.0)
+    with clock.stage(stage):
+        nominal = pair_contact(request.pair, plan, cache, coarse)
+    report(stage, 1.0)
+    return table_places(request.scene, request.choices, nominal)
+
+
+def _metadata(
+    case: Json,
+    plan: Plan,
+    ledger: tuple[LedgerEntry, ...],
+    clock: StageClock,
+    errors: ErrorSources,
+    solved: list[tuple[ContactProblem, ContactSolution]],
+) -> Metadata:
+    """Everything about the making of the table."""
+    receipt = clock.to_json() | {
+        "error_by_source": errors.to_json(),
+        "plan": plan.to_json(),
+        "newton_iterations_max": max(int(solution.iterations.max()) for _, solution in solved),
+        "residuals_max": max(worst_residual(solution) for _, solution in solved),
+        "patch_outgrown_points": sum(int(solution.beyond.sum()) for _, solution in solved),
+    }
+    return Metadata(
+        case=case,
+        effect_ledger=[entry.to_json() for entry in ledger],
+        receipt=receipt,
+        content_hash=content_hash(case, SOLVER_VERSION, SCHEMA_VERSION),
+        software_versions={"python": platform.python_version()} | {name: version(name) for name in PACKAGES},
+    )
