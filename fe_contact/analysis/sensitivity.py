@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,7 +60,7 @@ def study_sensitivity(
     model: str = "auto",
     positions: int | None = None,
     effects: Mapping[str, str] | None = None,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress | None = None,
     cache: Path | None = None,
 ) -> tuple[Sensitivity, Sensitivity]:
     """Vary misalignment and centre distance, one at a time, without and with corner contact.
