@@ -59,9 +59,21 @@ def _show(summary: dict[str, Any]) -> None:
     for entry in summary["effect_ledger"]:
         state = "on " if entry["on"] else "off"
         out.print(f"effect {entry['name']}: {state} ({entry['choice']}); {entry['reason']}", highlight=False)
+    out.print(_cost(summary["receipt"]), highlight=False)
     out.print(f"points {summary['points']}, failed {summary['failed_points']}", highlight=False)
     out.print(f"content hash {summary['content_hash']}", highlight=False)
     out.print(f"written to {summary['file']}", highlight=False)
+
+
+def _cost(receipt: dict[str, Any]) -> str:
+    """Return time by stage and memory in one line, and what the plane model leaves out in another."""
+    stages = ", ".join(f"{name} {spent['cpu_seconds']:.2g}" for name, spent in receipt["stages"].items())
+    memory = receipt["peak_memory_bytes"] / 2**20
+    text = f"\ncost {receipt['cpu_seconds']:.3g} CPU s ({stages}), {memory:.0f} MiB"
+    left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
+    if left_out:
+        text += f"\nplane model: this width deflects about {100 * left_out:.2g} % more (not in the errors)"
+    return text
 
 
 def _row(load: dict[str, Any]) -> list[str]:

@@ -1,0 +1,23 @@
+"""The summary of `loa analyze` says what it cost and what the plane model leaves out."""
+
+from __future__ import annotations
+
+from service.cli.analyze import _cost
+
+
+def receipt(left_out: float) -> dict[str, object]:
+    stages = {"compliance": {"cpu_seconds": 0.25}, "contact": {"cpu_seconds": 1.5}}
+    return {
+        "stages": stages,
+        "cpu_seconds": 1.75,
+        "peak_memory_bytes": 300 * 2**20,
+        "error_by_source": {"plane_for_finite_width_relative": left_out},
+    }
+
+
+def test_time_by_stage_and_memory() -> None:
+    assert _cost(receipt(0.0)) == "\ncost 1.75 CPU s (compliance 0.25, contact 1.5), 300 MiB"
+
+
+def test_the_plane_model_says_what_it_leaves_out() -> None:
+    assert "3.3 % more" in _cost(receipt(0.0333))
