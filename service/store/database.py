@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Connection, Engine, MetaData, create_engine, event
+from sqlalchemy import Connection, Engine, MetaData, NullPool, create_engine, event
 
 metadata = MetaData()
 
@@ -23,7 +23,8 @@ _PRAGMAS = (
 def open_database(file: Path) -> Engine:
     """Return an engine on the SQLite file, made with its tables if it does not exist."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    engine = create_engine(f"sqlite:///{file}")
+    # no pool: a connection kept for a thread that has ended is closed by nobody, and opening one costs little
+    engine = create_engine(f"sqlite:///{file}", poolclass=NullPool)
     event.listen(engine, "connect", _prepare)
     event.listen(engine, "begin", _begin)
     with writing(engine) as connection:

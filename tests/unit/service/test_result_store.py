@@ -6,9 +6,10 @@ import hashlib
 from pathlib import Path
 
 import pytest
+from sqlalchemy import event
 
 from service.problems import BadInput, DamagedFile, NotFound
-from service.store import DirectoryLock, ResultStore, open_database
+from service.store import DirectoryLock, ResultStore, open_database, reading, writing
 
 KEY = hashlib.sha256(b"input").hexdigest()
 
@@ -80,3 +81,15 @@ def test_a_file_where_the_directory_should_be_is_refused(tmp_path: Path) -> None
     (tmp_path / "file").write_text("")
     with pytest.raises(BadInput, match="a directory we may write to"):
         DirectoryLock(tmp_path / "file").acquire()
+
+
+def test_no_connection_outlives_its_transaction(tmp_path: Path) -> None:
+    """Kept connections of ended threads were closed by nobody (Python 3.13 says so)."""
+    engine = open_database(tmp_path / "index.sqlite3")
+    opened, closed = [], []
+    event.listen(engine, "connect", lambda connection, _record: opened.append(connection))
+    event.listen(engine, "close", lambda connection, _record: closed.append(connection))
+    for transaction in (reading, writing):
+        with transaction(engine) as connection:
+            connection.exec_driver_sql("SELECT 1")
+    assert len(opened) == len(closed) == 2
