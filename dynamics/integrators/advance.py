@@ -58,7 +58,8 @@ def advance(
             continue
         count[Count.REJECTED] += 1
         count[Count.NEWTON_FAILED] += 0 if solved else 1
-        if count[Count.RUNG] > work.ladder.size - 2 or not control.adaptive:
+        below_the_ladder = count[Count.RUNG] > work.ladder.size - 2
+        if below_the_ladder or not control.adaptive:
             return NOT_FINITE if diverged else STEP_FLOOR
     return COMPLETED
 

@@ -84,7 +84,8 @@ def next_rung(work: Workspace, control: Control, error: float, accepted: bool) -
 
     Proportional-integral control (Gustafsson): the factor depends on the last accepted error too, so that the
     step size does not oscillate where the solution is stiff. A rejected step falls by at least one rung, and
-    no accepted one rises by less than a whole rung, so the step stays put unless it pays.
+    no accepted one rises by less than a whole rung, so the step stays put unless it pays. After an accepted
+    step the rung is on the ladder; after a rejected one it may be the one below it, which has no step.
     """
     exponent = 1.0 / (control.order + 1)
     error = max(error, 1e-10)
@@ -94,6 +95,8 @@ def next_rung(work: Workspace, control: Control, error: float, accepted: bool) -
     factor = min(max(factor, FALL_LIMIT), RISE_LIMIT)
     rise = math.floor(RUNGS_PER_OCTAVE * math.log2(factor))
     rung = work.counts[Count.RUNG] - int(rise)
+    smallest = work.ladder.size - 2
     if not accepted:
         rung = max(rung, work.counts[Count.RUNG] + 1)
-    return int(max(rung, 0))
+        smallest += 1  # below the ladder: the caller ends there
+    return int(min(max(rung, 0), smallest))
