@@ -15,7 +15,8 @@ from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects import LedgerEntry
-from fe_contact.planning import Plan, StageClock, make_plan
+from fe_contact.planning import Plan, make_plan
+from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION

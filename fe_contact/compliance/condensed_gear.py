@@ -6,13 +6,13 @@ from fe_contact.compliance.checks_3d import CondensedGear, probe_loads
 from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.compliance.sector_tree import sector_tree
-from fe_contact.compliance.stage_clock import StageClock
 from fe_contact.compliance.substructure import condense
 from fe_contact.geometry import Gear, tooth_profile
 from fe_contact.mesh.bore_support import BoreSupport
 from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import swept_sector
+from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 
 

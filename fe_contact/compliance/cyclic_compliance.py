@@ -12,11 +12,11 @@ from fe_contact.checks import integer
 from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.flank_3d import FlankCompliance3D
-from fe_contact.compliance.stage_clock import StageClock
 from fe_contact.geometry import Gear, tooth_profile
 from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
 from fe_contact.mesh.quad_sector import quad_sector
 from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.stage_clock import StageClock
 from fe_contact.types import Json
 
 MODEL_VERSION = 3  # raise it whenever the same input gives another result: old cache files are then not found

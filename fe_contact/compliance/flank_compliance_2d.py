@@ -16,10 +16,10 @@ from fe_contact.compliance.plane import PlaneHypothesis
 from fe_contact.compliance.ring_2d import Ring, assemble_ring, flank_matrix
 from fe_contact.compliance.sector_2d import condense_sector
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
-from fe_contact.compliance.stage_clock import StageClock
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
+from fe_contact.stage_clock import StageClock
 from fe_contact.types import IntArray, Json
 
 MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found

@@ -9,7 +9,8 @@ from fe_contact import Gear, GearPair
 from fe_contact.contact import ContactModel
 from fe_contact.errors import InputError
 from fe_contact.hertz import half_width, relative_radius
-from fe_contact.planning import Accuracy, FaceDiscretisation, Plan, StageClock, make_plan
+from fe_contact.planning import Accuracy, FaceDiscretisation, Plan, make_plan
+from fe_contact.stage_clock import StageClock
 
 
 @pytest.fixture(scope="module")
@@ -65,3 +66,15 @@ def test_the_clock_adds_repeated_stages():
     assert receipt["stages"]["work"]["cpu_seconds"] >= 0.04
     assert receipt["cpu_seconds"] == pytest.approx(receipt["stages"]["work"]["cpu_seconds"])
     assert receipt["peak_memory_bytes"] > 1e6
+
+
+def test_finishing_books_what_passed_since_the_last_stage():
+    clock = StageClock()
+    end = time.process_time() + 0.02
+    while time.process_time() < end:
+        pass
+    clock.finish("mesh")
+    clock.finish("rest")
+    assert list(clock.seconds) == ["mesh", "rest"]
+    assert clock.seconds["mesh"] >= 0.015
+    assert clock.seconds["rest"] < clock.seconds["mesh"]

@@ -1,4 +1,4 @@
-"""What a run cost and how wrong it is, by stage and by source."""
+"""Time of the stages of a computation, for its receipt."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import resource
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from fe_contact.types import Json
 
@@ -20,30 +20,40 @@ class Stage:
     wall_seconds: float
 
 
-@dataclass
 class StageClock:
-    """Collects the stages of one run (the only mutable object of the analysis)."""
+    """Collects the stages of one run; repeated stages are added up."""
 
-    stages: list[Stage] = field(default_factory=list)
+    def __init__(self) -> None:
+        self.stages: list[Stage] = []
+        self._last = _reading()
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time what happens inside."""
-        cpu, wall = _cpu_seconds(), time.perf_counter()
+        begun = _reading()
         try:
             yield
         finally:
-            self.stages.append(Stage(name, _cpu_seconds() - cpu, time.perf_counter() - wall))
+            self._book(name, begun)
+
+    def finish(self, name: str) -> None:
+        """Book the time since the last stage ended, or since the clock was made."""
+        self._book(name, self._last)
+
+    @property
+    def seconds(self) -> dict[str, float]:
+        """CPU seconds by stage."""
+        names = dict.fromkeys(stage.name for stage in self.stages)
+        return {name: sum(s.cpu_seconds for s in self.stages if s.name == name) for name in names}
 
     def to_json(self) -> Json:
-        """Return times by stage, their sum, and the peak memory in bytes; repeated stages are added up."""
-        names = list(dict.fromkeys(stage.name for stage in self.stages))
+        """Return times by stage, their sum, and the peak memory in bytes."""
         by_stage = {
             name: {
-                "cpu_seconds": sum(s.cpu_seconds for s in self.stages if s.name == name),
+                "cpu_seconds": cpu,
                 "wall_seconds": sum(s.wall_seconds for s in self.stages if s.name == name),
             }
-            for name in names
+            for name, cpu in self.seconds.items()
         }
         return {
             "stages": by_stage,
@@ -52,11 +62,16 @@ class StageClock:
             "peak_memory_bytes": _peak_memory(),
         }
 
+    def _book(self, name: str, begun: tuple[float, float]) -> None:
+        """Add a stage that ends now."""
+        self._last = _reading()
+        self.stages.append(Stage(name, self._last[0] - begun[0], self._last[1] - begun[1]))
 
-def _cpu_seconds() -> float:
-    """User and system time of this process and of its finished children."""
+
+def _reading() -> tuple[float, float]:
+    """CPU seconds of this process and its finished children, and wall seconds."""
     usage = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return sum(u.ru_utime + u.ru_stime for u in usage)
+    return sum(u.ru_utime + u.ru_stime for u in usage), time.perf_counter()
 
 
 def _peak_memory() -> int:
