@@ -6,11 +6,12 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from dynamics.checks import increasing
+from dynamics.checks import increasing, integer
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
 FIELDS = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
+LARGEST_PERIOD = 1_000_000
 
 
 @runtime_checkable
@@ -20,7 +21,9 @@ class MeshTable(Protocol):
     Attributes
     ----------
     position : (P,) array
-        Knots in transverse base pitches of the driving gear, increasing in [0, 1), period 1.
+        Knots in transverse base pitches of the driving gear, increasing in [0, period).
+    period : int
+        Whole base pitches after which the table repeats: 1 where all teeth are alike.
     level : (L,) array
         Transverse mesh force in N at the levels, increasing, ``level[0] = 0`` (lift-off).
     misalignment, center_distance_change : (M,), (D,) arrays
@@ -35,6 +38,8 @@ class MeshTable(Protocol):
 
     @property
     def position(self) -> FloatArray: ...  # noqa: D102
+    @property
+    def period(self) -> int: ...  # noqa: D102
     @property
     def level(self) -> FloatArray: ...  # noqa: D102
     @property
@@ -55,10 +60,12 @@ def check_table(field: str, table: MeshTable) -> None:
     """Raise `InputError` if `table` breaks the protocol's shapes, orders or signs."""
     if not isinstance(table, MeshTable):
         raise InputError(field, type(table).__name__, "a mesh-force table", "Use SteDatabase.force_table().")
+    period = integer(f"{field}.period", table.period, 1, LARGEST_PERIOD)
     position = increasing(f"{field}.position", table.position)
     level = increasing(f"{field}.level", table.level)
-    if position[0] < 0.0 or position[-1] >= 1.0:
-        raise InputError(f"{field}.position", (position[0], position[-1]), "in [0, 1)")
+    if position[0] < 0.0 or position[-1] >= period:
+        bound = f"in [0, {period}), the table's period"
+        raise InputError(f"{field}.position", (position[0], position[-1]), bound)
     if level[0] != 0.0 or level.size < 2:
         raise InputError(f"{field}.level", level.tolist(), "at least two forces, the first 0")
     shape = (np.size(table.misalignment), np.size(table.center_distance_change), position.size, level.size)

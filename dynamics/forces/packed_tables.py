@@ -22,8 +22,12 @@ class PackedTables(NamedTuple):
         Per flank: first knot, first bucket, number of buckets, first row, first level, number of levels.
     shift : (m,) array
         Position of the first knot.
+    period : (m,) array
+        Whole base pitches.
+    density : (m,) array
+        Buckets per base pitch.
     knot : flat array
-        Knots less `shift`, from 0 to 1 inclusive (P + 1 of them).
+        Knots less `shift`, from 0 to the period inclusive (P + 1 of them).
     bucket : flat int array
         The interval in which each of the equal buckets of the period begins: finding it takes no search.
     row : (sum of P L, 8) array
@@ -35,6 +39,8 @@ class PackedTables(NamedTuple):
 
     offset: IntArray
     shift: FloatArray
+    period: FloatArray
+    density: FloatArray
     knot: FloatArray
     bucket: IntArray
     row: FloatArray
@@ -43,7 +49,7 @@ class PackedTables(NamedTuple):
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
     """Lay out `tables`, each with misalignment and centre-distance axes of length 1."""
-    knots = [np.append(np.asarray(table.position, float), table.position[0] + 1.0) for table in tables]
+    knots = [_closed(table) for table in tables]
     relative = [knot - knot[0] for knot in knots]
     buckets = [_buckets(knot) for knot in relative]
     rows = [_rows(table, knot) for table, knot in zip(tables, relative, strict=True)]
@@ -53,14 +59,22 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
         [starts[0][f], starts[1][f], buckets[f].size, starts[2][f], starts[3][f], levels[f].size]
         for f in range(len(tables))
     ]
+    period = np.array([float(table.period) for table in tables])
     return PackedTables(
         np.array(offset, dtype=np.int64).reshape(-1, 6),
         np.array([knot[0] for knot in knots]),
+        period,
+        np.array([float(bucket.size) for bucket in buckets]) / period,
         np.concatenate([*relative, np.empty(0)]),
         np.concatenate([*buckets, np.empty(0, dtype=np.int64)]),
         np.ascontiguousarray(np.concatenate([*rows, np.empty((0, 8))])),
         np.concatenate([*levels, np.empty(0)]),
     )
+
+
+def _closed(table: MeshTable) -> FloatArray:
+    """Knots of one period, the first one repeated at its end."""
+    return np.append(np.asarray(table.position, dtype=float), table.position[0] + table.period)
 
 
 def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
@@ -71,7 +85,7 @@ def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
 def _buckets(knot: FloatArray) -> IntArray:
     """Interval that holds the start of each bucket; rounding must not put it behind a position in it."""
     count = BUCKETS_PER_KNOT * (knot.size - 1)
-    start = np.arange(count) / count * (1.0 - 1e-12)
+    start = np.arange(count) / count * (knot[-1] * (1.0 - 1e-12))
     index = np.clip(np.searchsorted(knot, start, side="right") - 1, 0, knot.size - 2)
     return np.asarray(index, dtype=np.int64)
 

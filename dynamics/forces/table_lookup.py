@@ -17,14 +17,23 @@ def cubic(row: FloatArray, index: int, column: int, u: float) -> float:
 
 
 @inner
+def wrapped(position: float, period: float) -> float:
+    """Return `position` in [0, period): whole periods drop exactly."""
+    phase = position
+    if not 0.0 <= phase < period:
+        phase -= period * math.floor(phase / period)
+        if not 0.0 <= phase < period:  # a tiny negative phase rounds up to a whole period
+            phase = 0.0
+    return phase
+
+
+@inner
 def position_interval(table: PackedTables, flank: int, position: float) -> tuple[int, float, float]:
     """Return the first row of the interval that holds `position`, the coordinate in it, 1/width."""
     first, bucket, buckets = table.offset[flank, 0], table.offset[flank, 1], table.offset[flank, 2]
-    phase = position - table.shift[flank]
-    phase -= math.floor(phase)
-    if phase >= 1.0:  # a tiny negative phase rounds up to a whole turn
-        phase = 0.0
-    interval = table.bucket[bucket + int(phase * buckets)]
+    phase = wrapped(position - table.shift[flank], table.period[flank])
+    # rounding may carry a phase just below the period into a bucket behind the last
+    interval = table.bucket[bucket + min(int(phase * table.density[flank]), buckets - 1)]
     while phase >= table.knot[first + interval + 1]:
         interval += 1
     start = table.knot[first + interval]

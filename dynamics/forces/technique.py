@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.forces.mesh_table import FIELDS, MeshTable
+from dynamics.forces.mesh_table import MeshTable
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.forces.table_slope import deflection_slope
@@ -26,6 +26,7 @@ class PlainTable:
     deflection_slope: FloatArray
     stiffness: FloatArray
     stiffness_slope: FloatArray
+    period: int = 1
 
 
 def table_at(table: MeshTable, misalignment: float, center_distance_change: float) -> PlainTable:
@@ -38,18 +39,21 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
     """
     weight_m = _weights("misalignment", table.misalignment, misalignment)
     weight_d = _weights("center_distance_change", table.center_distance_change, center_distance_change)
-    fields = [
-        np.einsum("m,d,mdpl->pl", weight_m, weight_d, np.asarray(getattr(table, name), dtype=float))[
-            None, None
-        ]
-        for name in FIELDS
-    ]
+
+    def here(name: str) -> FloatArray:
+        values = np.asarray(getattr(table, name), dtype=float)
+        return np.asarray(np.einsum("m,d,mdpl->pl", weight_m, weight_d, values)[None, None])
+
     return PlainTable(
         np.asarray(table.position, dtype=float),
         np.asarray(table.level, dtype=float),
         np.array([misalignment]),
         np.array([center_distance_change]),
-        *fields,
+        here("deflection"),
+        here("deflection_slope"),
+        here("stiffness"),
+        here("stiffness_slope"),
+        table.period,
     )
 
 
@@ -84,6 +88,7 @@ def secant_table(table: PlainTable, force: float) -> PlainTable:
         shaped(zero, slope),
         shaped(stiffness, stiffness),
         shaped(stiffness_slope, stiffness_slope),
+        table.period,
     )
 
 

@@ -49,7 +49,7 @@ def resample_to_position(
     integer("per_pitch", per_pitch, 2, 4096)
     wrapped = result.position[mesh]
     step = np.diff(wrapped)
-    step -= np.round(step)
+    step -= np.round(step)  # whatever whole number of pitches the table's period has
     if np.any(step < 0.0):
         suggestion = "Raise outputs.sample_rate."
         raise InputError("sample_rate", result.sample_rate, "above twice the mesh frequency", suggestion)

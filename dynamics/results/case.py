@@ -50,5 +50,9 @@ def _mesh(system: System, index: int) -> Json:
         "working_pressure_angle": line.working_pressure_angle,
         "line_of_action": [float(value) for value in line.force],
         "point_of_action": [float(value) for value in line.point],
-        "table": {"positions": np.size(mesh.table.position), "levels": np.size(mesh.table.level)},
+        "table": {
+            "positions": np.size(mesh.table.position),
+            "levels": np.size(mesh.table.level),
+            "period": int(mesh.table.period),
+        },
     }

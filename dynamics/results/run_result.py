@@ -28,7 +28,7 @@ class RunResult:
     mesh, shaft, bearing, freedom : tuples of str
         Names along the axes below.
     position : (m, T) array
-        Of each mesh by its driver, base pitches in [0, 1).
+        Of each mesh by its driver, base pitches in [0, period of its table).
     mesh_frequency : (m, T) array
         Hz, of the kinematic motion.
     dynamic_transmission_error : (m, T) array

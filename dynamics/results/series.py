@@ -32,7 +32,12 @@ class Series:
 
 
 SERIES = (
-    Series("position", ("mesh", "time"), "1", "position by the driving gear in base pitches"),
+    Series(
+        "position",
+        ("mesh", "time"),
+        "1",
+        "position by the driving gear in base pitches, in [0, period)",
+    ),
     Series("mesh_frequency", ("mesh", "time"), "Hz", "mesh frequency of the kinematic motion"),
     Series("dynamic_transmission_error", ("mesh", "time"), "m", "dynamic transmission error"),
     Series(

@@ -39,6 +39,8 @@ class Reference(NamedTuple):
         Base pitches per revolution of the drive for each flank, an exact fraction.
     offset : (m,) array
         Position of each flank at t = 0, base pitches.
+    period : (m,) int array
+        Base pitches after which the flank's table repeats.
     """
 
     speed: LawArrays
@@ -47,6 +49,7 @@ class Reference(NamedTuple):
     numerator: IntArray
     denominator: IntArray
     offset: FloatArray
+    period: IntArray
 
 
 class Loads(NamedTuple):

@@ -217,6 +217,7 @@ def _reference(scene: Scene, kinematics: Kinematics) -> Reference:
         np.array([rate.numerator for rate in rates], dtype=np.int64),
         np.array([rate.denominator for rate in rates], dtype=np.int64),
         np.array([mesh.position_offset for mesh in scene.meshes], dtype=float),
+        np.array([mesh.table.period for mesh in scene.meshes], dtype=np.int64),
     )
 
 

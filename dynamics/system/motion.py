@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from dynamics.forces.compiled import compiled, inner
+from dynamics.forces.table_lookup import wrapped
 from dynamics.system.arrays import LawArrays, Reference, SystemArrays
 from dynamics.types import FloatArray
 
@@ -41,15 +42,16 @@ def drive_motion(reference: Reference, time: float) -> tuple[float, float, float
 
 @compiled
 def flank_phase(reference: Reference, flank: int, whole: float, fraction: float) -> float:
-    """Return the flank's position in the kinematic motion, base pitches in [0, 2): whole turns drop exactly.
+    """Return the flank's position in the kinematic motion, in [0, period): whole periods drop exactly.
 
     Base pitches per revolution are a fraction of integers, so that what whole revolutions add is an integer
-    number of base pitches and a remainder of integers: no digit is lost however far the shafts have turned.
+    number of periods and a remainder of integers: no digit is lost however far the shafts have turned.
     """
     numerator, denominator = reference.numerator[flank], reference.denominator[flank]
-    remainder = (int(whole) % denominator) * numerator % denominator
+    cycle = denominator * reference.period[flank]
+    remainder = (int(whole) % cycle) * numerator % cycle
     phase = remainder / denominator + fraction * numerator / denominator + reference.offset[flank]
-    return float(phase - math.floor(phase))
+    return wrapped(phase, float(reference.period[flank]))
 
 
 @inner

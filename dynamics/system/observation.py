@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from dynamics.forces.compiled import compiled
 from dynamics.forces.flank_force import flank_force
 from dynamics.forces.packed_tables import PackedTables
-from dynamics.forces.table_lookup import table_deflection
+from dynamics.forces.table_lookup import table_deflection, wrapped
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.motion import drive_motion, flank_phase
 from dynamics.types import FloatArray
@@ -27,7 +25,7 @@ def observe_flanks(
                 position += system.turn[f, i] * q[k, i]
                 deflection += system.direction[f, i] * q[k, i]
                 rate += system.direction[f, i] * v[k, i]
-            observed[0, f, k] = position - math.floor(position)
+            observed[0, f, k] = wrapped(position, float(system.reference.period[f]))
             observed[1, f, k] = deflection
             observed[2, f, k] = flank_force(system.flank, f, position, deflection, rate, 0)[0]
 

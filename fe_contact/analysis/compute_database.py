@@ -61,6 +61,7 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
         misalignment=request.misalignment,
         center_distance_change=request.center_distance_change,
         facts=pair_facts(request.pair),
+        period=1,
         error_estimate=errors.total,
         metadata=_metadata(case, plan, checked.ledger, clock, errors, solved),
         **table_fields(fine, solved),

@@ -7,6 +7,7 @@ from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.held_out import HeldOutError, held_out_error
 from fe_contact.ste.mesh_force import ForceSample, MeshForce, Validity
 from fe_contact.ste.repair import Repair
+from fe_contact.ste.spectrum import Spectrum
 
 __all__ = [
     "SCHEMA_VERSION",
@@ -18,6 +19,7 @@ __all__ = [
     "Metadata",
     "PairFacts",
     "Repair",
+    "Spectrum",
     "SteDatabase",
     "Validity",
     "held_out_error",

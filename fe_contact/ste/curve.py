@@ -13,11 +13,10 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.ste.load_sharing import error_band, load_share, pairs_seen
 from fe_contact.ste.loads import OperatingPoint
 from fe_contact.ste.mesh_force import MeshForce
+from fe_contact.ste.spectrum import Spectrum, even_positions, spectrum
 from fe_contact.types import Estimate, FloatArray
 
-HARMONICS = 20
-_SAMPLES = 4096
-_FARTHEST = 1000.0  # base pitches from the reference; load shares get a column per pair passed on the way
+_FARTHEST = 1000  # periods from the reference; load shares get a column per pair passed on the way
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +36,19 @@ class Curve:
     error : (Q,) array
         Half-width of its error band, m.
     pair : (N,) array
-        Pair index of each column of `load_share`; the stored pairs if all positions lie in [0, 1).
+        Pair index of each column of `load_share`; the stored pairs if all positions lie in [0, 1) or the
+        period is longer than a pitch.
     load_share : (Q, N) array
         Part of the load on each pair.
     mean, peak_to_peak : Estimate
-        Over one pitch, whatever `position` holds.
+        Over one period, whatever `position` holds.
     harmonics : tuple of Estimate
-        Amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20.
+        Mesh harmonics: amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20.
     harmonic_phases : (20,) array
         phi_n in rad.
+    spectrum : Spectrum
+        All orders up to the 20th mesh harmonic: with a period of many pitches also what lies between the
+        mesh harmonics.
     """
 
     point: OperatingPoint
@@ -59,6 +62,7 @@ class Curve:
     peak_to_peak: Estimate
     harmonics: tuple[Estimate, ...]
     harmonic_phases: FloatArray
+    spectrum: Spectrum
 
 
 def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: ArrayLike | None) -> Curve:
@@ -71,14 +75,15 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     Raises
     ------
     InputError
-        If `at` is no list of finite positions within 1000 pitches.
+        If `at` is no list of finite positions within 1000 periods.
     """
-    position = database.position if at is None else _positions(at)
-    pitch = np.arange(_SAMPLES) / _SAMPLES
-    everywhere = np.concatenate([pitch, database.position])  # extremes of a stored load lie on knots
+    position = database.position if at is None else _positions(at, _FARTHEST * database.period)
+    even = even_positions(database.period)
+    everywhere = np.concatenate([even, database.position])  # extremes of a stored load lie on knots
     ste, error = _evaluate(database, force, point, everywhere)
-    sizes, phases = amplitudes(ste[:_SAMPLES], HARMONICS)
-    mean_error = float(np.mean(error[:_SAMPLES]))
+    mean_error = float(np.mean(error[: even.size]))
+    orders = spectrum(ste[: even.size], database.period, database.facts.teeth, 2.0 * mean_error)
+    mesh = slice(database.period - 1, None, database.period)
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
     asked, asked_error = _evaluate(database, force, point, position)
     return Curve(
@@ -89,10 +94,11 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         error=asked_error,
         pair=pairs_seen(database, position),
         load_share=load_share(database, position, point),
-        mean=Estimate(float(np.mean(ste[:_SAMPLES])), mean_error, "m"),
+        mean=Estimate(float(np.mean(ste[: even.size])), mean_error, "m"),
         peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), float(error[highest] + error[lowest]), "m"),
-        harmonics=tuple(Estimate(float(size), 2.0 * mean_error, "m") for size in sizes),
-        harmonic_phases=phases,
+        harmonics=tuple(Estimate(float(size), orders.error, "m") for size in orders.amplitude[mesh]),
+        harmonic_phases=orders.phase[mesh],
+        spectrum=orders,
     )
 
 
@@ -113,20 +119,11 @@ def _evaluate(
     return ste, error + np.maximum(ste - lift_off, smallest - ste)
 
 
-def _positions(at: ArrayLike) -> FloatArray:
+def _positions(at: ArrayLike, farthest: int) -> FloatArray:
     """Positions as a finite 1-D array of moderate reach."""
     position = np.atleast_1d(np.asarray(at, dtype=float))
-    if position.ndim != 1 or position.size == 0 or not np.all(np.abs(position) <= _FARTHEST):
+    if position.ndim != 1 or position.size == 0 or not np.all(np.abs(position) <= farthest):
         raise InputError(
-            "at", at, f"a non-empty list of positions from {-_FARTHEST:g} to {_FARTHEST:g} base pitches"
+            "at", at, f"a non-empty list of positions from {-farthest} to {farthest} base pitches"
         )
     return position
-
-
-def amplitudes(samples: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
-    """Amplitudes A_n and phases phi_n (rad), n = 1 .. count, of uniform samples over one period.
-
-    samples(x) = mean + sum A_n cos(2 pi n x + phi_n), x from 0.
-    """
-    spectrum = np.fft.rfft(samples)[1 : count + 1] * (2.0 / len(samples))
-    return np.abs(spectrum), np.angle(spectrum) % (2.0 * math.pi)

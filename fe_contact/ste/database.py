@@ -16,6 +16,7 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.loads import default_value, operating_point
 from fe_contact.ste.mesh_force import ForceSample, MeshForce
+from fe_contact.ste.spectrum import Spectrum
 from fe_contact.types import Estimate, FloatArray
 
 if TYPE_CHECKING:
@@ -108,7 +109,7 @@ class SteDatabase(SteFields):
         misalignment: float | None = None,
         center_distance_change: float | None = None,
     ) -> Estimate:
-        """Mean transmission error over one pitch, m; raises as `curve`."""
+        """Mean transmission error over one period, m; raises as `curve`."""
         return self.curve(
             torque=torque,
             force=force,
@@ -124,7 +125,7 @@ class SteDatabase(SteFields):
         misalignment: float | None = None,
         center_distance_change: float | None = None,
     ) -> Estimate:
-        """Peak-to-peak transmission error over one pitch, m; raises as `curve`."""
+        """Peak-to-peak transmission error over one period, m; raises as `curve`."""
         return self.curve(
             torque=torque,
             force=force,
@@ -147,6 +148,22 @@ class SteDatabase(SteFields):
             misalignment=misalignment,
             center_distance_change=center_distance_change,
         ).harmonics
+
+    def spectrum(
+        self,
+        *,
+        torque: float | None = None,
+        force: float | None = None,
+        misalignment: float | None = None,
+        center_distance_change: float | None = None,
+    ) -> Spectrum:
+        """All orders over the table's period, m; raises as `curve`."""
+        return self.curve(
+            torque=torque,
+            force=force,
+            misalignment=misalignment,
+            center_distance_change=center_distance_change,
+        ).spectrum
 
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
         """Return the table of plain arrays that dynamics takes; raises as `extraction.force_table`."""

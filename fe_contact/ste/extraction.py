@@ -33,7 +33,7 @@ def force_table(database: SteFields) -> ForceTable:
     """
     database.require_complete()
     levels = refined(_stored_levels(database), _pairs_in_contact(database))
-    axis = Axis(database.position, 1.0)
+    axis = Axis(database.position, float(database.period))
     deflection = deflection_grid((axis,), levels.deflection, (ordered_slopes(axis, levels.deflection),))
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
     stiffness = monotone_stiffness(unlimited, deflection, levels.force)
@@ -47,6 +47,7 @@ def force_table(database: SteFields) -> ForceTable:
         deflection_slope=_position_third(deflection.nodal.get((1,), flat)),
         stiffness=_position_third(stiffness.nodal[(0,)]),
         stiffness_slope=_position_third(stiffness.nodal.get((1,), flat)),
+        period=database.period,
     )
 
 

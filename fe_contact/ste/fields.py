@@ -55,7 +55,7 @@ class SteFields:
     Attributes
     ----------
     position : (P,) array
-        Phase of the driving gear in transverse base pitches, increasing in [0, 1), period 1.
+        Phase of the driving gear in transverse base pitches, increasing in [0, period).
     force : (F,) array
         Total normal tooth force F_bn in N, increasing, > 0.
     torque : (F,) array
@@ -65,7 +65,8 @@ class SteFields:
     center_distance_change : (D,) array
         Deviation from the nominal centre distance, m.
     pair : (N,) array
-        Consecutive indices of the tooth pairs; pair j touches at phase `position` + j.
+        Consecutive indices of the tooth pairs, counted anew at every whole pitch: pair j touches at phase
+        `position` - floor(`position`) + j.
     static_transmission_error : (P, F, M, D) array
         m along the transverse line of action, positive = the driven gear lags; NaN where the solve failed.
     tangent_compliance : (P, F, M, D) array
@@ -91,6 +92,8 @@ class SteFields:
         beyond the highest load; S may be 0.
     support_transmission_error, support_tangent_compliance, support_pairs_in_contact : (P, S, M, D) arrays
         As the arrays of the same names without `support`.
+    period : int
+        Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike.
 
     Raises
     ------
@@ -120,6 +123,7 @@ class SteFields:
     support_transmission_error: FloatArray = field(default_factory=lambda: np.empty(0))
     support_tangent_compliance: FloatArray = field(default_factory=lambda: np.empty(0))
     support_pairs_in_contact: NDArray[np.int16] = field(default_factory=lambda: np.empty(0, np.int16))
+    period: int = 1
 
     def __post_init__(self) -> None:
         self._default_support()
@@ -149,6 +153,8 @@ class SteFields:
     def summary(self) -> str:
         """One or two lines: extent of the table, and loudly what failed in it."""
         extent = " x ".join(f"{getattr(self, name).size} {name}" for name in GRID)
+        if self.period > 1:
+            extent += f" over {self.period} base pitches"
         text = f"STE database: {extent}; force {self.force[0]:g} to {self.force[-1]:g} N"
         return (
             f"{text}\nWARNING: {self.failure_message()}" if self.n_failed else f"{text}; all points converged"
@@ -180,6 +186,7 @@ class SteFields:
         return (
             self.facts == other.facts
             and self.metadata == other.metadata
+            and self.period == other.period
             and all(_same_bits(getattr(self, name), getattr(other, name)) for name in DIMENSIONS)
         )
 
@@ -217,7 +224,10 @@ def _check_axes(table: SteFields) -> None:
     )
     _refuse(bool(np.any(np.diff(table.support_force) <= 0.0)), "support_force", "be strictly increasing")
     _refuse(not np.all(table.support_force > 0.0), "support_force", "be above 0 N")
-    _refuse(table.position[0] < 0.0 or table.position[-1] >= 1.0, "position", "lie in [0, 1)")
+    whole = isinstance(table.period, int) and not isinstance(table.period, bool)
+    _refuse(not whole or table.period < 1, "period", "be a whole number of base pitches, 1 or more")
+    beyond = table.position[0] < 0.0 or table.position[-1] >= table.period
+    _refuse(beyond, "position", f"lie in [0, {table.period})")
     _refuse(table.force[0] <= 0.0, "force", "be above 0 N")
     _refuse(bool(np.any(np.diff(table.pair) != 1)), "pair", "be consecutive")
     carried = table.force * (table.facts.base_radius[0] * math.cos(table.facts.base_helix_angle))

@@ -16,7 +16,7 @@ class ForceTable:
     Attributes
     ----------
     position : (P,) array
-        Knots in transverse base pitches, increasing in [0, 1), period 1.
+        Knots in transverse base pitches, increasing in [0, period).
     level : (L,) array
         Transverse mesh force F_bt in N at the levels, increasing, level[0] = 0 (lift-off).
     misalignment : (M,) array
@@ -31,6 +31,8 @@ class ForceTable:
         dF_bt / d(deflection) in N/m, limited so that the force is monotone; 0 at lift-off.
     stiffness_slope : (M, D, P, L) array
         Its derivative in position, N/m per base pitch.
+    period : int
+        Whole base pitches after which the table repeats.
     """
 
     position: FloatArray
@@ -41,9 +43,12 @@ class ForceTable:
     deflection_slope: FloatArray
     stiffness: FloatArray
     stiffness_slope: FloatArray
+    period: int = 1
 
     def __post_init__(self) -> None:
         for entry in fields(self):
+            if entry.name == "period":
+                continue
             array = np.array(getattr(self, entry.name), dtype=float, order="C")
             array.flags.writeable = False
             object.__setattr__(self, entry.name, array)

@@ -67,7 +67,8 @@ class MeshForce:
     def axes(self) -> tuple[Axis, Axis, Axis]:
         """Position (periodic), misalignment, centre-distance change."""
         table = self.table
-        return Axis(table.position, 1.0), Axis(table.misalignment), Axis(table.center_distance_change)
+        position = Axis(table.position, float(table.period))
+        return position, Axis(table.misalignment), Axis(table.center_distance_change)
 
     @cached_property
     def levels(self) -> LevelGrid:

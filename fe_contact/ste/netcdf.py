@@ -28,13 +28,13 @@ _JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
 ATTRIBUTES: dict[str, tuple[str, str]] = {
     "position": (
         "1",
-        "phase of the driving gear in transverse base pitches, 0 = reference pair at the pitch point",
+        "phase of the driving gear in base pitches (transverse), 0 = reference pair at the pitch point",
     ),
     "force": ("N", "total normal tooth force"),
     "torque": ("N m", "torque on the driving gear"),
     "misalignment": ("m", "gap growth over the common face width in the plane of action"),
     "center_distance_change": ("m", "deviation from the nominal centre distance"),
-    "pair": ("1", "index of the tooth pair, 0 = reference pair"),
+    "pair": ("1", "index of the tooth pair, counted anew at every whole pitch, 0 = reference pair"),
     "static_transmission_error": (
         "m",
         "static transmission error on the line of action, driven gear lags > 0",
@@ -105,9 +105,14 @@ def read(path: Path) -> dict[str, Any]:
     if missing:
         raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
     content = {name: arrays[name] for name in DIMENSIONS}
-    if attributes.get("data_sha256") != _digest(content):
+    period = _period(path, attributes)
+    if attributes.get("data_sha256") != _digest(content, period):
         raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
-    return content | {"facts": _facts(path, attributes), "metadata": _metadata(path, attributes)}
+    return content | {
+        "facts": _facts(path, attributes),
+        "metadata": _metadata(path, attributes),
+        "period": period,
+    }
 
 
 def _load(path: Path) -> tuple[dict[str, Any], Json]:
@@ -145,15 +150,24 @@ def _global_attributes(database: SteFields) -> Json:
         "format": FORMAT,
         "schema_version": np.int64(database.metadata.schema_version),
         "content_hash": database.metadata.content_hash,
+        "period": np.int64(database.period),
         "facts": json.dumps(database.facts.to_json()),
         **{name: json.dumps(metadata[name]) for name in _JSON_ATTRIBUTES},
-        "data_sha256": _digest({name: getattr(database, name) for name in DIMENSIONS}),
+        "data_sha256": _digest({name: getattr(database, name) for name in DIMENSIONS}, database.period),
     }
 
 
-def _digest(arrays: dict[str, Any]) -> str:
-    """SHA-256 over names, types, shapes and bytes of the arrays."""
-    digest = hashlib.sha256()
+def _period(path: Path, attributes: Json) -> int:
+    """Period in base pitches; files older than the attribute hold one."""
+    period = attributes.get("period", 1)
+    if not isinstance(period, int | np.integer):
+        raise DatabaseError(f"{path}: damaged, its period is {period!r}")
+    return int(period)
+
+
+def _digest(arrays: dict[str, Any], period: int) -> str:
+    """SHA-256 over the period if it is not 1, and names, types, shapes and bytes of the arrays."""
+    digest = hashlib.sha256(f"period {period};".encode() if period != 1 else b"")
     for name in DIMENSIONS:
         array = np.ascontiguousarray(arrays[name])
         digest.update(f"{name} {array.dtype.newbyteorder('<').str} {array.shape};".encode())

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.bodies import TimeLaw, hollow_cylinder
+from dynamics.forces.mesh_table import FIELDS
 from dynamics.system import Scene, pair_scene
 
 NOMINAL_FORCE = 2660.0
@@ -30,6 +31,7 @@ class Table:
     deflection_slope: np.ndarray
     stiffness: np.ndarray
     stiffness_slope: np.ndarray
+    period: int = 1
 
 
 def _table(position, level, deflection, deflection_slope, stiffness, stiffness_slope):
@@ -53,6 +55,13 @@ def square_wave_table(positions=64):
     return _table(
         x, level, deflection, slope[:, None] * power, stiffness, -stiffness * (slope / shape)[:, None]
     )
+
+
+def repeated(table, period):
+    """The same table, written out over `period` base pitches."""
+    copies = {name: np.tile(getattr(table, name), (1, 1, period, 1)) for name in FIELDS}
+    position = np.concatenate([table.position + pitch for pitch in range(period)])
+    return replace(table, position=position, period=period, **copies)
 
 
 def spring_table(stiffness, amplitude=0.0, positions=64, level=1.0):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import square_wave_table
+from geared_scenes import repeated, square_wave_table
 
 from dynamics.errors import InputError
 from dynamics.forces.mesh_table import check_table
@@ -25,6 +25,9 @@ def broken():
         ("table", object()),
         ("table.position", replace(TABLE, position=TABLE.position + 0.1)),
         ("table.position", replace(TABLE, position=TABLE.position[::-1].copy())),
+        ("table.position", replace(repeated(TABLE, 3), period=2)),
+        ("table.period", replace(TABLE, period=0)),
+        ("table.period", replace(TABLE, period=1.5)),
         ("table.level", replace(TABLE, level=TABLE.level + 1.0)),
         ("table.deflection", replace(TABLE, deflection=TABLE.deflection[..., :-1])),
         ("table.deflection", replace(TABLE, deflection=falling)),
@@ -35,6 +38,7 @@ def broken():
 
 def test_a_good_table_passes():
     check_table("table", TABLE)
+    check_table("table", repeated(TABLE, 3))
 
 
 @pytest.mark.parametrize(("field", "table"), broken())

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import spring_table, square_wave_table
+from geared_scenes import repeated, spring_table, square_wave_table
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import brentq
 
@@ -39,10 +39,22 @@ def uneven_table():
     )
 
 
+def hunting_table(period):
+    """`uneven_table` over many pitches, each higher or lower than the last."""
+    table = repeated(uneven_table(), period)
+    phase = 2 * np.pi * table.position[:, None] / period
+    height, slope = 1e-6 * np.cos(phase), -1e-6 * np.sin(phase) * 2 * np.pi / period
+    return replace(
+        table,
+        deflection=table.deflection + height,
+        deflection_slope=table.deflection_slope + slope,
+    )
+
+
 def reference_force(table, x, d):
     """The rule of docs/architecture.md by SciPy: levels over position, then force over deflection."""
-    knots = np.append(table.position, table.position[0] + 1.0)
-    phase = (x - knots[0]) % 1.0 + knots[0]
+    knots = np.append(table.position, table.position[0] + table.period)
+    phase = (x - knots[0]) % table.period + knots[0]
 
     def over_position(values, slopes):
         wrap = [np.concatenate([a[0, 0], a[0, 0][:1]]) for a in (values, slopes)]
@@ -58,12 +70,14 @@ def reference_force(table, x, d):
 
 
 @pytest.mark.parametrize(
-    "table", [TABLE, uneven_table(), spring_table(4e8, 1e-6)], ids=["square", "uneven", "spring"]
+    "table",
+    [TABLE, uneven_table(), spring_table(4e8, 1e-6), hunting_table(7)],
+    ids=["square", "uneven", "spring", "hunting"],
 )
 def test_it_equals_the_stated_rule(table):
     packed = pack_tables([spring_table(1e6), table])  # second place: the offsets matter
     top = 1.3 * table.deflection.max()
-    for x, d in zip(rng.uniform(-3, 3, 400), rng.uniform(-0.1 * top, top, 400), strict=True):
+    for x, d in zip(rng.uniform(-9, 9, 400), rng.uniform(-0.1 * top, top, 400), strict=True):
         force, _, _ = table_force(packed, 1, x, d, int(rng.integers(-5, 60)))
         assert force == pytest.approx(reference_force(table, x, d), rel=1e-9, abs=1e-7)
 
@@ -83,6 +97,38 @@ def test_whole_pitches_change_nothing():
         for turns in (-4, 1, 1000):
             assert table_force(packed, 0, x + turns, 6e-6, 0)[0] == pytest.approx(exact[0], rel=1e-9)
     assert np.isfinite(table_force(packed, 0, -1e-18, 6e-6, 0)[0])
+
+
+@pytest.mark.parametrize("period", [2, 20, 1560])
+def test_equal_pitches_written_out_give_the_forces_of_one(period):
+    packed = pack_tables([TABLE, repeated(TABLE, period)])
+    slope = np.abs(TABLE.stiffness).max() * np.abs(TABLE.deflection_slope).max()
+    for x, d in zip(rng.uniform(0.0, 1.0, 200), rng.uniform(0.0, 30e-6, 200), strict=True):
+        one = table_force(packed, 0, x, d, 0)
+        for turns in (0, 1, period - 1):
+            many = table_force(packed, 1, x + turns, d, 0)
+            # 1e-12 of the force, beside what the rounding of the position itself is worth
+            rounding = np.spacing(x + turns) * slope
+            assert many[0] == pytest.approx(one[0], rel=1e-12, abs=2.0 * rounding)
+
+
+def test_whole_periods_change_nothing_and_other_pitches_do():
+    packed = pack_tables([hunting_table(7)])
+    for x in (0.0, 0.25, 6.75, 3.5):
+        here = table_force(packed, 0, x, 60e-6, 0)[0]
+        for periods in (-3, 1, 1000):
+            again = table_force(packed, 0, x + 7 * periods, 60e-6, 0)[0]
+            assert again == pytest.approx(here, rel=1e-9)
+        assert abs(table_force(packed, 0, x + 1, 60e-6, 0)[0] / here - 1.0) > 1e-4
+
+
+def test_positions_just_below_a_period_stay_in_the_table():
+    packed = pack_tables([hunting_table(7)])
+    seam = packed.shift[0]
+    at = table_force(packed, 0, seam, 60e-6, 0)[0]
+    for x in (seam - 1e-18, np.nextafter(seam, 0.0), seam + 7.0, np.nextafter(seam + 7.0, 0.0), -1e-300):
+        found = table_force(packed, 0, x, 60e-6, 0)[0]
+        assert found == pytest.approx(at if x != -1e-300 else table_force(packed, 0, 0.0, 60e-6, 0)[0])
 
 
 def test_the_tangent_is_the_derivative_and_continuous_everywhere():

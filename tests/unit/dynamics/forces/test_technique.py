@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import NOMINAL_FORCE, Table, square_wave_table
+from geared_scenes import NOMINAL_FORCE, Table, repeated, square_wave_table
 
 from dynamics.errors import InputError
 from dynamics.forces.packed_tables import pack_tables
@@ -56,3 +56,8 @@ def test_tables_with_axes_are_used_at_one_place():
         table_at(wide, 21e-6, 0.0)
     with pytest.raises(InputError, match="center_distance_change"):
         table_at(wide, 0.0, 1e-6)
+
+
+def test_both_techniques_keep_the_period():
+    plain = table_at(repeated(TABLE, 3), 0.0, 0.0)
+    assert plain.period == secant_table(plain, NOMINAL_FORCE).period == 3

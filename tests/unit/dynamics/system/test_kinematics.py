@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from geared_scenes import RPM, gear_pair_scene, spring_table
+from geared_scenes import RPM, gear_pair_scene, repeated, spring_table
 
 from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
 from dynamics.errors import InputError
@@ -107,6 +107,18 @@ def test_position_keeps_nine_digits_of_a_base_pitch_after_ten_million_steps():
             exact = float(per_turn * turns % 1)
             error = flank_phase(reference, flank, whole, fraction) - exact
             assert abs(error - round(error)) < 1e-9
+
+
+def test_phase_of_a_hunting_cycle_is_exact_after_ten_million_pitches():
+    """17 pitches a revolution, period 23: after whole revolutions the pitch is an integer without error."""
+    scene = two_stages(10.0)
+    meshes = tuple(replace(mesh, table=repeated(spring_table(1e8), 23)) for mesh in scene.meshes)
+    reference = assemble(replace(scene, meshes=meshes)).arrays.reference
+    for turns in (1, 588_236, 10**7, 10**12 + 7):
+        assert flank_phase(reference, 0, float(turns), 0.0) == 17 * turns % 23
+        exact = Fraction(17 * 13 * turns, 23) % 23
+        assert flank_phase(reference, 1, float(turns), 0.0) == pytest.approx(float(exact), abs=1e-14)
+    assert flank_phase(reference, 0, -1.0, 0.5) == (-8.5) % 23
 
 
 def test_whole_turns_drop_exactly():

@@ -8,11 +8,13 @@ add up. The deflection at a given load follows by bisection, the tangent in clos
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste.fields import DIMENSIONS
 
 EXPONENT = 1.1
 CONTACT_RATIO = 1.5568
@@ -112,9 +114,25 @@ def synthetic(
     return SteDatabase(**(arrays | changes))
 
 
+def written_out(database: SteDatabase, period: int, **changes) -> SteDatabase:
+    """Return the same table over `period` equal base pitches; `changes` replace whole arrays."""
+    arrays = {
+        name: np.concatenate([getattr(database, name)] * period)
+        for name, dimensions in DIMENSIONS.items()
+        if dimensions[0] == "position" and name != "position"
+    }
+    position = np.concatenate([database.position + pitch for pitch in range(period)])
+    return replace(database, **(arrays | {"position": position, "period": period} | changes))
+
+
 @pytest.fixture(scope="session")
 def make() -> Callable[..., SteDatabase]:
     return synthetic
+
+
+@pytest.fixture(scope="session")
+def repeat() -> Callable[..., SteDatabase]:
+    return written_out
 
 
 @pytest.fixture(scope="session")
