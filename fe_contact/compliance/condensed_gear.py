@@ -7,7 +7,7 @@ from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.compliance.sector_tree import sector_tree
 from fe_contact.compliance.substructure import condense
-from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.bore_support import BoreSupport
 from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.sector_recipe import SectorRecipe
@@ -17,7 +17,12 @@ from fe_contact.types import FloatArray
 
 
 def condensed_gear(
-    gear: Gear, section: QuadSector, recipe: SectorRecipe, reach: int, support: BoreSupport, clock: StageClock
+    gear: Toothing,
+    section: QuadSector,
+    recipe: SectorRecipe,
+    reach: int,
+    support: BoreSupport,
+    clock: StageClock,
 ) -> tuple[CondensedGear, FloatArray]:
     """Sweep, condense one sector and close the ring.
 

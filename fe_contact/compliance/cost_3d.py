@@ -16,7 +16,7 @@ from scipy.linalg import blas
 from fe_contact.compliance.cyclic_compliance import usual_reach
 from fe_contact.compliance.elimination_tree import EliminationTree
 from fe_contact.compliance.sector_tree import sector_tree
-from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.sector_outline import sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
@@ -57,7 +57,9 @@ class SectorSizes(NamedTuple):
     matrices: int
 
 
-def predict_cost(gear: Gear, recipe: SectorRecipe | None = None, reach: int | None = None) -> PredictedCost:
+def predict_cost(
+    gear: Toothing, recipe: SectorRecipe | None = None, reach: int | None = None
+) -> PredictedCost:
     """Predict what `flank_compliance_3d` costs for a gear that is not in the cache, its bore clamped.
 
     Parameters

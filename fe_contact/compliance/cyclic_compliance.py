@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
@@ -12,7 +11,7 @@ from fe_contact.checks import integer
 from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.flank_3d import FlankCompliance3D
-from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
 from fe_contact.mesh.quad_sector import quad_sector
 from fe_contact.mesh.sector_recipe import SectorRecipe
@@ -24,7 +23,7 @@ SOLVER = "dense substructures and cyclic harmonics (LAPACK)"
 
 
 def flank_compliance_3d(
-    gear: Gear,
+    gear: Toothing,
     recipe: SectorRecipe | None = None,
     *,
     reach: int | None = None,
@@ -62,15 +61,14 @@ def flank_compliance_3d(
     key = compliance_key_3d(gear, recipe, reach, support)
     result = read_compliance(cache, key, FlankCompliance3D) if cache is not None else None
     if result is None:
-        right_hand = replace(gear, helix_angle=abs(gear.helix_angle))
-        result = compute_flank_compliance_3d(right_hand, recipe, reach, support)
+        result = compute_flank_compliance_3d(gear.right_handed(), recipe, reach, support)
         if cache is not None:
             write_compliance(cache, key, result)
     return result.mirrored() if gear.helix_angle < 0.0 else result
 
 
 def flank_compliances_3d(
-    gears: Sequence[Gear],
+    gears: Sequence[Toothing],
     recipes: Sequence[SectorRecipe] | None = None,
     *,
     support: BoreSupport | None = None,
@@ -92,17 +90,17 @@ def flank_compliances_3d(
     return tuple(results)
 
 
-def usual_reach(gear: Gear) -> int:
+def usual_reach(gear: Toothing) -> int:
     """Return the largest distance of two teeth that can carry load at once.
 
     That is the length of the involute and the lead of the helix over the face, in base pitches.
     """
     across = abs(math.tan(gear.base_helix_angle)) * gear.face_width
-    length = gear.tip_roll_length - gear.form_roll_length + across
+    length = abs(gear.tip_roll_length - gear.form_roll_length) + across
     return min(max(1, math.ceil(length / gear.base_pitch)), gear.teeth // 2)
 
 
-def compliance_key_3d(gear: Gear, recipe: SectorRecipe, reach: int, support: BoreSupport) -> str:
+def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport) -> str:
     """Return the hash of all that decides a compliance but for the hand of the helix."""
     geometry = gear.macro_geometry()
     content: Json = {
@@ -119,7 +117,7 @@ def compliance_key_3d(gear: Gear, recipe: SectorRecipe, reach: int, support: Bor
 
 
 def compute_flank_compliance_3d(
-    gear: Gear, recipe: SectorRecipe, reach: int, support: BoreSupport
+    gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport
 ) -> FlankCompliance3D:
     """Mesh, condense, close the ring and check; no cache."""
     # A cached result needs neither skfem nor numba.
@@ -132,7 +130,7 @@ def compute_flank_compliance_3d(
     profile = tooth_profile(gear)
     solved, loads = condensed_gear(gear, section, recipe, reach, support, clock)
     lever = gear.base_radius * math.cos(gear.base_helix_angle)
-    checks = gear_checks(solved, loads, lever, 0.5 * gear.bore_diameter)
+    checks = gear_checks(solved, loads, lever, gear.held_radius)
     clock.finish("checks")
     blocks = solved.ring.blocks
     blocks[0] = 0.5 * (blocks[0] + blocks[0].T)

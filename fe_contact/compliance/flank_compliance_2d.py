@@ -17,7 +17,7 @@ from fe_contact.compliance.ring_2d import Ring, assemble_ring, flank_matrix
 from fe_contact.compliance.sector_2d import condense_sector
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import IntArray, Json
@@ -27,7 +27,7 @@ USUAL_TEETH = 5
 
 
 def flank_compliance(
-    gear: Gear,
+    gear: Toothing,
     recipe: MeshRecipe | None = None,
     hypothesis: PlaneHypothesis = PlaneHypothesis.PLANE_STRAIN,
     *,
@@ -75,7 +75,7 @@ def flank_compliance(
 
 
 def flank_compliances(
-    gears: Sequence[Gear],
+    gears: Sequence[Toothing],
     recipes: Sequence[MeshRecipe] | None = None,
     hypothesis: PlaneHypothesis = PlaneHypothesis.PLANE_STRAIN,
     *,
@@ -101,7 +101,7 @@ def flank_compliances(
     return tuple(found[key] for key in keys)
 
 
-def condensed_teeth(gear: Gear, recipe: MeshRecipe, teeth: int | None) -> int:
+def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> int:
     """Return the number of condensed teeth, checked against the real ones."""
     real = min(gear.teeth, recipe.real_teeth or gear.teeth)
     most = real - 1 + real % 2
@@ -114,7 +114,7 @@ def condensed_teeth(gear: Gear, recipe: MeshRecipe, teeth: int | None) -> int:
 
 
 def compliance_key(
-    gear: Gear, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
+    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
 ) -> str:
     """Return the hash of all that decides a compliance of the transverse section."""
     section = {name: value for name, value in gear.macro_geometry().items() if name != "face_width"}
@@ -132,7 +132,7 @@ def compliance_key(
 
 
 def compute_flank_compliance(
-    gear: Gear, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
+    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
 ) -> FlankCompliance:
     """Mesh, assemble, condense and check; no cache."""
     clock = StageClock()
@@ -163,7 +163,7 @@ def compute_flank_compliance(
     return refuse_broken_laws(result)
 
 
-def condensed_ring(gear: Gear, mesh: GearMesh, hypothesis: PlaneHypothesis, solver: Solver) -> Ring:
+def condensed_ring(gear: Toothing, mesh: GearMesh, hypothesis: PlaneHypothesis, solver: Solver) -> Ring:
     """Assemble sector and hub, condense the sector, assemble and factorise the ring."""
     from fe_contact.compliance.elasticity_2d import stiffness_matrix  # noqa: PLC0415 - a cached result needs no skfem
 

@@ -15,7 +15,7 @@ from fe_contact.compliance.hexahedron import (
     layer_nodes,
     stiffness_of,
 )
-from fe_contact.geometry import Gear
+from fe_contact.geometry import Toothing
 from fe_contact.material import Material
 from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.swept_sector import Batch, SweptSector
@@ -38,7 +38,7 @@ class ElementStiffness:
     of_element: IntArray
 
 
-def twist(gear: Gear) -> float:
+def twist(gear: Toothing) -> float:
     """Return the turn of the section per axial length, rad/m, of the gear or its right-hand mirror image."""
     return abs(math.tan(gear.helix_angle)) / gear.reference_radius
 
@@ -61,7 +61,7 @@ def flank_frames(section: QuadSector, turn_per_length: float) -> FloatArray:
 
 
 def sector_stiffness(
-    gear: Gear, section: QuadSector, sector: SweptSector, frames: FloatArray
+    gear: Toothing, section: QuadSector, sector: SweptSector, frames: FloatArray
 ) -> ElementStiffness:
     """Compute the matrices of all batches of a sector.
 

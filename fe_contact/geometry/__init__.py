@@ -8,15 +8,12 @@ from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.internal_gear_pair import InternalGearPair
 from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, iso6336_stiffness
 from fe_contact.geometry.modification import FlankModification
+from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.shaft import Shaft
-from fe_contact.geometry.tooth_profile import (
-    RingToothProfile,
-    ToothProfile,
-    ring_tooth_profile,
-    tooth_profile,
-)
+from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
+from fe_contact.geometry.toothing import Toothing
 
 __all__ = [
     "BasicRack",
@@ -27,15 +24,15 @@ __all__ = [
     "GearPair",
     "InternalGearPair",
     "Iso6336Stiffness",
+    "ParallelAxes",
     "PathOfContact",
     "RingGear",
-    "RingToothProfile",
     "Shaft",
     "Side",
     "ToothProfile",
+    "Toothing",
     "corner_contact",
     "corner_gap",
     "iso6336_stiffness",
-    "ring_tooth_profile",
     "tooth_profile",
 ]

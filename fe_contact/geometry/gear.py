@@ -98,6 +98,11 @@ class Gear(Toothing):
             self.root_radius_coefficient,
         )
 
+    @property
+    def held_radius(self) -> float:
+        """Radius of the bore, m."""
+        return 0.5 * self.bore_diameter
+
     @cached_property
     def trochoid(self) -> Trochoid:
         """The fillet of the right flank."""

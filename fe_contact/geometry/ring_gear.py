@@ -145,6 +145,11 @@ class RingGear(Toothing):
         refuse_shift_sum_of_cutter(self, involute)
         return inverse_involute(involute)
 
+    @property
+    def held_radius(self) -> float:
+        """Outer radius of the rim, m."""
+        return 0.5 * self.rim_diameter
+
     @cached_property
     def trochoid(self) -> CutterTrochoid:
         """The fillet of the right flank."""

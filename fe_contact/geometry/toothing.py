@@ -7,15 +7,18 @@ numbers and radii are positive and `sign` carries the standard's sign.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Self
 
 from fe_contact.geometry.involute import involute_function, roll_length_at_radius
 
 if TYPE_CHECKING:
     from fe_contact.geometry.fillet_curve import FilletCurve
     from fe_contact.geometry.form_point import FormPoint
+    from fe_contact.geometry.modification import FlankModification
+    from fe_contact.material import Material
+    from fe_contact.types import Json
 
 
 @dataclass(frozen=True)
@@ -67,6 +70,21 @@ class Toothing:
             """A_s, m."""
 
         @property
+        def modification(self) -> FlankModification:
+            """Departures of the flanks from the involute helicoid."""
+
+        @property
+        def material(self) -> Material:
+            """Elasticity."""
+
+        @property
+        def held_radius(self) -> float:
+            """Radius in m of the circle that the gear is held by: its bore, the outside of a ring's rim."""
+
+        def macro_geometry(self) -> Json:
+            """All that decides the shape of the unmodified gear, as plain numbers (for content hashes)."""
+
+        @property
         def trochoid(self) -> FilletCurve:
             """The fillet of the right flank."""
 
@@ -112,6 +130,15 @@ class Toothing:
         """d_f / 2: m_n (h_fP - x) below the reference circle (beyond it for an internal gear), m."""
         depth = self.dedendum_coefficient - self.profile_shift_coefficient
         return self.reference_radius - self.sign * self.normal_module * depth
+
+    def right_handed(self) -> Self:
+        """Return the gear if it is spur or right hand, else its mirror image."""
+        return replace(self, helix_angle=abs(self.helix_angle))  # type: ignore[call-arg]  # a field of the kinds
+
+    @property
+    def body_depth(self) -> float:
+        """Distance in m from the root circle to the circle that the gear is held by: rim and web."""
+        return self.sign * (self.root_radius - self.held_radius)
 
     @cached_property
     def base_pitch(self) -> float:

@@ -48,7 +48,7 @@ class GearMesh:
         Nodes of the elements: corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0 (gmsh, VTK).
         With e elements per sector those of tooth `teeth[i]` are i e ... (i + 1) e - 1; the hub's follow.
     bore_nodes : (b,) int array
-        Nodes on the bore.
+        Nodes on the circle that the gear is held by: its bore, or the outside of a ring gear's rim.
     flanks : tuple of FlankNodes
         Right flanks of the real teeth, in the order of `teeth`.
     teeth : (t,) int array
@@ -62,7 +62,7 @@ class GearMesh:
     hub_nodes : (n_hub,) int array
         Node of the gear mesh that each hub node is.
     hub : Hub or None
-        None if the sectors reach down to the bore.
+        None if the sectors reach down to that circle.
     """
 
     points: FloatArray

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.geometry import Gear
+from fe_contact.geometry import Toothing
 from fe_contact.mesh.grading import divide
 from fe_contact.mesh.outline import Outline, Piece, arc, piece
 from fe_contact.mesh.quadratic import QuadraticMesh, rotated
@@ -34,7 +34,7 @@ class Hub:
         Nodes shared with the first sector's right and the last one's left side, from the bottom up; empty
         if all teeth are real.
     bore : int array
-        Nodes on the bore.
+        Nodes on the bore, or on the outside of a ring gear's rim.
     """
 
     points: FloatArray
@@ -46,24 +46,27 @@ class Hub:
 
 
 def hub_outlines(
-    gear: Gear, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe
+    gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe
 ) -> tuple[Outline, Outline]:
-    """Return the outer boundary, which follows the sectors of `teeth`, and the bore."""
+    """Return the boundary that follows the sectors of `teeth`, and the circle that the gear is held by.
+
+    The first is the outer one, that of a ring gear the inner one.
+    """
     pitch = 2.0 * np.pi / gear.teeth
     # From the right end of a bottom to its left: counter-clockwise, as the teeth are numbered.
     pieces = [Piece(f"bottom {j}", rotated(sector.points[sector.bottom[::-1]], j * pitch)) for j in teeth]
     if len(teeth) < gear.teeth:
         left = Piece("left side", rotated(sector.points[sector.left_side], teeth[-1] * pitch))
         right = Piece("right side", rotated(sector.points[sector.right_side[::-1]], teeth[0] * pitch))
-        pieces += [left, plain_rim(left, gear.teeth - len(teeth), pitch, gear.bore_diameter, recipe), right]
+        pieces += [left, plain_rim(left, gear.teeth - len(teeth), pitch, gear.held_radius, recipe), right]
     return Outline(tuple(pieces)), bore(gear, float(np.linalg.norm(sector.points[sector.bottom[0]])), recipe)
 
 
-def plain_rim(side: Piece, missing: int, pitch: float, bore_diameter: float, recipe: MeshRecipe) -> Piece:
+def plain_rim(side: Piece, missing: int, pitch: float, held_radius: float, recipe: MeshRecipe) -> Piece:
     """Return the root circle from the end of `side` counter-clockwise over the missing teeth."""
     x, y = side.nodes[-1]
     radius, angle, length = float(np.hypot(x, y)), float(np.arctan2(x, y)), missing * pitch
-    largest = min(HALF * (1.0 - 0.5 * bore_diameter / radius), LARGEST_ARC)
+    largest = min(HALF * abs(1.0 - held_radius / radius), LARGEST_ARC)
 
     def size(turned: FloatArray) -> FloatArray:
         distance = np.minimum(turned, length - turned)
@@ -74,22 +77,34 @@ def plain_rim(side: Piece, missing: int, pitch: float, bore_diameter: float, rec
     return piece("plain rim", lambda turned: circle(angle - turned), divide(0.0, length, size))
 
 
-def bore(gear: Gear, bottom_radius: float, recipe: MeshRecipe) -> Outline:
-    """Return the bore, clockwise."""
-    radius, depth = 0.5 * gear.bore_diameter, bottom_radius - 0.5 * gear.bore_diameter
+def bore(gear: Toothing, bottom_radius: float, recipe: MeshRecipe) -> Outline:
+    """Return the bore, or the outside of a ring gear's rim, clockwise."""
+    radius, depth = gear.held_radius, abs(bottom_radius - gear.held_radius)
     size = min(recipe.body_size + recipe.growth * depth, HALF * depth)
     step = min(size / radius, LARGEST_ARC)
     ends = divide(0.0, 2.0 * np.pi, lambda angle: np.full_like(angle, step))
     return Outline((piece("bore", arc(radius), ends),))
 
 
-def hub(mesh: QuadraticMesh, outlines: tuple[Outline, Outline], teeth: IntArray) -> Hub:
-    """Name the boundary nodes of the mesh of `hub_outlines`."""
-    outer, inner = mesh.boundary
-    found = {p.name for p in outlines[0].pieces}
+def hub(mesh: QuadraticMesh, toothed: Outline, boundary: tuple[IntArray, ...], teeth: IntArray) -> Hub:
+    """Name the nodes of the mesh of `hub_outlines`.
+
+    Parameters
+    ----------
+    mesh : QuadraticMesh
+        Between both outlines.
+    toothed : Outline
+        The one that follows the sectors.
+    boundary : (int array, int array)
+        Nodes of that outline, and of the circle that the gear is held by.
+    teeth : (t,) int array
+        Numbers of the real teeth.
+    """
+    around, held = boundary
+    found = {p.name for p in toothed.pieces}
 
     def nodes(name: str) -> IntArray:
-        return outer[outlines[0].positions(name)] if name in found else np.empty(0, dtype=np.int64)
+        return around[toothed.positions(name)] if name in found else np.empty(0, dtype=np.int64)
 
     return Hub(
         points=mesh.points,
@@ -97,5 +112,5 @@ def hub(mesh: QuadraticMesh, outlines: tuple[Outline, Outline], teeth: IntArray)
         bottoms=np.array([nodes(f"bottom {j}")[::-1] for j in teeth]),
         right_side=nodes("right side")[::-1],
         left_side=nodes("left side"),
-        bore=inner,
+        bore=held,
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fe_contact.geometry import Gear, ToothProfile, tooth_profile
+from fe_contact.geometry import Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh.gear_mesh import GearMesh, assemble, real_teeth
 from fe_contact.mesh.hub import Hub, hub, hub_outlines
 from fe_contact.mesh.outline import Outline
@@ -22,13 +22,16 @@ RIM_DEPTH = 2.0  # depth of a sector above a hub, in normal modules
 
 
 def mesh_gear(
-    gear: Gear, recipe: MeshRecipe | None = None, limits: QualityLimits | None = None, seconds: float = 60.0
+    gear: Toothing,
+    recipe: MeshRecipe | None = None,
+    limits: QualityLimits | None = None,
+    seconds: float = 60.0,
 ) -> GearMesh:
     """Mesh the transverse section of one gear.
 
     Parameters
     ----------
-    gear : Gear
+    gear : Gear or RingGear
         Its modification plays no part.
     recipe : MeshRecipe, optional
         Element sizes; default `MeshRecipe.standard(gear)`.
@@ -47,20 +50,17 @@ def mesh_gear(
     teeth = real_teeth(gear.teeth, recipe.real_teeth)
     bottom_radius = sector_bottom(gear, profile, all_real=len(teeth) == gear.teeth)
     sector = mesh_sector(profile, bottom_radius, recipe, filling)
-    reaches_bore = bottom_radius == 0.5 * gear.bore_diameter
-    rest = None if reaches_bore else mesh_hub(gear, sector, teeth, recipe, filling)
+    rest = None if bottom_radius == gear.held_radius else mesh_hub(gear, sector, teeth, recipe, filling)
     # Copies of the sector are as good as the sector, which is checked.
     return assemble(sector, rest, teeth, profile.pitch_angle, profile.normal(sector.s))
 
 
-def sector_bottom(gear: Gear, profile: ToothProfile, all_real: bool) -> float:
-    """Return the radius down to which a tooth sector reaches, m."""
-    bore = 0.5 * gear.bore_diameter
-    depth = gear.root_radius - bore
-    slender = depth > SLENDER * gear.root_radius * profile.pitch_angle
-    if all_real and not slender and bore >= TAPER * gear.root_radius:
-        return bore
-    return gear.root_radius - min(RIM_DEPTH * gear.normal_module, 0.5 * depth)
+def sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> float:
+    """Return the radius to which a tooth sector reaches, m."""
+    slender = gear.body_depth > SLENDER * gear.root_radius * profile.pitch_angle
+    if all_real and not slender and gear.held_radius >= TAPER * gear.root_radius:
+        return gear.held_radius
+    return gear.root_radius - gear.sign * min(RIM_DEPTH * gear.normal_module, 0.5 * gear.body_depth)
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,11 @@ def mesh_sector(
     return tooth_sector(filling.mesh("tooth sector", (outline.outline,), scale, recipe.growth), outline)
 
 
-def mesh_hub(gear: Gear, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: Filling) -> Hub:
+def mesh_hub(
+    gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: Filling
+) -> Hub:
     """Mesh the rest of the ring."""
     outlines = hub_outlines(gear, sector, teeth, recipe)
-    return hub(filling.mesh("hub", outlines, gear.normal_module, recipe.growth), outlines, teeth)
+    outermost_first = outlines[:: gear.sign]
+    mesh = filling.mesh("hub", outermost_first, gear.normal_module, recipe.growth)
+    return hub(mesh, outlines[0], mesh.boundary[:: gear.sign], teeth)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.quad_quality import refuse_poor_quads
 from fe_contact.mesh.quality import QualityLimits
 from fe_contact.mesh.sector_grid import SectorGrid
@@ -41,13 +41,13 @@ class QuadSector:
 
 
 def quad_sector(
-    gear: Gear, recipe: SectorRecipe, limits: QualityLimits = QUAD_LIMITS, seconds: float = 60.0
+    gear: Toothing, recipe: SectorRecipe, limits: QualityLimits = QUAD_LIMITS, seconds: float = 60.0
 ) -> QuadSector:
     """Mesh the transverse section of one tooth sector.
 
     Parameters
     ----------
-    gear : Gear
+    gear : Gear or RingGear
         Its modification, face width and hand play no part.
     recipe : SectorRecipe
         Element sizes.

@@ -1,6 +1,7 @@
 """The logical T-shaped grid of one tooth sector: a tooth standing in the middle of the body below it.
 
-Columns run from the right cut to the left cut, rows from the bore to the tip. The topology follows from four
+Columns run from the right cut to the left cut, rows from the bore (of a ring gear: the outside of its rim)
+to the tip. The topology follows from four
 numbers of elements, so that the cost of a solution is known before there is a mesh.
 """
 
@@ -16,6 +17,8 @@ from fe_contact.types import BoolArray, IntArray
 # Corners of a quadrilateral and the middles of its sides 0-1, 1-2, 2-3, 3-0 as (row, column) of the grid of
 # nodes, counter-clockwise when the columns run from right to left.
 OFFSETS = np.array([(0, 2), (0, 0), (2, 0), (2, 2), (0, 1), (1, 0), (2, 1), (1, 2)])
+# Of teeth that point inwards, whose rows run towards the centre; the side 0-1 stays the one to the body.
+INWARD_OFFSETS = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0)])
 
 
 @dataclass(frozen=True)
@@ -30,12 +33,15 @@ class SectorGrid:
         Columns of elements on each side of the tooth.
     across : int
         Columns of elements across the tooth.
+    inward : bool
+        Whether the tooth points to the gear's centre: the rows then run from the rim's outside inwards.
     """
 
     body_rows: int
     tooth_rows: int
     land: int
     across: int
+    inward: bool = False
 
     @property
     def columns(self) -> int:
@@ -53,8 +59,9 @@ class SectorGrid:
     def _places(self) -> IntArray:
         """Place of each element's nodes in the flattened grid of nodes, (m, 8)."""
         low = 2 * (self.cells + np.array([0, self.body_rows]))
-        row = low[:, 1, None] + OFFSETS[:, 0]
-        return np.asarray(row * (2 * self.columns + 1) + low[:, 0, None] + OFFSETS[:, 1])
+        offsets = INWARD_OFFSETS if self.inward else OFFSETS
+        row = low[:, 1, None] + offsets[:, 0]
+        return np.asarray(row * (2 * self.columns + 1) + low[:, 0, None] + offsets[:, 1])
 
     @cached_property
     def number(self) -> IntArray:
@@ -93,7 +100,7 @@ class SectorGrid:
 
     @property
     def bore(self) -> IntArray:
-        """Nodes on the bore."""
+        """Nodes on the bore, or on the outside of a ring gear's rim."""
         return np.asarray(self.number[0])
 
     @property

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from fe_contact.geometry import Gear, ToothProfile
+from fe_contact.geometry import Toothing, ToothProfile
 from fe_contact.mesh.grading import middles
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.sector_recipe import SectorRecipe
@@ -49,7 +49,13 @@ class SectorOutline:
     @property
     def grid(self) -> SectorGrid:
         """The logical grid."""
-        return SectorGrid(len(self.depth) // 2, len(self.s) // 2, len(self.land) // 2, len(self.across) // 2)
+        return SectorGrid(
+            body_rows=len(self.depth) // 2,
+            tooth_rows=len(self.s) // 2,
+            land=len(self.land) // 2,
+            across=len(self.across) // 2,
+            inward=self.profile.gear.sign < 0,
+        )
 
     @property
     def right_flank(self) -> FloatArray:
@@ -66,8 +72,7 @@ class SectorOutline:
         """Points between tooth and body from right to left, (p, 2)."""
         right, t = self.profile.flank(self.s[:1])[0], self.across[:, None]
         gear = self.profile.gear
-        rim = gear.root_radius - 0.5 * gear.bore_diameter
-        dip = 4.0 * min(DIP * gear.normal_module, THIN * rim) * t * (1.0 - t)
+        dip = gear.sign * 4.0 * min(DIP * gear.normal_module, THIN * gear.body_depth) * t * (1.0 - t)
         return np.asarray((1.0 - t) * right + t * right * [-1.0, 1.0] - dip * [0.0, 1.0])
 
     @property
@@ -86,13 +91,13 @@ class SectorOutline:
         """Points of the bore from the right cut to the left one."""
         half = 0.5 * self.profile.pitch_angle
         angle = np.linspace(half, -half, 2 * self.grid.columns + 1)
-        return 0.5 * self.profile.gear.bore_diameter * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+        return self.profile.gear.held_radius * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
 
     @property
     def right_cut(self) -> FloatArray:
         """Points of the right cut from the root down to the bore, (q, 2)."""
         gear, angle = self.profile.gear, 0.5 * self.profile.pitch_angle
-        radius = (1.0 - self.depth) * gear.root_radius + self.depth * 0.5 * gear.bore_diameter
+        radius = (1.0 - self.depth) * gear.root_radius + self.depth * gear.held_radius
         return np.asarray(radius[:, None] * np.array([np.sin(angle), np.cos(angle)]))
 
 
@@ -117,7 +122,7 @@ def split_point(profile: ToothProfile, recipe: SectorRecipe) -> float:
     fillet leans outwards, so that the body's elements beside it keep their angles.
     """
     fractions = np.linspace(recipe.split, LOWEST_SPLIT, 41)
-    lean = profile.normal(profile.s_form - fractions * profile.fillet_length)[:, 1]
+    lean = profile.gear.sign * profile.normal(profile.s_form - fractions * profile.fillet_length)[:, 1]
     enough = np.flatnonzero(lean >= LEAN)
     fraction = fractions[enough[0]] if len(enough) else LOWEST_SPLIT
     return float(profile.s_form - fraction * profile.fillet_length)
@@ -161,7 +166,7 @@ def tooth_divisions(half_width: float, recipe: SectorRecipe) -> FloatArray:
     return np.concatenate([loaded, 2.0 * half_width - coast[-2::-1]]) / (2.0 * half_width)
 
 
-def body_divisions(gear: Gear, recipe: SectorRecipe) -> FloatArray:
+def body_divisions(gear: Toothing, recipe: SectorRecipe) -> FloatArray:
     """Divide 0 .. 1 from the root to the bore.
 
     Deep in the body the field changes over its depth, and around a small bore over the radius.
@@ -169,7 +174,8 @@ def body_divisions(gear: Gear, recipe: SectorRecipe) -> FloatArray:
 
     def size(x: float) -> float:
         largest = max(recipe.body_limit, DEEP * x)
-        return min(largest, recipe.body_size + recipe.body_growth * x, TAPER * (gear.root_radius - x))
+        return min(
+            largest, recipe.body_size + recipe.body_growth * x, TAPER * (gear.root_radius - gear.sign * x)
+        )
 
-    depth = gear.root_radius - 0.5 * gear.bore_diameter
-    return graded(depth, size) / depth
+    return graded(gear.body_depth, size) / gear.body_depth

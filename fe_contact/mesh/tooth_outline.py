@@ -1,4 +1,4 @@
-"""Outline of the right half of one tooth with the ring below it."""
+"""Outline of the right half of one tooth with the ring below it (of a ring gear: outside it)."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ THINNEST = 0.01  # rim that still limits the element size by its thickness, in n
 class ToothOutline:
     """Right half of the sector of one tooth.
 
-    Pieces, counter-clockwise: ``bottom`` (from the centre line to the side), ``side`` (up to the root),
-    ``land`` (root circle) and ``fillet`` where they exist, ``flank`` (from the margin below the form point),
-    ``tip``, ``centre``.
+    Pieces: ``bottom`` (from the centre line to the side), ``side`` (to the root), ``land`` (root circle) and
+    ``fillet`` where they exist, ``flank`` (from the margin below the form point), ``tip``, ``centre``;
+    counter-clockwise, of a ring gear, whose bottom is outside, clockwise.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ def tooth_outline(profile: ToothProfile, bottom_radius: float, recipe: MeshRecip
     profile : ToothProfile
         The exact right flank.
     bottom_radius : float
-        Radius of the sector's lower end, m.
+        Radius of the sector's lower end, away from the tip, m.
     recipe : MeshRecipe
         Element sizes.
     """
@@ -73,7 +73,7 @@ def lowest_flank_node(profile: ToothProfile, recipe: MeshRecipe) -> float:
 def rim_limit(profile: ToothProfile, recipe: MeshRecipe, s: FloatArray) -> FloatArray:
     """Return the largest element a thin rim admits: its thickness, growing away from the root."""
     gear = profile.gear
-    thickness = max(gear.root_radius - 0.5 * gear.bore_diameter, THINNEST * gear.normal_module)
+    thickness = max(gear.body_depth, THINNEST * gear.normal_module)
     return thickness + recipe.growth * np.maximum(s - profile.s_root, 0.0)
 
 

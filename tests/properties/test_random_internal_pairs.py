@@ -12,7 +12,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry import Gear, InternalGearPair, RingGear, ring_tooth_profile, tooth_profile
+from fe_contact.geometry import Gear, InternalGearPair, RingGear, tooth_profile
 from fe_contact.geometry.involute import involute_function
 from fe_contact.types import FloatArray
 
@@ -74,7 +74,7 @@ def pairs(draw: st.DrawFn) -> InternalGearPair:
 @quick
 @given(rings())
 def test_profile_is_one_continuous_curve_of_unit_speed(gear: RingGear) -> None:
-    profile, unit = ring_tooth_profile(gear), gear.normal_module
+    profile, unit = tooth_profile(gear), gear.normal_module
     assert profile.s_space <= profile.s_root < profile.s_form < profile.s_tip < 0.0
     for joint in (profile.s_root, profile.s_form):
         jump = profile.flank(joint + 1e-9 * unit) - profile.flank(joint - 1e-9 * unit)
@@ -90,7 +90,7 @@ def test_profile_is_one_continuous_curve_of_unit_speed(gear: RingGear) -> None:
 @quick
 @given(rings())
 def test_tooth_has_material_and_space_at_every_radius(gear: RingGear) -> None:
-    profile = ring_tooth_profile(gear)
+    profile = tooth_profile(gear)
     s = np.linspace(profile.s_space, profile.s_tip, 300)
     x, y = profile.flank(s).T
     angle, radius = np.arctan2(x, y), np.hypot(x, y)
@@ -130,7 +130,7 @@ def test_outlines_of_a_feasible_pair_never_overlap(pair: InternalGearPair, phase
 
 def polar_flank(gear: Gear | RingGear) -> FloatArray:
     """Polar angle and radius (2, n) of a tooth's right flank, rising in radius."""
-    profile = ring_tooth_profile(gear) if isinstance(gear, RingGear) else tooth_profile(gear)
+    profile = tooth_profile(gear)
     x, y = profile.flank(np.linspace(profile.s_root, profile.s_tip, 1501)).T
     polar = np.stack((np.arctan2(x, y), np.hypot(x, y)))
     return polar[:, np.argsort(polar[1])]

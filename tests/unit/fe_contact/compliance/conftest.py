@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from fe_contact.geometry import Gear
+from fe_contact.geometry import Gear, Toothing
 from fe_contact.mesh import MeshRecipe
 
 MakeGear = Callable[..., Gear]
@@ -29,7 +29,7 @@ def make_gear() -> MakeGear:
 def coarse() -> Callable[..., MeshRecipe]:
     """Make a recipe coarse enough for tests of laws that hold on every mesh."""
 
-    def make(gear: Gear, **fields: Any) -> MeshRecipe:
+    def make(gear: Toothing, **fields: Any) -> MeshRecipe:
         m = gear.normal_module
         recipe = MeshRecipe.standard(gear)
         return replace(recipe, flank_size=0.2 * m, tip_size=0.1 * m, fillet_size=0.2 * m, **fields)

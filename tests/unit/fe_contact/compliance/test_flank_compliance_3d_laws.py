@@ -26,16 +26,29 @@ from fe_contact.compliance.checks_3d import least_eigenvalue, pressure_forces
 from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import Gear
+from fe_contact.geometry import Gear, RingGear, Toothing
 from fe_contact.material import Material
 from fe_contact.mesh import PlaneStrain, SectorRecipe, quad_sector, swept_sector
 
 SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
 HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
+RING = RingGear(
+    teeth=30,
+    normal_module=4e-3,
+    face_width=20e-3,
+    rim_diameter=150e-3,
+    cutter_teeth=15,
+    addendum_coefficient=0.6,
+)
+BOTH_KINDS = pytest.mark.parametrize(
+    "gear",
+    [SPUR, HELICAL, RING, replace(RING, rim_diameter=160e-3, helix_angle=math.radians(20.0))],
+    ids=["spur", "helical", "ring", "helical ring"],
+)
 
 
-def coarse(gear: Gear, **fields: object) -> SectorRecipe:
+def coarse(gear: Toothing, **fields: object) -> SectorRecipe:
     m = gear.normal_module
     recipe = SectorRecipe(
         flank_size=0.5 * m,
@@ -55,7 +68,7 @@ def relative(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
-def global_compliance(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
+def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     """Flank of every tooth under forces on tooth 0, (z, nf, nf), by one sparse factorisation of all teeth."""
     section = quad_sector(gear, recipe)
     sector = swept_sector(section.grid, gear.face_width, recipe)
@@ -83,8 +96,8 @@ def global_compliance(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
     return found[number[:, sector.flank]]
 
 
-@GEARS
-def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
+@BOTH_KINDS
+def test_equals_the_solution_of_the_whole_gear(gear: Toothing) -> None:
     found = flank_compliance_3d(gear, coarse(gear), reach=4)
     direct = global_compliance(gear, coarse(gear))
     for m in range(-4, 5):
@@ -92,8 +105,8 @@ def test_equals_the_solution_of_the_whole_gear(gear: Gear) -> None:
     assert found.unknowns > 10_000
 
 
-@GEARS
-def test_checks_hold_to_rounding(gear: Gear) -> None:
+@BOTH_KINDS
+def test_checks_hold_to_rounding(gear: Toothing) -> None:
     found = flank_compliance_3d(gear, SectorRecipe.draft(gear))
     assert found.checks.residual < 1e-11
     assert found.checks.reciprocity < 1e-13
@@ -141,12 +154,15 @@ def test_opposite_hands_are_mirror_images_to_the_last_bit() -> None:
     assert np.array_equal(again.blocks, right.blocks)
 
 
-def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
-    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    mirrored = flank_compliance_3d(left, coarse(HELICAL), reach=2)
+@pytest.mark.parametrize("gear", [HELICAL, replace(RING, rim_diameter=160e-3, helix_angle=0.3)])
+def test_a_gear_swept_the_other_way_is_the_mirror_image(
+    gear: Gear | RingGear, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    left = replace(gear, helix_angle=-gear.helix_angle)
+    mirrored = flank_compliance_3d(left, coarse(gear), reach=2)
     for module in (stiffness_module, gear_module):
         monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
-    swept = flow.compute_flank_compliance_3d(left, coarse(HELICAL), 2, flow.ClampedBore())
+    swept = flow.compute_flank_compliance_3d(left, coarse(gear), 2, flow.ClampedBore())
     assert relative(swept.blocks, mirrored.blocks) < 1e-10
 
 

@@ -27,26 +27,33 @@ from fe_contact.compliance.elasticity_2d import stiffness_matrix
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.sector_2d import freedoms, inward_loads
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import Gear
+from fe_contact.geometry import Gear, RingGear, Toothing
 from fe_contact.material import Material
 from fe_contact.mesh import MeshRecipe, mesh_gear
 
 MakeGear = Callable[..., Gear]
 MakeRecipe = Callable[..., MeshRecipe]
 STRAIN, STRESS = PlaneHypothesis.PLANE_STRAIN, PlaneHypothesis.PLANE_STRESS
-RINGS = [(20, 40e-3, None), (40, 40e-3, None), (20, 40e-3, 5)]
-RING_NAMES = ["sectors to the bore", "hub", "plain ring"]
+SIZE = {"normal_module": 4e-3, "face_width": 25e-3}
+RINGS = {
+    "sectors to the bore": (Gear(20, bore_diameter=40e-3, **SIZE), None),
+    "hub": (Gear(40, bore_diameter=40e-3, **SIZE), None),
+    "plain ring": (Gear(20, bore_diameter=40e-3, **SIZE), 5),
+    "ring gear, sectors to the rim": (RingGear(50, rim_diameter=240e-3, **SIZE), None),
+    "ring gear, thick rim": (RingGear(50, rim_diameter=320e-3, **SIZE), None),
+    "ring gear, plain ring": (RingGear(50, rim_diameter=240e-3, **SIZE), 5),
+}
+ALL_RINGS = pytest.mark.parametrize(("gear", "real"), RINGS.values(), ids=RINGS)
 
 
 def relative(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
-@pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
+@ALL_RINGS
 def test_equals_the_solution_of_the_whole_uncondensed_mesh(
-    make_gear: MakeGear, coarse: MakeRecipe, teeth: int, bore: float, real: int | None
+    coarse: MakeRecipe, gear: Toothing, real: int | None
 ) -> None:
-    gear = make_gear(teeth=teeth, bore_diameter=bore)
     recipe = coarse(gear, real_teeth=real)
     found = flank_compliance(gear, recipe, teeth=5)
     mesh = mesh_gear(gear, recipe)
@@ -61,11 +68,8 @@ def test_equals_the_solution_of_the_whole_uncondensed_mesh(
     assert found.unknowns == len(free)
 
 
-@pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
-def test_checks_hold_to_rounding(
-    make_gear: MakeGear, coarse: MakeRecipe, teeth: int, bore: float, real: int | None
-) -> None:
-    gear = make_gear(teeth=teeth, bore_diameter=bore)
+@ALL_RINGS
+def test_checks_hold_to_rounding(coarse: MakeRecipe, gear: Toothing, real: int | None) -> None:
     found = flank_compliance(gear, coarse(gear, real_teeth=real))
     checks = found.checks
     assert checks.residual < 1e-10

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry import Gear, internal_gear_pair, tooth_profile
+from fe_contact.geometry import Gear, internal_gear_pair
 from fe_contact.geometry.internal_gear_pair import InternalGearPair
 from fe_contact.geometry.internal_interference import (
     flank_angle,
@@ -21,7 +21,7 @@ from fe_contact.geometry.internal_interference import (
 )
 from fe_contact.geometry.involute import involute_function
 from fe_contact.geometry.ring_gear import RingGear
-from fe_contact.geometry.tooth_profile import RingToothProfile, ToothProfile, ring_tooth_profile
+from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.trimming import radial_clearance
 from fe_contact.types import FloatArray
 
@@ -49,7 +49,7 @@ def unchecked(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @lru_cache
-def outline(profile: ToothProfile | RingToothProfile) -> FloatArray:
+def outline(profile: ToothProfile) -> FloatArray:
     """Polar angle and radius (n, 2) of one tooth's right flank, dense, rising in radius."""
     s = np.linspace(profile.s_root, profile.s_tip, 6001)
     x, y = profile.flank(s).T
@@ -63,7 +63,7 @@ def overlap(pair: InternalGearPair, turn: float, withdrawn: float = 0.0, centred
     The driving flanks touch, the pinion `turn` past its pitch point; then it is turned back by `centred`
     of the backlash and withdrawn along the line of centres.
     """
-    first, second = outline(tooth_profile(pair.pinion)), outline(ring_tooth_profile(pair.wheel))
+    first, second = outline(tooth_profile(pair.pinion)), outline(tooth_profile(pair.wheel))
     working = involute_function(pair.working_pressure_angle)
     lag = centred * pair.transverse_base_backlash / pair.pinion.base_radius
     center_1 = turn - pair.pinion.base_thickness_half_angle + working - lag
@@ -220,7 +220,7 @@ def test_edges_touch_the_mating_flank_at_the_ends_of_the_path_of_contact() -> No
 
 def test_flank_angle_is_the_profiles() -> None:
     pair = make_pair((40, 80), {}, {})
-    for profile in (tooth_profile(pair.pinion), ring_tooth_profile(pair.wheel)):
+    for profile in (tooth_profile(pair.pinion), tooth_profile(pair.wheel)):
         s = np.linspace(profile.s_root, profile.s_tip, 97)[3:]
         x, y = profile.flank(s).T
         assert flank_angle(profile.gear, np.hypot(x, y)) == pytest.approx(np.arctan2(x, y), abs=1e-6)

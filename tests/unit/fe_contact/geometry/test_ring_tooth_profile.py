@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from fe_contact.errors import InputError
 from fe_contact.geometry.involute import involute_point
 from fe_contact.geometry.ring_gear import RingGear
-from fe_contact.geometry.tooth_profile import RingToothProfile, ring_tooth_profile
+from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 from fe_contact.types import FloatArray
 
 RINGS: list[dict[str, Any]] = [
@@ -22,13 +22,13 @@ RINGS: list[dict[str, Any]] = [
 ]
 
 
-def profile_of(fields: dict[str, Any]) -> RingToothProfile:
+def profile_of(fields: dict[str, Any]) -> ToothProfile:
     module = 4e-3
     rim = 1.5 * module * fields["teeth"]
-    return ring_tooth_profile(RingGear(normal_module=module, face_width=25e-3, rim_diameter=rim, **fields))
+    return tooth_profile(RingGear(normal_module=module, face_width=25e-3, rim_diameter=rim, **fields))
 
 
-def parts(profile: RingToothProfile) -> list[tuple[float, float]]:
+def parts(profile: ToothProfile) -> list[tuple[float, float]]:
     bounds = (profile.s_space, profile.s_root, profile.s_form, profile.s_tip)
     return list(itertools.pairwise(bounds))
 
@@ -89,7 +89,7 @@ def turned(points: FloatArray, angle: float) -> FloatArray:
     return np.stack((x * cosine + y * sine, y * cosine - x * sine), axis=-1)
 
 
-def cutter_flank(profile: RingToothProfile) -> FloatArray:
+def cutter_flank(profile: ToothProfile) -> FloatArray:
     """Left flank of the cutter's tooth with its rounding, in the cutter's tooth frame."""
     cutter, tip = profile.gear.cutter, profile.gear.tip_roll_length
     roll = np.linspace(tip - cutter.common_tangent, cutter.flank_end_roll_length, 300)
@@ -102,7 +102,7 @@ def cutter_flank(profile: RingToothProfile) -> FloatArray:
     return np.concatenate((flank, rounding)) * np.array([-1.0, 1.0])
 
 
-def swept(profile: RingToothProfile) -> FloatArray:
+def swept(profile: ToothProfile) -> FloatArray:
     """All places of the cutter's flank in the ring's tooth frame while both roll."""
     cutter, tool = profile.gear.cutter, cutter_flank(profile)
     places = []

@@ -6,20 +6,23 @@ from dataclasses import replace
 
 import pytest
 
-from fe_contact.geometry import Gear
+from fe_contact.geometry import Gear, RingGear, Toothing
 from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
 
+SIZE = {"normal_module": 4e-3, "face_width": 25e-3}
 GEARS = {
-    "all teeth, sectors down to the bore": (20, 40e-3, None),
-    "all teeth above a hub": (40, 40e-3, None),
-    "five teeth in a plain ring": (20, 40e-3, 5),
+    "all teeth, sectors down to the bore": (Gear(20, bore_diameter=40e-3, **SIZE), None),
+    "all teeth above a hub": (Gear(40, bore_diameter=40e-3, **SIZE), None),
+    "five teeth in a plain ring": (Gear(20, bore_diameter=40e-3, **SIZE), 5),
+    "ring gear, sectors out to the rim": (RingGear(50, rim_diameter=240e-3, **SIZE), None),
+    "ring gear below a thick rim": (RingGear(50, rim_diameter=320e-3, **SIZE), None),
+    "five teeth in a plain ring gear": (RingGear(50, rim_diameter=240e-3, **SIZE), 5),
 }
 
 
 @pytest.fixture(scope="session", params=GEARS, ids=list(GEARS))
-def gear_and_mesh(request: pytest.FixtureRequest) -> tuple[Gear, GearMesh]:
-    """Return a gear and its mesh, with each of the three ways to close the ring."""
-    teeth, bore, real = GEARS[request.param]
-    gear = Gear(teeth=teeth, normal_module=4e-3, face_width=25e-3, bore_diameter=bore)
+def gear_and_mesh(request: pytest.FixtureRequest) -> tuple[Toothing, GearMesh]:
+    """Return a gear and its mesh, with each of the ways to close the ring, teeth outwards or inwards."""
+    gear, real = GEARS[request.param]
     recipe = replace(MeshRecipe.standard(gear), flank_size=0.4e-3, real_teeth=real)
     return gear, mesh_gear(gear, recipe)

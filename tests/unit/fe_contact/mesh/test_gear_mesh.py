@@ -7,11 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from fe_contact.geometry import Gear, ToothProfile, tooth_profile
+from fe_contact.geometry import Gear, Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh import GearMesh, mesh_gear, mesh_quality
 from fe_contact.mesh.quadratic import rotated
 
-GearAndMesh = tuple[Gear, GearMesh]
+GearAndMesh = tuple[Toothing, GearMesh]
 
 
 def element_area(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -44,8 +44,8 @@ def sides(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def test_area_is_that_of_the_exact_section(gear_and_mesh: GearAndMesh) -> None:
     gear, mesh = gear_and_mesh
     plain = (gear.teeth - len(mesh.teeth)) * np.pi / gear.teeth * gear.root_radius**2
-    bore = np.pi * (0.5 * gear.bore_diameter) ** 2
-    exact = len(mesh.teeth) * tooth_area(tooth_profile(gear)) + plain - bore
+    toothed = len(mesh.teeth) * tooth_area(tooth_profile(gear)) + plain
+    exact = gear.sign * (toothed - np.pi * gear.held_radius**2)
     # Quadratic edges of up to 12 degrees on the plain rim and the bore miss their segment by a few 1e-6.
     assert element_area(mesh.points, mesh.triangles).sum() == pytest.approx(exact, rel=4e-6)
 
@@ -94,10 +94,11 @@ def test_the_whole_surface_of_a_tooth_is_exact(gear_and_mesh: GearAndMesh) -> No
     boundary = np.unique(np.concatenate([corners, boundary_middles(sector.triangles, pairs[counts == 1])]))
     x, y = sector.points[boundary].T
     radius, angle = np.hypot(x, y), np.abs(np.arctan2(x, y))
-    between = (radius > gear.root_radius + 0.05 * gear.normal_module) & (radius < 0.9999 * gear.tip_radius)
+    between = gear.sign * (radius - gear.root_radius) > 0.05 * gear.normal_module
+    between &= gear.sign * (gear.tip_radius - radius) > 1e-4 * gear.tip_radius
     between &= angle < 0.999 * 0.5 * profile.pitch_angle
     s = np.linspace(profile.s_root, profile.s_tip, 20_001)
-    fx, fy = profile.flank(s).T
+    fx, fy = profile.flank(s)[:: gear.sign].T  # by increasing radius
     exact = np.interp(radius[between], np.hypot(fx, fy), np.arctan2(fx, fy))
     assert between.sum() > 100
     assert angle[between] * radius[between] == pytest.approx(exact * radius[between], abs=1e-10)
@@ -115,12 +116,12 @@ def boundary_middles(triangles: np.ndarray, free: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def test_bore_nodes_are_all_on_the_bore(gear_and_mesh: GearAndMesh) -> None:
+def test_bore_nodes_are_all_on_the_circle_that_the_gear_is_held_by(gear_and_mesh: GearAndMesh) -> None:
     gear, mesh = gear_and_mesh
     radius = np.linalg.norm(mesh.points, axis=1)
-    on_bore = np.flatnonzero(radius < 0.5 * gear.bore_diameter + 1e-9)
+    on_bore = np.flatnonzero(gear.sign * (radius - gear.held_radius) < 1e-9)
     assert np.array_equal(np.sort(mesh.bore_nodes), on_bore)
-    assert radius[on_bore] == pytest.approx(0.5 * gear.bore_diameter, rel=1e-12)
+    assert radius[on_bore] == pytest.approx(gear.held_radius, rel=1e-12)
 
 
 def test_teeth_are_copies_and_each_tooth_its_own_mirror_image(gear_and_mesh: GearAndMesh) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import MeshError
-from fe_contact.geometry import Gear, tooth_profile
+from fe_contact.geometry import Gear, RingGear, Toothing, tooth_profile
 from fe_contact.mesh import QualityLimits, SectorRecipe, quad_sector
 from fe_contact.mesh.quad_quality import quad_quality
 from fe_contact.mesh.sector_grid import SectorGrid
@@ -19,7 +19,11 @@ def gear(teeth: int = 20, module: float = 4e-3, bore: float = 40e-3, **fields: A
     return Gear(teeth=teeth, normal_module=module, face_width=25e-3, bore_diameter=bore, **fields)
 
 
-ODD = {
+def ring(teeth: int = 60, module: float = 4e-3, rim: float = 280e-3, **fields: Any) -> RingGear:
+    return RingGear(teeth=teeth, normal_module=module, face_width=25e-3, rim_diameter=rim, **fields)
+
+
+ODD: dict[str, Toothing] = {
     "20 teeth": gear(),
     "6 teeth": gear(6, bore=5e-3, profile_shift_coefficient=0.5, helix_angle=0.4),
     "9 teeth": gear(9, bore=10e-3, profile_shift_coefficient=0.4),
@@ -37,6 +41,11 @@ ODD = {
     ),
     "helix 45": gear(25, 3e-3, 30e-3, helix_angle=math.radians(45.0)),
     "300 teeth, deep": gear(300, 2e-3, 10e-3),
+    "ring": ring(),
+    "ring, hardly a rim": ring(rim=252e-3),
+    "ring, a thick rim": ring(rim=500e-3),
+    "small ring": ring(30, rim=150e-3, cutter_teeth=15, addendum_coefficient=0.6),
+    "helical ring with sharp roots": ring(200, 2e-3, 500e-3, helix_angle=0.5, root_radius_coefficient=0.05),
 }
 
 
@@ -50,7 +59,7 @@ def test_elements_of_odd_gears_are_good(name: str) -> None:
         assert len(section.grid.quads) < 700
 
 
-@pytest.mark.parametrize("name", ["20 teeth", "undercut", "helix 45"])
+@pytest.mark.parametrize("name", ["20 teeth", "undercut", "helix 45", "ring"])
 def test_nodes_are_on_the_exact_outline(name: str) -> None:
     profile, recipe = tooth_profile(ODD[name]), SectorRecipe.standard(ODD[name])
     section = quad_sector(ODD[name], recipe)
@@ -61,34 +70,33 @@ def test_nodes_are_on_the_exact_outline(name: str) -> None:
     assert s[-1] == profile.s_tip
     split = profile.s_form - recipe.split * profile.fillet_length
     assert s[0] == pytest.approx(split) if name != "undercut" else profile.s_root < s[0] < split
-    assert section.normals[0, 1] >= 0.4 - 1e-9
+    assert ODD[name].sign * section.normals[0, 1] >= 0.4 - 1e-9
     assert np.min(np.abs(s[::2] - profile.s_form)) < 1e-15
-    assert np.linalg.norm(points[grid.bore], axis=1) == pytest.approx(
-        0.5 * ODD[name].bore_diameter, rel=1e-14
-    )
+    assert np.linalg.norm(points[grid.bore], axis=1) == pytest.approx(ODD[name].held_radius, rel=1e-14)
     tip = points[grid.number[-1][grid.number[-1] >= 0]]
     assert np.linalg.norm(tip, axis=1) == pytest.approx(ODD[name].tip_radius, rel=1e-14)
     coast = grid.number[2 * grid.body_rows :, 2 * (grid.land + grid.across)]
     assert np.array_equal(points[coast], points[grid.flank] * [-1.0, 1.0])
 
 
-def test_the_left_cut_turned_by_a_pitch_is_the_right_one() -> None:
-    section = quad_sector(gear(), SectorRecipe.draft(gear()))
+@pytest.mark.parametrize("name", ["20 teeth", "ring"])
+def test_the_left_cut_turned_by_a_pitch_is_the_right_one(name: str) -> None:
+    section = quad_sector(ODD[name], SectorRecipe.draft(ODD[name]))
     left, right = section.points[section.grid.left], section.points[section.grid.right]
-    angle = 2.0 * np.pi / 20
+    angle = 2.0 * np.pi / ODD[name].teeth
     turned = left @ np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    assert turned == pytest.approx(right, abs=1e-17)
+    assert turned == pytest.approx(right, abs=1e-16)
 
 
-def test_the_section_has_the_area_of_the_gear() -> None:
-    """By Green's theorem along the exact outline of one pitch."""
-    subject = gear(17, bore=30e-3)
+@pytest.mark.parametrize("subject", [gear(17, bore=30e-3), ring(50, rim=230e-3)], ids=["gear", "ring"])
+def test_the_section_has_the_area_of_the_gear(subject: Toothing) -> None:
+    """By Green's theorem along the exact outline of one pitch; elements counter-clockwise."""
     section = quad_sector(subject, SectorRecipe.fine(subject))
-    profile, half = tooth_profile(subject), np.pi / 17
+    profile, half = tooth_profile(subject), np.pi / subject.teeth
     s = np.linspace(profile.s_space, profile.s_tip, 20001)
     x, y = profile.flank(s).T
     exact = float(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))  # both flanks, from the root up
-    exact += profile.tip_angle * subject.tip_radius**2 - half * (0.5 * subject.bore_diameter) ** 2
+    exact += profile.tip_angle * subject.tip_radius**2 - half * subject.held_radius**2
     quads = section.grid.quads
     ring = quads[:, [0, 4, 1, 5, 2, 6, 3, 7]]
     a, m, b = (section.points[ring[:, (np.arange(4) * 2 + i) % 8]] for i in range(3))
@@ -97,7 +105,7 @@ def test_the_section_has_the_area_of_the_gear() -> None:
         return float(np.sum(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0]))
 
     assert (4 * cross(a, m) + 4 * cross(m, b) - cross(a, b)) / 6.0 == pytest.approx(
-        exact, rel=5e-6
+        subject.sign * exact, rel=5e-6
     )  # sides are parabolas
 
 
