@@ -102,5 +102,10 @@ def _metadata(
         effect_ledger=[entry.to_json() for entry in ledger],
         receipt=receipt,
         content_hash=content_hash(case, SOLVER_VERSION, SCHEMA_VERSION),
-        software_versions={"python": platform.python_version()} | {name: version(name) for name in PACKAGES},
+        software_versions=software_versions(),
     )
+
+
+def software_versions() -> dict[str, str]:
+    """Return what a result was made with."""
+    return {"python": platform.python_version()} | {name: version(name) for name in PACKAGES}

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_contact.analysis.compute_database import SOLVER_VERSION, Progress, software_versions
+from fe_contact.analysis.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.pair_contact import pair_contact
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request import Checked, check_request
 from fe_contact.analysis.table_places import table_places
 from fe_contact.checks import finite
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import GearPair
 from fe_contact.planning import make_plan
-from fe_contact.types import FloatArray
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import Metadata
+from fe_contact.ste.content_hash import content_hash
+from fe_contact.types import FloatArray, Json
 
 POSITIONS = 64
 
@@ -33,6 +39,9 @@ def flank_results(
     level: str | None = None,
     model: str = "auto",
     effects: Mapping[str, str] | None = None,
+    time_budget: float | None = None,
+    case: Json | None = None,
+    progress: Progress | None = None,
     cache: Path | None = None,
 ) -> LoadDistribution:
     """Solve the contact of one load and alignment, and keep what happens on the flanks.
@@ -46,7 +55,7 @@ def flank_results(
         See `analyze`, m.
     at : array_like, optional
         Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them.
-    tolerance, level, model, effects, cache
+    tolerance, level, time_budget, model, effects, case, progress, cache
         See `analyze`.
 
     Returns
@@ -66,20 +75,62 @@ def flank_results(
         normal_forces=None if normal_force is None else [normal_force],
         tolerance=tolerance,
         level=level,
+        time_budget=time_budget,
         model=model,
         misalignments=[misalignment],
         center_distance_changes=[center_distance_change],
         effects=effects,
     )
-    request = checked.request
-    position = _positions(at)
-    plan = make_plan(pair, request.load, request.accuracy, checked.model)
-    (place,) = table_places(request.scene, request.choices, pair_contact(pair, plan, cache)).places
-    problem, solution = place.solve(position, plan.load)
+    found = _solved(checked, _positions(at), progress or _silent, cache)
+    return replace(found, metadata=_metadata(checked, found, case))
+
+
+def _solved(checked: Checked, position: FloatArray, report: Progress, cache: Path | None) -> LoadDistribution:
+    """Solve one place of the table at one load; the receipt is all that its metadata hold."""
+    clock, request = StageClock(), checked.request
+    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+    report("compliance", 0.0)
+    with clock.stage("compliance"):
+        nominal = pair_contact(request.pair, plan, cache)
+    report("compliance", 1.0)
+    with clock.stage("contact"):
+        (place,) = table_places(request.scene, request.choices, nominal).places
+        problem, solution = place.solve(position, plan.load)
+    report("contact", 1.0)
     if not solution.converged:
         failed = int(np.count_nonzero(solution.status))
         raise SolveError(f"{failed} of {position.size} positions have no solution", partial=solution)
-    return load_distribution(place.contact.pair, problem, solution)
+    return load_distribution(
+        place.contact.pair,
+        problem,
+        solution,
+        misalignment=float(request.misalignment[0]),
+        center_distance_change=float(request.center_distance_change[0]),
+        metadata=Metadata(receipt=clock.to_json() | {"plan": plan.to_json()}),
+    )
+
+
+def _metadata(checked: Checked, found: LoadDistribution, case: Json | None) -> Metadata:
+    """Everything about the making; the hash is of all that decides the result."""
+    scene = found.scene
+    asked: Json = {
+        "case": case or checked.request.to_json(),
+        "normal_force": scene.normal_force,
+        "misalignment": scene.misalignment,
+        "center_distance_change": scene.center_distance_change,
+        "position": found.position.tolist(),
+    }
+    return replace(
+        found.metadata,
+        case=asked["case"],
+        effect_ledger=[entry.to_json() for entry in checked.ledger],
+        content_hash=content_hash({"flank_results": asked}, SOLVER_VERSION, SCHEMA_VERSION),
+        software_versions=software_versions(),
+    )
+
+
+def _silent(_stage: str, _fraction: float) -> None:
+    """Report no progress."""
 
 
 def _positions(at: ArrayLike | None) -> FloatArray:

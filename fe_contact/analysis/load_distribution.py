@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fe_contact.analysis.flank_scene import FlankScene, flank_scene
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.geometry import GearPair
 from fe_contact.hertz import peak_pressure
+from fe_contact.ste import Metadata
 from fe_contact.types import BoolArray, FloatArray, IntArray
+
+if TYPE_CHECKING:
+    import xarray
 
 
 @dataclass(frozen=True)
@@ -44,6 +51,10 @@ class LoadDistribution:
         Along the face, m.
     base_helix_angle : float
         beta_b of gear 1, rad.
+    scene : FlankScene
+        The load, the alignment, and the marks on both flanks.
+    metadata : Metadata
+        Case, effects, cost and versions.
     """
 
     position: FloatArray
@@ -59,6 +70,8 @@ class LoadDistribution:
     gap: FloatArray
     slice_width: float
     base_helix_angle: float
+    scene: FlankScene
+    metadata: Metadata = field(default_factory=Metadata)
 
     @property
     def line_load(self) -> FloatArray:
@@ -101,6 +114,31 @@ class LoadDistribution:
         """The same for each pair's own contact line (P, N); NaN for a pair that carries nothing."""
         return _over_mean_of(self.line_load, self._meshing)
 
+    def to_xarray(self) -> xarray.Dataset:
+        """Return all fields with units, and what follows from them: line load, factors, contact patterns."""
+        from fe_contact.analysis.flank_file import to_dataset  # noqa: PLC0415 - xarray takes half a second
+
+        return to_dataset(self)
+
+    def to_netcdf(self, path: Path) -> None:
+        """Write a netCDF-4 file, whole or not at all."""
+        from fe_contact.analysis.flank_file import write  # noqa: PLC0415
+
+        write(self, Path(path))
+
+    @classmethod
+    def from_netcdf(cls, path: Path) -> LoadDistribution:
+        """Read back what `to_netcdf` wrote, every bit as it was.
+
+        Raises
+        ------
+        DatabaseError
+            The file is missing, damaged, newer than this release, or of another kind.
+        """
+        from fe_contact.analysis.flank_file import read  # noqa: PLC0415
+
+        return cls(**read(Path(path)))
+
     @property
     def _meshing(self) -> BoolArray:
         """Slices that belong to a contact line: on the path of contact, or loaded at a tip edge."""
@@ -108,7 +146,14 @@ class LoadDistribution:
 
 
 def load_distribution(
-    pair: GearPair, problem: ContactProblem, solution: ContactSolution, load: int = 0
+    pair: GearPair,
+    problem: ContactProblem,
+    solution: ContactSolution,
+    load: int = 0,
+    *,
+    misalignment: float = 0.0,
+    center_distance_change: float = 0.0,
+    metadata: Metadata | None = None,
 ) -> LoadDistribution:
     """Lay out a contact solution by pair and slice.
 
@@ -121,6 +166,10 @@ def load_distribution(
         Converged at all positions.
     load : int
         Index of the load.
+    misalignment, center_distance_change : float
+        What the solution was made for, m; kept in the scene.
+    metadata : Metadata, optional
+        Kept as it is.
     """
     candidates = problem.candidates
     face = candidates.face_position[candidates.pair == candidates.pair[0]]
@@ -146,6 +195,8 @@ def load_distribution(
         gap=gap.reshape(shape),
         slice_width=candidates.slice_width,
         base_helix_angle=candidates.base_helix_angle,
+        scene=flank_scene(pair, solution.load[load], misalignment, center_distance_change),
+        metadata=metadata or Metadata(),
     )
 
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-import os
-import tempfile
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +12,7 @@ import numpy as np
 from fe_contact.errors import DatabaseError
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import DIMENSIONS, RESIDUALS, SteFields
+from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
 from fe_contact.types import Json, Status
 
 if TYPE_CHECKING:
@@ -69,20 +67,7 @@ def to_dataset(database: SteFields) -> xarray.Dataset:
 
 def write(database: SteFields, path: Path) -> None:
     """Write the database to `path`: into a temporary file beside it, then renamed over it."""
-    dataset = to_dataset(database)
-    # no _FillValue: xarray would replace NaN by its own on the way back
-    encoding: dict[Any, Json] = {name: {"_FillValue": None} for name in dataset.variables}
-    for name in dataset.data_vars:
-        if dataset[name].size:
-            encoding[name] |= {"zlib": True, "complevel": 4, "shuffle": True}
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    os.close(handle)
-    try:
-        dataset.to_netcdf(temporary, engine="h5netcdf", format="NETCDF4", encoding=encoding)
-        _publish(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
+    write_dataset(to_dataset(database), path)
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -93,7 +78,7 @@ def read(path: Path) -> dict[str, Any]:
     DatabaseError
         If the file is missing, no netCDF-4, no STE database, of a newer schema, or damaged.
     """
-    arrays, attributes = _load(path)
+    arrays, attributes = read_variables(path)
     if attributes.get("format") != FORMAT:
         raise DatabaseError(f"{path}: a netCDF file, but no STE database")
     version = attributes.get("schema_version")
@@ -113,21 +98,6 @@ def read(path: Path) -> dict[str, Any]:
         "metadata": _metadata(path, attributes),
         "period": period,
     }
-
-
-def _load(path: Path) -> tuple[dict[str, Any], Json]:
-    """All variables and global attributes of a netCDF-4 file, undecoded."""
-    import h5netcdf  # noqa: PLC0415 - a tenth of the time of xarray, which is for writing
-
-    if not path.is_file():
-        raise DatabaseError(f"{path}: no such file")
-    try:
-        with h5netcdf.File(path, "r") as file:
-            arrays = {str(name): np.asarray(variable[...]) for name, variable in file.variables.items()}
-            return arrays, dict(file.attrs)
-    # what HDF5 raises on damaged bytes is not one class
-    except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
-        raise DatabaseError(f"{path}: not a readable netCDF-4 file ({error})") from error
 
 
 def _variable_attributes(name: str) -> Json:
@@ -166,13 +136,8 @@ def _period(path: Path, attributes: Json) -> int:
 
 
 def _digest(arrays: dict[str, Any], period: int) -> str:
-    """SHA-256 over the period if it is not 1, and names, types, shapes and bytes of the arrays."""
-    digest = hashlib.sha256(f"period {period};".encode() if period != 1 else b"")
-    for name in DIMENSIONS:
-        array = np.ascontiguousarray(arrays[name])
-        digest.update(f"{name} {array.dtype.newbyteorder('<').str} {array.shape};".encode())
-        digest.update(array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes())
-    return digest.hexdigest()
+    """SHA-256 over the arrays, and over the period if it is not 1."""
+    return digest({name: arrays[name] for name in DIMENSIONS}, f"period {period};" if period != 1 else "")
 
 
 def _facts(path: Path, attributes: Json) -> PairFacts:
@@ -199,13 +164,3 @@ def _document(path: Path, attributes: Json, name: str) -> Any:
         return json.loads(attributes[name])
     except (KeyError, TypeError, ValueError) as error:
         raise DatabaseError(f"{path}: damaged, its {name} is not readable JSON ({error})") from error
-
-
-def _publish(temporary: str, path: Path) -> None:
-    """Flush to disk and rename; ordinary file permissions instead of the temporary file's private ones."""
-    mask = os.umask(0)
-    os.umask(mask)
-    Path(temporary).chmod(0o666 & ~mask)
-    with Path(temporary).open("rb") as written:
-        os.fsync(written.fileno())
-    Path(temporary).replace(path)

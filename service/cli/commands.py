@@ -90,6 +90,36 @@ def ste(
     run_ste(database, request, as_csv=csv, as_json=json)
 
 
+@app.command(epilog="Example: loa flank examples/palermo_spur_20_20.toml --torque 100 -o flank.nc")
+@guarded
+def flank(
+    case: Annotated[Path, typer.Argument(help="Case file.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Flank results to write (netCDF).")],
+    torque: Annotated[
+        float | None,
+        typer.Option(help="Torque on the driving gear in N m; default: the highest load."),
+    ] = None,
+    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
+    misalignment_um: Annotated[
+        float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
+    ] = None,
+    center_distance_change_mm: Annotated[
+        float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta."""
+    from service.cli.flank import run_flank  # noqa: PLC0415 (start-up time)
+
+    point = {
+        "torque_n_m": torque,
+        "normal_force_n": force,
+        "misalignment_um": misalignment_um,
+        "center_distance_change_mm": center_distance_change_mm,
+    }
+    run_flank(case, output, point, as_json=json)
+
+
 @app.command(epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
 @guarded
 def simulate(
@@ -110,15 +140,21 @@ def simulate(
 @app.command(epilog="Example: loa report ste.nc run.nc -o report.html")
 @guarded
 def report(
-    files: Annotated[list[Path], typer.Argument(help="An STE database, a run, or one of each (netCDF).")],
+    files: Annotated[
+        list[Path], typer.Argument(help="An STE database, flank results, a run; one of each (netCDF).")
+    ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
+    flank: Annotated[
+        bool,
+        typer.Option("--flank", help="Compute what happens on the flanks at the load the page names."),
+    ] = False,
     json: AsJson = False,
 ) -> None:
-    """Write one HTML page with the plots of a database, a run or both."""
+    """Write one HTML page with the plots of a database, flank results or a run."""
     from service.cli.report import run_report  # noqa: PLC0415 (start-up time)
 
-    run_report(files, output, images, as_json=json)
+    run_report(files, output, images, flank=flank, as_json=json)
 
 
 @app.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")

@@ -2,23 +2,72 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from service.cli.output import check_writable, console, print_json
+from pydantic import ValidationError
+
+from fe_contact.analysis import LoadDistribution
+from service.cli.output import Report, check_writable, console, print_json, progress_bar
+from service.convert.flanks import case_at, flanks_of
 from service.problems import BadInput
-from service.report import write_report
+from service.report.aligned import aligned, headline_load
+from service.report.content import nominal_force
+from service.report.inputs import Inputs, read_inputs
+from service.report.write import write_page
+from service.schemas import Case
+from service.schemas.flank import FlankPoint
+from service.settings import cache_home
 
 
-def run_report(files: Sequence[Path], output: Path, images: Path | None, *, as_json: bool) -> None:
-    """Write the page, and the pictures if asked."""
+def run_report(
+    files: Sequence[Path], output: Path, images: Path | None, *, flank: bool, as_json: bool
+) -> None:
+    """Write the page, and the pictures if asked; compute the flank results if asked."""
     for file in files:
         if not file.is_file():
-            raise BadInput.of("file", str(file), "an STE database or a run", "Check the path.")
+            raise BadInput.of("file", str(file), "an STE database, flank results or a run", "Check the path.")
     check_writable(output)
-    written = write_report(list(files), output, images)
+    read = read_inputs(files)
+    if flank:
+        with progress_bar() as report:
+            read = replace(read, flanks=_flanks(read, report))
+    written = write_page(read, output, images)
     if as_json:
         print_json({"file": str(output), "written": [str(path) for path in written]})
         return
+    if flank and read.flanks is not None:
+        spent = read.flanks.metadata.receipt["cpu_seconds"]
+        console().print(f"flank results {spent:.3g} CPU s", highlight=False)
     for path in written:
         console().print(f"written to {path}", highlight=False)
+
+
+def _flanks(read: Inputs, report: Report) -> LoadDistribution:
+    """Compute the flank results of the database's case, at the load and the alignment of the page's figures.
+
+    Raises
+    ------
+    BadInput
+        There is no database to take the case from, or flank results are there already.
+    """
+    database = read.database
+    if read.flanks is not None:
+        raise BadInput.of("--flank", True, "left out with a file of flank results", "Name one or the other.")
+    if database is None:
+        raise BadInput.of("--flank", True, "given with an STE database", "Its case says what to compute.")
+    try:
+        # strict models take JSON's lists for tuples only from text
+        case = Case.model_validate_json(json.dumps(database.metadata.case))
+    except ValidationError:
+        advice = "It was made in Python: write the file with flank_results(...).to_netcdf, and name it."
+        raise BadInput.of("--flank", True, "given with the database of a case file", advice) from None
+    misalignment, change = aligned(database)
+    point = FlankPoint(
+        normal_force_n=float(database.force[headline_load(database, nominal_force(read))]),
+        misalignment_um=1e6 * misalignment,
+        center_distance_change_mm=1e3 * change,
+    )
+    return flanks_of(case_at(case, point), cache_home() / "compliance", report)

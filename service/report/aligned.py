@@ -85,3 +85,8 @@ def middle_load(database: SteDatabase) -> int:
     """Return the index of the middle one of the loads shown."""
     loads = shown_loads(database)
     return loads[len(loads) // 2]
+
+
+def headline_load(database: SteDatabase, force: float | None = None) -> int:
+    """Return the index of the stored load nearest to `force` (N); None: of the middle one."""
+    return middle_load(database) if force is None else int(np.argmin(np.abs(database.force - force)))

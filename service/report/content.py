@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
+from fe_contact.ste import PairFacts
 from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
+from service.report.flank_part import flank_alarms, flank_headlines, flank_making, flank_results_section
 from service.report.inputs import Inputs
 from service.report.page import Headline, Page, Section
 from service.report.static_part import static_alarms, static_headlines, static_making, static_results
@@ -12,16 +14,21 @@ from service.report.static_part import static_alarms, static_headlines, static_m
 
 def page_of(read: Inputs) -> Page:
     """Put the page together: results first, then how they were made."""
-    database, run = read.database, read.run
+    database, flanks, run = read.database, read.flanks, read.run
     headlines: list[Headline] = []
     results: list[Section] = []
     making: list[Section] = []
     alarms: list[str] = []
     if database is not None:
-        headlines += static_headlines(database, _nominal_force(read))
+        headlines += static_headlines(database, nominal_force(read))
         results += static_results(database)
         making += static_making(database)
         alarms += static_alarms(database)
+    if flanks is not None:
+        headlines += flank_headlines(flanks)
+        results += flank_results_section(flanks)
+        making += flank_making(flanks, alone=database is None)
+        alarms += flank_alarms(flanks, database)
     if run is not None:
         headlines += dynamic_headlines(run)
         results += dynamic_results(run)
@@ -30,7 +37,7 @@ def page_of(read: Inputs) -> Page:
     return Page(_title(read), _lead(read), tuple(headlines), (*results, *making), tuple(alarms))
 
 
-def _nominal_force(read: Inputs) -> float | None:
+def nominal_force(read: Inputs) -> float | None:
     """Return the normal force in N that the run's load asks of the database's pair."""
     if read.run is None or read.database is None:
         return None
@@ -39,17 +46,24 @@ def _nominal_force(read: Inputs) -> float | None:
 
 def _title(read: Inputs) -> str:
     """Name the pair, or the run."""
-    if read.database is None:
+    facts = pair_facts(read)
+    if facts is None:
         return "Dynamics of geared shafts"
-    one, other = read.database.facts.teeth
+    one, other = facts.teeth
     return f"Gear pair {one}/{other}"
+
+
+def pair_facts(read: Inputs) -> PairFacts | None:
+    """Return the facts of the pair, if anything but a run was read."""
+    found = read.database or (read.flanks.scene if read.flanks is not None else None)
+    return None if found is None else found.facts
 
 
 def _lead(read: Inputs) -> str:
     """Say in one line what was computed."""
     parts = []
-    if read.database is not None:
-        facts = read.database.facts
+    facts = pair_facts(read)
+    if facts is not None:
         parts.append(
             f"centre distance {1e3 * facts.center_distance:.6g} mm, "
             f"face width {1e3 * facts.face_width:.6g} mm, base pitch {1e3 * facts.base_pitch:.5g} mm"

@@ -36,22 +36,58 @@ class Line:
 
 @dataclass(frozen=True)
 class Reference:
-    """A straight line across a panel at one value, with a short label beside it."""
+    """A straight line across a panel at one value, with a short label beside it.
+
+    The label of a horizontal line is centred at the fraction `at` of the width, or ends there if it is above
+    one half.
+    """
 
     label: str
     value: float
     direction: Literal["horizontal", "vertical"] = "vertical"
+    at: float = 0.5
+
+
+@dataclass(frozen=True)
+class HeatMap:
+    """Cells coloured by a value; NaN stays blank.
+
+    `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colours run from 0 to `largest`; `label`
+    has the unit after its last comma.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+    label: str
+    largest: float
+
+
+@dataclass(frozen=True)
+class Strokes:
+    """Straight strokes coloured and widened by a value.
+
+    `x` and `y` (n, 2) are their ends, `value` (n,); where it is 0 the stroke is thin and grey. Colours run
+    from 0 to `largest`; `label` has the unit after its last comma.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    value: FloatArray
+    label: str
+    largest: float
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes with its curves; `title` tells it from its neighbours."""
+    """One pair of axes with its curves, or with values as colours; `title` tells it from its neighbours."""
 
     x: Axis
     y: Axis
-    lines: tuple[Line, ...]
+    lines: tuple[Line, ...] = ()
     references: tuple[Reference, ...] = ()
     title: str = ""
+    shade: HeatMap | Strokes | None = None
 
 
 @dataclass(frozen=True)
@@ -104,6 +140,11 @@ def repeats_below(panels: Sequence[Panel], index: int) -> bool:
     return index + 1 < len(panels) and panels[index + 1].x == panels[index].x
 
 
+def unit_of(label: str) -> str:
+    """Return the unit of a label, which stands after its last comma."""
+    return label.rpartition(",")[2].strip()
+
+
 def number(value: float, digits: int = 4) -> str:
     """Write `value` with `digits` significant digits, without an exponent where that is readable."""
     if not np.isfinite(value):
@@ -117,3 +158,8 @@ def number(value: float, digits: int = 4) -> str:
 def thousands(values: Sequence[float]) -> tuple[str, ...]:
     """Label loads: whole numbers without a decimal point, others with up to four digits."""
     return tuple(f"{v:.0f}" if float(v).is_integer() else f"{v:.4g}" for v in values)
+
+
+def numbers(values: FloatArray) -> list[float | None]:
+    """Numbers for JSON: seven digits, NaN as null (a gap)."""
+    return [float(f"{v:.7g}") if np.isfinite(v) else None for v in values]

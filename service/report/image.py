@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure as Sheet
 from matplotlib.ticker import ScalarFormatter
 
 from service.report import palette
 from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, repeats_below
+from service.report.image_shade import colour_map, draw_shade
 
 _WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
@@ -43,6 +43,8 @@ def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
     axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False)[:, 0])
     handles: dict[str, Any] = {}
     for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
+        if panel.shade is not None:
+            draw_shade(ax, panel.shade)
         for line in panel.lines:
             handles.setdefault(line.name, _draw(ax, line))
         _finish(ax, panel)
@@ -78,7 +80,7 @@ def _finish(ax: Axes, panel: Panel) -> None:
     for axis, name in ((panel.x, "x"), (panel.y, "y")):
         _scale(ax, axis, name)
     for reference in panel.references:
-        _refer(ax, reference)
+        _refer(ax, reference, boxed=panel.shade is not None)
     if panel.title:
         ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold")
     ax.grid(color=palette.GRID, lw=0.6)
@@ -96,10 +98,10 @@ def _scale(ax: Axes, axis: Axis, name: str) -> None:
         getattr(ax, f"{name}axis").set_major_formatter(formatter)
 
 
-def _refer(ax: Axes, reference: Reference) -> None:
-    """Draw a reference line with its label."""
+def _refer(ax: Axes, reference: Reference, *, boxed: bool) -> None:
+    """Draw a reference line with its label, in a white box where colours lie under it."""
     text = f" {reference.label}"
-    stroke: dict[str, Any] = {"color": palette.MUTED, "ls": "--", "lw": 0.8, "zorder": 0.5}
+    stroke: dict[str, Any] = {"color": palette.MUTED, "ls": "--", "lw": 0.8, "zorder": 2.5 if boxed else 0.5}
     if reference.direction == "vertical":
         ax.axvline(reference.value, **stroke)
         written = ax.text(
@@ -107,10 +109,13 @@ def _refer(ax: Axes, reference: Reference) -> None:
         )
     else:
         ax.axhline(reference.value, **stroke)
+        anchor = "center" if reference.at == 0.5 else "right"
         written = ax.text(
-            0.5, reference.value, text, ha="center", va="bottom", transform=ax.get_yaxis_transform()
+            reference.at, reference.value, text, ha=anchor, va="bottom", transform=ax.get_yaxis_transform()
         )
     written.set(fontsize=8, color=palette.MUTED)
+    if boxed:
+        written.set(color=palette.INK, bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 1.0})
 
 
 def _surface_sheet(surface: Surface) -> Sheet:
@@ -118,7 +123,7 @@ def _surface_sheet(surface: Surface) -> Sheet:
     sheet = Sheet(figsize=(_WIDTH, _SURFACE_HEIGHT), layout="constrained")
     ax: Any = sheet.add_subplot(projection="3d")
     ax.set_box_aspect((1.4, 1.2, 0.8), zoom=1.05)
-    colours = LinearSegmentedColormap.from_list("cividis_steps", palette.CIVIDIS)
+    colours = colour_map()
     x, y = np.meshgrid(surface.x, surface.y)
     drawn = ax.plot_surface(
         x, y, surface.z, cmap=colours, rcount=40, ccount=100, linewidth=0, antialiased=True

@@ -1,8 +1,8 @@
-"""What a report is made from: an STE database, a run, or both; the files say which they are."""
+"""What a report is made from: an STE database, flank results, a run; the files say which they are."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,22 +11,31 @@ import h5netcdf
 
 from dynamics.errors import DynamicsError
 from dynamics.results import RunResult
+from fe_contact.analysis import LoadDistribution
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
 from service.problems import BadInput
 
 _KINDS = {
     ("format", "lineofaction STE database"): "database",
+    ("format", "lineofaction flank results"): "flank results",
     ("schema", "lineofaction dynamics run"): "run",
 }
-_BOUND = "an STE database or a run"
+_BOUND = "an STE database, flank results or a run"
+_READERS: dict[str, Callable[[Path], Any]] = {
+    "database": SteDatabase.from_netcdf,
+    "flank results": LoadDistribution.from_netcdf,
+    "run": RunResult.from_netcdf,
+}
+_FIELDS = {"database": "database", "flank results": "flanks", "run": "run"}
 
 
 @dataclass(frozen=True)
 class Inputs:
-    """What was read; at least one of both."""
+    """What was read; at least one of them."""
 
     database: SteDatabase | None = None
+    flanks: LoadDistribution | None = None
     run: RunResult | None = None
 
 
@@ -44,15 +53,14 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
     for file in files:
         kind = file_kind(file)
         if kind in read:
-            raise BadInput.of(
-                "file", str(file), f"the only {kind}", "One page shows one database and one run."
-            )
+            advice = "One page shows one database, one set of flank results and one run."
+            raise BadInput.of("file", str(file), f"the only {kind}", advice)
         read[kind] = _read(file, kind)
-    return Inputs(**read)
+    return Inputs(**{_FIELDS[kind]: content for kind, content in read.items()})
 
 
 def file_kind(file: Path) -> str:
-    """Return "database" or "run", by the attribute in which a file names its format.
+    """Return "database", "flank results" or "run", by the attribute in which a file names its format.
 
     Raises
     ------
@@ -72,9 +80,9 @@ def file_kind(file: Path) -> str:
     return kinds[0]
 
 
-def _read(file: Path, kind: str) -> SteDatabase | RunResult:
+def _read(file: Path, kind: str) -> Any:
     """Read a file of a known kind."""
     try:
-        return SteDatabase.from_netcdf(file) if kind == "database" else RunResult.from_netcdf(file)
+        return _READERS[kind](file)
     except (FeContactError, DynamicsError) as error:
         raise BadInput.of("file", str(file), f"an undamaged {kind}", f"{error}.") from None

@@ -7,7 +7,18 @@ from typing import Any
 import numpy as np
 
 from service.report import palette
-from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Surface, repeats_below
+from service.report.figure import (
+    Axis,
+    Figure,
+    Line,
+    Panel,
+    Reference,
+    Surface,
+    numbers,
+    repeats_below,
+    unit_of,
+)
+from service.report.interactive_shade import colour_scale, shade_traces
 
 Json = dict[str, Any]
 
@@ -40,12 +51,15 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
     unnamed = set(names)
     for index, panel in enumerate(panels):
         suffix = str(index + 1) if index else ""
-        place = {"domain": _domain(_PANEL_HEIGHT * index + sum(gaps[:index]), inner), "anchor": "x" + suffix}
+        domain = _domain(_PANEL_HEIGHT * index + sum(gaps[:index]), inner)
+        place = {"domain": domain, "anchor": "x" + suffix}
         layout["xaxis" + suffix] = _axis(panel.x) | {"anchor": "y" + suffix}
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
         layout["yaxis" + suffix] = _axis(panel.y) | place
         layout["annotations"] += _panel_title(panel, suffix)
+        if panel.shade is not None:
+            data += shade_traces(panel.shade, suffix, domain)
         for line in panel.lines:
             data.append(_line(line, suffix, show=line.name in unnamed))
             unnamed.discard(line.name)
@@ -98,8 +112,8 @@ def _line(line: Line, suffix: str, show: bool) -> Json:
         "type": "scatter",
         "mode": "lines",
         "name": line.name,
-        "x": _numbers(line.x),
-        "y": _numbers(line.y),
+        "x": numbers(line.x),
+        "y": numbers(line.y),
         "xaxis": "x" + suffix,
         "yaxis": "y" + suffix,
         "line": {"color": line.colour, "dash": line.dash, "width": line.width},
@@ -125,26 +139,28 @@ def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str
     ends = ("x0", "x1", "y0", "y1") if upright else ("y0", "y1", "x0", "x1")
     extent = dict(zip(ends, (reference.value, reference.value, 0, 1), strict=True))
     stroke = {"line": {"color": palette.MUTED, "dash": "dash", "width": 1}}
-    layout["shapes"].append({"type": "line", "layer": "below"} | along | extent | stroke)
+    layer = "below" if panel.shade is None else "above"
+    layout["shapes"].append({"type": "line", "layer": layer} | along | extent | stroke)
     scale = panel.x.scale if upright else panel.y.scale
     value = float(np.log10(reference.value)) if scale == "log" else reference.value
-    place = {"x": value, "y": 1} if upright else {"x": 0.5, "y": value}
-    anchor = {"xanchor": "left" if upright else "center", "yanchor": "top" if upright else "bottom"}
-    text = {"text": reference.label, "showarrow": False, "font": {"size": 12, "color": palette.MUTED}}
+    place = {"x": value, "y": 1} if upright else {"x": reference.at, "y": value}
+    across = "left" if upright else "center" if reference.at == 0.5 else "right"
+    anchor = {"xanchor": across, "yanchor": "top" if upright else "bottom"}
+    text: Json = {"text": reference.label, "showarrow": False, "font": {"size": 12, "color": palette.MUTED}}
+    if panel.shade is not None:
+        text |= {"bgcolor": "rgba(255,255,255,0.8)", "font": {"size": 12, "color": palette.INK}}
     layout["annotations"].append(along | place | anchor | text)
 
 
 def _surface(surface: Surface) -> Json:
     """Draw a surface in the ordered palette."""
-    steps = [[i / (len(palette.CIVIDIS) - 1), colour] for i, colour in enumerate(palette.CIVIDIS)]
-    unit = surface.axes[2].label.rpartition(",")[2].strip()
     return {
         "type": "surface",
-        "x": _numbers(surface.x),
-        "y": _numbers(surface.y),
-        "z": [_numbers(row) for row in surface.z],
-        "colorscale": steps,
-        "colorbar": {"title": {"text": unit}, "thickness": 14, "len": 0.7},
+        "x": numbers(surface.x),
+        "y": numbers(surface.y),
+        "z": [numbers(row) for row in surface.z],
+        "colorscale": colour_scale(),
+        "colorbar": {"title": {"text": unit_of(surface.axes[2].label)}, "thickness": 14, "len": 0.7},
     }
 
 
@@ -161,8 +177,3 @@ def _scene(surface: Surface) -> Json:
     }
     camera = {"eye": {"x": -1.15, "y": -1.4, "z": 0.7}, "center": {"x": 0, "y": 0, "z": -0.12}}
     return {"scene": axes | {"camera": camera, "aspectratio": {"x": 1.3, "y": 1.1, "z": 0.75}}}
-
-
-def _numbers(values: FloatArray) -> list[float | None]:
-    """Numbers for JSON: seven digits, NaN as null (a gap)."""
-    return [float(f"{v:.7g}") if np.isfinite(v) else None for v in values]

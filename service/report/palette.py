@@ -33,7 +33,11 @@ def category(index: int) -> str:
 
 def ordered(index: int, count: int) -> str:
     """Return the colour of step `index` of `count` ordered values, dark for the first."""
-    fraction = _DARKEST + (_LIGHTEST - _DARKEST) * index / max(count - 1, 1)
+    return cividis(_DARKEST + (_LIGHTEST - _DARKEST) * index / max(count - 1, 1))
+
+
+def cividis(fraction: float) -> str:
+    """Return the colour at a fraction, 0 to 1, of the ordered palette."""
     low = min(int(fraction * 10), 9)
     return _blend(CIVIDIS[low], CIVIDIS[low + 1], fraction * 10 - low)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
-from service.report.aligned import load_curve, load_labels, middle_load
+from service.report.aligned import headline_load, load_curve, load_labels
 from service.report.database_surface import database_surface
 from service.report.deviation_curves import deviation_curves, has_deviations
 from service.report.face_load import face_load, has_face_load
@@ -32,7 +32,7 @@ _LEDGER = (
 
 def static_headlines(database: SteDatabase, force: float | None = None) -> tuple[Headline, ...]:
     """Mean and peak-to-peak STE at the stored load nearest to `force` (N), or the middle one."""
-    load = middle_load(database) if force is None else int(np.argmin(np.abs(database.force - force)))
+    load = headline_load(database, force)
     curve, label = load_curve(database, load), load_labels(database)[load]
     return (
         Headline(f"mean STE at {label}", f"{_um(curve.mean.value)} µm", _band(curve.mean)),

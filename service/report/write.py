@@ -9,7 +9,7 @@ from pathlib import Path
 
 from service.report.content import page_of
 from service.report.image import png
-from service.report.inputs import read_inputs
+from service.report.inputs import Inputs, read_inputs
 from service.report.page import html
 
 
@@ -19,7 +19,7 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
     Parameters
     ----------
     inputs : Path or sequence of Path
-        STE databases and runs, at most one of each; the file says which it is.
+        STE databases, flank results and runs, at most one of each; the file says which it is.
     output : Path
         The page.
     images : Path, optional
@@ -33,9 +33,14 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
     Raises
     ------
     BadInput
-        A file is neither, is damaged, or there are two of a kind.
+        A file is none of them, is damaged, or there are two of a kind.
     """
-    page = page_of(read_inputs([inputs] if isinstance(inputs, Path) else list(inputs)))
+    return write_page(read_inputs([inputs] if isinstance(inputs, Path) else list(inputs)), output, images)
+
+
+def write_page(read: Inputs, output: Path, images: Path | None = None) -> list[Path]:
+    """Write the page of what was read; parameters and result are those of `write_report`."""
+    page = page_of(read)
     drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
     _write(output, html(page, drawn).encode("utf-8"))
     written = [output]

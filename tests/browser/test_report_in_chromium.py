@@ -45,7 +45,9 @@ def report(closed_forms: ModuleType, tmp_path_factory: pytest.TempPathFactory) -
     folder = tmp_path_factory.mktemp("report")
     closed_forms.closed_form().to_netcdf(folder / "ste.nc")
     closed_forms.run_up().to_netcdf(folder / "run.nc")
-    return write_report([folder / "ste.nc", folder / "run.nc"], folder / "report.html")[0]
+    closed_forms.closed_form_flanks().to_netcdf(folder / "flanks.nc")
+    files = [folder / name for name in ("ste.nc", "flanks.nc", "run.nc")]
+    return write_report(files, folder / "report.html")[0]
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +108,7 @@ def overlap(one: dict[str, float], other: dict[str, float]) -> bool:
 
 def test_the_still_images_load(visit: Visit) -> None:
     widths = visit.page.eval_on_selector_all("img.still", "nodes => nodes.map(n => n.naturalWidth)")
-    assert widths == [1350] * 7
+    assert widths == [1350] * 11
 
 
 def test_nothing_is_complained_about(visit: Visit) -> None:

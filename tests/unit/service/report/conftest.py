@@ -11,6 +11,9 @@ import pytest
 
 from dynamics.results import EnergyAudit, RunResult, StepStatistics
 from dynamics.types import RunStatus
+from fe_contact.analysis import LoadDistribution
+from fe_contact.analysis.flank_scene import flank_scene
+from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 
 R_B, PITCH, WIDTH = 0.0375877, 0.0118085, 0.025
@@ -72,6 +75,51 @@ def with_failures() -> SteDatabase:
     ste, status = whole.static_transmission_error.copy(), whole.status.copy()
     ste[5, 2], status[5, 2] = np.nan, 1
     return replace(whole, static_transmission_error=ste, status=status)
+
+
+def helical_pair() -> GearPair:
+    """19/26 teeth, right hand."""
+    pinion = Gear(
+        teeth=19, normal_module=3e-3, face_width=20e-3, bore_diameter=30e-3, helix_angle=math.radians(20.0)
+    )
+    return GearPair(pinion, replace(pinion, teeth=26, helix_angle=-pinion.helix_angle))
+
+
+def closed_form_flanks(slices: int = 5, positions: int = 16) -> LoadDistribution:
+    """A load that falls linearly over the face to nothing in the last slice, on every contact line."""
+    pair = helical_pair()
+    position, index = np.arange(positions) / positions, np.arange(-2, 3)
+    width = pair.face_width / slices
+    face = (np.arange(slices) + 0.5) * width - 0.5 * pair.face_width
+    nominal = pair.roll_lengths(position[:, None], index)[0][..., None]
+    roll = nominal - face * math.tan(pair.base_helix_angle)
+    path = pair.path_of_contact
+    on_path = (roll >= path.start) & (roll <= path.end)
+    profile = np.linspace(2.0, 0.0, slices) if slices > 1 else np.ones(1)
+    force = on_path * profile * 1000.0 / slices
+    gap = np.where(force > 0.0, 0.0, np.where(on_path, 2e-6, np.inf))
+    return LoadDistribution(
+        position=position,
+        pair=index,
+        face_position=face,
+        deflection=np.full(positions, 5e-6),
+        roll_length_1=roll,
+        roll_length_2=pair.common_tangent - roll,
+        on_path=on_path,
+        force=force,
+        lever=np.ones_like(force),
+        pressure=4e7 * np.sqrt(force),
+        gap=gap,
+        slice_width=width,
+        base_helix_angle=pair.base_helix_angle,
+        scene=flank_scene(pair, 1000.0, misalignment=30e-6),
+        metadata=Metadata(receipt={"cpu_seconds": 0.5}, content_hash="1" * 64, case={"load": 1.0}),
+    )
+
+
+@pytest.fixture
+def flanks() -> LoadDistribution:
+    return closed_form_flanks()
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from service.report import palette
-from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, number
+from service.report.figure import Axis, Figure, HeatMap, Line, Panel, Reference, Strokes, Surface, number
 from service.report.image import _panel_sheet, png
 from service.report.interactive import plotly_figure
 
@@ -120,3 +120,50 @@ def test_ordered_colours_lighten_and_stay_visible_on_white() -> None:
 )  # fmt: skip
 def test_numbers_have_their_significant_digits(value: float, digits: int, text: str) -> None:
     assert number(value, digits) == text
+
+
+def shaded(shade: HeatMap | Strokes, count: int = 2) -> Figure:
+    panel = Panel(Axis("face, mm"), Axis("roll length, mm"), shade=shade, title="pinion")
+    return Figure("key", "Title", "Caption", "Words", (panel,) * count)
+
+
+def test_cells_keep_their_places_and_blanks() -> None:
+    z = np.array([[1.0, np.nan, 3.0], [4.0, 5.0, 6.0]])
+    drawn = plotly_figure(shaded(HeatMap(np.arange(3.0), np.arange(2.0), z, "pressure, MPa", 6.0)))
+    upper, lower = drawn["data"]
+    assert upper["z"] == [[1.0, None, 3.0], [4.0, 5.0, 6.0]]
+    assert (upper["zmin"], upper["zmax"]) == (0.0, 6.0)
+    assert (upper["xaxis"], lower["xaxis"]) == ("x", "x2")
+    domain = drawn["layout"]["yaxis2"]["domain"]
+    assert lower["colorbar"]["y"] == pytest.approx(0.5 * sum(domain))
+    assert lower["colorbar"]["len"] == pytest.approx(domain[1] - domain[0])
+    assert "MPa" in upper["hovertemplate"]
+
+
+def test_every_stroke_is_drawn_once_wider_with_its_value() -> None:
+    value = np.array([0.0, 1.0, 50.0, 100.0, 0.0])
+    x = np.stack([np.arange(5.0), np.arange(5.0) + 0.5], axis=1)
+    drawn = plotly_figure(shaded(Strokes(x, -x, value, "line load, N/mm", 100.0), 1))["data"]
+    curves = [trace for trace in drawn if trace["mode"] == "lines"]
+    starts = {trace["x"][i]: trace["line"]["width"] for trace in curves for i in range(0, len(trace["x"]), 3)}
+    assert sorted(starts) == [0.0, 1.0, 2.0, 3.0, 4.0]
+    widths = [starts[k] for k in (0.0, 1.0, 2.0, 3.0)]
+    assert widths == sorted(widths) and widths[0] == starts[4.0]
+    assert len({widths[1], widths[2], widths[3]}) == 3
+    assert all(trace["x"][2::3] == [None] * (len(trace["x"]) // 3) for trace in curves)
+    (scale,) = [trace for trace in drawn if trace["mode"] == "markers"]
+    assert scale["marker"]["cmax"] == 100.0
+    assert "100.0 N/mm" in [word for trace in curves for word in trace["text"]]
+
+
+def test_a_sheet_of_cells_or_strokes_shows_its_scale() -> None:
+    x = np.stack([np.arange(3.0), np.arange(3.0) + 0.5], axis=1)
+    for shade in (
+        HeatMap(np.arange(3.0), np.arange(2.0), np.ones((2, 3)), "pressure, MPa", 2.0),
+        Strokes(x, x, np.array([0.0, 1.0, 2.0]), "line load, N/mm", 2.0),
+    ):
+        sheet = _panel_sheet(shaded(shade, 1).content)  # type: ignore[arg-type]
+        panel, scale = sheet.axes
+        assert scale.get_ylabel() == shade.label
+        assert scale.get_ylim() == (0.0, 2.0)
+        assert len(panel.collections) >= 1

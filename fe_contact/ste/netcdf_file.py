@@ -1,0 +1,76 @@
+"""Result files: netCDF-4 written whole, read without decoding, checked by a digest of their arrays."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fe_contact.errors import DatabaseError
+from fe_contact.types import Json
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
+    """Write a dataset to `path`: into a temporary file beside it, then renamed over it."""
+    # no _FillValue: xarray would replace NaN by its own on the way back
+    encoding: dict[Any, Json] = {name: {"_FillValue": None} for name in dataset.variables}
+    for name in dataset.data_vars:
+        if dataset[name].size:
+            encoding[name] |= {"zlib": True, "complevel": 4, "shuffle": True}
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    os.close(handle)
+    try:
+        dataset.to_netcdf(temporary, engine="h5netcdf", format="NETCDF4", encoding=encoding)
+        _publish(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def read_variables(path: Path) -> tuple[dict[str, Any], Json]:
+    """Return all variables and global attributes of a netCDF-4 file, undecoded.
+
+    Raises
+    ------
+    DatabaseError
+        The file is missing or no netCDF-4.
+    """
+    import h5netcdf  # noqa: PLC0415 - a tenth of the time of xarray, which is for writing
+
+    if not path.is_file():
+        raise DatabaseError(f"{path}: no such file")
+    try:
+        with h5netcdf.File(path, "r") as file:
+            arrays = {str(name): np.asarray(variable[...]) for name, variable in file.variables.items()}
+            return arrays, dict(file.attrs)
+    # what HDF5 raises on damaged bytes is not one class
+    except (OSError, ValueError, KeyError, RuntimeError, TypeError, AttributeError, IndexError) as error:
+        raise DatabaseError(f"{path}: not a readable netCDF-4 file ({error})") from error
+
+
+def digest(arrays: Mapping[str, Any], before: str = "") -> str:
+    """SHA-256 over the text `before`, and names, types, shapes and bytes of the arrays, in their order."""
+    found = hashlib.sha256(before.encode())
+    for name, values in arrays.items():
+        array = np.ascontiguousarray(values)
+        found.update(f"{name} {array.dtype.newbyteorder('<').str} {array.shape};".encode())
+        found.update(array.astype(array.dtype.newbyteorder("<"), copy=False).tobytes())
+    return found.hexdigest()
+
+
+def _publish(temporary: str, path: Path) -> None:
+    """Flush to disk and rename; ordinary file permissions instead of the temporary file's private ones."""
+    mask = os.umask(0)
+    os.umask(mask)
+    Path(temporary).chmod(0o666 & ~mask)
+    with Path(temporary).open("rb") as written:
+        os.fsync(written.fileno())
+    Path(temporary).replace(path)

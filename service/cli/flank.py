@@ -1,0 +1,49 @@
+"""``loa flank``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from service.cli.output import check_writable, console, print_json, progress_bar
+from service.convert.checks import check_case
+from service.convert.flanks import case_at, flank_json, flanks_of
+from service.schemas import Case, read_model, validated
+from service.schemas.flank import FlankPoint
+from service.settings import cache_home
+
+
+def run_flank(file: Path, output: Path, point: dict[str, float | None], *, as_json: bool) -> None:
+    """Compute, write, print; `point` holds the fields of `FlankPoint` that were given."""
+    chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
+    case = case_at(read_model(Case, file), chosen)
+    check_writable(output)
+    check_case(case)
+    with progress_bar() as report:
+        found = flanks_of(case, cache_home() / "compliance", report)
+    found.to_netcdf(output)
+    figures = {"file": str(output), **flank_json(found)}
+    if as_json:
+        print_json(figures)
+    else:
+        _show(figures)
+
+
+def _show(figures: dict[str, Any]) -> None:
+    """Print the figures for people."""
+    low, high = figures["load_centroid_mm"]
+    lines = [
+        f"torque {figures['torque_n_m']:.6g} N m, normal force {figures['normal_force_n']:.6g} N, "
+        f"misalignment {figures['misalignment_um']:.4g} um",
+        f"largest pressure {figures['largest_pressure_mpa']:.4g} MPa, "
+        f"largest line load {figures['largest_line_load_n_per_mm']:.4g} N/mm",
+    ]
+    if figures["slices"] > 1:
+        lines.append(
+            f"K_Hbeta {figures['k_h_beta']:.3g} over the cycle, at most "
+            f"{figures['largest_face_load_factor']:.3g} at one position; "
+            f"load centroid {low:.3g} to {high:.3g} mm from mid-face"
+        )
+    lines += [f"cost {figures['receipt']['cpu_seconds']:.3g} CPU s", f"written to {figures['file']}"]
+    for line in lines:
+        console().print(line, highlight=False)

@@ -1,0 +1,102 @@
+"""How the load lies along the face: load and gap over the face, centroid and K_Hbeta over position."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.analysis import LoadDistribution
+from service.report import palette
+from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
+from service.report.ste_curves import POSITION_AXIS
+
+SHOWN = 4  # positions
+_FACE = "face position, mm (0 = mid-face of the pinion)"
+
+
+def line_load_figure(found: LoadDistribution) -> Figure:
+    """Draw the load of all pairs per unit of face width, and the gap left on the pair that carries most."""
+    chosen = np.unique(np.linspace(0, found.position.size, SHOWN, endpoint=False).astype(int))
+    low, high = (1e3 * end for end in found.scene.common_face)
+    face = Axis(_FACE, limits=(low, high))
+    mean = 1e-3 * found.face_load.mean(axis=0)
+    names = [f"position {found.position[k]:.3g}" for k in chosen]
+    x = 1e3 * found.face_position
+    colours = [palette.BLUE, palette.SKY, palette.GREEN, palette.PURPLE][: len(chosen)]
+    loads = [
+        Line(name, x, 1e-3 * found.face_load[k], colour)
+        for name, k, colour in zip(names, chosen, colours, strict=True)
+    ]
+    gaps = [
+        Line(name, x, _gap(found, int(k)), colour)
+        for name, k, colour in zip(names, chosen, colours, strict=True)
+    ]
+    cycle = Line("mean over the positions", x, mean, palette.VERMILLION, width=3.0)
+    factor = found.mean_face_load_factor
+    return Figure(
+        key="line_load",
+        title="Load and gap over the face",
+        caption="Above: force of all pairs per unit of face width. Below: what is left between the loaded "
+        "flanks of the pair that carries most; 0 in contact. On helical gears a single position is uneven "
+        "because the number of pairs that touch changes along the face.",
+        alternative=f"Averaged over the positions the face carries {number(float(mean.min()), 4)} to "
+        f"{number(float(mean.max()), 4)} N/mm: K_Hbeta {number(factor, 3)}.",
+        content=(
+            Panel(face, Axis("load per face width, N/mm"), (*loads, cycle)),
+            Panel(face, Axis("gap, µm"), tuple(gaps)),
+        ),
+        table=_table(found, mean),
+    )
+
+
+def load_centroid_figure(found: LoadDistribution) -> Figure:
+    """Draw where along the face the load acts, and how unevenly it lies, over position."""
+    factor = found.mean_face_load_factor
+    centroid = 1e3 * found.load_centroid
+    return Figure(
+        key="load_centroid",
+        title="Load centroid and face load factor",
+        caption="Above: distance of the load's centroid from the pinion's mid-face. Below: largest over mean "
+        "load per unit of face width at each position; the line is that of the load averaged over all of "
+        "them, K_Hbeta of ISO 6336-1 for this alignment and without manufacturing errors.",
+        alternative=f"The centroid lies {number(float(centroid.min()), 3)} to "
+        f"{number(float(centroid.max()), 3)} mm from mid-face; K_Hbeta is {number(factor, 3)}.",
+        content=(
+            _over_position(
+                found, Axis("load centroid, mm"), centroid, Reference("mid-face", 0.0, "horizontal")
+            ),
+            _over_position(
+                found,
+                Axis("largest over mean load"),
+                found.face_load_factor,
+                Reference(f"K_Hbeta {number(factor, 3)}", factor, "horizontal"),
+            ),
+        ),
+    )
+
+
+def _over_position(found: LoadDistribution, y: Axis, values: FloatArray, mark: Reference) -> Panel:
+    """Draw a curve over one cycle, closed where the positions make one."""
+    step = np.diff(found.position)
+    whole = step.size > 0 and np.allclose(step, 1.0 / found.position.size)
+    position = np.append(found.position, 1.0 + found.position[0]) if whole else found.position
+    line = Line("", position, np.append(values, values[0]) if whole else values, palette.BLUE)
+    x = Axis(POSITION_AXIS.label, limits=(float(position[0]), float(position[-1]))) if step.size else None
+    return Panel(x or Axis(POSITION_AXIS.label), y, (line,), (mark,))
+
+
+def _gap(found: LoadDistribution, position: int) -> FloatArray:
+    """Gap in um of the pair that carries most; NaN where the flanks cannot meet."""
+    pair = int(found.force[position].sum(axis=-1).argmax())
+    gap = 1e6 * found.gap[position, pair]
+    return np.where(np.isfinite(gap) & found.on_path[position, pair], gap, np.nan)
+
+
+def _table(found: LoadDistribution, mean: FloatArray) -> Table:
+    """Tabulate the averaged load and the largest line load over the face."""
+    largest = 1e-3 * found.line_load.max(axis=(0, 1))
+    rows = tuple(
+        (number(1e3 * float(x), 4), number(float(m)), number(float(v)))
+        for x, m, v in zip(found.face_position, mean, largest, strict=True)
+    )
+    head = ("face position, mm", "mean load per face width, N/mm", "largest line load, N/mm")
+    return Table("Load over the face", head, rows)

@@ -1,0 +1,73 @@
+"""What the page says of flank results: pressure over the flanks, contact lines, load over the face."""
+
+from __future__ import annotations
+
+from fe_contact.analysis import LoadDistribution
+from fe_contact.ste import SteDatabase
+from service.report.contact_lines import contact_lines
+from service.report.contact_pattern import contact_pattern_figure
+from service.report.face_distribution import line_load_figure, load_centroid_figure
+from service.report.facts import facts
+from service.report.figure import Figure, number
+from service.report.page import Headline, Section
+from service.report.static_part import case_tables, ledger_table
+
+
+def flank_headlines(found: LoadDistribution) -> tuple[Headline, ...]:
+    """Largest pressure and K_Hbeta."""
+    at = operating_point(found)
+    headlines = [Headline("largest flank pressure", f"{number(1e-6 * float(found.pressure.max()))} MPa", at)]
+    if found.face_position.size > 1:
+        factor = found.mean_face_load_factor
+        headlines.append(Headline("K_Hbeta over the cycle", number(factor, 3), at))
+    return tuple(headlines)
+
+
+def flank_results_section(found: LoadDistribution) -> tuple[Section, ...]:
+    """Show the flanks; one slice has nothing to show over the face."""
+    figures: tuple[Figure, ...] = (contact_pattern_figure(found),)
+    text = f"At {operating_point(found)}, {found.position.size} positions of the mesh cycle."
+    if found.face_position.size > 1:
+        figures += (contact_lines(found), line_load_figure(found), load_centroid_figure(found))
+    else:
+        text += " The model is plane: what is shown is the same over the whole face."
+    return (Section("Flanks", text, figures=figures),)
+
+
+def flank_making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]:
+    """Show what the flank results cost; `alone`, without their database, also effects and case."""
+    metadata = found.metadata
+    if not metadata.receipt:
+        return ()
+    cost = {name: value for name, value in metadata.receipt.items() if name != "plan"}
+    made = {**metadata.software_versions, "content_hash": metadata.content_hash}
+    section = Section(
+        "Cost of the flank results", tables=(facts("Cost", cost),), folded=(facts("Made with", made),)
+    )
+    if not alone:
+        return (section,)
+    effects = Section("Effects", tables=(ledger_table(metadata.effect_ledger),))
+    return section, effects, Section("Case", tables=case_tables(metadata.case))
+
+
+def flank_alarms(found: LoadDistribution, database: SteDatabase | None) -> tuple[str, ...]:
+    """Say loudly if database and flank results are of different pairs."""
+    if database is None:
+        return ()
+    mine, theirs = found.scene.facts, database.facts
+    same = mine.teeth == theirs.teeth and all(
+        abs(getattr(mine, name) - getattr(theirs, name)) <= 1e-9 * getattr(theirs, name)
+        for name in ("base_pitch", "face_width")
+    )
+    return () if same else ("The flank results and the STE database are of different gear pairs.",)
+
+
+def operating_point(found: LoadDistribution) -> str:
+    """Say load and alignment."""
+    scene = found.scene
+    parts = [f"{number(scene.torque, 4)} N m"]
+    if scene.misalignment:
+        parts.append(f"misalignment {number(1e6 * scene.misalignment, 3)} µm")
+    if scene.center_distance_change:
+        parts.append(f"centre distance {1e3 * scene.center_distance_change:+.3g} mm")
+    return ", ".join(parts)

@@ -1,0 +1,46 @@
+"""The load and the alignment at which the flanks of a case are looked at."""
+
+from __future__ import annotations
+
+from typing import Self
+
+from pydantic import Field, model_validator
+
+from service.schemas.model import BoundaryModel, refuse
+
+
+class FlankPoint(BoundaryModel):
+    """One load and one alignment; what is left out is taken from the case."""
+
+    torque_n_m: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e9,
+        description="Torque on the driving gear in N m; no load given: the case's highest",
+        examples=[100.0],
+    )
+    normal_force_n: float | None = Field(
+        default=None, gt=0.0, le=1e9, description="Normal tooth force in N, instead", examples=[2660.0]
+    )
+    misalignment_um: float | None = Field(
+        default=None,
+        ge=-10_000.0,
+        le=10_000.0,
+        description="Misalignment in um; left out: the case's value nearest to 0",
+        examples=[30.0],
+    )
+    center_distance_change_mm: float | None = Field(
+        default=None,
+        ge=-100.0,
+        le=100.0,
+        description="Change of the centre distance in mm; left out: the case's value nearest to 0",
+        examples=[0.0],
+    )
+
+    @model_validator(mode="after")
+    def _one_load(self) -> Self:
+        """At most one kind of load."""
+        if self.torque_n_m is not None and self.normal_force_n is not None:
+            advice = "Give a torque or a normal force."
+            refuse("normal_force_n", self.normal_force_n, "left out when torque_n_m is given", advice)
+        return self

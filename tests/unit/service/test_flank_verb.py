@@ -1,0 +1,136 @@
+"""``loa flank`` and ``loa report --flank``: what they write and print, and how they refuse."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+from fe_contact import LoadDistribution
+from service.cli.commands import app
+from service.convert.flanks import case_at
+from service.schemas import Case, validated
+from service.schemas.flank import FlankPoint
+
+SMALL = """
+[pair]
+normal_module_mm = 4.0
+center_distance_mm = 80.0
+[pair.pinion]
+teeth = 20
+face_width_mm = 25.0
+bore_diameter_mm = 40.0
+[pair.wheel]
+teeth = 20
+face_width_mm = 25.0
+bore_diameter_mm = 40.0
+[load]
+torque_n_m = [50, 100, 200]
+[accuracy]
+level = "draft"
+positions = 16
+model = "plane_strain"
+"""
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Path:
+    file = tmp_path / "small.toml"
+    file.write_text(SMALL)
+    return file
+
+
+def test_the_highest_load_of_the_case_is_the_default(small: Path, tmp_path: Path) -> None:
+    result = loa("flank", small, "-o", tmp_path / "f.nc", "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    found = LoadDistribution.from_netcdf(tmp_path / "f.nc")
+    assert answer["torque_n_m"] == pytest.approx(200.0) == found.scene.torque
+    assert answer["largest_pressure_mpa"] == pytest.approx(1e-6 * found.pressure.max())
+    assert answer["largest_line_load_n_per_mm"] == pytest.approx(1e-3 * found.line_load.max())
+    assert (answer["positions"], answer["slices"]) == (64, 1)
+    assert found.metadata.case["load"] == {"torque_n_m": [200.0], "normal_force_n": None}
+
+
+def test_the_report_takes_its_own_load_and_both_ways_agree(small: Path, tmp_path: Path) -> None:
+    assert loa("analyze", small, "-o", tmp_path / "ste.nc").exit_code == 0
+    plain = loa("report", tmp_path / "ste.nc", "-o", tmp_path / "plain.html")
+    assert plain.exit_code == 0
+    assert "contact_pattern" not in (tmp_path / "plain.html").read_text(encoding="utf-8")
+    result = loa("report", tmp_path / "ste.nc", "--flank", "-o", tmp_path / "r.html")
+    assert result.exit_code == 0
+    assert "CPU s" in result.stdout
+    page = (tmp_path / "r.html").read_text(encoding="utf-8")
+    assert "mean STE at 100 N m" in page and "At 100.0 N m, 64 positions" in page
+    assert loa("flank", small, "--torque", 100, "-o", tmp_path / "f.nc").exit_code == 0
+    both = loa("report", tmp_path / "ste.nc", tmp_path / "f.nc", "-o", tmp_path / "b.html")
+    assert both.exit_code == 0
+    pressure = LoadDistribution.from_netcdf(tmp_path / "f.nc").pressure.max()
+    assert f"{1e-6 * pressure:.1f} MPa" in page
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--torque", "100", "--force", "5"], "normal_force_n = 5.0: must be left out when torque_n_m"),
+        (["--torque", "-1"], "torque_n_m = -1"),
+        (["--torque", "nan"], "torque_n_m"),
+        (["--misalignment-um", "10"], "errors.misalignment_um"),
+        (["--center-distance-change-mm", "-1"], "center_distance_change_mm"),
+    ],
+)
+def test_bad_points_are_one_line_before_the_work(
+    small: Path, tmp_path: Path, arguments: list[str], said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.cli.flank.flanks_of", None)  # were it called, exit code 5
+    result = loa("flank", small, "-o", tmp_path / "f.nc", *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert said in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert not (tmp_path / "f.nc").exists()
+
+
+def test_a_report_cannot_compute_flanks_of_nothing(small: Path, tmp_path: Path) -> None:
+    assert loa("flank", small, "-o", tmp_path / "f.nc").exit_code == 0
+    result = loa("report", tmp_path / "f.nc", "--flank", "-o", tmp_path / "r.html")
+    assert result.exit_code == 2
+    assert "Name one or the other" in result.stderr
+
+
+def test_a_table_made_in_python_says_how_to_go_on(tmp_path: Path) -> None:
+    from small_table import small_table  # noqa: PLC0415
+
+    small_table().to_netcdf(tmp_path / "ste.nc")
+    result = loa("report", tmp_path / "ste.nc", "--flank", "-o", tmp_path / "r.html")
+    assert result.exit_code == 2
+    assert "to_netcdf" in result.stderr
+
+
+def case(**changes: object) -> Case:
+    gear = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
+    pair = {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": gear, "wheel": gear}
+    return validated(Case, {"pair": pair, "load": {"normal_force_n": [10.0, 20.0]}} | changes)
+
+
+def test_what_a_point_leaves_open_is_the_cases() -> None:
+    errors = {"misalignment_um": [-30.0, 10.0, 60.0], "center_distance_change_mm": [0.05]}
+    here = case_at(case(errors=errors), FlankPoint())
+    assert here.load.normal_force_n == (20.0,)
+    assert here.errors.misalignment_um == (10.0,)
+    assert here.errors.center_distance_change_mm == (0.05,)
+    other = case_at(case(errors=errors), FlankPoint(torque_n_m=7.0, misalignment_um=-5.0))
+    assert (other.load.torque_n_m, other.load.normal_force_n) == ((7.0,), None)
+    assert other.errors.misalignment_um == (-5.0,)
+
+
+def test_equal_questions_are_one_case() -> None:
+    """Other loads and positions of the table do not matter, so results are shared."""
+    one = case_at(case(), FlankPoint())
+    other = case(load={"normal_force_n": [5.0, 20.0]}, accuracy={"tolerance": 0.01, "positions": 32})
+    assert case_at(other, FlankPoint()) == one
