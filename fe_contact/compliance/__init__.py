@@ -3,6 +3,7 @@
 from fe_contact.compliance.cache import default_cache_directory
 from fe_contact.compliance.cost_3d import PredictedCost, predict_cost
 from fe_contact.compliance.cyclic_compliance import flank_compliance_3d, flank_compliances_3d
+from fe_contact.compliance.finite_width import FiniteWidthCompliance, finite_width_compliances
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
@@ -11,6 +12,7 @@ from fe_contact.compliance.solvers import Pardiso, Solver, SuperLuColamd, SuperL
 
 __all__ = [
     "ComplianceChecks",
+    "FiniteWidthCompliance",
     "FlankCompliance",
     "FlankCompliance3D",
     "Pardiso",
@@ -20,6 +22,7 @@ __all__ = [
     "SuperLuColamd",
     "SuperLuMetis",
     "default_cache_directory",
+    "finite_width_compliances",
     "flank_compliance",
     "flank_compliance_3d",
     "flank_compliances",

@@ -13,7 +13,7 @@ RISE = 3  # groups of layers over which the thickness grows from an end to the m
 
 @dataclass(frozen=True)
 class Layers:
-    """Layers of elements, symmetric about mid-face.
+    """Layers of elements, symmetric about mid-face or those above it.
 
     Attributes
     ----------
@@ -28,6 +28,26 @@ class Layers:
     ends: FloatArray
     kind: IntArray
     thickness: FloatArray
+
+
+def layers_to_mid_face(width: float, count: int, growth: float = 1.0) -> Layers:
+    """Divide the upper half of a face into layers that thicken from its end towards mid-face.
+
+    Parameters
+    ----------
+    width : float
+        Of the whole face, m.
+    count : int
+        Number of layers.
+    growth : float
+        Thickness of the layer at mid-face over that of the end layer.
+    """
+    kind = np.arange(count)[::-1]
+    relative = growth ** (np.arange(count) / max(count - 1, 1))
+    thickness = 0.5 * width * relative / relative.sum()
+    ends = np.concatenate([[0.0], np.cumsum(thickness[kind])])
+    ends[-1] = 0.5 * width
+    return Layers(ends, kind, thickness)
 
 
 def layers_across(width: float, count: int, group: int = 1, growth: float = 1.0) -> Layers:

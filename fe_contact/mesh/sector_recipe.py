@@ -58,6 +58,9 @@ class SectorRecipe:
     merge_rows : tuple of int
         Rows of body elements (-1 the highest, decreasing) below which two layers become one. The number of
         layers must be divisible by 2 for each entry.
+    half_face : bool
+        Only the half above mid-face, a plane of symmetry: for spur gears under loads that are even across
+        the face. The layers then thicken from the end to mid-face.
     """
 
     flank_size: float
@@ -74,6 +77,7 @@ class SectorRecipe:
     split: float = 0.5
     layer_growth: float = 1.5
     merge_rows: tuple[int, ...] = (-2,)
+    half_face: bool = False
 
     def __post_init__(self) -> None:
         sizes = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
@@ -94,6 +98,8 @@ class SectorRecipe:
         rows = self.merge_rows
         if any(row > -1 for row in rows) or any(b >= a for a, b in pairwise(rows)):
             raise InputError("merge_rows", rows, "negative and strictly decreasing", "(-2,) is usual.")
+        if self.half_face and rows:
+            raise InputError("merge_rows", rows, "() with half_face", "Layers of half a face differ all.")
         if self.layers % self.layer_group:
             bound = f"divisible by {self.layer_group}, for {len(rows)} merge_rows"
             raise InputError("layers", self.layers, bound)
@@ -150,6 +156,28 @@ class SectorRecipe:
             land_elements=4,
             layers=_layers(gear, least=18, thickest=0.7, most=36),
             merge_rows=(-4,),
+        )
+
+    @classmethod
+    def even_load(cls, gear: HasFace) -> SectorRecipe:
+        """Return the recipe of a spur gear's response to even loads: flank elements of 0.4 modules, 3 layers.
+
+        For the difference to plane strain, which is smooth: within 1.5 % of a fine mesh's up to a face of 20
+        modules, 3 % at 40.
+        """
+        m = gear.normal_module
+        return cls(
+            flank_size=0.4 * m,
+            tip_size=0.2 * m,
+            depth_size=0.3 * m,
+            depth_limit=1.0 * m,
+            body_size=0.5 * m,
+            body_limit=4.0 * m,
+            body_growth=0.6,
+            layers=3,
+            layer_growth=min(max(0.8 * gear.face_width / m, 1.0), 10.0),
+            merge_rows=(),
+            half_face=True,
         )
 
     def content(self) -> Json:

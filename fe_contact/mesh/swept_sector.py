@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
-from fe_contact.mesh.layers import Layers, layers_across
+from fe_contact.mesh.layers import Layers, layers_across, layers_to_mid_face
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -131,7 +131,7 @@ def swept_sector(
     support : BoreSupport, optional
         Default `ClampedBore()`.
     """
-    layers = layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth)
+    layers = _layers(face_width, recipe)
     planes = 2 * recipe.layers + 1
     level = np.sum(grid.cells[:, 1, None] < np.array(recipe.merge_rows, dtype=int), axis=1)
     node_level = np.zeros(grid.nodes, dtype=np.int64)
@@ -139,9 +139,18 @@ def swept_sector(
     exists = _existing(grid, node_level, planes)
     nodes = np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
     batches, elements, place = _elements(grid, layers, nodes, level, node_level)
-    free = ~(support or ClampedBore()).held(grid, planes)[exists]
+    held = (support or ClampedBore()).held(grid, planes)
+    held[0, :, 2] |= recipe.half_face
+    free = ~held[exists]
     freedoms = np.where(free, np.cumsum(free).reshape(free.shape) - 1, -1)
     return SweptSector(grid, layers, nodes, elements, place, batches, freedoms)
+
+
+def _layers(face_width: float, recipe: SectorRecipe) -> Layers:
+    """Divide the face, or its half above mid-face."""
+    if recipe.half_face:
+        return layers_to_mid_face(face_width, recipe.layers, recipe.layer_growth)
+    return layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth)
 
 
 def _existing(grid: SectorGrid, node_level: IntArray, planes: int) -> BoolArray:

@@ -24,7 +24,7 @@ from fe_contact.mesh.quad_quality import quad_quality
     bore=st.floats(0.05, 0.97),
     width=st.floats(1.0, 30.0),
     root_radius=st.floats(0.1, 0.45),
-    level=st.sampled_from(["draft", "standard", "fine"]),
+    level=st.sampled_from(["draft", "standard", "fine", "even_load"]),
 )
 def test_sector_of_a_random_gear_is_good(
     teeth: int,

@@ -10,7 +10,7 @@ import pytest
 from fe_contact.errors import InputError
 from fe_contact.geometry import Gear
 from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, swept_sector
-from fe_contact.mesh.layers import layers_across
+from fe_contact.mesh.layers import layers_across, layers_to_mid_face
 from fe_contact.mesh.sector_grid import SectorGrid
 
 SPUR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -31,6 +31,30 @@ def test_layers_fill_the_face_symmetrically(count: int, group: int, growth: floa
     )
     if count // group > 2:
         assert np.diff(layers.ends).max() / np.diff(layers.ends)[0] == pytest.approx(growth)
+
+
+def test_half_a_face_is_finest_at_its_end() -> None:
+    layers = layers_to_mid_face(25e-3, 3, 8.0)
+    assert (layers.ends[0], layers.ends[-1]) == (0.0, 12.5e-3)
+    thickness = np.diff(layers.ends)
+    assert thickness == pytest.approx(layers.thickness[layers.kind], rel=1e-12)
+    assert thickness[:-1] / thickness[1:] == pytest.approx(8.0**0.5)
+
+
+def test_half_a_face_slides_on_mid_face() -> None:
+    recipe = replace(DRAFT, layers=2, merge_rows=())
+    half = swept_sector(GRID, 25e-3, replace(recipe, half_face=True))
+    whole = swept_sector(GRID, 25e-3, recipe)
+    middle = half.nodes[0, half.nodes[0] >= 0]
+    free = whole.freedoms[middle] >= 0
+    assert np.array_equal(half.freedoms[middle] >= 0, free & [True, True, False])
+    above = np.setdiff1d(np.arange(len(half.freedoms)), middle)
+    assert np.array_equal(half.freedoms[above] >= 0, whole.freedoms[above] >= 0)
+
+
+def test_half_a_face_merges_no_layers() -> None:
+    with pytest.raises(InputError, match="merge_rows"):
+        replace(DRAFT, half_face=True)
 
 
 def test_nodes_are_where_serendipity_elements_have_them() -> None:
