@@ -49,7 +49,7 @@ def simulate(scene: Scene, progress: Progress | None = None) -> RunResult:
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
     if not start.status.usable:
         message = f"no static equilibrium at t = 0: {start.status.name.lower()}, {start.residual:.3g} N left"
-        raise SolveError(message, _result(system, _no_trajectory(start), seconds, {}))
+        raise SolveError(message, _result(system, _no_trajectory(system, start), seconds, {}))
     trajectory = integrate(system, start, scene.integration, progress)
     seconds["integration"] = trajectory.seconds
     error = _error_estimate(system, start, trajectory, progress)
@@ -65,7 +65,7 @@ def simulate(scene: Scene, progress: Progress | None = None) -> RunResult:
 def _result(system: System, trajectory: Trajectory, seconds: dict[str, float], error: Json) -> RunResult:
     """Put the result together."""
     began = clock.perf_counter()
-    series = histories(system, trajectory.time, trajectory.q, trajectory.v)
+    series = histories(system, trajectory.time, trajectory.q, trajectory.v, trajectory.moved)
     audit = EnergyAudit.from_arrays(trajectory.work, trajectory.stored)
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
     return RunResult(
@@ -116,7 +116,7 @@ def _error_estimate(
     return {"time_step": {"rms": rms, "unit": "m", "source": source, "seconds": check.seconds}}
 
 
-def _no_trajectory(start: StaticSolution) -> Trajectory:
+def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
     """Stand for a run that never started: its first sample is where the search for equilibrium ended."""
     q: FloatArray = start.displacement[None, :]
     return Trajectory(
@@ -124,6 +124,7 @@ def _no_trajectory(start: StaticSolution) -> Trajectory:
         time=np.zeros(1),
         q=q,
         v=np.zeros_like(q),
+        moved=np.zeros((1, len(system.scene.references)), dtype=np.int64),
         end=0.0,
         stored=np.zeros((2, 3)),
         work=np.zeros(5),

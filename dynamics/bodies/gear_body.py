@@ -11,7 +11,7 @@ from dynamics.checks import finite, integer, positive, within
 
 @dataclass(frozen=True)
 class GearBody:
-    """An external involute gear, rigid, concentric with its shaft.
+    """An involute gear, rigid, concentric with its shaft.
 
     Attributes
     ----------
@@ -31,6 +31,8 @@ class GearBody:
         rad; > 0: right hand, < 0: left hand, 0: spur.
     inertia : Inertia
         Of the gear alone, about its own centre at mid-face.
+    internal : bool
+        True: a ring gear, its teeth point inwards. All numbers stay positive.
     """
 
     name: str
@@ -41,6 +43,7 @@ class GearBody:
     face_width: float
     base_helix_angle: float = 0.0
     inertia: Inertia = field(default_factory=Inertia)
+    internal: bool = False
 
     def __post_init__(self) -> None:
         finite("position", self.position)

@@ -20,6 +20,10 @@ class Shaft:
         m, from the left end towards +z.
     origin : tuple of three floats
         The axis point at the left end, m, in the fixed frame (x, y, z).
+    frame : str or None
+        The carrier's shaft in whose turning frame this shaft's place and displacements are described: that
+        of all members of a planetary set (sun, ring, planets and the carrier itself, which names itself).
+        `origin` is then the place at t = 0. None: the fixed frame.
     inertia : Inertia
         Of the bare shaft, its centre of mass at mid-length; the gears on it are added.
     """
@@ -28,6 +32,7 @@ class Shaft:
     length: float
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     inertia: Inertia = field(default_factory=Inertia)
+    frame: str | None = None
 
     def __post_init__(self) -> None:
         positive("length", self.length)

@@ -10,7 +10,8 @@ from dynamics.integrators.step_control import Control, next_rung, slow_enough, s
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.system.arrays import SystemArrays
-from dynamics.types import FloatArray, RunStatus
+from dynamics.system.motion import move_free_trains
+from dynamics.types import FloatArray, IntArray, RunStatus
 
 COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
 STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
@@ -27,14 +28,15 @@ def advance(
     sample_rate: float,
     q_out: FloatArray,
     v_out: FloatArray,
+    moved_out: IntArray,
 ) -> int:
     """Step until the time passes `stop` and return a `RunStatus`.
 
-    The output samples at k / sample_rate go into the rows k of `q_out` and `v_out`. Steps never
+    The output samples at k / sample_rate go into the rows k of `q_out`, `v_out` and `moved_out`. Steps never
     end at `stop` on purpose: cutting a run into chunks changes no bit of it.
     """
     if work.counts[Count.ACCEPTED] == 0:
-        _start(system, work, control, q_out, v_out)
+        _start(system, work, control, q_out, v_out, moved_out)
     while work.time[0] < stop:
         count = work.counts
         if count[Count.ACCEPTED] + count[Count.REJECTED] >= control.step_limit:
@@ -53,7 +55,8 @@ def advance(
         if control.adaptive:
             count[Count.RUNG] = next_rung(work, control, error, accepted)
         if accepted:
-            _accept(work, control, rung, sample_rate, q_out, v_out)
+            _accept(work, control, rung, sample_rate, q_out, v_out, moved_out)
+            move_free_trains(system.reference, work.moved, work.q)
             work.error[0] = max(error, 1e-4)
             continue
         count[Count.REJECTED] += 1
@@ -66,13 +69,20 @@ def advance(
 
 @inner
 def _start(
-    system: SystemArrays, work: Workspace, control: Control, q_out: FloatArray, v_out: FloatArray
+    system: SystemArrays,
+    work: Workspace,
+    control: Control,
+    q_out: FloatArray,
+    v_out: FloatArray,
+    moved_out: IntArray,
 ) -> None:
     """Evaluate accelerations and powers at t = 0, and store sample 0."""
     accelerate(system, work, work.time[0], work.q, work.v, work.a)
     for i in range(work.q.size):
-        work.stage_v[0, i] = work.v[i]
+        work.stage_v[0, i], work.q_new[i] = work.v[i], work.q[i]
         q_out[0, i], v_out[0, i] = work.q[i], work.v[i]
+    for k in range(work.moved.size):
+        moved_out[0, k] = work.moved[k]
     work.counts[Count.OUTPUT] = 1
     if control.audit:
         write_powers(system, work, 0, work.time[0])
@@ -80,7 +90,13 @@ def _start(
 
 @inner
 def _accept(
-    work: Workspace, control: Control, rung: int, sample_rate: float, q_out: FloatArray, v_out: FloatArray
+    work: Workspace,
+    control: Control,
+    rung: int,
+    sample_rate: float,
+    q_out: FloatArray,
+    v_out: FloatArray,
+    moved_out: IntArray,
 ) -> None:
     """Store the samples inside the step, add its works, and make its end the new state."""
     step = work.ladder[rung]
@@ -88,6 +104,8 @@ def _accept(
     sample = work.counts[Count.OUTPUT]
     while sample < q_out.shape[0] and sample / sample_rate <= end:
         _interpolate(work, step, sample / sample_rate - work.time[0], q_out[sample], v_out[sample])
+        for k in range(work.moved.size):
+            moved_out[sample, k] = work.moved[k]
         sample += 1
     work.counts[Count.OUTPUT] = sample
     if control.audit:

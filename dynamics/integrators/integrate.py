@@ -42,6 +42,8 @@ class Trajectory:
         Output grid as far as the run came, s.
     q, v : (T, n) arrays
         Deviations from the kinematic motion and their rates.
+    moved : (T, k) int array
+        Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
     end : float
         Time of the last step's end, s; the energies refer to it.
     stored : (2, 3) array
@@ -60,6 +62,7 @@ class Trajectory:
     time: FloatArray
     q: FloatArray
     v: FloatArray
+    moved: IntArray
     end: float
     stored: FloatArray
     work: FloatArray
@@ -89,10 +92,12 @@ def integrate(
     rate = scene.outputs.sample_rate
     samples = int(np.floor(scene.duration * rate * (1.0 + 1e-12))) + 1
     q, v = np.zeros((samples, start.displacement.size)), np.zeros((samples, start.displacement.size))
-    initial = stored_energy(system.arrays, 0.0, start.displacement, work.v)
+    moved = np.zeros((samples, work.moved.size), dtype=np.int64)
+    initial = stored_energy(system.arrays, 0.0, start.displacement, work.v, work.moved)
     status = RunStatus.COMPLETED
     for chunk in range(1, CHUNKS + 1):
-        status = RunStatus(advance(system.arrays, work, control, scene.duration * chunk / CHUNKS, rate, q, v))
+        stop = scene.duration * chunk / CHUNKS
+        status = RunStatus(advance(system.arrays, work, control, stop, rate, q, v, moved))
         if progress is not None:
             progress(min(float(work.time[0]) / max(scene.duration, 1e-300), 1.0), "time integration")
         if not status.usable:
@@ -103,8 +108,9 @@ def integrate(
         np.arange(reached) / rate,
         q[:reached],
         v[:reached],
+        moved[:reached],
         float(work.time[0]),
-        np.array([initial, stored_energy(system.arrays, float(work.time[0]), work.q, work.v)]),
+        np.array([initial, stored_energy(system.arrays, float(work.time[0]), work.q, work.v, work.moved)]),
         work.work,
         work.counts,
         _step_range(work),

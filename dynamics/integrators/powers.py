@@ -9,24 +9,27 @@ from dynamics.forces.table_energy import table_energy
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import drive_motion, law_value
+from dynamics.system.motion import ACCELERATION, SPEED, law_value
+from dynamics.types import FloatArray
 
 
 @inner
 def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float) -> None:
     """Write row `stage` of ``work.power`` from the flank state at that stage and its rates ``work.stage_v``.
 
-    The drive supplies the torque on its own shaft times its speed. A table V(x, d) exerts dV/dd only along
+    Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
     the line of action; what dV/dx stores as the position moves on is counted as supplied by the position.
     """
-    _, _, speed, acceleration = drive_motion(system.reference, time)
     velocity = work.stage_v[stage]
-    torque = system.drive_inertia * acceleration
-    loads = 0.0
-    for load in range(system.load.reference.size):
+    laws = work.motion.shape[0]
+    drives, loads = 0.0, 0.0
+    for k in range(laws):
+        drives += _drive_torque(system, work, k, velocity, time) * work.motion[k, SPEED]
+    for load in range(system.load.direction.shape[0]):
         value = law_value(system.load.torque, load, time)
-        torque -= system.load.drive[load] * value
-        rate = system.load.reference[load] * speed
+        rate = 0.0
+        for k in range(laws):
+            rate += system.load.reference[load, k] * work.motion[k, SPEED]
         for i in range(velocity.size):
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
@@ -34,15 +37,36 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     for i in range(velocity.size):
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
     for f in range(work.force.size):
-        torque += system.drive_direction[f] * work.force[f]
         mesh += (work.force[f] - work.elastic[f]) * work.rate[f]
         slope = table_energy(system.flank.table, f, work.position[f], work.deflection[f], work.hint[f])[1]
-        rate = system.reference.numerator[f] / system.reference.denominator[f] * speed / (2.0 * math.pi)
+        rate = 0.0
+        for k in range(laws):
+            per_turn = system.reference.numerator[f, k] / system.reference.denominator[f, k]
+            rate += per_turn * work.motion[k, SPEED] / (2.0 * math.pi)
         for i in range(velocity.size):
             rate += system.turn[f, i] * velocity[i]
         position += slope * rate
-    work.power[stage, Power.DRIVE] = torque * speed
+    work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
     work.power[stage, Power.POSITION] = position
     work.power[stage, Power.BUSHING] = bushing
     work.power[stage, Power.MESH] = mesh
+
+
+@inner
+def _drive_torque(
+    system: SystemArrays, work: Workspace, law: int, velocity: FloatArray, time: float
+) -> float:
+    """Return the torque that imposes the motion of one law, N m; 0 for a free rotation."""
+    drive = system.drive
+    torque = -drive.constant[law]
+    for k in range(work.motion.shape[0]):
+        torque += drive.inertia[law, k] * work.motion[k, ACCELERATION]
+    for load in range(system.load.direction.shape[0]):
+        if system.load.drive[load, law] != 0.0:
+            torque -= system.load.drive[load, law] * law_value(system.load.torque, load, time)
+    for i in range(velocity.size):
+        torque += drive.stiffness[law, i] * work.q_new[i] + drive.damping[law, i] * velocity[i]
+    for f in range(work.force.size):
+        torque += drive.direction[law, f] * work.force[f]
+    return float(torque)

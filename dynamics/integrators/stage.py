@@ -5,17 +5,17 @@ from __future__ import annotations
 from dynamics.forces.compiled import inner
 from dynamics.integrators.workspace import Workspace
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import drive_motion, external_force, flank_phase
+from dynamics.system.motion import external_force, flank_phase, write_motion
 from dynamics.types import FloatArray
 
 
 @inner
 def set_motion(system: SystemArrays, work: Workspace, time: float) -> None:
-    """Write external force and flank phases at `time`."""
-    whole, fraction, _, acceleration = drive_motion(system.reference, time)
-    external_force(system, time, acceleration, work.external)
+    """Write the laws' motion, external force and flank phases at `time`."""
+    write_motion(system.reference, time, work.moved, work.motion)
+    external_force(system, time, work.motion, work.external)
     for f in range(work.force.size):
-        work.position[f] = flank_phase(system.reference, f, whole, fraction)
+        work.position[f] = flank_phase(system.reference, f, work.motion)
 
 
 @inner

@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.forces.table_lookup import table_deflection, table_force
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
-from dynamics.system.observation import observe_drive, observe_flanks
+from dynamics.system.observation import observe_flanks, observe_laws
 from dynamics.types import FloatArray, StaticStatus
 
 ITERATION_LIMIT = 50
@@ -44,7 +44,7 @@ class StaticSolution:
 def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     """Balance bushings and meshes against loads and the inertia of the imposed motion at `time`.
 
-    Newton's method with step halving, from the state in which every mesh has its nominal deflection.
+    Newton's method with step halving, from the state in which every mesh is a spring of its nominal force.
     """
     arrays = system.arrays
     external = _external(system, time)
@@ -58,7 +58,7 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
         if size <= RESIDUAL_LIMIT * scale:
             return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
         matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", arrays.direction, stiffness, arrays.direction)
-        update = np.linalg.lstsq(matrix, residual, rcond=1e-14)[0]
+        update = _solve(arrays, matrix, residual, q)
         q, residual, stiffness, force = _line_search(arrays, time, q, update, external, size)
     lost = bool(np.any(force <= LOST_CONTACT * scale))
     status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
@@ -66,15 +66,21 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
 
 
 def _external(system: System, time: float) -> FloatArray:
-    """Return loads and the inertial force of the kinematic motion, (n,)."""
-    motion = np.empty((4, 1))
-    observe_drive(system.arrays, np.array([time]), motion)
+    """Return loads and inertial forces, (n,): of the laws, and of free trains that the loads accelerate."""
+    arrays = system.arrays
+    acceleration = observe_laws(arrays, np.array([time]))[3, :, 0]
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
-    return np.asarray(torque @ system.arrays.load.direction + system.arrays.inertial * motion[3, 0])
+    force = torque @ arrays.load.direction + acceleration @ arrays.inertial + arrays.constant
+    free = arrays.reference.freedom >= 0
+    if np.any(free):
+        vector = arrays.reference.vector[free]
+        taken = np.linalg.solve(vector @ arrays.mass @ vector.T, vector @ force)
+        force = force - arrays.mass @ vector.T @ taken
+    return np.asarray(force)
 
 
 def _first_guess(system: System, time: float, external: FloatArray) -> FloatArray:
-    """Displacements with every mesh at its nominal deflection, from a saddle-point system."""
+    """Displacements if every mesh were a spring: its secant from lift-off to the nominal force."""
     arrays, flanks = system.arrays, system.flanks
     n, m = external.size, flanks.nominal_force.size
     position = _observe(arrays, time, np.zeros(n))[0]
@@ -82,18 +88,28 @@ def _first_guess(system: System, time: float, external: FloatArray) -> FloatArra
     # at lift-off a table may have no stiffness to start from, so unloaded flanks start a little pressed
     touch = LEAST_TOUCH * table.level[table.offset[:, 4] + 1]
     force = np.maximum(flanks.nominal_force, touch)
-    deflection = [table_deflection(table, f, position[f], force[f]) for f in range(m)]
-    matrix = np.block(
-        [[arrays.stiffness, arrays.direction.T], [arrays.direction, np.zeros((m, m))]],
-    )
-    return np.asarray(np.linalg.lstsq(matrix, np.concatenate([external, deflection]), rcond=1e-14)[0][:n])
+    touching = np.array([table_deflection(table, f, position[f], 0.0) for f in range(m)])
+    deflection = np.array([table_deflection(table, f, position[f], force[f]) for f in range(m)])
+    secant = force / (deflection - touching)
+    matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", arrays.direction, secant, arrays.direction)
+    return _solve(arrays, matrix, external + (secant * touching) @ arrays.direction, np.zeros(n))
+
+
+def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: FloatArray) -> FloatArray:
+    """Return the change of `q` that `force` makes, with the law's shaft of each free train at its place.
+
+    Nothing holds a free train, and no force is left along its motion: without that it could rest anywhere.
+    """
+    own = arrays.reference.freedom[arrays.reference.freedom >= 0]
+    held = np.zeros((own.size, q.size))
+    held[np.arange(own.size), own] = float(np.max(np.abs(matrix), initial=1.0))
+    left, right = np.concatenate([matrix, held]), np.concatenate([force, -held @ q])
+    return np.asarray(np.linalg.lstsq(left, right, rcond=1e-14)[0])
 
 
 def _observe(arrays: SystemArrays, time: float, q: FloatArray) -> FloatArray:
     """Position, transmission error and force of every flank at rest in `q`, (3, m)."""
-    observed = np.empty((3, arrays.drive_direction.size, 1))
-    observe_flanks(arrays, np.array([time]), q[None, :], np.zeros((1, q.size)), observed)
-    return observed[:, :, 0]
+    return observe_flanks(arrays, np.array([time]), q[None, :], np.zeros((1, q.size)))[:, :, 0]
 
 
 def _residual(

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from dynamics.forces.compiled import inner
 from dynamics.integrators.workspace import RUNGS_PER_OCTAVE, Count, Workspace
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import drive_motion
+from dynamics.system.motion import law_speed, write_motion
 
 SAFETY = 0.9
 RISE_LIMIT = 2.0
@@ -69,10 +69,15 @@ def slow_enough(system: SystemArrays, work: Workspace, rung: int) -> int:
     An error estimate knows the table only where the stages look; a step over half a pitch could miss a
     handover.
     """
-    speed = abs(drive_motion(system.reference, work.time[0])[2]) / (2.0 * math.pi)
+    reference = system.reference
+    write_motion(reference, work.time[0], work.moved, work.motion)
     rate = 0.0
     for f in range(work.force.size):
-        rate = max(rate, speed * abs(system.reference.numerator[f] / system.reference.denominator[f]))
+        moving = 0.0
+        for k in range(work.motion.shape[0]):
+            per_turn = reference.numerator[f, k] / reference.denominator[f, k]
+            moving += law_speed(reference, k, work.motion, work.v) / (2.0 * math.pi) * per_turn
+        rate = max(rate, abs(moving))
     while rate * work.ladder[rung] > POSITION_LIMIT and rung < work.ladder.size - 2:
         rung += 1
     return rung

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.system.arrays import SystemArrays
+from dynamics.system.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 STAGES = 7  # of the method with the most stages
@@ -57,6 +58,10 @@ class Workspace(NamedTuple):
     stage_v, stage_a : (STAGES, n) arrays
     force, elastic, deflection, rate, position : (m,) arrays
         Of the flanks at the current stage: total and elastic force, transmission error, its rate, position.
+    motion : (k, 4) array
+        Of the laws at the current stage.
+    moved : (k,) int array
+        Quanta of a revolution by which each free train's own rotation was moved into the reference.
     jacobian : (m, m + 1) array
         Scratch of Newton's method.
     hint : (m,) int array
@@ -100,6 +105,8 @@ class Workspace(NamedTuple):
     deflection: FloatArray
     rate: FloatArray
     position: FloatArray
+    motion: FloatArray
+    moved: IntArray
     jacobian: FloatArray
     hint: IntArray
     power: FloatArray
@@ -122,7 +129,7 @@ def step_ladder(largest: float, smallest: float) -> FloatArray:
 
 def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, first_step: float) -> Workspace:
     """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
-    n, m, r = q.size, system.drive_direction.size, ladder.size
+    n, m, r = q.size, system.direction.shape[0], ladder.size
     counts = np.zeros(len(Count), dtype=np.int64)
     counts[Count.RUNG] = min(int(np.searchsorted(-ladder, -first_step)), r - 2)
     counts[Count.SMALLEST_RUNG] = r - 1
@@ -136,6 +143,8 @@ def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, firs
         stage_v=np.zeros((STAGES, n)),
         stage_a=np.zeros((STAGES, n)),
         **{name: np.zeros(m) for name in per_flank},
+        motion=np.zeros((system.inertial.shape[0], MOTION_COLUMNS)),
+        moved=np.zeros(system.inertial.shape[0], dtype=np.int64),
         jacobian=np.zeros((m, m + 1)),
         hint=np.zeros(m, dtype=np.int64),
         power=np.zeros((STAGES, len(Power))),

@@ -1,6 +1,8 @@
-"""What holds bodies: bushings to the ground, imposed rotation."""
+"""What holds bodies: bushings to the ground, pins in a carrier; and what makes them turn."""
 
 from dynamics.joints.bushing import Bushing
+from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.imposed_rotation import ImposedRotation
+from dynamics.joints.planet_bearing import PlanetBearing
 
-__all__ = ["Bushing", "ImposedRotation"]
+__all__ = ["Bushing", "FreeRotation", "ImposedRotation", "PlanetBearing"]

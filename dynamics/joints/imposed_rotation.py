@@ -1,15 +1,16 @@
-"""A shaft whose rotation is imposed as a function of time."""
+"""A shaft whose rotation is imposed as a function of time, rigidly or through a torsional spring."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 from dynamics.bodies.time_law import TimeLaw
+from dynamics.checks import not_negative, positive
 
 
 @dataclass(frozen=True)
 class ImposedRotation:
-    """The drive: a shaft turns by a given law, whatever torque that takes.
+    """A drive: a shaft turns by a given law, whatever torque that takes.
 
     Attributes
     ----------
@@ -18,9 +19,26 @@ class ImposedRotation:
     shaft : str
         The driven shaft.
     speed : TimeLaw
-        rad/s about the fixed +z axis. The angle is its exact integral from t = 0, where it is 0.
+        rad/s about the fixed +z axis; 0: held. The angle is its exact integral from t = 0, where it is 0.
+    stiffness : float or None
+        N m/rad of a torsional spring between the imposed motion and the shaft, e.g. the torsional support
+        of a held ring gear. None: rigid.
+    damping : float
+        N m s/rad beside the spring.
     """
 
     name: str
     shaft: str
     speed: TimeLaw
+    stiffness: float | None = None
+    damping: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.stiffness is not None:
+            positive("stiffness", self.stiffness, "Leave it out for a rigid drive.")
+        not_negative("damping", self.damping)
+
+    @property
+    def rigid(self) -> bool:
+        """Whether the shaft's rotation is no freedom."""
+        return self.stiffness is None

@@ -17,9 +17,15 @@ def resolved_case(system: System) -> Json:
     case = {
         "shafts": [asdict(shaft) for shaft in scene.shafts],
         "gears": [asdict(gear) for gear in scene.gears],
-        "bushings": [asdict(bushing) for bushing in system.bushings],
+        "bushings": [asdict(part) for rotor in system.rotors for part in rotor.bushings],
+        "planet_bearings": [asdict(part) for rotor in system.rotors for part in rotor.planet_bearings],
         "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],
         "drives": [asdict(drive) for drive in scene.drives],
+        "free_rotations": [asdict(rotation) for rotation in scene.free_rotations],
+        "speed_ratios": {
+            shaft.name: [str(value) for value in row]
+            for shaft, row in zip(scene.shafts, system.kinematics.ratio, strict=True)
+        },
         "loads": [asdict(load) for load in scene.loads],
         "duration": scene.duration,
         "effects": dict(scene.effects),

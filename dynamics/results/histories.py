@@ -8,32 +8,35 @@ from typing import Any
 import numpy as np
 
 from dynamics.system.assemble import System
-from dynamics.system.observation import observe_drive, observe_flanks, static_deflections
-from dynamics.types import FloatArray
+from dynamics.system.freedoms import ROTATION
+from dynamics.system.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
+from dynamics.system.observation import observe_flanks, observe_laws, static_deflections
+from dynamics.types import FloatArray, IntArray
 
 
-def histories(system: System, time: FloatArray, q: FloatArray, v: FloatArray) -> dict[str, Any]:
-    """Return the series of `RunResult` for the states `q`, `v` (T, n) at `time` (T,), C-contiguous."""
+def histories(
+    system: System, time: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray
+) -> dict[str, Any]:
+    """Return the series of `RunResult` for the states `q`, `v` (T, n), `moved` (T, k) at `time` (T,)."""
     arrays, scene = system.arrays, system.scene
-    drive = np.empty((4, time.size))
-    observe_drive(arrays, time, drive)
-    flank = np.empty((3, len(scene.meshes), time.size))
-    observe_flanks(arrays, time, q, v, flank)
+    laws = observe_laws(arrays, time)
+    flank = observe_flanks(arrays, time, q, v, moved)
     wanted = scene.outputs
     return {
         "time": time,
         "mesh": tuple(mesh.name for mesh in scene.meshes),
         "shaft": tuple(shaft.name for shaft in scene.shafts),
-        "bearing": tuple(bushing.name for bushing in system.bushings) if wanted.bearing_forces else (),
+        "bearing": system.supports.name if wanted.bearing_forces else (),
         "freedom": system.freedoms.name if wanted.displacements else (),
+        "drive": tuple(drive.name for drive in scene.drives),
         "position": flank[0],
-        "mesh_frequency": _mesh_frequency(system, drive[2]),
+        "mesh_frequency": _mesh_frequency(system, laws[SPEED], v),
         "dynamic_transmission_error": flank[1],
         "static_transmission_error": _static(system, flank[0]),
         "mesh_force": flank[2],
-        "speed": _speed(system, drive[2], v),
-        "drive_torque": _drive_torque(system, time, drive[3], flank[2]),
-        "bearing_force": bearing_force(system, q, v)
+        "speed": _speed(system, laws[SPEED], v),
+        "drive_torque": _drive_torque(system, time, laws[ACCELERATION], flank[2], q, v),
+        "bearing_force": _seen_from_the_ground(system, bearing_force(system, q, v), laws, moved)
         if wanted.bearing_forces
         else np.empty((0, 3, time.size)),
         "displacement": np.ascontiguousarray(q.T) if wanted.displacements else np.empty((0, time.size)),
@@ -43,18 +46,37 @@ def histories(system: System, time: FloatArray, q: FloatArray, v: FloatArray) ->
 
 
 def bearing_force(system: System, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Return the force of the shaft on the ground at each bushing, (b, 3, T) in N."""
+    """Return the force on the ground or the pin at each support in its own frame, (b, 3, T) in N."""
     bearings, _, freedoms = system.bearing_stiffness.shape
     force = system.bearing_stiffness.reshape(3 * bearings, freedoms) @ q.T
     force += system.bearing_damping.reshape(3 * bearings, freedoms) @ v.T
+    supports = system.supports
+    force -= (supports.stiffness * supports.error).reshape(3 * bearings, 1)
     return np.asarray(force.reshape(bearings, 3, q.shape[0]))
 
 
-def _mesh_frequency(system: System, speed: FloatArray) -> FloatArray:
-    """Return base pitches per second in the kinematic motion, (m, T)."""
+def _seen_from_the_ground(system: System, force: FloatArray, laws: FloatArray, moved: IntArray) -> FloatArray:
+    """Turn forces on the ground from the carrier's frame into the fixed one, (b, 3, T)."""
+    ratio = system.kinematics.float_ratio
+    turned = laws[WHOLE] + laws[FRACTION] + moved.T / QUANTA_PER_TURN
+    for bearing, frame in enumerate(system.supports.frame):
+        if frame is None:
+            continue
+        angle = 2.0 * math.pi * (ratio[frame] @ turned)
+        x, y = force[bearing, 0].copy(), force[bearing, 1].copy()
+        force[bearing, 0] = np.cos(angle) * x - np.sin(angle) * y
+        force[bearing, 1] = np.sin(angle) * x + np.cos(angle) * y
+    return force
+
+
+def _mesh_frequency(system: System, speed: FloatArray, v: FloatArray) -> FloatArray:
+    """Return base pitches per second in the mean motion, (m, T)."""
     reference = system.arrays.reference
-    per_revolution = np.abs(reference.numerator / reference.denominator)
-    return np.asarray(per_revolution[:, None] * np.abs(speed) / (2.0 * math.pi))
+    turning = speed.copy()
+    for law, place in enumerate(reference.freedom):
+        if place >= 0:
+            turning[law] += v[:, place]
+    return np.asarray(np.abs((reference.numerator / reference.denominator) @ turning) / (2.0 * math.pi))
 
 
 def _static(system: System, position: FloatArray) -> FloatArray:
@@ -65,21 +87,27 @@ def _static(system: System, position: FloatArray) -> FloatArray:
     return static
 
 
-def _speed(system: System, drive: FloatArray, v: FloatArray) -> FloatArray:
+def _speed(system: System, laws: FloatArray, v: FloatArray) -> FloatArray:
     """Speed of every shaft about +z, (s, T)."""
-    speed = np.array([float(ratio) for ratio in system.kinematics.ratio])[:, None] * drive
+    speed = system.kinematics.float_ratio @ laws
     for column, place in enumerate(system.freedoms.place):
-        if place % 6 == 5:
+        if place % 6 == ROTATION:
             speed[place // 6] += v[:, column]
-    return speed
+    return np.asarray(speed)
 
 
 def _drive_torque(
-    system: System, time: FloatArray, acceleration: FloatArray, force: FloatArray
+    system: System,
+    time: FloatArray,
+    acceleration: FloatArray,
+    force: FloatArray,
+    q: FloatArray,
+    v: FloatArray,
 ) -> FloatArray:
-    """Torque that imposes the motion: inertia of its shaft, meshes and loads on it, (T,)."""
-    arrays = system.arrays
-    torque = arrays.drive_inertia * acceleration + arrays.drive_direction @ force
+    """Torque that imposes the motion of each drive, (d, T): balance of its shaft, or its spring's."""
+    drive = system.arrays.drive
+    torque = drive.inertia @ acceleration + drive.direction @ force - drive.constant[:, None]
+    torque += drive.stiffness @ q.T + drive.damping @ v.T
     for row, load in enumerate(system.scene.loads):
-        torque -= arrays.load.drive[row] * load.torque(time)
-    return np.asarray(torque)
+        torque -= system.arrays.load.drive[row][:, None] * load.torque(time)
+    return np.ascontiguousarray(torque[: len(system.scene.drives)])

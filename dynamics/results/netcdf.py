@@ -19,7 +19,7 @@ from dynamics.results.step_statistics import StepStatistics
 from dynamics.types import Json, RunStatus
 
 SCHEMA = "lineofaction dynamics run"
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 DIRECTIONS = ("x", "y", "z")
 DOCUMENTS = ("effect_ledger", "receipt", "case")
 

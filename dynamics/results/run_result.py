@@ -19,18 +19,18 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RunResult:
-    """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms, one drive.
+    """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms, d drives.
 
     Attributes
     ----------
     time : (T,) array
         s.
-    mesh, shaft, bearing, freedom : tuples of str
+    mesh, shaft, bearing, freedom, drive : tuples of str
         Names along the axes below.
     position : (m, T) array
         Of each mesh by its driver, base pitches in [0, period of its table).
     mesh_frequency : (m, T) array
-        Hz, of the kinematic motion.
+        Hz, of the kinematic motion and the own rotation of trains without a drive.
     dynamic_transmission_error : (m, T) array
         m; r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the
         driven gear lags.
@@ -40,10 +40,11 @@ class RunResult:
         Transverse force in N, damping included, >= 0.
     speed : (s, T) array
         rad/s about +z.
-    drive_torque : (T,) array
-        N m about +z, on the drive's shaft.
+    drive_torque : (d, T) array
+        N m about +z, on each drive's shaft.
     bearing_force : (b, 3, T) array
-        Force of the shaft on the ground in the fixed frame x, y, z, N; b = 0 if not asked for.
+        Force of the shaft on the ground in the fixed frame x, y, z, N; of a planet on its pin in the
+        carrier's turning frame; b = 0 if not asked for.
     displacement, velocity : (n, T) arrays
         Deviations from the kinematic motion, m and rad (and per s); n = 0 if not asked for.
     nominal_force : (m,) array
@@ -62,6 +63,7 @@ class RunResult:
     shaft: tuple[str, ...]
     bearing: tuple[str, ...]
     freedom: tuple[str, ...]
+    drive: tuple[str, ...]
     position: FloatArray
     mesh_frequency: FloatArray
     dynamic_transmission_error: FloatArray

@@ -9,6 +9,7 @@ LABELS = {
     "shaft": "shaft",
     "bearing": "bearing",
     "freedom": "freedom",
+    "drive": "drive",
 }
 
 
@@ -38,14 +39,14 @@ SERIES = (
         "1",
         "position by the driving gear in base pitches, in [0, period)",
     ),
-    Series("mesh_frequency", ("mesh", "time"), "Hz", "mesh frequency of the kinematic motion"),
+    Series("mesh_frequency", ("mesh", "time"), "Hz", "mesh frequency of the mean motion"),
     Series("dynamic_transmission_error", ("mesh", "time"), "m", "dynamic transmission error"),
     Series(
         "static_transmission_error", ("mesh", "time"), "m", "static transmission error at the nominal force"
     ),
     Series("mesh_force", ("mesh", "time"), "N", "transverse mesh force"),
     Series("speed", ("shaft", "time"), "rad s-1", "speed about +z"),
-    Series("drive_torque", ("time",), "N m", "drive torque about +z"),
+    Series("drive_torque", ("drive", "time"), "N m", "drive torque about +z"),
     Series("bearing_force", ("bearing", "direction", "time"), "N", "force of the shaft on the ground"),
     Series("displacement", ("freedom", "time"), "m or rad", "deviation from the kinematic motion"),
     Series("velocity", ("freedom", "time"), "m s-1 or rad s-1", "rate of the deviation"),

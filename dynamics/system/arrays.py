@@ -27,20 +27,24 @@ class LawArrays(NamedTuple):
 
 
 class Reference(NamedTuple):
-    """The kinematic motion: every shaft turns by its exact ratio to the drive.
+    """The kinematic motion: every shaft turns by its exact ratios to the k laws (drives, free rotations).
 
     Attributes
     ----------
     speed : LawArrays
-        One law: speed of the drive, rad/s.
+        Speed of each law, rad/s.
     whole, fraction : (S,) arrays
-        Revolutions of the drive at the start of each piece, integer and remainder.
-    numerator, denominator : (m,) int arrays
-        Base pitches per revolution of the drive for each flank, an exact fraction.
+        Revolutions of the law at the start of each piece, integer and remainder.
+    numerator, denominator : (m, k) int arrays
+        Base pitches per revolution of each law for each flank, exact fractions.
     offset : (m,) array
         Position of each flank at t = 0, base pitches.
     period : (m,) int array
         Base pitches after which the flank's table repeats.
+    freedom : (k,) int array
+        For the law of a free train the place of its shaft's rotation in q; -1 for a drive.
+    vector : (k, n) array
+        Change of q when the law's shaft turns by one radian and all parts with it.
     """
 
     speed: LawArrays
@@ -50,6 +54,8 @@ class Reference(NamedTuple):
     denominator: IntArray
     offset: FloatArray
     period: IntArray
+    freedom: IntArray
+    vector: FloatArray
 
 
 class Loads(NamedTuple):
@@ -61,10 +67,10 @@ class Loads(NamedTuple):
         One law per load, N m.
     direction : (l, n) array
         Generalised force per unit torque.
-    reference : (l,) array
-        Work per unit torque and per unit angle of the drive in the kinematic motion.
-    drive : (l,) array
-        Torque on the drive's own shaft per unit torque.
+    reference : (l, k) array
+        Work per unit torque and per unit angle of each law in the kinematic motion.
+    drive : (l, k) array
+        Torque on the shaft of each rigid drive per unit torque.
     """
 
     torque: LawArrays
@@ -73,10 +79,35 @@ class Loads(NamedTuple):
     drive: FloatArray
 
 
+class Drives(NamedTuple):
+    """Torque of each law's shaft, about +z; zero for free rotations.
+
+    T_k = direction F + stiffness q + damping q' + inertia phi'' - constant - loads, phi'' those of all laws.
+
+    Attributes
+    ----------
+    direction : (k, m) array
+        Derivative of each transmission error in the rotation of a rigid drive's shaft alone.
+    stiffness, damping : (k, n) arrays
+        Of springs and dampers that the shaft's rotation strains; of the drive's own spring.
+    inertia : (k, k) array
+        kg m^2.
+    constant : (k,) array
+        Torque of pins off their place, N m.
+    """
+
+    direction: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    inertia: FloatArray
+    constant: FloatArray
+
+
 class SystemArrays(NamedTuple):
     """n freedoms q (deviations from the kinematic motion), m flanks.
 
     M q'' + C q' + K q + sum_f g_f F_f(x_f, g_f q, g_f q') = external(t).
+    k laws set the kinematic motion.
 
     Attributes
     ----------
@@ -88,12 +119,14 @@ class SystemArrays(NamedTuple):
         g_f: derivative of the transmission error in q.
     turn : (m, n) array
         Derivative of the flank's position in q, base pitches.
-    drive_direction : (m,) array
-        Derivative of the transmission error in the rotation of the drive's shaft alone.
-    inertial : (n,) array
-        External force per angular acceleration of the drive: minus inertia times ratio.
-    drive_inertia, total_inertia : float
-        Polar inertia of the drive's shaft; of all shafts as seen at the drive, kg m^2.
+    constant : (n,) array
+        External force that never changes: of pins off their place.
+    inertial : (k, n) array
+        External force per angular acceleration of each law: minus inertia times kinematic vector.
+    total_inertia : (k, k) array
+        Of all bodies as seen at the laws, kg m^2: kinetic energy of the kinematic motion.
+    drive : Drives
+        What it takes to impose the motion.
     scale : (n,) array
         Metres per unit of q, for error norms: 1, or a base radius for rotations.
     rate_scale : (n,) array
@@ -108,10 +141,10 @@ class SystemArrays(NamedTuple):
     block: IntArray
     direction: FloatArray
     turn: FloatArray
-    drive_direction: FloatArray
+    constant: FloatArray
     inertial: FloatArray
-    drive_inertia: float
-    total_inertia: float
+    total_inertia: FloatArray
+    drive: Drives
     scale: FloatArray
     rate_scale: FloatArray
     flank: FlankLaws

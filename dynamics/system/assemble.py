@@ -9,25 +9,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.joints import Bushing
-from dynamics.system.arrays import Loads, Reference, SystemArrays
+from dynamics.system.arrays import SystemArrays
 from dynamics.system.effects import FREEDOMS, MeshOnRotor, SupportedRotor
 from dynamics.system.effects.ledger import EffectLedger, keep_ledger
 from dynamics.system.flanks import Flanks, flank_laws
 from dynamics.system.freedoms import (
+    ROTATION,
     Freedoms,
-    bushing_coefficients,
-    bushing_kinematics,
     find_freedoms,
     mass_diagonal,
     shared_blocks,
 )
-from dynamics.system.kinematics import Kinematics, solve_kinematics
-from dynamics.system.law_arrays import pack_laws, revolutions
+from dynamics.system.kinematics import Kinematics, mesh_shafts, solve_kinematics
 from dynamics.system.line_of_action import LineOfAction, line_of_action
 from dynamics.system.nominal_forces import nominal_forces
+from dynamics.system.planets import kinematic_vectors, turning_inertia
+from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.system.rotor import Rotor, build_rotor
 from dynamics.system.scene import Scene
+from dynamics.system.supports import Supports, gather_supports
 from dynamics.types import FloatArray
 
 
@@ -46,10 +46,12 @@ class System:
         One per mesh.
     flanks : Flanks
         Force laws as resolved: nominal forces, damping, tables.
-    bushings : tuple of Bushing
-        All, rotor by rotor, with damping filled in.
+    rotors : tuple of Rotor
+        One per shaft.
+    supports : Supports
+        Bushings, then planet bearings.
     bearing_stiffness, bearing_damping : (b, 3, n) arrays
-        Force on the ground at each bushing per freedom and its rate.
+        Force on the ground, or on the pin, at each support per freedom and its rate.
     ledger : EffectLedger
     """
 
@@ -59,7 +61,8 @@ class System:
     kinematics: Kinematics
     lines: tuple[LineOfAction, ...]
     flanks: Flanks
-    bushings: tuple[Bushing, ...]
+    rotors: tuple[Rotor, ...]
+    supports: Supports
     bearing_stiffness: FloatArray
     bearing_damping: FloatArray
     ledger: EffectLedger
@@ -74,18 +77,16 @@ def assemble(scene: Scene) -> System:
         If parts do not fit each other, or a free direction has no inertia.
     """
     kinematics = solve_kinematics(scene)
-    rotors = [build_rotor(scene, shaft) for shaft in scene.shafts]
-    senses = [kinematics.sense[scene.shaft_index(scene.gear(mesh.driver).shaft)] for mesh in scene.meshes]
-    lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(senses))
-    forces = nominal_forces(scene, kinematics)
+    rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
+    lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
+    forces = nominal_forces(scene, kinematics, turning_inertia(rotors))
+    supports = gather_supports(rotors)
     ledger = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces))
     freedoms = find_freedoms(rotors, kinematics, ledger)
     _check_mass(freedoms, rotors)
     flanks = flank_laws(scene, kinematics, forces, [rotor.inertia.polar for rotor in rotors])
-    bushings = tuple(bushing for rotor in rotors for bushing in rotor.bushings)
-    stiffness, damping = bushing_coefficients(bushings)
-    moves = freedoms.keep(bushing_kinematics(rotors))
-    arrays = _arrays(scene, rotors, kinematics, freedoms, lines, flanks, (moves, stiffness, damping))
+    arrays = _arrays(scene, rotors, kinematics, freedoms, lines, flanks, supports)
+    moves = freedoms.keep(supports.motion)
     return System(
         scene,
         arrays,
@@ -93,9 +94,10 @@ def assemble(scene: Scene) -> System:
         kinematics,
         lines,
         flanks,
-        bushings,
-        stiffness[:, :, None] * moves,
-        damping[:, :, None] * moves,
+        rotors,
+        supports,
+        supports.stiffness[:, :, None] * moves,
+        supports.damping[:, :, None] * moves,
         ledger,
     )
 
@@ -103,7 +105,7 @@ def assemble(scene: Scene) -> System:
 def _supported(
     scene: Scene, rotors: Sequence[Rotor], lines: Sequence[LineOfAction], forces: FloatArray
 ) -> list[SupportedRotor]:
-    """Gather what the effects decide on."""
+    """Gather what the effects decide on; a carrier feels the meshes of its planets at their pins."""
     meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
     for mesh, line, force in zip(scene.meshes, lines, forces, strict=True):
         for name in (mesh.driver, mesh.driven):
@@ -111,7 +113,13 @@ def _supported(
             index = scene.shaft_index(gear.shaft)
             lever = float(line.point[2] - rotors[index].center[2])
             radius = gear.base_radius / math.cos(line.working_pressure_angle)
-            meshes[index].append(MeshOnRotor(float(force), lever, abs(float(line.force[2])), radius))
+            axial = abs(float(line.force[2]))
+            meshes[index].append(MeshOnRotor(float(force), lever, axial, radius))
+            carrier = rotors[index].carrier
+            if carrier is not None:
+                arm = rotors[index].center - rotors[carrier].center
+                on_carrier = MeshOnRotor(float(force), float(arm[2]), axial, float(np.hypot(arm[0], arm[1])))
+                meshes[carrier].append(on_carrier)
     return [
         SupportedRotor(
             rotor.shaft.name,
@@ -133,19 +141,17 @@ def _arrays(
     freedoms: Freedoms,
     lines: Sequence[LineOfAction],
     flanks: Flanks,
-    supports: tuple[FloatArray, FloatArray, FloatArray],
+    supports: Supports,
 ) -> SystemArrays:
     """Reduce every six-freedom array to the free directions."""
-    moves, coefficient, viscous = supports
-    stiffness = np.einsum("bki,bk,bkj->ij", moves, coefficient, moves)
-    damping = np.einsum("bki,bk,bkj->ij", moves, viscous, moves)
-    mass = np.diag(freedoms.keep(mass_diagonal(rotors)))
+    moves, vectors = freedoms.keep(supports.motion), kinematic_vectors(rotors, kinematics)
+    stiffness = supports.matrix(supports.stiffness, moves, moves)
+    damping = supports.matrix(supports.damping, moves, moves)
+    _add_drive_springs(scene, kinematics, freedoms, stiffness, damping)
+    full_mass = mass_diagonal(rotors)
+    mass = freedoms.motion.T @ (full_mass[:, None] * freedoms.motion)
     gradient = _gradients(scene, rotors, lines)
-    polar = np.array([rotor.inertia.polar for rotor in rotors])
-    ratio = np.array([float(value) for value in kinematics.ratio])
-    inertial = np.zeros((len(rotors), 6))
-    inertial[:, 5] = -polar * ratio
-    scale, direction = freedoms.keep(_scales(scene).ravel()), freedoms.keep(gradient)
+    scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
     held = np.diag(stiffness) + flanks.mean_stiffness @ direction**2
     return SystemArrays(
         np.ascontiguousarray(mass),
@@ -154,21 +160,32 @@ def _arrays(
         shared_blocks([mass, damping, stiffness]),
         direction,
         freedoms.keep(_turns(scene, rotors, kinematics)),
-        np.ascontiguousarray(gradient[:, 6 * kinematics.drive + 5]),
-        freedoms.keep(inertial.ravel()),
-        float(polar[kinematics.drive]),
-        float(np.sum(polar * ratio**2)),
+        np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error),
+        freedoms.keep(-full_mass * vectors),
+        np.ascontiguousarray((vectors * full_mass) @ vectors.T),
+        lay_out_drives(scene, rotors, kinematics, freedoms, supports, gradient, vectors),
         scale,
         scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
         flanks.law,
-        _reference(scene, kinematics),
-        _loads(scene, kinematics, freedoms, ratio),
+        lay_out_reference(scene, kinematics, freedoms, vectors),
+        lay_out_loads(scene, kinematics, freedoms),
     )
+
+
+def _add_drive_springs(
+    scene: Scene, kinematics: Kinematics, freedoms: Freedoms, stiffness: FloatArray, damping: FloatArray
+) -> None:
+    """Add the springs between drives and their shafts."""
+    for shaft, drive in zip(kinematics.law_shaft, scene.drives, strict=False):
+        if drive.stiffness is not None:
+            place = freedoms.find(shaft, ROTATION)
+            stiffness[place, place] += drive.stiffness
+            damping[place, place] += drive.damping
 
 
 def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:
     """Every free direction needs inertia."""
-    for name, value in zip(freedoms.name, freedoms.keep(mass_diagonal(rotors)), strict=True):
+    for name, value in zip(freedoms.name, mass_diagonal(rotors)[freedoms.place], strict=True):
         if value <= 0.0:
             suggestion = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
             raise InputError(f"inertia of {name}", float(value), "above 0", suggestion)
@@ -185,51 +202,28 @@ def _gradients(scene: Scene, rotors: Sequence[Rotor], lines: Sequence[LineOfActi
 
 
 def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
-    """Return the derivatives of each position in all freedoms, (m, 6 r): the driver's rotation."""
+    """Return the derivatives of each position, (m, 6 r): the driver's rotation against its carrier's."""
     turn = np.zeros((len(scene.meshes), len(rotors), 6))
     for row, mesh in enumerate(scene.meshes):
-        driver = scene.gear(mesh.driver)
-        index = scene.shaft_index(driver.shaft)
-        turn[row, index, 5] = kinematics.sense[index] * driver.teeth / (2.0 * math.pi)
+        driver, _, carrier = mesh_shafts(scene, row)
+        rate = kinematics.mesh_sense[row] * scene.gear(mesh.driver).teeth / (2.0 * math.pi)
+        turn[row, driver, ROTATION] = rate
+        if carrier is not None:
+            turn[row, carrier, ROTATION] -= rate
     return turn.reshape(len(scene.meshes), 6 * len(rotors))
 
 
-def _scales(scene: Scene) -> FloatArray:
-    """Metres per unit of each freedom, (r, 6): the largest base radius on the shaft for rotations."""
-    scale = np.ones((len(scene.shafts), len(FREEDOMS)))
-    for index, shaft in enumerate(scene.shafts):
-        scale[index, 3:] = max(gear.base_radius for gear in scene.gears if gear.shaft == shaft.name)
-    return scale
-
-
-def _reference(scene: Scene, kinematics: Kinematics) -> Reference:
-    """Lay out the kinematic motion."""
-    whole, fraction = revolutions(scene.drives[0].speed)
-    rates = []
-    for mesh in scene.meshes:
-        driver = scene.gear(mesh.driver)
-        index = scene.shaft_index(driver.shaft)
-        rates.append(kinematics.ratio[index] * kinematics.sense[index] * driver.teeth)
-    return Reference(
-        pack_laws([scene.drives[0].speed]),
-        whole,
-        fraction,
-        np.array([rate.numerator for rate in rates], dtype=np.int64),
-        np.array([rate.denominator for rate in rates], dtype=np.int64),
-        np.array([mesh.position_offset for mesh in scene.meshes], dtype=float),
-        np.array([mesh.table.period for mesh in scene.meshes], dtype=np.int64),
-    )
-
-
-def _loads(scene: Scene, kinematics: Kinematics, freedoms: Freedoms, ratio: FloatArray) -> Loads:
-    """Lay out the load torques: each against the sense of its shaft."""
-    direction = np.zeros((len(scene.loads), len(scene.shafts), 6))
-    shafts = [scene.shaft_index(load.shaft) for load in scene.loads]
-    for row, shaft in enumerate(shafts):
-        direction[row, shaft, 5] = -kinematics.sense[shaft]
-    return Loads(
-        pack_laws([load.torque for load in scene.loads]),
-        freedoms.keep(direction.reshape(len(scene.loads), 6 * len(scene.shafts))),
-        np.ascontiguousarray(direction[:, :, 5] @ ratio),
-        np.ascontiguousarray(direction[:, kinematics.drive, 5]),
-    )
+def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatArray:
+    """Metres per unit of each freedom, (n,): for rotations the largest base or pin radius on the shaft."""
+    largest = max((gear.base_radius for gear in scene.gears), default=1.0)
+    radius = np.zeros(len(rotors))
+    for gear in scene.gears:
+        shaft = scene.shaft_index(gear.shaft)
+        radius[shaft] = max(radius[shaft], gear.base_radius)
+    for rotor in rotors:
+        if rotor.carrier is not None:
+            arm = rotor.center - rotors[rotor.carrier].center
+            radius[rotor.carrier] = max(radius[rotor.carrier], float(np.hypot(arm[0], arm[1])))
+    scale = np.ones((len(rotors), len(FREEDOMS)))
+    scale[:, 3:] = np.where(radius > 0.0, radius, largest)[:, None]
+    return np.ascontiguousarray(scale.ravel()[freedoms.place])

@@ -96,6 +96,6 @@ def _damping(
     mobility = 0.0
     for gear in (scene.gear(mesh.driver), scene.gear(mesh.driven)):
         shaft = scene.shaft_index(gear.shaft)
-        if shaft != kinematics.drive:
+        if shaft not in kinematics.imposed:
             mobility += gear.base_radius**2 / polar_inertia[shaft]
     return 2.0 * mesh.damping_ratio * float(np.sqrt(stiffness / mobility))

@@ -1,4 +1,4 @@
-"""The freedoms of a system: which there are, and the arrays that follow from each rotor's six."""
+"""The freedoms of a system: which there are, and how the six of every rotor follow from them."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.joints import Bushing
 from dynamics.system.effects import FREEDOMS
 from dynamics.system.effects.ledger import EffectLedger
 from dynamics.system.kinematics import Kinematics
+from dynamics.system.planets import carried_motion
 from dynamics.system.rotor import Rotor
 from dynamics.types import FloatArray, IntArray
+
+ROTATION = FREEDOMS.index("rotation")
 
 
 @dataclass(frozen=True)
@@ -25,28 +27,39 @@ class Freedoms:
         "shaft.kind" with kind one of x, y, z (m), tilt_x, tilt_y, rotation (rad).
     place : (n,) int array
         Of each among the six freedoms of all rotors: 6 rotor + kind.
+    motion : (6 r, n) array
+        The six freedoms of all rotors per freedom: one at its place; planets go with their carrier where
+        nothing lets them move on their own.
     """
 
     name: tuple[str, ...]
     place: IntArray
+    motion: FloatArray
 
     def keep(self, matrix: FloatArray) -> FloatArray:
-        """Return the free columns of a matrix whose last axis holds all 6 freedoms of all rotors."""
-        return np.ascontiguousarray(np.asarray(matrix, dtype=float)[..., self.place])
+        """Return a matrix whose last axis holds all 6 freedoms of all rotors as one of the freedoms."""
+        return np.ascontiguousarray(np.asarray(matrix, dtype=float) @ self.motion)
+
+    def find(self, rotor: int, kind: int) -> int:
+        """Return the place of one of a rotor's six freedoms among the free ones, or -1."""
+        found = np.flatnonzero(self.place == 6 * rotor + kind)
+        return int(found[0]) if found.size else -1
 
 
 def find_freedoms(rotors: Sequence[Rotor], kinematics: Kinematics, ledger: EffectLedger) -> Freedoms:
-    """Gather the freedoms that effects add, and the rotation of every shaft but the drive's."""
+    """Gather the freedoms that effects add, and the rotation of every shaft without a rigid drive."""
     names, places = [], []
     for index, rotor in enumerate(rotors):
         free = set(ledger.freedoms(rotor.shaft.name))
-        if index != kinematics.drive:
+        if index not in kinematics.imposed:
             free.add("rotation")
         for kind, freedom in enumerate(FREEDOMS):
             if freedom in free:
                 names.append(f"{rotor.shaft.name}.{freedom}")
                 places.append(6 * index + kind)
-    return Freedoms(tuple(names), np.array(places, dtype=np.int64))
+    place = np.array(places, dtype=np.int64)
+    motion = carried_motion(rotors, place)[:, place]
+    return Freedoms(tuple(names), place, np.ascontiguousarray(motion))
 
 
 def mass_diagonal(rotors: Sequence[Rotor]) -> FloatArray:
@@ -54,28 +67,6 @@ def mass_diagonal(rotors: Sequence[Rotor]) -> FloatArray:
     inertia = [rotor.inertia for rotor in rotors]
     diagonal = [[i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar] for i in inertia]
     return np.array(diagonal, dtype=float).ravel()
-
-
-def bushing_kinematics(rotors: Sequence[Rotor]) -> FloatArray:
-    """Return (bushings, 3, 6 r): displacement of each bushing's axis point per freedom.
-
-    A small rotation r moves the point z along the axis by r x (0, 0, z) = (tilt_y z, -tilt_x z, 0).
-    """
-    rows = []
-    for index, rotor in enumerate(rotors):
-        for bushing in rotor.bushings:
-            row = np.zeros((3, 6 * len(rotors)))
-            row[:, 6 * index : 6 * index + 3] = np.eye(3)
-            row[0, 6 * index + 4], row[1, 6 * index + 3] = rotor.lever(bushing), -rotor.lever(bushing)
-            rows.append(row)
-    return np.array(rows).reshape(-1, 3, 6 * len(rotors))
-
-
-def bushing_coefficients(bushings: Sequence[Bushing]) -> tuple[FloatArray, FloatArray]:
-    """Return stiffness (b, 3) and damping (b, 3) along x, y, z."""
-    stiffness = [[b.radial_stiffness, b.radial_stiffness, b.axial_stiffness] for b in bushings]
-    damping = [[b.radial_damping or 0.0, b.radial_damping or 0.0, b.axial_damping or 0.0] for b in bushings]
-    return np.array(stiffness).reshape(-1, 3), np.array(damping).reshape(-1, 3)
 
 
 def shared_blocks(matrices: Sequence[FloatArray]) -> IntArray:

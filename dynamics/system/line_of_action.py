@@ -46,9 +46,10 @@ class LineOfAction:
 def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     """Return the line of action of mesh `index` whose driver pushes in the `sense` (+1 or -1) about +z.
 
-    With e from the driver's to the driven gear's centre and alpha the working pressure angle, the driver
-    turning in +z pushes along n = sin(alpha) e + cos(alpha) (z x e). A right-hand driver (beta_b > 0) pushed
-    on by F feels the axial force sense F tan(beta_b).
+    With e from the driver's centre to the pitch point and alpha the working pressure angle, the driver
+    turning in +z pushes along n = sin(alpha) e + cos(alpha) (z x e); a ring gear that drives pushes inwards,
+    along n = -sin(alpha) e + cos(alpha) (z x e). The other `sense` is the coast flank. A right-hand driver
+    (beta_b > 0) pushed on by F feels the axial force sense F tan(beta_b).
 
     Raises
     ------
@@ -62,13 +63,17 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     first, second = _center(scene, driver), _center(scene, driven)
     apart = (second - first) * np.array([1.0, 1.0, 0.0])
     distance = float(np.hypot(apart[0], apart[1]))
-    bases = driver.base_radius + driven.base_radius
+    bases = _acting_base_radii(driver, driven)
     if distance <= bases:
-        raise InputError(field, distance, f"at a centre distance above the base radii's sum, {bases:g} m")
+        what = "difference" if driver.internal or driven.internal else "sum"
+        raise InputError(field, distance, f"at a centre distance above the base radii's {what}, {bases:g} m")
     angle = math.acos(bases / distance)
-    e = apart / distance
+    e = (
+        apart / distance * (-1.0 if driven.internal else 1.0)
+    )  # a pinion meets its ring away from the ring's centre
     across = np.array([-e[1], e[0], 0.0])
-    force = math.sin(angle) * e + sense * math.cos(angle) * across
+    inwards = -1.0 if driver.internal else 1.0
+    force = inwards * math.sin(angle) * e + sense * math.cos(angle) * across
     force[2] = -sense * math.tan(driver.base_helix_angle)
     point = first + e * driver.base_radius / math.cos(angle)
     point[2] = _middle_of_common_face(field, first[2], driver, second[2], driven)
@@ -82,17 +87,30 @@ def _center(scene: Scene, gear: GearBody) -> FloatArray:
     return np.array([x, y, z + gear.position])
 
 
+def _acting_base_radii(driver: GearBody, driven: GearBody) -> float:
+    """Centre distance times the cosine of the working pressure angle, m: sum, or difference in a ring."""
+    if driver.internal:
+        return driver.base_radius - driven.base_radius
+    if driven.internal:
+        return driven.base_radius - driver.base_radius
+    return driver.base_radius + driven.base_radius
+
+
 def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
-    """Equal base pitch, opposite hand."""
+    """Equal base pitch, opposite hand; the same hand and a smaller pinion in a ring gear."""
+    ring = driver if driver.internal else driven
+    pinion = driven if driver.internal else driver
+    if ring.internal and pinion.internal:
+        raise InputError(field, driven.name, "an external gear where the driver is a ring gear")
+    if ring.internal and pinion.teeth >= ring.teeth:
+        raise InputError(field, driven.teeth, f"such that the ring gear has more teeth than {pinion.teeth}")
     if abs(driver.base_pitch / driven.base_pitch - 1.0) > BASE_PITCH_AGREEMENT:
         bound = f"a gear of base pitch {driver.base_pitch:.12g} m like the driver's"
         raise InputError(field, driven.base_pitch, bound, "base_radius / teeth must agree to 1e-9.")
-    if abs(driver.base_helix_angle + driven.base_helix_angle) > 1e-9:
-        raise InputError(
-            field,
-            driven.base_helix_angle,
-            f"of base helix angle {-driver.base_helix_angle:g}, the other hand",
-        )
+    hand, name = (1.0, "the same hand") if ring.internal else (-1.0, "the other hand")
+    if abs(driver.base_helix_angle - hand * driven.base_helix_angle) > 1e-9:
+        bound = f"of base helix angle {hand * driver.base_helix_angle:g}, {name}"
+        raise InputError(field, driven.base_helix_angle, bound)
 
 
 def _middle_of_common_face(field: str, z1: float, driver: GearBody, z2: float, driven: GearBody) -> float:

@@ -7,7 +7,15 @@ import math
 from dynamics.forces.compiled import compiled, inner
 from dynamics.forces.table_lookup import wrapped
 from dynamics.system.arrays import LawArrays, Reference, SystemArrays
-from dynamics.types import FloatArray
+from dynamics.types import FloatArray, IntArray
+
+# Columns of the motion of the laws, (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.
+WHOLE, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3
+MOTION_COLUMNS = 4
+QUANTA_PER_TURN = 2**20
+"""A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
+exact power of two, so that counting them loses nothing."""
+QUANTUM = 2.0 * math.pi / QUANTA_PER_TURN
 
 
 @inner
@@ -28,38 +36,75 @@ def law_value(law: LawArrays, index: int, time: float) -> float:
 
 
 @compiled
-def drive_motion(reference: Reference, time: float) -> tuple[float, float, float, float]:
-    """Return the drive's whole revolutions, fraction of one (0..1), speed (rad/s), acceleration (rad/s^2)."""
-    piece = piece_at(reference.speed, 0, time)
-    s, c = time - reference.speed.start[piece], reference.speed.coefficient
-    angle = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))
-    turns = reference.fraction[piece] + angle / (2.0 * math.pi)
-    whole = math.floor(turns)
-    speed = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
-    acceleration = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
-    return reference.whole[piece] + whole, turns - whole, speed, acceleration
+def write_motion(reference: Reference, time: float, moved: IntArray, motion: FloatArray) -> None:
+    """Write the motion of every law at `time` into `motion` (k, 4); the fraction may exceed 1 by `moved`.
+
+    `moved` (k,) counts the quanta of a revolution that a free train's own rotation has been moved by.
+    """
+    for k in range(motion.shape[0]):
+        piece = piece_at(reference.speed, k, time)
+        s, c = time - reference.speed.start[piece], reference.speed.coefficient
+        angle = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))
+        turns = reference.fraction[piece] + angle / (2.0 * math.pi)
+        whole = math.floor(turns)
+        motion[k, WHOLE] = reference.whole[piece] + whole + moved[k] // QUANTA_PER_TURN
+        motion[k, FRACTION] = turns - whole + (moved[k] % QUANTA_PER_TURN) / QUANTA_PER_TURN
+        motion[k, SPEED] = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
+        motion[k, ACCELERATION] = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
 
 
 @compiled
-def flank_phase(reference: Reference, flank: int, whole: float, fraction: float) -> float:
+def flank_phase(reference: Reference, flank: int, motion: FloatArray) -> float:
     """Return the flank's position in the kinematic motion, in [0, period): whole periods drop exactly.
 
-    Base pitches per revolution are a fraction of integers, so that what whole revolutions add is an integer
-    number of periods and a remainder of integers: no digit is lost however far the shafts have turned.
+    Base pitches per revolution of a law are a fraction of integers, so that what whole revolutions add is an
+    integer number of periods and a remainder of integers: no digit is lost however far the shafts turn.
     """
-    numerator, denominator = reference.numerator[flank], reference.denominator[flank]
-    cycle = denominator * reference.period[flank]
-    remainder = (int(whole) % cycle) * numerator % cycle
-    phase = remainder / denominator + fraction * numerator / denominator + reference.offset[flank]
+    phase = reference.offset[flank]
+    for k in range(motion.shape[0]):
+        numerator, denominator = reference.numerator[flank, k], reference.denominator[flank, k]
+        cycle = denominator * reference.period[flank]
+        remainder = (int(motion[k, WHOLE]) % cycle) * numerator % cycle
+        phase += remainder / denominator + motion[k, FRACTION] * numerator / denominator
     return wrapped(phase, float(reference.period[flank]))
 
 
 @inner
-def external_force(system: SystemArrays, time: float, acceleration: float, force: FloatArray) -> None:
-    """Write loads and the inertial force of the kinematic motion into `force` (n,)."""
+def law_speed(reference: Reference, law: int, motion: FloatArray, velocity: FloatArray) -> float:
+    """Return the speed of a law's shaft, rad/s; of a free train with its own rotation in `velocity` (n,)."""
+    speed = motion[law, SPEED]
+    if reference.freedom[law] >= 0:
+        speed += velocity[reference.freedom[law]]
+    return float(speed)
+
+
+@inner
+def move_free_trains(reference: Reference, moved: IntArray, q: FloatArray) -> None:
+    """Move the own rotation of free trains from `q` into the reference, up to half a quantum.
+
+    It moves along the kinematic vector of the law, which changes no transmission error, no spring and no
+    position. What is left in `q` is small, so that no digit is lost however far the train turns.
+    """
+    for k in range(reference.freedom.size):
+        if reference.freedom[k] < 0:
+            continue
+        count = math.floor(q[reference.freedom[k]] / QUANTUM + 0.5)
+        if count == 0.0:
+            continue
+        moved[k] += int(count)
+        for i in range(q.size):
+            q[i] -= reference.vector[k, i] * (count * QUANTUM)
+
+
+@inner
+def external_force(system: SystemArrays, time: float, motion: FloatArray, force: FloatArray) -> None:
+    """Write loads, pin errors and the inertial force of the kinematic motion into `force` (n,)."""
     for i in range(force.size):
-        force[i] = system.inertial[i] * acceleration
-    for load in range(system.load.reference.size):
+        force[i] = system.constant[i]
+    for k in range(motion.shape[0]):
+        for i in range(force.size):
+            force[i] += system.inertial[k, i] * motion[k, ACCELERATION]
+    for load in range(system.load.direction.shape[0]):
         torque = law_value(system.load.torque, load, time)
         for i in range(force.size):
             force[i] += system.load.direction[load, i] * torque

@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.system.kinematics import Kinematics
+from dynamics.system.kinematics import Kinematics, mesh_shafts
 from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
 
 
-def nominal_forces(scene: Scene, kinematics: Kinematics) -> FloatArray:
+def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> FloatArray:
     """Return the transverse force of each mesh, N: as given, or what balances the load torques at t = 0.
+
+    `inertia` (shafts,) in kg m^2 is that of each shaft about its axis and, on a carrier, of the planets about
+    the carrier's: a train without a drive accelerates where its torques do not balance.
 
     Raises
     ------
@@ -21,26 +24,26 @@ def nominal_forces(scene: Scene, kinematics: Kinematics) -> FloatArray:
     given = [mesh.nominal_force for mesh in scene.meshes]
     if all(force is not None for force in given):
         return np.array(given, dtype=float)
-    balanced = _balance(scene, kinematics)
+    balanced = _balance(scene, kinematics, inertia)
     return np.array([b if g is None else g for g, b in zip(given, balanced, strict=True)], dtype=float)
 
 
-def _balance(scene: Scene, kinematics: Kinematics) -> FloatArray:
-    """Solve the torque balance of all shafts but the drive's."""
-    lever = np.zeros((len(scene.shafts), len(scene.meshes)))
-    for column, mesh in enumerate(scene.meshes):
-        driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
-        sense = kinematics.sense[scene.shaft_index(driver.shaft)]
-        lever[scene.shaft_index(driver.shaft), column] = sense * driver.base_radius
-        lever[scene.shaft_index(driven.shaft), column] = sense * driven.base_radius
+def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> FloatArray:
+    """Solve the torque balance of all shafts but those of drives.
+
+    Planets that share a load on equal terms share it equally: the solution of least squares.
+    """
+    lever = _levers(scene, kinematics)
     torque = np.zeros(len(scene.shafts))
     for load in scene.loads:
         shaft = scene.shaft_index(load.shaft)
         torque[shaft] -= kinematics.sense[shaft] * float(load.torque(0.0))
-    free = [index for index in range(len(scene.shafts)) if index != kinematics.drive]
-    force, _, rank, _ = np.linalg.lstsq(lever[free], torque[free], rcond=None)
+    torque -= inertia * _acceleration(scene, kinematics, inertia, torque)
+    driven = set(kinematics.law_shaft[: len(scene.drives)])
+    free = [index for index in range(len(scene.shafts)) if index not in driven]
+    force, _, rank, _ = np.linalg.lstsq(lever[free], torque[free], rcond=1e-12)
     suggestion = "Give every mesh its nominal_force."
-    if rank < len(scene.meshes):
+    if rank < len(scene.meshes) and not scene.planet_bearings:
         raise InputError("meshes", len(scene.meshes), "loaded in one way only by the torques", suggestion)
     for index, value in enumerate(force):
         if value < -1e-9 * np.max(np.abs(force)):
@@ -48,3 +51,33 @@ def _balance(scene: Scene, kinematics: Kinematics) -> FloatArray:
                 f"meshes[{index}]", f"{value:.6g} N", "loaded on its driving flank", "Turn the load."
             )
     return np.asarray(np.maximum(force, 0.0), dtype=float)
+
+
+def _levers(scene: Scene, kinematics: Kinematics) -> FloatArray:
+    """Torque on the meshes' side of each shaft's balance per mesh force, m, (shafts, meshes).
+
+    The planets' centres go with the carrier, so that a mesh turns it by the difference of what it turns
+    both gears by.
+    """
+    lever = np.zeros((len(scene.shafts), len(scene.meshes)))
+    for column, mesh in enumerate(scene.meshes):
+        driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
+        a, b, carrier = mesh_shafts(scene, column)
+        sense = kinematics.mesh_sense[column]
+        turned_back = -1.0 if driver.internal or driven.internal else 1.0
+        lever[a, column] += sense * driver.base_radius
+        lever[b, column] += sense * turned_back * driven.base_radius
+        if carrier is not None:
+            lever[carrier, column] -= sense * (driver.base_radius + turned_back * driven.base_radius)
+    return lever
+
+
+def _acceleration(
+    scene: Scene, kinematics: Kinematics, inertia: FloatArray, torque: FloatArray
+) -> FloatArray:
+    """Angular acceleration of each shaft of trains without a drive, rad/s^2."""
+    ratio = kinematics.float_ratio[:, len(scene.drives) :]
+    if ratio.shape[1] == 0:
+        return np.zeros(len(scene.shafts))
+    law = np.linalg.solve(ratio.T @ (inertia[:, None] * ratio), ratio.T @ torque)
+    return np.asarray(ratio @ law)

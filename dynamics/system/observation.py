@@ -1,25 +1,47 @@
-"""Compiled observation of the flanks at given states: position, transmission error, force."""
+"""Observation of the flanks and the laws at given states: position, transmission error, force, speeds."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from dynamics.forces.compiled import compiled
 from dynamics.forces.flank_force import flank_force
 from dynamics.forces.packed_tables import PackedTables
 from dynamics.forces.table_lookup import table_deflection, wrapped
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import drive_motion, flank_phase
-from dynamics.types import FloatArray
+from dynamics.system.motion import MOTION_COLUMNS, flank_phase, write_motion
+from dynamics.types import FloatArray, IntArray
+
+
+def observe_flanks(
+    system: SystemArrays, time: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray | None = None
+) -> FloatArray:
+    """Return position, transmission error and force of every flank at T states, (3, m, T).
+
+    `time` (T,), `q` and `v` (T, n); `moved` (T, k) counts the quanta of free trains moved into the reference.
+    """
+    flanks, laws = system.direction.shape[0], system.inertial.shape[0]
+    observed = np.empty((3, flanks, time.size))
+    counted = np.zeros((time.size, laws), dtype=np.int64) if moved is None else moved
+    _observe_flanks(system, time, counted, q, v, np.empty((laws, MOTION_COLUMNS)), observed)
+    return observed
 
 
 @compiled
-def observe_flanks(
-    system: SystemArrays, time: FloatArray, q: FloatArray, v: FloatArray, observed: FloatArray
+def _observe_flanks(
+    system: SystemArrays,
+    time: FloatArray,
+    moved: IntArray,
+    q: FloatArray,
+    v: FloatArray,
+    motion: FloatArray,
+    observed: FloatArray,
 ) -> None:
-    """Write position, transmission error and force of every flank at every time into `observed` (3, m, T)."""
+    """Write what `observe_flanks` returns."""
     for k in range(time.size):
-        whole, fraction, _, _ = drive_motion(system.reference, time[k])
-        for f in range(system.drive_direction.size):
-            position = flank_phase(system.reference, f, whole, fraction)
+        write_motion(system.reference, time[k], moved[k], motion)
+        for f in range(system.direction.shape[0]):
+            position = flank_phase(system.reference, f, motion)
             deflection, rate = 0.0, 0.0
             for i in range(q.shape[1]):
                 position += system.turn[f, i] * q[k, i]
@@ -30,13 +52,19 @@ def observe_flanks(
             observed[2, f, k] = flank_force(system.flank, f, position, deflection, rate, 0)[0]
 
 
+def observe_laws(system: SystemArrays, time: FloatArray) -> FloatArray:
+    """Return whole revolutions, fraction, speed (rad/s) and acceleration of every law, (4, k, T)."""
+    laws = system.inertial.shape[0]
+    observed = np.empty((time.size, laws, MOTION_COLUMNS))
+    _observe_laws(system, time, np.zeros(laws, dtype=np.int64), observed)
+    return np.ascontiguousarray(np.moveaxis(observed, (2, 1), (0, 1)))
+
+
 @compiled
-def observe_drive(system: SystemArrays, time: FloatArray, observed: FloatArray) -> None:
-    """Write whole revolutions, fraction, speed (rad/s) and acceleration (rad/s^2) into `observed` (4, T)."""
+def _observe_laws(system: SystemArrays, time: FloatArray, moved: IntArray, observed: FloatArray) -> None:
+    """Write the motion of the laws into `observed` (T, k, 4)."""
     for k in range(time.size):
-        whole, fraction, speed, acceleration = drive_motion(system.reference, time[k])
-        observed[0, k], observed[1, k] = whole, fraction
-        observed[2, k], observed[3, k] = speed, acceleration
+        write_motion(system.reference, time[k], moved, observed[k])
 
 
 @compiled

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from dynamics.bodies import Inertia, Shaft
-from dynamics.joints import Bushing
-from dynamics.system.scene import Scene
+from dynamics.joints import Bushing, PlanetBearing
+from dynamics.system.scene import Scene, on_axis
 from dynamics.types import FloatArray
+
+Support = TypeVar("Support", Bushing, PlanetBearing)
 
 
 @dataclass(frozen=True)
@@ -24,38 +27,52 @@ class Rotor:
     center : (3,) array
         That centre in the fixed frame, m: the point whose displacements are the freedoms.
     bushings : tuple of Bushing
-        Its supports, with damping filled in.
+        Its supports on the ground, with damping filled in.
+    planet_bearings : tuple of PlanetBearing
+        Its supports on the carrier's pin, with damping filled in.
+    frame : int or None
+        Rotor of the carrier in whose turning frame it is described.
+    carrier : int or None
+        The same for a planet: a rotor off the carrier's axis, which the carrier takes along.
     """
 
     shaft: Shaft
     inertia: Inertia
     center: FloatArray
     bushings: tuple[Bushing, ...]
+    planet_bearings: tuple[PlanetBearing, ...]
+    frame: int | None
+    carrier: int | None
 
-    def lever(self, bushing: Bushing) -> float:
-        """Axial distance of `bushing` from the centre of mass, m."""
-        return float(self.shaft.origin[2] + bushing.position - self.center[2])
+    @property
+    def supports(self) -> tuple[Bushing | PlanetBearing, ...]:
+        """All supports."""
+        return (*self.bushings, *self.planet_bearings)
+
+    def lever(self, support: Bushing | PlanetBearing) -> float:
+        """Axial distance of `support` from the centre of mass, m."""
+        return float(self.shaft.origin[2] + support.position - self.center[2])
 
     @property
     def radial_stiffness(self) -> float:
-        """Sum over the bushings, N/m."""
-        return sum(bushing.radial_stiffness for bushing in self.bushings)
+        """Sum over the supports, N/m."""
+        return sum(support.radial_stiffness for support in self.supports)
 
     @property
     def axial_stiffness(self) -> float:
-        """Sum over the bushings, N/m."""
-        return sum(bushing.axial_stiffness for bushing in self.bushings)
+        """Sum over the supports, N/m."""
+        return sum(support.axial_stiffness for support in self.supports)
 
     @property
     def elastic_lever(self) -> float:
         """Axial distance from the centre of mass to where a radial force does not tilt the shaft, m."""
-        moment = sum(bushing.radial_stiffness * self.lever(bushing) for bushing in self.bushings)
+        moment = sum(support.radial_stiffness * self.lever(support) for support in self.supports)
         return moment / self.radial_stiffness if self.radial_stiffness > 0.0 else 0.0
 
     @property
     def tilt_stiffness(self) -> float:
         """Moment per tilt about the elastic centre, N m/rad."""
-        arms = [(b.radial_stiffness, self.lever(b) - self.elastic_lever) for b in self.bushings]
+        arms = [(b.radial_stiffness, self.lever(b) - self.elastic_lever) for b in self.supports]
         return sum(stiffness * arm**2 for stiffness, arm in arms)
 
 
@@ -68,24 +85,30 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
     transverse = sum(part.transverse + part.mass * (place - along) ** 2 for part, place in parts)
     inertia = Inertia(mass, sum(part.polar for part, _ in parts), transverse)
     center = np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, along])
-    supports = [bushing for bushing in scene.bushings if bushing.shaft == shaft.name]
-    share = mass / max(len(supports), 1)
-    return Rotor(shaft, inertia, center, tuple(_damped(bushing, share) for bushing in supports))
+    bushings = [bushing for bushing in scene.bushings if bushing.shaft == shaft.name]
+    bearings = [bearing for bearing in scene.planet_bearings if bearing.shaft == shaft.name]
+    share = mass / max(len(bushings) + len(bearings), 1)
+    frame = scene.frame_index(scene.shaft_index(shaft.name))
+    planet = frame is not None and not on_axis(shaft, scene.shafts[frame])
+    return Rotor(
+        shaft,
+        inertia,
+        center,
+        tuple(_damped(bushing, share) for bushing in bushings),
+        tuple(_damped(bearing, share) for bearing in bearings),
+        frame,
+        frame if planet else None,
+    )
 
 
-def _damped(bushing: Bushing, share: float) -> Bushing:
-    """Fill in the damping that follows from the damping ratio and the bushing's share of the mass."""
+def _damped(support: Support, share: float) -> Support:
+    """Fill in the damping that follows from the damping ratio and the support's share of the mass."""
 
     def damping(given: float | None, stiffness: float) -> float:
-        return 2.0 * bushing.damping_ratio * float(np.sqrt(stiffness * share)) if given is None else given
+        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share)) if given is None else given
 
-    return Bushing(
-        bushing.name,
-        bushing.shaft,
-        bushing.position,
-        bushing.radial_stiffness,
-        bushing.axial_stiffness,
-        damping(bushing.radial_damping, bushing.radial_stiffness),
-        damping(bushing.axial_damping, bushing.axial_stiffness),
-        bushing.damping_ratio,
+    return replace(
+        support,
+        radial_damping=damping(support.radial_damping, support.radial_stiffness),
+        axial_damping=damping(support.axial_damping, support.axial_stiffness),
     )

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from dynamics.bodies import GearBody, Shaft
+from dynamics.bodies import GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, integer, not_negative, one_of, positive
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque
-from dynamics.joints import Bushing, ImposedRotation
+from dynamics.joints import Bushing, FreeRotation, ImposedRotation, PlanetBearing
 
 METHODS = ("implicit", "explicit")
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
+AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
 
 
 @dataclass(frozen=True)
@@ -86,15 +88,29 @@ class _Named(Protocol):
     def name(self) -> str: ...
 
 
+class Reference(Protocol):
+    """What sets the speed of one shaft in the kinematic motion."""
+
+    @property
+    def shaft(self) -> str: ...  # noqa: D102
+    @property
+    def speed(self) -> TimeLaw: ...  # noqa: D102
+    @property
+    def rigid(self) -> bool: ...  # noqa: D102
+
+
+KINDS = ("shafts", "gears", "bushings", "planet_bearings", "meshes", "drives", "free_rotations", "loads")
+
+
 @dataclass(frozen=True)
 class Scene:
     """A geared system and the run to make with it.
 
     Attributes
     ----------
-    shafts, gears, bushings, meshes, drives, loads : tuples
-        Parts, each with a name unique among its kind. One drive for now: it sets the kinematic motion of
-        all shafts that gears join to its own.
+    shafts, gears, bushings, planet_bearings, meshes, drives, free_rotations, loads : tuples
+        Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
+        motion of all shafts: as many of them as the gearing leaves independent speeds.
     duration : float
         s.
     effects : mapping of str to str
@@ -110,6 +126,8 @@ class Scene:
     duration: float
     bushings: tuple[Bushing, ...] = ()
     loads: tuple[LoadTorque, ...] = ()
+    planet_bearings: tuple[PlanetBearing, ...] = ()
+    free_rotations: tuple[FreeRotation, ...] = ()
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = Outputs()
     integration: Integration = Integration()
@@ -119,33 +137,80 @@ class Scene:
         if self.duration * self.outputs.sample_rate > SAMPLE_LIMIT:
             bound = f"at most {SAMPLE_LIMIT:g} samples at {self.outputs.sample_rate:g} Hz"
             raise InputError("duration", self.duration, bound, "Shorten the run or lower the sample rate.")
-        for kind in ("shafts", "gears", "bushings", "meshes", "drives", "loads"):
+        for kind in KINDS:
             distinct(kind, [part.name for part in getattr(self, kind)])
         shafts, gears = _names(self.shafts), _names(self.gears)
-        for kind in ("gears", "bushings", "drives", "loads"):
+        distinct("planet_bearings", _names((*self.bushings, *self.planet_bearings)))
+        for kind in ("gears", "bushings", "planet_bearings", "drives", "free_rotations", "loads"):
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
         for index, mesh in enumerate(self.meshes):
             one_of(f"meshes[{index}].driver", mesh.driver, gears)
             one_of(f"meshes[{index}].driven", mesh.driven, gears)
-        self._check_drive()
+        self._check_references()
+        check_frames(self.shafts, self.bushings, self.planet_bearings)
 
-    def _check_drive(self) -> None:
-        """One drive, and it turns."""
-        if len(self.drives) != 1:
-            raise InputError("drives", len(self.drives), "exactly one drive")
-        if self.drives[0].speed.extreme == 0.0:
+    def _check_references(self) -> None:
+        """Something turns."""
+        if not self.references:
+            suggestion = "Add a drive, or a free rotation where only torques move the train."
+            raise InputError("drives", 0, "at least one drive or free rotation", suggestion)
+        if not self.free_rotations and all(drive.speed.extreme == 0.0 for drive in self.drives):
             raise InputError(
                 "drives[0].speed", 0.0, "not zero all the time", "Its sign sets the driving flank."
             )
+
+    @property
+    def references(self) -> tuple[Reference, ...]:
+        """What sets the kinematic motion: the drives, then the free rotations."""
+        return (*self.drives, *self.free_rotations)
 
     def gear(self, name: str) -> GearBody:
         """Return the gear called `name`."""
         return next(gear for gear in self.gears if gear.name == name)
 
+    def frame_index(self, shaft: int) -> int | None:
+        """Return the place of the carrier in whose frame the shaft `shaft` is described, or None."""
+        name = self.shafts[shaft].frame
+        return None if name is None else self.shaft_index(name)
+
     def shaft_index(self, name: str) -> int:
         """Return the place of the shaft called `name`."""
         return _names(self.shafts).index(name)
+
+
+def check_frames(
+    shafts: tuple[Shaft, ...], bushings: tuple[Bushing, ...], planet_bearings: tuple[PlanetBearing, ...]
+) -> None:
+    """Frames are those of carriers, pins turn with the planet's own carrier, planets have no bushings."""
+    by_name = {shaft.name: shaft for shaft in shafts}
+    for index, shaft in enumerate(shafts):
+        if shaft.frame is None:
+            continue
+        one_of(f"shafts[{index}].frame", shaft.frame, list(by_name))
+        if by_name[shaft.frame].frame != shaft.frame:
+            bound = "a carrier: a shaft described in its own frame"
+            raise InputError(f"shafts[{index}].frame", shaft.frame, bound, "Let the carrier name itself.")
+    for index, bearing in enumerate(planet_bearings):
+        field = f"planet_bearings[{index}].carrier"
+        one_of(
+            field, bearing.carrier, [by_name[bearing.shaft].frame or ""], "The frame of its planet's shaft."
+        )
+        if bearing.carrier == bearing.shaft:
+            raise InputError(field, bearing.carrier, "another shaft than the planet's")
+    for index, bushing in enumerate(bushings):
+        shaft = by_name[bushing.shaft]
+        if shaft.frame is not None and not on_axis(shaft, by_name[shaft.frame]):
+            bound = "a shaft on the carrier's axis"
+            raise InputError(
+                f"bushings[{index}].shaft", shaft.name, bound, "Planets rest on planet bearings."
+            )
+
+
+def on_axis(shaft: Shaft, carrier: Shaft) -> bool:
+    """Whether `shaft` lies on the axis of `carrier`."""
+    apart = math.dist(shaft.origin[:2], carrier.origin[:2])
+    return apart <= AXIS_AGREEMENT * max(shaft.length, carrier.length)
 
 
 def _names(parts: Iterable[_Named]) -> list[str]:

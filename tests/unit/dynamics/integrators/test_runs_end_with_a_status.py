@@ -78,8 +78,9 @@ def test_cutting_a_run_into_chunks_changes_no_bit():
     def run(stops):
         work = make_workspace(system.arrays, step_ladder(1e-3, 1e-12), start, 1e-6)
         q, v = np.zeros((401, start.size)), np.zeros((401, start.size))
+        moved = np.zeros((401, 1), dtype=np.int64)
         for stop in stops:
-            advance(system.arrays, work, control, stop, 20e3, q, v)
+            advance(system.arrays, work, control, stop, 20e3, q, v, moved)
         return q, v, work.work, int(work.counts[Count.ACCEPTED])
 
     whole, parts = run([0.02]), run(np.linspace(0.0, 0.02, 38)[1:])

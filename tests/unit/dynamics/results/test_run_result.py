@@ -48,7 +48,7 @@ def test_two_equal_bushings_share_equally(result):
 def test_drive_torque_is_mesh_force_times_base_radius_and_inertia(result):
     inertia = 1.1344291072112745e-3
     expected = BASE_RADIUS * result.mesh_force[0] + inertia * 955.0 * RPM / 0.2
-    np.testing.assert_allclose(result.drive_torque[:-1], expected[:-1], rtol=1e-9)
+    np.testing.assert_allclose(result.drive_torque[0, :-1], expected[:-1], rtol=1e-9)
 
 
 def test_speed_position_and_frequency_belong_together(result):

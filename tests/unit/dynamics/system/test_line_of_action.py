@@ -38,7 +38,7 @@ def test_action_is_reaction_in_force_and_moment(sense, helix, turn):
     places = [int(place) for place in system.freedoms.place]
     for column, place in enumerate(places):
         gradient[place // 6, place % 6] = -system.arrays.direction[0, column]
-    gradient[0, 5] = -system.arrays.drive_direction[0]
+    gradient[0, 5] = -system.arrays.drive.direction[0, 0]
     centers = [np.add(shaft.origin, (0.0, 0.0, 0.1)) for shaft in system.scene.shafts]
     np.testing.assert_allclose(gradient[0, :3] + gradient[1, :3], 0.0, atol=1e-15)
     moment = sum(gradient[k, 3:] + np.cross(centers[k], gradient[k, :3]) for k in range(2))
@@ -51,7 +51,7 @@ def test_torques_are_force_times_base_radius_and_oppose_the_driver(sense):
     system = assemble(scene)
     rotation = system.freedoms.name.index("output.rotation")
     # generalised force = -gradient: on the driver against its motion, on the driven gear with its own
-    assert -system.arrays.drive_direction[0] == pytest.approx(-sense * BASE_RADIUS, rel=1e-12)
+    assert -system.arrays.drive.direction[0, 0] == pytest.approx(-sense * BASE_RADIUS, rel=1e-12)
     assert -system.arrays.direction[0, rotation] == pytest.approx(-sense * BASE_RADIUS, rel=1e-12)
     assert system.kinematics.sense == (sense, -sense)
 
@@ -79,7 +79,7 @@ def test_transmission_error_does_not_change_when_the_gears_roll():
     system = assemble(scene)
     names = system.freedoms.name
     along = system.arrays.direction[0, names.index("input.z")]
-    assert along == pytest.approx(-system.arrays.drive_direction[0] * math.tan(0.3) / BASE_RADIUS)
+    assert along == pytest.approx(-system.arrays.drive.direction[0, 0] * math.tan(0.3) / BASE_RADIUS)
 
 
 def test_gears_that_cannot_mesh_are_refused():

@@ -1,0 +1,268 @@
+"""A planetary gear set from its numbers: shafts, gears, bearings and meshes with their exact phases."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import chain
+
+from dynamics.bodies import GearBody, Inertia, Shaft
+from dynamics.checks import finite, integer, one_of, positive
+from dynamics.errors import InputError
+from dynamics.forces import GearMesh, MeshTable
+from dynamics.joints import Bushing, PlanetBearing
+
+TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit both central gears
+
+
+@dataclass(frozen=True)
+class PlanetaryParts:
+    """Parts of a scene, to be joined with those of other trains: ``Scene((*parts.shafts, other), ...)``."""
+
+    shafts: tuple[Shaft, ...]
+    gears: tuple[GearBody, ...]
+    bushings: tuple[Bushing, ...]
+    planet_bearings: tuple[PlanetBearing, ...]
+    meshes: tuple[GearMesh, ...]
+
+
+@dataclass(frozen=True)
+class PlanetarySet:
+    """A sun, N planets on a carrier, and a ring gear; all described in the carrier's turning frame.
+
+    Shafts and gears are called sun, ring, carrier, planet 1 ... planet N, meshes sun-planet 1 ...,
+    ring-planet 1 ..., each behind ``name`` and a dot if that is not empty. Every gear sits in the middle of
+    its shaft, with its bearing at the same place. Drives, free rotations and loads are the scene's.
+
+    Attributes
+    ----------
+    teeth : tuple of three ints
+        Of sun, planet, ring.
+    base_radius : tuple of three floats
+        Of sun, planet, ring, m.
+    center_distance : float
+        Carrier axis to pin, m.
+    face_width : float
+        m.
+    sun_table, ring_table : MeshTable
+        Of the sun-planet and the ring-planet mesh.
+    planets : int
+        N.
+    angles : tuple of floats or None
+        Of the pins about +z, rad; None: equally spaced from 0.
+    base_helix_angle : float
+        Of the sun, rad; > 0: right hand.
+    sun_inertia, planet_inertia, ring_inertia, carrier_inertia : Inertia
+        The carrier's without planets.
+    sun_stiffness, ring_stiffness, carrier_stiffness : float or None
+        Radial stiffness of the central members' bearings, N/m, the same in all directions; None: held in
+        place rigidly. Small: floating.
+    planet_stiffness : float or None
+        Radial stiffness of the planet bearings, N/m; None: rigid.
+    damping_ratio : float
+        Of all bearings and meshes where nothing else is given.
+    pin_errors : tuple of (radial, tangential) or None
+        Of each pin, m.
+    driver : str
+        ``"sun"``: the sun drives the planets and these the ring (or against it); ``"ring"``: the other way.
+    sun_sense : str
+        ``"+z"`` or ``"-z"``: how the sun turns against the carrier; it sets the order of the phases.
+    ring_phase : float
+        Position of a planet's ring mesh less that of its sun mesh, base pitches (see `ring_phase`).
+    technique : str
+        Of all meshes.
+    name : str
+        Of the set, before the names of its parts.
+    place : tuple of three floats
+        Left end of the carrier's axis in the fixed frame, m.
+    """
+
+    teeth: tuple[int, int, int]
+    base_radius: tuple[float, float, float]
+    center_distance: float
+    face_width: float
+    sun_table: MeshTable
+    ring_table: MeshTable
+    planets: int
+    sun_inertia: Inertia
+    planet_inertia: Inertia
+    ring_inertia: Inertia
+    carrier_inertia: Inertia
+    angles: tuple[float, ...] | None = None
+    base_helix_angle: float = 0.0
+    sun_stiffness: float | None = None
+    ring_stiffness: float | None = None
+    carrier_stiffness: float | None = None
+    planet_stiffness: float | None = None
+    damping_ratio: float = 0.05
+    pin_errors: tuple[tuple[float, float], ...] | None = None
+    driver: str = "sun"
+    sun_sense: str = "+z"
+    ring_phase: float = 0.0
+    technique: str = "variable_torque"
+    name: str = ""
+    place: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        for label, count in zip(("sun", "planet", "ring"), self.teeth, strict=True):
+            integer(f"teeth.{label}", count, 1, 100_000)
+        for label in ("center_distance", "face_width"):
+            positive(label, getattr(self, label))
+        integer("planets", self.planets, 1, 100)
+        finite("ring_phase", self.ring_phase)
+        one_of("driver", self.driver, ("sun", "ring"))
+        one_of("sun_sense", self.sun_sense, ("+z", "-z"))
+        for label in ("angles", "pin_errors"):
+            given = getattr(self, label)
+            if given is not None and len(given) != self.planets:
+                raise InputError(label, len(given), f"one for each of the {self.planets} planets")
+        self._check_assembly()
+
+    def _check_assembly(self) -> None:
+        """Every planet's teeth fit those of sun and ring: (z_s + z_r) psi / (2 pi) is an integer."""
+        both = self.teeth[0] + self.teeth[2]
+        for index, turn in enumerate(self.turns):
+            off = float(both * turn - round(both * turn))
+            if abs(off) <= TOOTH_FIT:
+                continue
+            nearest = 360.0 * round(both * turn) / both
+            if self.angles is None:
+                bound = f"a divisor of z_sun + z_ring = {both}, for planets equally spaced"
+                raise InputError(
+                    "planets", self.planets, bound, "Change tooth numbers or give the pins' angles."
+                )
+            bound = f"a multiple of 2 pi / (z_sun + z_ring) = 2 pi / {both}"
+            suggestion = f"The nearest is {math.radians(nearest):.9g} rad ({nearest:.6g} deg)."
+            raise InputError(f"angles[{index}]", self.angles[index], bound, suggestion)
+
+    @property
+    def turns(self) -> tuple[Fraction | float, ...]:
+        """Angles of the pins in revolutions: exact where equally spaced."""
+        if self.angles is None:
+            return tuple(Fraction(index, self.planets) for index in range(self.planets))
+        return tuple(angle / (2.0 * math.pi) for angle in self.angles)
+
+    def called(self, part: str) -> str:
+        """Return the full name of a part."""
+        return f"{self.name}.{part}" if self.name else part
+
+    def parts(self) -> PlanetaryParts:
+        """Return the parts of the set."""
+        planets = [self._planet(index) for index in range(self.planets)]
+        names, inertias = ("sun", "ring", "carrier"), (Inertia(),) * 2 + (self.carrier_inertia,)
+        central = [
+            Shaft(self.called(name), self.face_width, self.place, inertia, self.called("carrier"))
+            for name, inertia in zip(names, inertias, strict=True)
+        ]
+        gears = [
+            self._gear("sun", 0, self.sun_inertia, 1.0),
+            self._gear("ring", 2, self.ring_inertia, -1.0),
+            *(self._gear(f"planet {i + 1}", 1, self.planet_inertia, -1.0) for i in range(self.planets)),
+        ]
+        stiffness = (self.sun_stiffness, self.ring_stiffness, self.carrier_stiffness)
+        middle, ratio = self.face_width / 2.0, self.damping_ratio
+        bushings = [
+            Bushing(self.called(f"{name} bearing"), self.called(name), middle, k, damping_ratio=ratio)
+            for name, k in zip(names, stiffness, strict=True)
+            if k is not None
+        ]
+        pins = range(self.planets if self.planet_stiffness is not None else 0)
+        return PlanetaryParts(
+            (*central, *planets),
+            tuple(gears),
+            tuple(bushings),
+            tuple(self._bearing(index, self.planet_stiffness or 0.0) for index in pins),
+            tuple(chain.from_iterable(self._meshes(index) for index in range(self.planets))),
+        )
+
+    def _planet(self, index: int) -> Shaft:
+        """Return a planet's shaft, at its pin."""
+        angle = 2.0 * math.pi * float(self.turns[index])
+        x, y, z = self.place
+        x, y = x + self.center_distance * math.cos(angle), y + self.center_distance * math.sin(angle)
+        carrier = self.called("carrier")
+        return Shaft(self.called(f"planet {index + 1}"), self.face_width, (x, y, z), frame=carrier)
+
+    def _gear(self, name: str, member: int, inertia: Inertia, hand: float) -> GearBody:
+        """Return a gear; sun and planets are of opposite hand, planets and ring of the same."""
+        return GearBody(
+            self.called(name),
+            self.called(name),
+            self.face_width / 2.0,
+            self.teeth[member],
+            self.base_radius[member],
+            self.face_width,
+            hand * self.base_helix_angle,
+            inertia,
+            internal=member == 2,
+        )
+
+    def _bearing(self, index: int, stiffness: float) -> PlanetBearing:
+        """Return a planet's bearing."""
+        radial, tangential = self.pin_errors[index] if self.pin_errors is not None else (0.0, 0.0)
+        return PlanetBearing(
+            self.called(f"planet {index + 1} bearing"),
+            self.called(f"planet {index + 1}"),
+            self.called("carrier"),
+            self.face_width / 2.0,
+            stiffness,
+            damping_ratio=self.damping_ratio,
+            radial_error=radial,
+            tangential_error=tangential,
+        )
+
+    def _meshes(self, index: int) -> tuple[GearMesh, GearMesh]:
+        """Return both meshes of a planet; the phases follow from tooth numbers and the pin's angle alone.
+
+        A planet at the angle psi meets the teeth of a central gear where those have turned to psi: sun and
+        ring, which turn against the carrier in opposite senses, are ahead of a planet at angle 0 by minus and
+        plus z psi / (2 pi) pitches.
+        """
+        sense = 1 if self.sun_sense == "+z" else -1
+        planet = self.called(f"planet {index + 1}")
+        sun = -sense * self.teeth[0] * self.turns[index]
+        ring = sense * self.teeth[2] * self.turns[index]
+        flow = (self.called("sun"), planet), (planet, self.called("ring"))
+        if self.driver == "ring":
+            flow = (planet, self.called("sun")), (self.called("ring"), planet)
+        details = (
+            ("sun", self.sun_table, float(sun)),
+            ("ring", self.ring_table, float(ring) + self.ring_phase),
+        )
+        first, second = (
+            GearMesh(
+                self.called(f"{central}-planet {index + 1}"),
+                driver,
+                driven,
+                table,
+                self.technique,
+                damping_ratio=self.damping_ratio,
+                position_offset=offset,
+            )
+            for (driver, driven), (central, table, offset) in zip(flow, details, strict=True)
+        )
+        return first, second
+
+
+def ring_phase(
+    planet_teeth: int, half_angles: tuple[float, float] | None = None, driver: str = "sun"
+) -> float:
+    """Return position of the ring mesh less that of the sun mesh of one planet, base pitches in [0, 1).
+
+    The sun touches one flank of the planet's teeth on the side of the sun, the ring the other flank on the
+    opposite side: half the planet's teeth and one tooth thickness lie between.
+
+    Parameters
+    ----------
+    planet_teeth : int
+    half_angles : tuple of two floats, optional
+        Half the planet's tooth thickness angle on its working pitch circles with sun and ring, rad: with
+        psi_b that on the base circle, psi_b - inv(working pressure angle). Left out: pi / (2 z) each,
+        thickness = space.
+    driver : str
+        ``"sun"`` or ``"ring"``, as in `PlanetarySet`.
+    """
+    thickness = 0.5 if half_angles is None else planet_teeth * sum(half_angles) / (2.0 * math.pi)
+    ahead = thickness - planet_teeth / 2.0
+    return (ahead if driver == "sun" else -ahead) % 1.0
