@@ -1,4 +1,4 @@
-"""Disk cache of flank compliances, by the hash of everything that decides them."""
+"""Disk cache of flank compliances and root stresses, by the hash of everything that decides them."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ import numpy as np
 
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.compliance.root_stress import RootStress, RootStressChecks
 from fe_contact.types import Json
 
 ENVIRONMENT = "LINEOFACTION_CACHE"
 OFF = ("", "0", "off", "none")
 NOT_ARRAYS = ("facts", "checksum")
-Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D)
+Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, RootStress)
 
 
 def default_cache_directory() -> Path | None:
@@ -47,7 +48,7 @@ def content_hash(content: Json) -> str:
 
 
 def read_compliance(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
-    """Return the compliance kept under `key`, or None if there is none or its file is damaged."""
+    """Return the result kept under `key`, or None if there is none or its file is damaged."""
     try:
         # NumPy leaves a file it opened itself open when the content is damaged.
         with _file(directory, key).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
@@ -60,8 +61,10 @@ def read_compliance(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
         return None
 
 
-def write_compliance(directory: Path, key: str, compliance: FlankCompliance | FlankCompliance3D) -> None:
-    """Keep a compliance under `key`; a reader sees the whole file or none.
+def write_compliance(
+    directory: Path, key: str, compliance: FlankCompliance | FlankCompliance3D | RootStress
+) -> None:
+    """Keep a result under `key`; a reader sees the whole file or none.
 
     A directory that cannot be written is no reason to lose the result: it is left as it is.
     """
@@ -99,6 +102,7 @@ def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
 
 def _restored(kind: type[Kept], arrays: dict[str, np.ndarray[Any, Any]], facts: Json) -> Kept:
     """Build the compliance again."""
-    checks = ComplianceChecks(**facts.pop("checks"))
+    laws = RootStressChecks if issubclass(kind, RootStress) else ComplianceChecks
+    checks = laws(**facts.pop("checks"))
     content: dict[str, Any] = arrays | facts | {"checks": checks, "from_cache": True}
     return kind(**content)

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from fe_contact.compliance.checks_3d import CondensedGear, probe_loads
-from fe_contact.compliance.cyclic_ring import close_ring, hold_sector
-from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
+from fe_contact.compliance.cyclic_ring import HeldSector, close_ring, hold_sector
+from fe_contact.compliance.sector_stiffness import ElementStiffness, flank_frames, sector_stiffness, twist
 from fe_contact.compliance.sector_tree import sector_tree
-from fe_contact.compliance.substructure import condense
+from fe_contact.compliance.substructure import Condensation, condense
 from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.mesh.bore_support import BoreSupport
 from fe_contact.mesh.quad_sector import QuadSector
 from fe_contact.mesh.sector_recipe import SectorRecipe
-from fe_contact.mesh.swept_sector import swept_sector
+from fe_contact.mesh.swept_sector import SweptSector, swept_sector
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 
@@ -46,6 +48,31 @@ def condensed_gear(
     CondensedGear, (nf, 2) array
         The solution and the probe loads it was solved for, N.
     """
+    tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
+    ring = close_ring(tooth.held, gear.teeth, reach, loads)
+    clock.finish("ring")
+    return CondensedGear(tooth.sector, tooth.stiffness, tooth.condensation, tooth.held, ring), loads
+
+
+class CondensedTooth(NamedTuple):
+    """One sector before it meets the others: the first four parts of a `CondensedGear`."""
+
+    sector: SweptSector
+    stiffness: ElementStiffness
+    condensation: Condensation
+    held: HeldSector
+
+
+def condensed_tooth(
+    gear: Toothing, section: QuadSector, recipe: SectorRecipe, support: BoreSupport, clock: StageClock
+) -> tuple[CondensedTooth, FloatArray]:
+    """Sweep and condense one sector; parameters are those of `condensed_gear`.
+
+    Returns
+    -------
+    CondensedTooth, (nf, 2) array
+        The sector, and probe loads for the checks, N.
+    """
     sector = swept_sector(section.grid, gear.face_width, recipe, support)
     stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
     clock.finish("assembly")
@@ -54,6 +81,4 @@ def condensed_gear(
     held = hold_sector(condensation.matrix, len(sector.flank))
     s_form = tooth_profile(gear).s_form
     loads = probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
-    ring = close_ring(held, gear.teeth, reach, loads)
-    clock.finish("ring")
-    return CondensedGear(sector, stiffness, condensation, held, ring), loads
+    return CondensedTooth(sector, stiffness, condensation, held), loads

@@ -127,9 +127,9 @@ def close_ring(held: HeldSector, teeth: int, reach: int, probes: FloatArray) -> 
     SolveError
         A harmonic is not positive definite.
     """
-    modes = _row_space(held.transmitted)
+    modes = row_space(held.transmitted)
     size, rank = held.cut_size, modes.shape[1]
-    cuts = _left_cuts(held, held.transmitted @ np.concatenate([modes, probes], axis=1), teeth, reach, rank)
+    cuts = left_cuts(held, held.transmitted @ np.concatenate([modes, probes], axis=1), teeth, reach, rank)
     blocks = np.empty((reach + 1, len(modes), len(modes)))
     moved = {
         m: held.transmitted[:size].T @ cuts.near[m] + held.transmitted[size:].T @ cuts.near[m - 1]
@@ -143,15 +143,32 @@ def close_ring(held: HeldSector, teeth: int, reach: int, probes: FloatArray) -> 
 
 
 @dataclass(frozen=True)
-class _LeftCuts:
+class LeftCuts:
     """Left cuts under many loads on tooth 0: near it for the first ones, in all sectors for the others."""
 
     near: dict[int, FloatArray]
     everywhere: FloatArray
 
 
-def _left_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int, first: int) -> _LeftCuts:
-    """Sum up the harmonics of the left cuts; `loads` (2 nc, p) act on the cuts of sector 0."""
+def left_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int, first: int) -> LeftCuts:
+    """Sum up the harmonics of the left cuts.
+
+    Parameters
+    ----------
+    held : HeldSector
+        The sector.
+    loads : (2 nc, p) array
+        On the cuts of sector 0.
+    teeth, reach : int
+        See `close_ring`.
+    first : int
+        Number of loads that only the sectors -reach - 1 .. reach are wanted for.
+
+    Raises
+    ------
+    SolveError
+        A harmonic is not positive definite.
+    """
     size = held.cut_size
     near = {j: np.zeros((size, first)) for j in range(-reach - 1, reach + 1)}
     angles = 2.0 * np.pi / teeth * np.arange(teeth // 2 + 1)
@@ -168,7 +185,7 @@ def _left_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int, firs
         for j in near:
             near[j] += np.cos(angle * j) * real - np.sin(angle * j) * imaginary
     turns = np.exp(1j * np.outer(np.arange(teeth), angles))
-    return _LeftCuts(near, np.tensordot(turns, waves, axes=1).real)
+    return LeftCuts(near, np.tensordot(turns, waves, axes=1).real)
 
 
 def _harmonic_factor(cuts: FloatArray, angle: float, number: int) -> ComplexArray:
@@ -184,8 +201,8 @@ def _harmonic_factor(cuts: FloatArray, angle: float, number: int) -> ComplexArra
     return np.asarray(factor)
 
 
-def _row_space(matrix: FloatArray) -> FloatArray:
-    """Return orthonormal columns that span the rows of `matrix` to `RANK_TOLERANCE`."""
+def row_space(matrix: FloatArray) -> FloatArray:
+    """Return orthonormal columns (nf, r) that span the rows of `matrix` (2 nc, nf) to `RANK_TOLERANCE`."""
     squares, vectors = np.linalg.eigh(matrix.T @ matrix)
     return np.asarray(vectors[:, squares > RANK_TOLERANCE**2 * squares[-1]])
 

@@ -1,0 +1,34 @@
+"""How the surface of a tooth root leans: the tangents that ISO 6336-3 measures the root by."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_contact.geometry.flank_profile import FlankProfile
+from fe_contact.types import FloatArray
+
+CRITICAL_ANGLE = math.radians(30.0)
+"""Tangent to the fillet that ISO 6336-3 takes for the critical section of an external gear."""
+SAMPLES = 1001
+
+
+def tangent_angle(profile: FlankProfile, s: ArrayLike) -> FloatArray:
+    """Angle in rad between the surface at flank coordinates `s` and the tooth's centre line.
+
+    Taken in the transverse section; 0 where the surface is parallel to the centre line, pi/2 in the middle
+    of the tooth space of a large gear, negative above the waist of an undercut tooth.
+    """
+    normal = profile.normal(s)
+    return np.asarray(np.arctan2(profile.gear.sign * normal[..., 1], normal[..., 0]))
+
+
+def critical_section(profile: FlankProfile, angle: float = CRITICAL_ANGLE) -> float:
+    """Flank coordinate in m where the fillet's tangent has `angle` with the tooth's centre line.
+
+    At an end of the fillet if it leans less or more everywhere.
+    """
+    s = np.linspace(profile.s_form, profile.s_root, SAMPLES)
+    return float(np.interp(angle, np.maximum.accumulate(tangent_angle(profile, s)), s))

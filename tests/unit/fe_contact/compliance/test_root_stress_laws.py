@@ -1,0 +1,349 @@
+"""Laws that unit-load root stresses keep on every mesh, in the plane and over the face."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+from scipy.sparse.linalg import splu
+
+import fe_contact.compliance.condensed_gear as gear_module
+import fe_contact.compliance.root_stress_3d as face_module
+import fe_contact.compliance.sector_stiffness as stiffness_module
+from fe_contact.compliance import PlaneHypothesis, SuperLuMetis
+from fe_contact.compliance.checks_3d import pressure_forces
+from fe_contact.compliance.elasticity_2d import stiffness_matrix
+from fe_contact.compliance.root_stress import RootStress, refuse_broken_stress
+from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
+from fe_contact.compliance.sector_2d import freedoms, inward_loads
+from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
+from fe_contact.compliance.surface_stress import edge_stress
+from fe_contact.compliance.unit_root_stress import (
+    root_stress,
+    root_stress_3d,
+    root_stresses,
+    root_stresses_3d,
+)
+from fe_contact.contact.face_patch import FaceGrid, face_loads
+from fe_contact.contact.patch import load_vector
+from fe_contact.errors import SolveError
+from fe_contact.geometry import Gear, RingGear, Toothing, tooth_profile
+from fe_contact.geometry.root_tangent import critical_section, tangent_angle
+from fe_contact.material import Material
+from fe_contact.mesh import (
+    ClampedBore,
+    MeshRecipe,
+    PlaneStrain,
+    SectorRecipe,
+    mesh_gear,
+    quad_sector,
+    swept_sector,
+)
+from fe_contact.mesh.root_surface import quad_root, triangle_root
+
+SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
+HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
+GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
+PLANE = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+RING = RingGear(
+    teeth=41, normal_module=4e-3, face_width=20e-3, rim_diameter=0.204, profile_shift_coefficient=-0.3
+)
+RINGS = [(20, 40e-3, None), (40, 40e-3, None), (20, 40e-3, 5)]
+RING_NAMES = ["sectors to the bore", "hub", "plain ring"]
+STRAIN = PlaneHypothesis.PLANE_STRAIN
+
+
+def coarse_face(gear: Gear, **changes: object) -> SectorRecipe:
+    m = gear.normal_module
+    recipe = SectorRecipe(
+        flank_size=0.5 * m,
+        tip_size=0.3 * m,
+        depth_size=0.6 * m,
+        depth_limit=0.9 * m,
+        body_size=0.5 * m,
+        body_limit=1.5 * m,
+        layers=4,
+        land_elements=2,
+        merge_rows=(-1,),
+    )
+    return replace(recipe, **changes)  # type: ignore[arg-type]
+
+
+def coarse_plane(gear: Toothing, **changes: object) -> MeshRecipe:
+    m = gear.normal_module
+    changes = {"flank_size": 0.2 * m, "tip_size": 0.1 * m, "fillet_size": 0.2 * m} | changes
+    return replace(MeshRecipe.standard(gear), **changes)  # type: ignore[arg-type]
+
+
+def relative(found: np.ndarray, expected: np.ndarray) -> float:
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
+
+
+def on_flank(found: RootStress) -> np.ndarray:
+    """Forces of a pressure on the upper part of the flank, all of the face."""
+    upper = found.s[:-2:2] > 0.4 * found.s[0] + 0.6 * found.s[-1]
+    if found.across_face:
+        return pressure_forces(
+            found.s, found.z, found.index, np.tile(upper, (len(found.z) - 1, 1)).astype(float)
+        )
+    forces, lengths = np.zeros(len(found.s)), np.where(upper, np.diff(found.s[::2]), 0.0)
+    for offset, share in enumerate((1.0, 4.0, 1.0)):
+        forces[offset : len(found.s) - 2 + offset : 2] += share / 6.0 * lengths
+    return forces
+
+
+def some_forces(count: int) -> np.ndarray:
+    """Three loads (count, 3) without any order."""
+    return np.random.default_rng(7).normal(size=(count, 3))
+
+
+@pytest.mark.parametrize(("teeth", "bore", "real"), RINGS, ids=RING_NAMES)
+def test_equals_the_uncondensed_solution_in_the_plane(teeth: int, bore: float, real: int | None) -> None:
+    gear = replace(PLANE, teeth=teeth, bore_diameter=bore)
+    agrees_with_the_whole_mesh(gear, coarse_plane(gear, real_teeth=real))
+
+
+def test_equals_the_uncondensed_solution_of_a_ring_gear() -> None:
+    agrees_with_the_whole_mesh(RING, coarse_plane(RING))
+
+
+def agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
+    found = root_stress(gear, recipe, teeth=5)
+    mesh = mesh_gear(gear, recipe)
+    matrix = stiffness_matrix(mesh.points, mesh.triangles, STRAIN.lame_parameters(gear.material))
+    free = np.setdiff1d(np.arange(2 * len(mesh.points)), freedoms(mesh.bore_nodes))
+    solve = splu(sp.csc_array(matrix[free][:, free])).solve
+    own = int(np.flatnonzero(mesh.teeth == 0)[0])
+    chains = mesh.sector_nodes[own, triangle_root(mesh.sector, tooth_profile(gear)).nodes]
+    forces = some_forces(len(found.s))
+    for n, ahead in enumerate(found.distance):
+        flank = mesh.flanks[own - ahead]
+        moved = np.zeros((2 * len(mesh.points), 3))
+        loads = inward_loads(len(mesh.points), flank.nodes, flank.normals) @ forces
+        moved[free] = solve(loads[free])
+        for side, chain in enumerate(chains):
+            expected = edge_stress(mesh.points, chain, gear.material, STRAIN) @ moved
+            stress = (found.stress[n, side, :, :, 0] @ forces).reshape(-1, 3)
+            assert relative(stress, expected) < 1e-9
+
+
+def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
+    """Root stress of every tooth by forces on tooth 0, (z, r, 3), by one sparse factorisation."""
+    section = quad_sector(gear, recipe)
+    sector = swept_sector(section.grid, gear.face_width, recipe)
+    stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
+    number = np.full((gear.teeth, sector.size), -1)
+    own = np.setdiff1d(np.arange(sector.size), sector.left)
+    number[:, own] = np.arange(gear.teeth * len(own)).reshape(gear.teeth, -1)
+    number[:, sector.left] = np.roll(number[:, sector.right], -1, axis=0)
+    held = np.append(number, np.full((gear.teeth, 1), -1), axis=1)
+    dofs = held[:, sector.element_freedoms]
+    i, k = np.broadcast_arrays(dofs[..., :, None], dofs[..., None, :])
+    free = (i >= 0) & (k >= 0)
+    values = np.broadcast_to(stiffness.matrices[stiffness.of_element], i.shape)[free]
+    matrix = sp.csc_array(sp.coo_array((values, (i[free], k[free]))))
+    loads = np.zeros((matrix.shape[0], 3))
+    loads[number[0, sector.flank]] = -some_forces(len(sector.flank))  # inwards
+    moved = SuperLuMetis().factorise(matrix, block=1)(loads)
+    rows = root_functionals(gear, section, sector, quad_root(section, tooth_profile(gear)))
+    return np.stack([rows @ moved[number[j]] for j in range(gear.teeth)])
+
+
+@GEARS
+def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
+    """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`RANK_TOLERANCE`)."""
+    recipe = coarse_face(gear)
+    found = root_stress_3d(gear, recipe, reach=4)
+    direct = whole_gear_stress(gear, recipe)
+    stress = (found.stress @ some_forces(found.stress.shape[-1])).swapaxes(3, 4).reshape(9, -1, 3)
+    for n, ahead in enumerate(found.distance):
+        assert np.abs(stress[n] - direct[ahead]).max() < 1e-6 * np.abs(direct[0]).max()
+        assert relative(stress[n], direct[ahead]) < 1e-5
+
+
+@GEARS
+def test_checks_hold(gear: Gear) -> None:
+    face = root_stress_3d(gear, coarse_face(gear))
+    assert face.checks.residual < 1e-11
+    assert face.checks.recovery < 2e-6
+    plane = root_stress(SPUR, coarse_plane(SPUR))
+    assert plane.checks.residual < 1e-10
+    assert plane.checks.recovery < 1e-11
+
+
+def test_the_load_pulls_its_own_side_and_pushes_the_other() -> None:
+    ring = replace(SectorRecipe.draft(RING), layers=2, merge_rows=())
+    for found in (
+        root_stress(PLANE),
+        root_stress_3d(PLANE, SectorRecipe.draft(PLANE)),
+        root_stress(RING),
+        root_stress_3d(RING, ring),
+    ):
+        stress = found.stress @ on_flank(found)
+        own = len(found.distance) // 2
+        profile = stress[own, :, 0]
+        fillet = np.radians(20.0) < found.tangent_angle
+        assert profile[0][fillet].min() > 0.0 > profile[1][fillet].max()
+        assert np.abs(stress[own + 1 :]).max() < np.abs(profile).max()
+
+
+def patch(found: RootStress, gear: Gear) -> np.ndarray:
+    """Forces of a unit patch high on the flank, across the whole face, the same on every mesh."""
+    center, half = 0.7 * found.s[-1], 0.3 * gear.normal_module
+    forces = np.zeros(found.stress.shape[-1])
+    if found.across_face:
+        grid = FaceGrid(found.s, found.z, found.index)
+        ends = (found.z[:1], found.z[-1:])
+        loads = face_loads(grid, np.array([center]), np.array([half]), np.zeros(1), *ends)
+        forces[loads.nodes[0, : loads.used[0]]] = loads.forces[0, : loads.used[0]]
+    else:
+        load_vector(found.s, center, half, 0.0, forces)
+    return forces
+
+
+def test_one_layer_without_axial_displacement_is_the_plane() -> None:
+    """Two meshes and two ways to condense: eight-node quadrilaterals and triangles."""
+    recipe = replace(SectorRecipe.fine(PLANE), layers=1, merge_rows=(), layer_growth=1.0, land_elements=8)
+    face, plane = root_stress_3d(PLANE, recipe, support=PlaneStrain()), root_stress(PLANE)
+    fillet = np.linspace(-0.9, -0.35, 30) * (plane.station_s[-1] - plane.station_s[0])
+    for distance in (-1, 0, 1):
+        sums = []
+        for found, width in ((face, PLANE.face_width), (plane, 1.0)):
+            stress = found.stress[len(found.distance) // 2 + distance, :, 0] @ patch(found, PLANE)
+            across = stress.mean(axis=-1) * width
+            sums.append(np.array([np.interp(fillet, found.station_s, side) for side in across]))
+        # straight lines between the stations; what a neighbour passes on is a tenth of it
+        assert relative(sums[0], sums[1]) < (0.015 if distance == 0 else 0.03)
+
+
+def test_opposite_hands_are_mirror_images() -> None:
+    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
+    right, found = (root_stress_3d(gear, coarse_face(gear), reach=1) for gear in (HELICAL, left))
+    assert np.array_equal(found.stress, right.mirrored().stress)
+    assert np.array_equal(found.mirrored().stress, right.stress)
+    assert relative(found.stress, right.stress) > 0.1
+
+
+def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
+    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
+    mirrored = root_stress_3d(left, coarse_face(left), reach=1)
+    for module in (stiffness_module, gear_module, face_module):
+        monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
+    swept = compute_root_stress_3d(left, coarse_face(left), 1, ClampedBore(), "")
+    # single nodal forces hold what the cuts tell apart to 1e-6 only
+    assert relative(swept.stress, mirrored.stress) < 2e-6
+
+
+def test_a_spur_gear_is_its_own_mirror_image() -> None:
+    found = root_stress_3d(SPUR, coarse_face(SPUR))
+    assert relative(found.mirrored().stress, found.stress) < 2e-6
+    shear = found.stress[:, :, 2] @ on_flank(found)
+    assert np.abs(shear + shear[..., ::-1]).max() < 1e-6 * np.abs(found.stress @ on_flank(found)).max()
+
+
+def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> None:
+    """Lengths by s and forces by s^2: the same stress; per unit of width, forces by s."""
+    large = replace(SPUR, normal_module=32e-3, face_width=160e-3, bore_diameter=96e-3)
+    soft = replace(SPUR, material=Material(youngs_modulus=21e9))
+    found, scaled, softer = (root_stress_3d(g, coarse_face(g)) for g in (SPUR, large, soft))
+    assert relative(64.0 * scaled.stress, found.stress) < 2e-6
+    assert relative(softer.stress, found.stress) < 2e-6
+    assert scaled.tangent_angle == pytest.approx(found.tangent_angle, rel=1e-9)
+    found, scaled, softer = (root_stress(g, coarse_plane(g)) for g in (SPUR, large, soft))
+    assert relative(8.0 * scaled.stress, found.stress) < 1e-6
+    assert relative(softer.stress, found.stress) < 1e-9
+
+
+def test_stations_lie_on_the_fillet() -> None:
+    profile = tooth_profile(PLANE)
+    for found in (root_stress(PLANE), root_stress_3d(PLANE, SectorRecipe.draft(PLANE))):
+        assert profile.s_space < found.station_s[0] < found.station_s[-1] < profile.s_form
+        assert np.all(np.diff(found.station_s) > 0.0)
+        assert np.all(np.diff(found.tangent_angle[found.station_s > profile.s_root]) < 0.0)
+    assert found.station_z == pytest.approx(-found.station_z[::-1], rel=1e-12)
+    assert np.abs(found.station_z).max() < 0.5 * PLANE.face_width
+
+
+@pytest.mark.parametrize("gear", [PLANE, RING], ids=["external", "internal"])
+def test_nodes_of_the_root_have_their_flank_coordinates(gear: Toothing) -> None:
+    profile = tooth_profile(gear)
+    section = quad_sector(gear, SectorRecipe.draft(gear))
+    sector = mesh_gear(gear, MeshRecipe.standard(gear)).sector
+    for points, root in (
+        (section.points, quad_root(section, profile)),
+        (sector.points, triangle_root(sector, profile)),
+    ):
+        right, left = points[root.nodes[0]], points[root.nodes[1]]
+        assert left == pytest.approx(right * [-1.0, 1.0], abs=1e-15)
+        assert root.s[[0, -1]] == pytest.approx([profile.s_space, profile.s_form], abs=1e-9)
+        assert np.abs(profile.flank(root.s) - right).max() < 1e-9
+        middles = 0.5 * (root.s[:-2:2] + root.s[2::2])
+        assert root.s[1::2] == pytest.approx(middles, abs=1e-8)
+
+
+def test_the_tangent_of_the_critical_section_has_30_degrees() -> None:
+    for gear in (PLANE, SPUR, HELICAL, replace(PLANE, teeth=80, bore_diameter=60e-3)):
+        profile = tooth_profile(gear)
+        at = critical_section(profile)
+        assert profile.s_root < at < profile.s_form
+        step = 1e-4 * gear.normal_module
+        low, high = profile.flank(np.array([at - step, at + step]))
+        lean = math.degrees(math.atan2(*(low - high) * [1.0, -1.0]))
+        assert lean == pytest.approx(30.0, abs=0.05)
+        assert float(tangent_angle(profile, profile.s_root)) == pytest.approx(
+            0.5 * math.pi - profile.root_angle, rel=1e-6
+        )
+
+
+def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:
+    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
+    recipe = coarse_face(HELICAL)
+    first, second = (root_stress_3d(HELICAL, recipe, reach=1, cache=tmp_path) for _ in range(2))
+    assert (first.from_cache, second.from_cache) == (False, True)
+    for field in fields(RootStress):
+        if field.name != "from_cache":
+            one, other = getattr(first, field.name), getattr(second, field.name)
+            assert np.array_equal(one, other) if isinstance(one, np.ndarray) else one == other
+    found = root_stress_3d(left, recipe, reach=1, cache=tmp_path)
+    assert found.from_cache
+    assert np.array_equal(found.stress, first.mirrored().stress)
+    plane = [root_stress(SPUR, coarse_plane(SPUR), cache=tmp_path) for _ in range(2)]
+    assert plane[1].from_cache
+    assert np.array_equal(plane[0].stress, plane[1].stress)
+    for file in tmp_path.iterdir():
+        file.write_bytes(file.read_bytes()[:-1000])
+    assert not root_stress(SPUR, coarse_plane(SPUR), cache=tmp_path).from_cache
+
+
+def test_gears_alike_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
+    found = root_stresses_3d([HELICAL, left], [coarse_face(HELICAL)] * 2)
+    assert np.array_equal(found[1].mirrored().stress, found[0].stress)
+    assert found[1].seconds is found[0].seconds
+    twins = root_stresses([SPUR, SPUR], [coarse_plane(SPUR)] * 2, STRAIN, teeth=3)
+    assert twins[0] is twins[1]
+
+
+@pytest.mark.parametrize("name", ["residual", "recovery"])
+def test_a_broken_law_is_refused_by_name(name: str) -> None:
+    found = root_stress(SPUR, coarse_plane(SPUR))
+    broken = replace(found, checks=replace(found.checks, **{name: 1e-3}))
+    with pytest.raises(SolveError, match=name) as refusal:
+        refuse_broken_stress(broken)
+    assert refusal.value.partial is broken
+
+
+def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
+    genuine = face_module.left_cuts
+
+    def spoiled(*arguments: object) -> object:
+        cuts = genuine(*arguments)  # type: ignore[arg-type]
+        return replace(cuts, near={m: cuts.near[m] * (1.0 + 1e-3) for m in cuts.near})
+
+    monkeypatch.setattr(face_module, "left_cuts", spoiled)
+    with pytest.raises(SolveError, match="recovery"):
+        root_stress_3d(HELICAL, coarse_face(HELICAL), reach=1)
