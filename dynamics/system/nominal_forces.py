@@ -43,7 +43,7 @@ def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> Float
     free = [index for index in range(len(scene.shafts)) if index not in driven]
     force, _, rank, _ = np.linalg.lstsq(lever[free], torque[free], rcond=1e-12)
     suggestion = "Give every mesh its nominal_force."
-    if rank < len(scene.meshes) and not scene.planet_bearings:
+    if rank < len(scene.meshes) and all(shaft.frame is None for shaft in scene.shafts):
         raise InputError("meshes", len(scene.meshes), "loaded in one way only by the torques", suggestion)
     for index, value in enumerate(force):
         if value < -1e-9 * np.max(np.abs(force)):

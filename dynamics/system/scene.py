@@ -156,9 +156,8 @@ class Scene:
             suggestion = "Add a drive, or a free rotation where only torques move the train."
             raise InputError("drives", 0, "at least one drive or free rotation", suggestion)
         if not self.free_rotations and all(drive.speed.extreme == 0.0 for drive in self.drives):
-            raise InputError(
-                "drives[0].speed", 0.0, "not zero all the time", "Its sign sets the driving flank."
-            )
+            suggestion = "Its sign sets the driving flank. If torques move it, add a free rotation."
+            raise InputError("drives[0].speed", 0.0, "not zero all the time", suggestion)
 
     @property
     def references(self) -> tuple[Reference, ...]:

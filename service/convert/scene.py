@@ -8,20 +8,23 @@ from contextlib import contextmanager
 from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw, hollow_cylinder
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque
-from dynamics.joints import Bushing, ImposedRotation
-from dynamics.system import Integration, Outputs, Scene
+from dynamics.joints import Bushing, FreeRotation, ImposedRotation, PlanetBearing
+from dynamics.system import Integration, Outputs, Scene, with_planets
+from dynamics.system.kinematics import solve_kinematics
 from fe_contact.ste import PairFacts, SteDatabase
 from service.convert.case import boundary_errors
 from service.convert.errors import translated
 from service.convert.topology import Teeth, check_center_distances, teeth_of
-from service.convert.units import MM, NM, RPM, UM
+from service.convert.units import DEGREE, MM, NM, RPM, UM
 from service.schemas.scene import (
     BushingInput,
     DriveInput,
+    FreeRotationInput,
     GearBodyInput,
     InertiaInput,
     LoadTorqueInput,
     MeshInput,
+    PlanetBearingInput,
     SceneInput,
     ShaftInput,
 )
@@ -48,7 +51,10 @@ def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Sc
     facts = {name: database.facts for name, database in databases.items()}
     with boundary_errors():
         meshes = tuple(_mesh(i, mesh, databases[mesh.name]) for i, mesh in enumerate(scene.meshes))
-    return _assembled(scene, facts, meshes)
+    one_of_each = _assembled(scene, facts, meshes)
+    with _named(""):
+        solve_kinematics(one_of_each)
+    return _with_all_planets(scene, one_of_each)
 
 
 def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
@@ -68,6 +74,8 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             bushings=tuple(_bushing(i, bushing) for i, bushing in enumerate(scene.bushings)),
             meshes=meshes,
             drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),
+            planet_bearings=tuple(_planet_bearing(i, b) for i, b in enumerate(scene.planet_bearings)),
+            free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
             duration=scene.run.duration_s,
             effects=dict(scene.effects),
@@ -93,7 +101,7 @@ def _shaft(index: int, given: ShaftInput) -> Shaft:
             inertia = hollow_cylinder((given.diameter_mm or 0.0) * MM, given.length_mm * MM)
         else:
             inertia = _inertia(given.inertia)
-        return Shaft(given.name, given.length_mm * MM, (x * MM, y * MM, z * MM), inertia)
+        return Shaft(given.name, given.length_mm * MM, (x * MM, y * MM, z * MM), inertia, given.frame)
 
 
 def _inertia(given: InertiaInput) -> Inertia:
@@ -117,6 +125,7 @@ def _gear(index: int, given: GearBodyInput, teeth: Teeth) -> GearBody:
             face_width=teeth.face_width,
             base_helix_angle=teeth.base_helix_angle,
             inertia=inertia,
+            internal=teeth.internal,
         )
 
 
@@ -133,6 +142,38 @@ def _bushing(index: int, given: BushingInput) -> Bushing:
             axial_damping=given.axial_damping_n_s_per_m,
             damping_ratio=given.damping_ratio,
         )
+
+
+def _planet_bearing(index: int, given: PlanetBearingInput) -> PlanetBearing:
+    """Return a planet's bearing."""
+    with _named(f"planet_bearings[{index}]"):
+        return PlanetBearing(
+            name=given.name,
+            shaft=given.shaft,
+            carrier=given.carrier,
+            position=given.position_mm * MM,
+            radial_stiffness=given.radial_stiffness_n_per_m,
+            axial_stiffness=given.axial_stiffness_n_per_m,
+            radial_damping=given.radial_damping_n_s_per_m,
+            axial_damping=given.axial_damping_n_s_per_m,
+            damping_ratio=given.damping_ratio,
+            radial_error=given.radial_error_um * UM,
+            tangential_error=given.tangential_error_um * UM,
+        )
+
+
+def _with_all_planets(given: SceneInput, scene: Scene) -> Scene:
+    """Return the scene with every planet there as often as asked for."""
+    for index, planets in enumerate(given.planets):
+        angles = None if planets.angles_deg is None else [angle * DEGREE for angle in planets.angles_deg]
+        errors = None
+        if planets.radial_errors_um is not None or planets.tangential_errors_um is not None:
+            none = (0.0,) * planets.number
+            away, across = planets.radial_errors_um or none, planets.tangential_errors_um or none
+            errors = [(r * UM, t * UM) for r, t in zip(away, across, strict=True)]
+        with _named(f"planets[{index}]"):
+            scene = with_planets(scene, planets.planet, planets.number, angles, errors)
+    return scene
 
 
 def _mesh(index: int, given: MeshInput, database: SteDatabase) -> GearMesh:
@@ -157,7 +198,19 @@ def _drive(index: int, given: DriveInput) -> ImposedRotation:
     """Return a drive."""
     with _named(f"drives[{index}]"):
         speed = tuple(value * RPM for value in given.speed_rpm)
-        return ImposedRotation(given.name, given.shaft, TimeLaw(given.time_s, speed, given.course))
+        return ImposedRotation(
+            given.name,
+            given.shaft,
+            TimeLaw(given.time_s, speed, given.course),
+            given.stiffness_n_m_per_rad,
+            given.damping_n_m_s_per_rad,
+        )
+
+
+def _free_rotation(index: int, given: FreeRotationInput) -> FreeRotation:
+    """Return a free rotation."""
+    with _named(f"free_rotations[{index}]"):
+        return FreeRotation(given.name, given.shaft, given.initial_speed_rpm * RPM, given.sense)
 
 
 def _load(index: int, given: LoadTorqueInput) -> LoadTorque:

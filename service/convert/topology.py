@@ -24,6 +24,7 @@ class Teeth:
     base_helix_angle: float
     pitch_diameter: float
     face_width: float
+    internal: bool = False
 
 
 def facts_of(pair: GearPair) -> PairFacts:
@@ -62,11 +63,14 @@ def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Tee
 
 
 def _side(facts: PairFacts, side: int) -> Teeth:
-    """Return one gear of a pair; the hands of external gears are opposite."""
+    """Return one gear of a pair; the hands of external gears are opposite, those in a ring gear the same."""
     radius = facts.base_radius[side]
-    hand = facts.helix_hand if side == 0 else -facts.helix_hand
-    pitch_diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
-    return Teeth(facts.teeth[side], radius, hand * facts.base_helix_angle, pitch_diameter, facts.face_width)
+    difference = (facts.base_radius[1] - facts.base_radius[0]) / math.cos(facts.working_pressure_angle)
+    ring = math.isclose(difference, facts.center_distance, rel_tol=_SAME)
+    hand = facts.helix_hand if side == 0 or ring else -facts.helix_hand
+    diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
+    helix = hand * facts.base_helix_angle
+    return Teeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring and side == 1)
 
 
 def check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:

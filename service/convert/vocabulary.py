@@ -60,6 +60,8 @@ _LAST = {
     "mass": "mass_kg",
     "polar": "polar_kg_m2",
     "transverse": "transverse_kg_m2",
+    "initial_speed": "initial_speed_rpm",
+    "angles": "angles_deg",
     "speed": "speed_rpm",
     "torque": "torque_n_m",
     "sample_rate": "sample_rate_hz",

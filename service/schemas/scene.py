@@ -16,6 +16,16 @@ Number = Annotated[float, Field(ge=-1e9, le=1e9)]
 Times = Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e9)], ...], Strict(False)]
 Numbers = Annotated[tuple[Number, ...], Strict(False)]
 Course = Literal["linear", "smooth"]
+_NAMED = (
+    "shafts",
+    "gears",
+    "bushings",
+    "planet_bearings",
+    "meshes",
+    "drives",
+    "free_rotations",
+    "loads",
+)
 _SOURCES = ("case", "case_file", "database_file", "database_hash")
 
 
@@ -54,6 +64,11 @@ class ShaftInput(BoundaryModel):
         default=None,
         description="Inertia of the bare shaft, instead of a diameter",
         examples=[{"mass_kg": 2.0}],
+    )
+    frame: Name | None = Field(
+        default=None,
+        description="The carrier of the planetary set it belongs to; a carrier names itself",
+        examples=["carrier"],
     )
 
     @model_validator(mode="after")
@@ -116,6 +131,48 @@ class BushingInput(BoundaryModel):
         examples=[1e3],
     )
     damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
+
+
+class PlanetBearingInput(BushingInput):
+    """A linear bearing between a planet and its pin in the carrier."""
+
+    shaft: Name = Field(description="The planet's shaft", examples=["planet"])
+    carrier: Name = Field(description="The carrier's shaft", examples=["carrier"])
+    radial_error_um: float = Field(
+        default=0.0, ge=-1e4, le=1e4, description="Pin off its place, outwards, in um", examples=[0.0]
+    )
+    tangential_error_um: float = Field(
+        default=0.0, ge=-1e4, le=1e4, description="Pin off its place, about +z, in um", examples=[20.0]
+    )
+
+
+class PlanetsInput(BoundaryModel):
+    """Several planets from one, whose shaft, gears, bearings and meshes are in the scene."""
+
+    planet: Name = Field(description="The shaft of the first planet", examples=["planet"])
+    number: int = Field(ge=1, le=100, description="Number of planets in all", examples=[3])
+    angles_deg: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None,
+        description="Angles from the first planet about +z in degrees; left out: equally spaced",
+        examples=[[0.0, 120.0, 240.0]],
+    )
+    radial_errors_um: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None, description="Of all pins, outwards, in um", examples=[[0.0, 0.0, 0.0]]
+    )
+    tangential_errors_um: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None, description="Of all pins, about +z, in um", examples=[[20.0, 0.0, 0.0]]
+    )
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Self:
+        """As many values as planets."""
+        for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
+            given = getattr(self, field)
+            if given is not None and len(given) != self.number:
+                refuse(
+                    field, list(given), f"a list of {self.number}, one for each planet", "Or leave it out."
+                )
+        return self
 
 
 class MeshInput(BoundaryModel):
@@ -189,6 +246,16 @@ class DriveInput(BoundaryModel):
         min_length=1, max_length=100_000, description="Speeds in rpm at these times", examples=[[0.0, 955.0]]
     )
     course: Course = Field(default="linear", description="Course between the times", examples=["linear"])
+    stiffness_n_m_per_rad: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e15,
+        description="Torsional spring to the imposed rotation in N m/rad; left out: rigid",
+        examples=[1e7],
+    )
+    damping_n_m_s_per_rad: float = Field(
+        default=0.0, ge=0.0, le=1e12, description="Damping beside that spring in N m s/rad", examples=[0.0]
+    )
 
     @model_validator(mode="after")
     def _law(self) -> Self:
@@ -196,8 +263,21 @@ class DriveInput(BoundaryModel):
         return self
 
 
+class FreeRotationInput(BoundaryModel):
+    """A train that no drive moves: it starts at a speed and turns as torques make it."""
+
+    name: Name = Field(description="Name of the free rotation", examples=["train"])
+    shaft: Name = Field(description="Any one shaft of the train", examples=["input"])
+    initial_speed_rpm: float = Field(
+        default=0.0, ge=-1e7, le=1e7, description="Speed at the start in rpm", examples=[1000.0]
+    )
+    sense: Literal["+z", "-z"] = Field(
+        default="+z", description="Where it turns if it starts from rest", examples=["+z"]
+    )
+
+
 class LoadTorqueInput(BoundaryModel):
-    """A torque that resists a shaft's rotation."""
+    """A torque that resists a shaft's rotation, or drives it where it is negative."""
 
     name: Name = Field(description="Name of the load", examples=["brake"])
     shaft: Name = Field(description="The loaded shaft", examples=["output"])
@@ -275,7 +355,14 @@ class SceneInput(BoundaryModel):
     gears: Annotated[tuple[GearBodyInput, ...], Strict(False)] = Field(min_length=2, max_length=1000)
     bushings: Annotated[tuple[BushingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     meshes: Annotated[tuple[MeshInput, ...], Strict(False)] = Field(min_length=1, max_length=1000)
-    drives: Annotated[tuple[DriveInput, ...], Strict(False)] = Field(min_length=1, max_length=1000)
+    drives: Annotated[tuple[DriveInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    free_rotations: Annotated[tuple[FreeRotationInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000
+    )
+    planet_bearings: Annotated[tuple[PlanetBearingInput, ...], Strict(False)] = Field(
+        default=(), max_length=1000
+    )
+    planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
     loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     outputs: OutputsInput = Field(default=OutputsInput(), description="What to store", examples=[{}])
     integration: IntegrationInput = Field(
@@ -290,7 +377,7 @@ class SceneInput(BoundaryModel):
     def _tables(cls, data: Any) -> Any:
         """Say how a part is written when a single table stands where a list is meant."""
         if isinstance(data, dict):
-            for kind in ("shafts", "gears", "bushings", "meshes", "drives", "loads"):
+            for kind in (*_NAMED, "planets"):
                 if isinstance(data.get(kind), dict):
                     refuse(kind, data[kind], "a list of tables", f"Write [[{kind}]] with two brackets.")
         return data
@@ -298,12 +385,17 @@ class SceneInput(BoundaryModel):
     @model_validator(mode="after")
     def _parts_exist(self) -> Self:
         """Names are unique, and every part names parts that exist."""
-        for kind in ("shafts", "gears", "bushings", "meshes", "drives", "loads"):
+        for kind in _NAMED:
             _refuse_repeated(kind, [part.name for part in getattr(self, kind)])
         shafts = [shaft.name for shaft in self.shafts]
-        for kind in ("gears", "bushings", "drives", "loads"):
+        for kind in ("gears", "bushings", "planet_bearings", "drives", "free_rotations", "loads"):
             for index, part in enumerate(getattr(self, kind)):
                 _refuse_unknown(f"{kind}[{index}].shaft", part.shaft, shafts)
+        for index, shaft in enumerate(self.shafts):
+            if shaft.frame is not None:
+                _refuse_unknown(f"shafts[{index}].frame", shaft.frame, shafts)
+        for index, planets in enumerate(self.planets):
+            _refuse_unknown(f"planets[{index}].planet", planets.planet, shafts)
         gears = [gear.name for gear in self.gears]
         for index, mesh in enumerate(self.meshes):
             _refuse_unknown(f"meshes[{index}].driver", mesh.driver, gears)
