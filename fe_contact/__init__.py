@@ -19,7 +19,7 @@ if TYPE_CHECKING:
         flank_results,
         study_sensitivity,
     )
-    from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, Shaft
+    from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearBlank, GearPair, Shaft
     from fe_contact.material import STEEL, Material
     from fe_contact.ste import SteDatabase
     from fe_contact.types import Estimate, Status
@@ -31,6 +31,7 @@ __all__ = [
     "FlankGrid",
     "FlankModification",
     "Gear",
+    "GearBlank",
     "GearPair",
     "LoadDistribution",
     "Material",
@@ -55,6 +56,7 @@ _HOME = {
     "FlankGrid": "fe_contact.geometry",
     "FlankModification": "fe_contact.geometry",
     "Gear": "fe_contact.geometry",
+    "GearBlank": "fe_contact.geometry",
     "GearPair": "fe_contact.geometry",
     "Shaft": "fe_contact.geometry",
     "STEEL": "fe_contact.material",

@@ -25,7 +25,7 @@ from fe_contact.contact import (
     with_compliances,
     with_gaps,
 )
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import GearPair, Toothing
 from fe_contact.mesh import MeshRecipe
 from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation
 from fe_contact.types import FloatArray
@@ -97,21 +97,24 @@ def pair_contact(pair: GearPair, plan: Plan, cache: Path | None, coarse: bool = 
         Take the coarse meshes, which serve the error estimate.
     """
     made = plan.discretisation
-    gears = (pair.pinion, pair.wheel)
+    gears = plan.bodies(pair)
     if isinstance(made, FaceDiscretisation):
         over_face = flank_compliances_3d(gears, made.coarse_recipes if coarse else made.recipes, cache=cache)
         return PairContact(pair, plan, face=(over_face[0], over_face[1]))
     recipes = made.coarse_recipes if coarse else made.recipes
-    return PairContact(pair, plan, plane=_plane_flanks(pair, made, recipes, cache))
+    return PairContact(pair, plan, plane=_plane_flanks(pair, gears, made, recipes, cache))
 
 
 def _plane_flanks(
-    pair: GearPair, made: PlaneDiscretisation, recipes: tuple[MeshRecipe, MeshRecipe], cache: Path | None
+    pair: GearPair,
+    gears: tuple[Toothing, Toothing],
+    made: PlaneDiscretisation,
+    recipes: tuple[MeshRecipe, MeshRecipe],
+    cache: Path | None,
 ) -> PlaneFlanks:
     """Condense all teeth that can touch at once."""
     reach = 2 * math.ceil(pair.transverse_contact_ratio) + 1
     fits = min(pair.pinion.teeth, pair.wheel.teeth)
     teeth = min(reach, fits - 1 + fits % 2)
-    gears = (pair.pinion, pair.wheel)
     first, second = flank_compliances(gears, recipes, made.hypothesis, teeth=teeth, cache=cache)
     return first, second

@@ -112,6 +112,8 @@ def check_request(
     composed, ledger = compose(request.scene, request.choices, EFFECTS)
     if not composed.across_face:
         refuse_beyond_plane(request.scene)
+        if composed.thin_rim:
+            refuse_web_off_center(request.scene)
     _refuse_distances(request)
     return Checked(request, composed, ledger)
 
@@ -183,3 +185,11 @@ def refuse_beyond_plane(scene: ContactScene) -> None:
             raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
     if np.any(scene.misalignment != 0.0):
         raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
+
+
+def refuse_web_off_center(scene: ContactScene) -> None:
+    """Refuse a web that tilts its gear: the plane has no tilt."""
+    for name, gear in (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel)):
+        if gear.web is not None and gear.blank is not None and gear.blank.web_offset != 0.0:
+            advice = "Use the 3-D model for it."
+            raise InputError(f"{name}.blank.web_offset", gear.blank.web_offset, "0 for a plane model", advice)

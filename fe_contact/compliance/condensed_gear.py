@@ -73,7 +73,7 @@ def condensed_tooth(
     CondensedTooth, (nf, 2) array
         The sector, and probe loads for the checks, N.
     """
-    sector = swept_sector(section.grid, gear.face_width, recipe, support)
+    sector = swept_sector(section.grid, gear.face_width, recipe, support, gear.web)
     stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
     clock.finish("assembly")
     condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness)

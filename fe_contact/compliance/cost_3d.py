@@ -72,7 +72,8 @@ def predict_cost(
         Default `usual_reach(gear)`.
     """
     recipe = recipe or SectorRecipe.standard(gear)
-    sector = swept_sector(sector_outline(tooth_profile(gear), recipe).grid, gear.face_width, recipe)
+    grid = sector_outline(tooth_profile(gear), recipe).grid
+    sector = swept_sector(grid, gear.face_width, recipe, web=gear.web)
     tree = sector_tree(sector)
     distance = usual_reach(gear) if reach is None else reach
     sizes = sector_sizes(sector, gear.teeth, distance)

@@ -102,11 +102,10 @@ def usual_reach(gear: Toothing) -> int:
 
 def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport) -> str:
     """Return the hash of all that decides a compliance but for the hand of the helix."""
-    geometry = gear.macro_geometry()
     content: Json = {
         "model": ["cyclic sector", MODEL_VERSION],
         "gmsh": version("gmsh"),
-        "geometry": geometry | {"helix_angle": abs(geometry["helix_angle"])},
+        "geometry": gear.right_handed().macro_geometry(),
         "material": [gear.material.youngs_modulus, gear.material.poissons_ratio],
         "recipe": recipe.content(),
         "reach": reach,

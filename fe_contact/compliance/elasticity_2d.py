@@ -12,7 +12,12 @@ QUADRATURE_ORDER = 4  # exact on straight sides (order 2); curved sides need mor
 SIDES = ((0, 1), (1, 2), (2, 0))
 
 
-def stiffness_matrix(points: FloatArray, triangles: IntArray, lame: tuple[float, float]) -> sp.csc_array:
+def stiffness_matrix(
+    points: FloatArray,
+    triangles: IntArray,
+    lame: tuple[float, float],
+    thickness: FloatArray | float = 1.0,
+) -> sp.csc_array:
     """Assemble the stiffness of linear elasticity per unit thickness.
 
     Parameters
@@ -23,6 +28,8 @@ def stiffness_matrix(points: FloatArray, triangles: IntArray, lame: tuple[float,
         Corners, then middles of sides 0-1, 1-2, 2-0.
     lame : (float, float)
         lambda and mu of the plane problem, Pa.
+    thickness : (m,) array or float
+        Of the elements, in units of thickness.
 
     Returns
     -------
@@ -30,7 +37,7 @@ def stiffness_matrix(points: FloatArray, triangles: IntArray, lame: tuple[float,
         Symmetric, N/m per m of thickness; freedom 2 i + c is component c of node i.
     """
     basis, node = _scalar_basis(points, triangles)
-    local = _element_stiffness(basis, lame)
+    local = _element_stiffness(basis, lame) * np.broadcast_to(thickness, len(triangles))[:, None, None]
     freedoms = (2 * node[basis.element_dofs.T][:, :, None] + np.arange(2)).reshape(len(local), 12)
     rows = np.broadcast_to(freedoms[:, :, None], local.shape).ravel()
     columns = np.broadcast_to(freedoms[:, None, :], local.shape).ravel()

@@ -95,4 +95,4 @@ class FlankCompliance3D:
         planes = self.index[::-1]
         order = planes[planes >= 0]
         blocks = np.ascontiguousarray(self.blocks[:, order[:, None], order])
-        return replace(self, blocks=blocks, base_helix_angle=-self.base_helix_angle)
+        return replace(self, z=0.0 - self.z[::-1], blocks=blocks, base_helix_angle=-self.base_helix_angle)

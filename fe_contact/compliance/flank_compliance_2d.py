@@ -40,7 +40,8 @@ def flank_compliance(
     Parameters
     ----------
     gear : Gear
-        Modification and face width play no part.
+        Modification plays no part, and face width only beside the thickness of a web: its elements are as
+        much thinner than the others (`docs/effects/thin_rim.md`).
     recipe : MeshRecipe, optional
         Default `MeshRecipe.standard(gear)`.
     hypothesis : PlaneHypothesis
@@ -117,7 +118,9 @@ def compliance_key(
     gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
 ) -> str:
     """Return the hash of all that decides a compliance of the transverse section."""
-    section = {name: value for name, value in gear.macro_geometry().items() if name != "face_width"}
+    section = gear.macro_geometry()
+    if gear.web is None:
+        section.pop("face_width")
     content: Json = {
         "model": ["transverse section", MODEL_VERSION],
         "gmsh": version("gmsh"),
@@ -172,7 +175,9 @@ def condensed_ring(gear: Toothing, mesh: GearMesh, hypothesis: PlaneHypothesis, 
     sector = condense_sector(
         mesh, stiffness_matrix(mesh.sector.points, mesh.sector.triangles, lame), normals, solver
     )
-    hub = None if mesh.hub is None else stiffness_matrix(mesh.hub.points, mesh.hub.triangles, lame)
+    hub = None
+    if mesh.hub is not None:
+        hub = stiffness_matrix(mesh.hub.points, mesh.hub.triangles, lame, mesh.hub.thickness)
     return assemble_ring(mesh, sector, hub, solver)
 
 

@@ -60,6 +60,8 @@ class ContactModel:
         Tip edges may touch off the line of action, before A and after E.
     across_face : bool
         Load distributes over the face width: three dimensions instead of the plane.
+    thin_rim : bool
+        Bodies have the rim and web of their blank; else they are solid.
     gaps : tuple of GapTerm
     compliances : tuple of ComplianceTerm
     """
@@ -67,5 +69,6 @@ class ContactModel:
     couple_teeth: bool = False
     corner_contact: bool = False
     across_face: bool = False
+    thin_rim: bool = False
     gaps: tuple[GapTerm, ...] = ()
     compliances: tuple[ComplianceTerm, ...] = ()

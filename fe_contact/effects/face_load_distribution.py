@@ -48,6 +48,8 @@ def across_face(scene: ContactScene) -> list[str]:
         reasons.append("misalignment")
     if any(pair.shafts):
         reasons.append("shafts that bend")
+    if pair.pinion.web or pair.wheel.web:
+        reasons.append("a web narrower than the face")
     if pair.pinion.face_width != pair.wheel.face_width or pair.axial_offset != 0.0:
         reasons.append("faces that do not cover each other")
     return reasons

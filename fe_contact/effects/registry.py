@@ -9,6 +9,7 @@ from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.misalignment import Misalignment
 from fe_contact.effects.profile_modification import ProfileModification
 from fe_contact.effects.shaft_deflection import ShaftDeflection
+from fe_contact.effects.thin_rim import ThinRim
 from fe_contact.effects.tooth_coupling import ToothCoupling
 
 EFFECTS: tuple[Effect, ...] = (
@@ -19,4 +20,5 @@ EFFECTS: tuple[Effect, ...] = (
     LeadModification(),
     Misalignment(),
     ShaftDeflection(),
+    ThinRim(),
 )

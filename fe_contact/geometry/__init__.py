@@ -4,9 +4,10 @@ from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap
 from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.gear_blank import GearBlank
 from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.internal_gear_pair import InternalGearPair
-from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, iso6336_stiffness
+from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, blank_factor, iso6336_stiffness
 from fe_contact.geometry.modification import FlankModification
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.path_of_contact import PathOfContact
@@ -14,6 +15,7 @@ from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.shaft import Shaft
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.toothing import Toothing
+from fe_contact.geometry.web_compliance import web_compliance
 
 __all__ = [
     "BasicRack",
@@ -21,6 +23,7 @@ __all__ = [
     "FlankGrid",
     "FlankModification",
     "Gear",
+    "GearBlank",
     "GearPair",
     "InternalGearPair",
     "Iso6336Stiffness",
@@ -31,8 +34,10 @@ __all__ = [
     "Side",
     "ToothProfile",
     "Toothing",
+    "blank_factor",
     "corner_contact",
     "corner_gap",
     "iso6336_stiffness",
     "tooth_profile",
+    "web_compliance",
 ]

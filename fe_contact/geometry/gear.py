@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from fe_contact.checks import integer, positive, within
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.form_point import FormPoint, find_form_point
+from fe_contact.geometry.gear_blank import GearBlank, Web, web_of
 from fe_contact.geometry.gear_feasibility import refuse_infeasible_gear
 from fe_contact.geometry.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.toothing import Toothing
@@ -48,13 +49,15 @@ class Gear(Toothing):
         Departures of the flanks from the involute helicoid.
     material : Material
         Elasticity.
+    blank : GearBlank, optional
+        Rim, web and hub; None is a solid body.
 
     Raises
     ------
     InputError
         A value out of its bounds.
     InfeasibleGeometry
-        No such gear: "root radius", "bore", "tip diameter", "undercut", "pointed tooth".
+        No such gear: "root radius", "bore", "rim", "web", "hub", "tip diameter", "undercut", "pointed tooth".
     """
 
     bore_diameter: float
@@ -68,6 +71,7 @@ class Gear(Toothing):
     thickness_allowance: float = 0.0
     modification: FlankModification = UNMODIFIED
     material: Material = STEEL
+    blank: GearBlank | None = None
 
     def __post_init__(self) -> None:
         integer("teeth", self.teeth, 4, 2000, "Count the teeth of an external gear.")
@@ -127,10 +131,27 @@ class Gear(Toothing):
             self.base_thickness_half_angle,
         )
 
+    @cached_property
+    def web(self) -> Web | None:
+        """Where the body is narrower than the face; None for a solid gear."""
+        return web_of(self)
+
+    def solid(self) -> Gear:
+        """Return the gear with a solid body."""
+        return self if self.blank is None else replace(self, blank=None)
+
+    def right_handed(self) -> Gear:
+        """Return the gear itself, or the mirror image in the plane of mid-face if it is left-handed."""
+        if self.helix_angle >= 0.0:
+            return self
+        blank = None if self.blank is None else self.blank.mirrored()
+        return replace(self, helix_angle=-self.helix_angle, blank=blank)
+
     def macro_geometry(self) -> Json:
         """All that decides the shape of the unmodified gear, as plain numbers (for content hashes).
 
-        The addendum coefficient is absent, since it acts only through the tip diameter.
+        The addendum coefficient is absent, since it acts only through the tip diameter; and so is the blank
+        of a gear that is solid.
         """
         names = (
             "normal_module",
@@ -144,4 +165,5 @@ class Gear(Toothing):
             "thickness_allowance",
         )
         lengths_and_angles = {name: float(getattr(self, name)) + 0.0 for name in names}  # -0.0 becomes 0.0
-        return {"teeth": int(self.teeth), "tip_diameter": 2.0 * self.tip_radius} | lengths_and_angles
+        body = {} if self.web is None else {"web": self.web.content()}
+        return {"teeth": int(self.teeth), "tip_diameter": 2.0 * self.tip_radius} | lengths_and_angles | body

@@ -12,6 +12,8 @@ from fe_contact.material import STEEL
 
 _PER_MM_UM = 1e9  # N/(mm um) in N/m per m of face width
 _CORRECTION = 0.8  # C_M: measured gears against the theoretical stiffness
+_THINNEST_WEB = 0.2  # b_s/b
+_THINNEST_RIM = 1.0  # s_R/m_n
 _LOW_LINE_LOAD = 1e5  # N/m (100 N/mm): below it the stiffness falls with the load
 _SERIES = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
 
@@ -39,7 +41,7 @@ class Iso6336Stiffness:
 
 
 def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336Stiffness:
-    """Tooth stiffness of `pair` (ISO 6336-1, method B, gear bodies as solid discs).
+    """Tooth stiffness of `pair` (ISO 6336-1, method B, gear bodies as their blanks say).
 
     Parameters
     ----------
@@ -55,11 +57,26 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
     """
     theoretical = _PER_MM_UM / _flexibility(pair.pinion, pair.wheel)
     rack = 0.5 * (_rack_factor(pair.pinion) + _rack_factor(pair.wheel))
-    single = theoretical * _CORRECTION * rack * math.cos(pair.pinion.helix_angle) * _modulus_ratio(pair)
+    body = 0.5 * (blank_factor(pair.pinion) + blank_factor(pair.wheel))
+    single = (
+        theoretical * _CORRECTION * body * rack * math.cos(pair.pinion.helix_angle) * _modulus_ratio(pair)
+    )
     if line_load is not None:
         single *= min(1.0, positive("line_load", line_load) / _LOW_LINE_LOAD)
     mesh = single * (0.75 * pair.transverse_contact_ratio + 0.25)
     return Iso6336Stiffness(theoretical, single, mesh, 0.85 * mesh)
+
+
+def blank_factor(gear: Gear) -> float:
+    """Gear blank factor C_R of ISO 6336-1 (method B): 1 for a solid disc, below 1 for a rim on a web.
+
+    C_R = 1 + ln(b_s/b) / (5 exp(s_R / (5 m_n))), with b_s/b taken as at least 0.2 and s_R/m_n as at least 1.
+    """
+    if gear.web is None:
+        return 1.0
+    web = max(gear.web.thickness / gear.face_width, _THINNEST_WEB)
+    rim = max(gear.rim_thickness / gear.normal_module, _THINNEST_RIM)
+    return 1.0 + math.log(web) / (5.0 * math.exp(0.2 * rim))
 
 
 def _flexibility(pinion: Gear, wheel: Gear) -> float:

@@ -16,6 +16,7 @@ from fe_contact.geometry.involute import involute_function, roll_length_at_radiu
 if TYPE_CHECKING:
     from fe_contact.geometry.fillet_curve import FilletCurve
     from fe_contact.geometry.form_point import FormPoint
+    from fe_contact.geometry.gear_blank import Web
     from fe_contact.geometry.modification import FlankModification
     from fe_contact.material import Material
     from fe_contact.types import Json
@@ -134,6 +135,25 @@ class Toothing:
     def right_handed(self) -> Self:
         """Return the gear if it is spur or right hand, else its mirror image."""
         return replace(self, helix_angle=abs(self.helix_angle))  # type: ignore[call-arg]  # a field of the kinds
+
+    def solid(self) -> Toothing:
+        """Return the gear with a solid body."""
+        return self
+
+    @property
+    def web(self) -> Web | None:
+        """Where the body is narrower than the face; None if it is not."""
+        return None
+
+    @property
+    def rim_inside_radius(self) -> float:
+        """Radius to which the body is as wide as the face: to a web, or where the gear is held, m."""
+        return self.held_radius if self.web is None else self.web.outer_radius
+
+    @property
+    def rim_thickness(self) -> float:
+        """s_R, from the root circle to `rim_inside_radius`, m."""
+        return self.body_depth if self.web is None else self.root_radius - self.web.outer_radius
 
     @property
     def body_depth(self) -> float:

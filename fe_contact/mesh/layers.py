@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
 
 RISE = 3  # groups of layers over which the thickness grows from an end to the middle
+SPARED = 0.3  # of a group of layers: a part of the face this much longer gets no further one
+DIGITS = 12  # of a layer's thickness over the face width: equal in them is equally thick
 
 
 @dataclass(frozen=True)
 class Layers:
-    """Layers of elements, symmetric about mid-face or those above it.
+    """Layers of elements, or those above mid-face; symmetric unless a web or a seat of the bore is not.
 
     Attributes
     ----------
@@ -30,7 +35,7 @@ class Layers:
     thickness: FloatArray
 
 
-def layers_to_mid_face(width: float, count: int, growth: float = 1.0) -> Layers:
+def layers_to_mid_face(width: float, count: int, growth: float = 1.0, breaks: Sequence[float] = ()) -> Layers:
     """Divide the upper half of a face into layers that thicken from its end towards mid-face.
 
     Parameters
@@ -41,7 +46,14 @@ def layers_to_mid_face(width: float, count: int, growth: float = 1.0) -> Layers:
         Number of layers.
     growth : float
         Thickness of the layer at mid-face over that of the end layer.
+    breaks : sequence of float
+        Axial positions above 0 where a layer must end, m, increasing.
     """
+    if len(breaks):
+        below = [-z for z in reversed(breaks)]
+        whole = _broken(width, 0.5 * width / count, 1, growth, [*below, 0.0, *breaks])
+        middle = len(whole.kind) // 2
+        return Layers(whole.ends[middle:], whole.kind[middle:], whole.thickness)
     kind = np.arange(count)[::-1]
     relative = growth ** (np.arange(count) / max(count - 1, 1))
     thickness = 0.5 * width * relative / relative.sum()
@@ -50,7 +62,9 @@ def layers_to_mid_face(width: float, count: int, growth: float = 1.0) -> Layers:
     return Layers(ends, kind, thickness)
 
 
-def layers_across(width: float, count: int, group: int = 1, growth: float = 1.0) -> Layers:
+def layers_across(
+    width: float, count: int, group: int = 1, growth: float = 1.0, breaks: Sequence[float] = ()
+) -> Layers:
     """Divide `width` into `count` layers.
 
     Parameters
@@ -61,7 +75,12 @@ def layers_across(width: float, count: int, group: int = 1, growth: float = 1.0)
         Number of layers; every `group` successive ones are equally thick. `group` divides `count`.
     growth : float
         Thickness of a middle layer over that of an end layer.
+    breaks : sequence of float
+        Axial positions where a group of layers must end, m, increasing. Each part of the face has groups
+        about as thick as without them, and at least one; so there may be more than `count` layers.
     """
+    if len(breaks):
+        return _broken(width, width * group / count, group, growth, breaks)
     number = np.arange(count // group)
     top = max(1, min(RISE, (len(number) - 1) // 2))
     kind = np.repeat(np.minimum(np.minimum(number, number[::-1]), top), group)
@@ -70,3 +89,23 @@ def layers_across(width: float, count: int, group: int = 1, growth: float = 1.0)
     ends = np.concatenate([[0.0], np.cumsum(thickness[kind])]) - 0.5 * width
     ends[-1] = 0.5 * width
     return Layers(0.5 * (ends - ends[::-1]), kind, thickness)
+
+
+def _broken(width: float, usual: float, group: int, growth: float, breaks: Sequence[float]) -> Layers:
+    """Divide every part of the face by itself; `usual` is the thickness of a group without breaks."""
+    corners = [-0.5 * width, *breaks, 0.5 * width]
+    ends, thickness = [corners[:1]], []
+    for i, (low, high) in enumerate(pairwise(corners)):
+        number = np.arange(max(1, math.ceil((high - low) / usual - SPARED)))
+        top = max(1, min(RISE, len(number) - 1))
+        relative = np.ones(len(number))
+        if i == 0:
+            relative = growth ** (np.minimum(number, top) / top)
+        elif i == len(corners) - 2:
+            relative = growth ** (np.minimum(number[::-1], top) / top)
+        parts = np.repeat(relative / relative.sum() * (high - low) / group, group)
+        thickness.append(parts)
+        ends.append([*(low + np.cumsum(parts))[:-1], high])
+    rounded = np.round(np.concatenate(thickness) / width, DIGITS)
+    _, first, kind = np.unique(rounded, return_index=True, return_inverse=True)
+    return Layers(np.concatenate(ends), kind, np.concatenate(thickness)[first])

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from fe_contact.geometry import Toothing, ToothProfile, tooth_profile
 from fe_contact.mesh.gear_mesh import GearMesh, assemble, real_teeth
-from fe_contact.mesh.hub import Hub, hub, hub_outlines
+from fe_contact.mesh.hub import Hub, hub, hub_outline, inner_rings
 from fe_contact.mesh.outline import Outline
 from fe_contact.mesh.quadratic import QuadraticMesh, quadratic_mesh, region
 from fe_contact.mesh.quality import QualityLimits, refuse_poor_elements
@@ -57,10 +59,11 @@ def mesh_gear(
 
 def sector_bottom(gear: Toothing, profile: ToothProfile, all_real: bool) -> float:
     """Return the radius to which a tooth sector reaches, m."""
-    slender = gear.body_depth > SLENDER * gear.root_radius * profile.pitch_angle
-    if all_real and not slender and gear.held_radius >= TAPER * gear.root_radius:
+    depth = gear.rim_thickness
+    slender = depth > SLENDER * gear.root_radius * profile.pitch_angle
+    if gear.web is None and all_real and not slender and gear.held_radius >= TAPER * gear.root_radius:
         return gear.held_radius
-    return gear.root_radius - gear.sign * min(RIM_DEPTH * gear.normal_module, 0.5 * gear.body_depth)
+    return gear.root_radius - gear.sign * min(RIM_DEPTH * gear.normal_module, 0.5 * depth)
 
 
 @dataclass(frozen=True)
@@ -90,8 +93,12 @@ def mesh_sector(
 def mesh_hub(
     gear: Toothing, sector: ToothSector, teeth: IntArray, recipe: MeshRecipe, filling: Filling
 ) -> Hub:
-    """Mesh the rest of the ring."""
-    outlines = hub_outlines(gear, sector, teeth, recipe)
-    outermost_first = outlines[:: gear.sign]
-    mesh = filling.mesh("hub", outermost_first, gear.normal_module, recipe.growth)
-    return hub(mesh, outlines[0], mesh.boundary[:: gear.sign], teeth)
+    """Mesh the rest of the ring: of a solid gear in one piece, else what is left of the rim, web and hub."""
+    toothed = hub_outline(gear, sector, teeth, recipe)
+    rings = inner_rings(gear, float(np.linalg.norm(sector.points[sector.bottom[0]])), recipe)
+    meshes, around = [], toothed
+    for ring in rings:
+        outermost_first = (around, ring.circle)[:: gear.sign]
+        meshes.append(filling.mesh("hub", outermost_first, gear.normal_module, recipe.growth))
+        around = ring.circle.reversed()
+    return hub(meshes, toothed, [ring.thickness for ring in rings], teeth, gear.sign)

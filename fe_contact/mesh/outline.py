@@ -69,6 +69,10 @@ class Outline:
         """Corner points, (n, 2)."""
         return self.nodes[::2]
 
+    def reversed(self) -> Outline:
+        """Return the same nodes the other way round from the same first one: a hole's rim as an outline."""
+        return Outline(tuple(Piece(p.name, p.nodes[::-1]) for p in self.pieces[::-1]))
+
     def positions(self, name: str) -> IntArray:
         """Return where in `nodes` the piece `name` lies, from its first node to its last inclusive."""
         start = 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -70,10 +71,10 @@ def quad_sector(
 
 def sector_points(outline: SectorOutline, grid: SectorGrid, seconds: float) -> FloatArray:
     """Place all nodes: corners by gmsh, middles of inner sides between them, the rest on exact curves."""
-    tooth, body = fill_blocks(_blocks(outline), outline.profile.gear.normal_module, seconds)
+    tooth, *body = fill_blocks(_blocks(outline), outline.profile.gear.normal_module, seconds)
     points, number, low = np.empty((grid.nodes, 2)), grid.number, 2 * grid.body_rows
     # The blocks run from the bore up and from the right cut to the left one, as the grid does.
-    points[number[: low + 1 : 2, ::2]] = body
+    points[number[: low + 1 : 2, ::2]] = np.concatenate([*(part[:-1] for part in body), body[-1][-1:]])
     stem = number[low:, 2 * grid.land : 2 * (grid.land + grid.across) + 1]
     points[stem[::2, ::2]] = tooth
     ends = np.stack([grid.quads[:, :4], np.roll(grid.quads[:, :4], -1, axis=1)])
@@ -82,15 +83,25 @@ def sector_points(outline: SectorOutline, grid: SectorGrid, seconds: float) -> F
     points[number[low, : 2 * grid.land + 1]] = outline.right_land
     points[number[low, -2 * grid.land - 1 :]] = (outline.right_land * [-1.0, 1.0])[::-1]
     points[grid.bore] = outline.bore
+    for row, circle in outline.circles.items():
+        points[number[low + 2 * row]] = circle
     points[stem[:, 0]] = outline.right_flank
     points[stem[:, -1]] = outline.right_flank * [-1.0, 1.0]
     return points
 
 
-def _blocks(outline: SectorOutline) -> tuple[Block, Block]:
-    """Return tooth and body by their corner points; their left is the loaded side, as in the grid."""
-    flank, cut = outline.right_flank[::2], outline.right_cut[::-2]
+def _blocks(outline: SectorOutline) -> list[Block]:
+    """Return the tooth, and the body from the bore up, by corner points.
+
+    Their left is the loaded side, as in the grid. The body of a gear with a web is parted at its circles.
+    """
     mirror = np.array([-1.0, 1.0])
-    tooth = Block(outline.base[::2], flank * mirror, outline.tip[::2], flank)
-    body = Block(outline.bore[::2], cut * mirror, outline.body_top[::2], cut)
-    return tooth, body
+    flank, cut = outline.right_flank[::2], outline.right_cut[::-2]
+    rows = len(cut) - 1
+    levels = {0: outline.bore} | {rows + row: c for row, c in sorted(outline.circles.items())}
+    levels[rows] = outline.body_top
+    blocks = [Block(outline.base[::2], flank * mirror, outline.tip[::2], flank)]
+    for (low, bottom), (high, top) in pairwise(levels.items()):
+        side = cut[low : high + 1]
+        blocks.append(Block(bottom[::2], side * mirror, top[::2], side))
+    return blocks

@@ -35,6 +35,8 @@ class SectorGrid:
         Columns of elements across the tooth.
     inward : bool
         Whether the tooth points to the gear's centre: the rows then run from the rim's outside inwards.
+    web_rows : (int, int)
+        First row of the web, and the first one of the rim above it; equal if there is no web.
     """
 
     body_rows: int
@@ -42,6 +44,7 @@ class SectorGrid:
     land: int
     across: int
     inward: bool = False
+    web_rows: tuple[int, int] = (0, 0)
 
     @property
     def columns(self) -> int:
@@ -54,6 +57,12 @@ class SectorGrid:
         body = [(i, j) for j in range(-self.body_rows, 0) for i in range(self.columns)]
         tooth = [(self.land + i, j) for j in range(self.tooth_rows) for i in range(self.across)]
         return np.array(body + tooth)
+
+    @property
+    def web(self) -> BoolArray:
+        """Whether an element belongs to the web, (m,)."""
+        row = self.cells[:, 1]
+        return np.asarray((row >= self.web_rows[0]) & (row < self.web_rows[1]))
 
     @cached_property
     def _places(self) -> IntArray:

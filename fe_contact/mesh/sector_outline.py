@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 
@@ -38,6 +39,8 @@ class SectorOutline:
         Fractions across the tooth from the right flank (0) to the left one (1).
     depth : (q,) array
         Fractions from the root (0) to the bore (1).
+    web_rows : (int, int)
+        See `SectorGrid`.
     """
 
     profile: ToothProfile
@@ -45,6 +48,7 @@ class SectorOutline:
     land: FloatArray
     across: FloatArray
     depth: FloatArray
+    web_rows: tuple[int, int] = (0, 0)
 
     @property
     def grid(self) -> SectorGrid:
@@ -55,6 +59,7 @@ class SectorOutline:
             land=len(self.land) // 2,
             across=len(self.across) // 2,
             inward=self.profile.gear.sign < 0,
+            web_rows=self.web_rows,
         )
 
     @property
@@ -72,7 +77,7 @@ class SectorOutline:
         """Points between tooth and body from right to left, (p, 2)."""
         right, t = self.profile.flank(self.s[:1])[0], self.across[:, None]
         gear = self.profile.gear
-        dip = gear.sign * 4.0 * min(DIP * gear.normal_module, THIN * gear.body_depth) * t * (1.0 - t)
+        dip = gear.sign * 4.0 * min(DIP * gear.normal_module, THIN * gear.rim_thickness) * t * (1.0 - t)
         return np.asarray((1.0 - t) * right + t * right * [-1.0, 1.0] - dip * [0.0, 1.0])
 
     @property
@@ -94,6 +99,19 @@ class SectorOutline:
         return self.profile.gear.held_radius * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
 
     @property
+    def circles(self) -> dict[int, FloatArray]:
+        """Points of the hub's outside and the rim's inside, right to left, by row of elements above."""
+        top, bottom = (np.arctan2(*p[::2].T) for p in (self.body_top, self.bore))
+        circles = {}
+        for row in self.web_rows:
+            if -self.grid.body_rows < row < 0:
+                depth = self.depth[-2 * row]
+                angle = with_middles((1.0 - depth) * top + depth * bottom)
+                radius = np.linalg.norm(self.right_cut[-2 * row])
+                circles[row] = radius * np.stack([np.sin(angle), np.cos(angle)], axis=-1)
+        return circles
+
+    @property
     def right_cut(self) -> FloatArray:
         """Points of the right cut from the root down to the bore, (q, 2)."""
         gear, angle = self.profile.gear, 0.5 * self.profile.pitch_angle
@@ -106,12 +124,14 @@ def sector_outline(profile: ToothProfile, recipe: SectorRecipe) -> SectorOutline
     gear = profile.gear
     split = split_point(profile, recipe)
     half_width = profile.flank(np.array([0.5 * (profile.s_form + profile.s_tip)]))[0, 0]
+    depth, web_rows = body_divisions(gear, recipe)
     return SectorOutline(
         profile=profile,
         s=with_middles(flank_divisions(profile, split, recipe)),
         land=with_middles(np.linspace(profile.s_space, split, recipe.land_elements + 1)),
         across=with_middles(tooth_divisions(half_width, recipe)),
-        depth=with_middles(body_divisions(gear, recipe)),
+        depth=with_middles(depth),
+        web_rows=web_rows,
     )
 
 
@@ -135,11 +155,11 @@ def with_middles(x: FloatArray) -> FloatArray:
     return out
 
 
-def graded(length: float, size: Callable[[float], float]) -> FloatArray:
-    """Divide 0 .. length into parts of about size(x), x where a part begins."""
+def graded(length: float, size: Callable[[float], float], start: float = 0.0) -> FloatArray:
+    """Divide 0 .. length into parts of about size(start + x), x where a part begins."""
     x = [0.0]
     while x[-1] < length:
-        x.append(x[-1] + size(x[-1]))
+        x.append(x[-1] + size(start + x[-1]))
     if len(x) > 2 and x[-1] - length > 0.5 * (x[-1] - x[-2]):
         x.pop()
     return np.array(x) * (length / x[-1])
@@ -166,10 +186,11 @@ def tooth_divisions(half_width: float, recipe: SectorRecipe) -> FloatArray:
     return np.concatenate([loaded, 2.0 * half_width - coast[-2::-1]]) / (2.0 * half_width)
 
 
-def body_divisions(gear: Toothing, recipe: SectorRecipe) -> FloatArray:
-    """Divide 0 .. 1 from the root to the bore.
+def body_divisions(gear: Toothing, recipe: SectorRecipe) -> tuple[FloatArray, tuple[int, int]]:
+    """Divide 0 .. 1 from the root to the bore, and return the rows of the web (see `SectorGrid`).
 
-    Deep in the body the field changes over its depth, and around a small bore over the radius.
+    Deep in the body the field changes over its depth, and around a small bore over the radius. Rows end at
+    the inside of the rim and at the outside of the hub.
     """
 
     def size(x: float) -> float:
@@ -178,4 +199,11 @@ def body_divisions(gear: Toothing, recipe: SectorRecipe) -> FloatArray:
             largest, recipe.body_size + recipe.body_growth * x, TAPER * (gear.root_radius - gear.sign * x)
         )
 
-    return graded(gear.body_depth, size) / gear.body_depth
+    depth, web = gear.body_depth, gear.web
+    if web is None:
+        return graded(depth, size) / depth, (0, 0)
+    rim, hub = gear.root_radius - web.outer_radius, gear.root_radius - web.inner_radius
+    ends, x = [0.0, rim, hub, depth][: 4 if hub < depth else 3], [np.zeros(1)]
+    for low, high in pairwise(ends):
+        x.append(low + graded(high - low, size, low)[1:])
+    return np.concatenate(x) / depth, (-len(x[1]) - len(x[2]), -len(x[1]))

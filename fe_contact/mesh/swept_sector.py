@@ -3,16 +3,19 @@
 Every layer is a copy of the section, turned along the helix. Freedoms are components in each node's own
 cylindrical frame (radial, tangential, axial), so layers and sectors share element matrices. Deep in the
 body two layers become one; nodes left hanging on the finer side do not exist: their displacement is that of
-the coarser face.
+the coarser face. A web has the layers between its faces only.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from fe_contact.errors import InputError
+from fe_contact.geometry.gear_blank import ROUNDING, Web
 from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
 from fe_contact.mesh.layers import Layers, layers_across, layers_to_mid_face
 from fe_contact.mesh.sector_grid import SectorGrid
@@ -116,7 +119,11 @@ class SweptSector:
 
 
 def swept_sector(
-    grid: SectorGrid, face_width: float, recipe: SectorRecipe, support: BoreSupport | None = None
+    grid: SectorGrid,
+    face_width: float,
+    recipe: SectorRecipe,
+    support: BoreSupport | None = None,
+    web: Web | None = None,
 ) -> SweptSector:
     """Sweep the section `grid` across `face_width`.
 
@@ -130,15 +137,18 @@ def swept_sector(
         Layers, and where they are merged.
     support : BoreSupport, optional
         Default `ClampedBore()`.
+    web : Web, optional
+        The rows `SectorGrid.web_rows` have elements between its faces only.
     """
-    layers = _layers(face_width, recipe)
-    planes = 2 * recipe.layers + 1
+    layers = _layers(face_width, recipe, web)
+    planes = 2 * len(layers.kind) + 1
     level = np.sum(grid.cells[:, 1, None] < np.array(recipe.merge_rows, dtype=int), axis=1)
     node_level = np.zeros(grid.nodes, dtype=np.int64)
     np.maximum.at(node_level, grid.quads.ravel(), np.repeat(level, 8))
-    exists = _existing(grid, node_level, planes)
+    extent = _extents(grid, layers, web)
+    exists = _existing(grid, node_level, extent, planes)
     nodes = np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
-    batches, elements, place = _elements(grid, layers, nodes, level, node_level)
+    batches, elements, place = _elements(grid, layers, nodes, level, node_level, extent)
     held = (support or ClampedBore()).held(grid, planes)
     held[0, :, 2] |= recipe.half_face
     free = ~held[exists]
@@ -146,42 +156,71 @@ def swept_sector(
     return SweptSector(grid, layers, nodes, elements, place, batches, freedoms)
 
 
-def _layers(face_width: float, recipe: SectorRecipe) -> Layers:
-    """Divide the face, or its half above mid-face."""
+def _layers(face_width: float, recipe: SectorRecipe, web: Web | None) -> Layers:
+    """Divide the face, or its half above mid-face; groups of layers end at the faces of a web."""
+    faces: tuple[float, ...] = () if web is None else (web.low, web.high)
     if recipe.half_face:
-        return layers_to_mid_face(face_width, recipe.layers, recipe.layer_growth)
-    return layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth)
+        if abs(sum(faces)) > ROUNDING * face_width:
+            raise InputError("half_face", True, "False for a web off the middle", "Sweep the whole face.")
+        above = inner_breaks(faces[1:], face_width)
+        return layers_to_mid_face(face_width, recipe.layers, recipe.layer_growth, above)
+    breaks = inner_breaks(faces, face_width)
+    return layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth, breaks)
 
 
-def _existing(grid: SectorGrid, node_level: IntArray, planes: int) -> BoolArray:
+def inner_breaks(positions: Sequence[float], face_width: float) -> tuple[float, ...]:
+    """Return the different axial positions inside the face, increasing."""
+    close, breaks = ROUNDING * face_width, [-0.5 * face_width]
+    for z in sorted(positions):
+        if z > breaks[-1] + close and z < 0.5 * face_width - close:
+            breaks.append(float(z))
+    return tuple(breaks[1:])
+
+
+def _extents(grid: SectorGrid, layers: Layers, web: Web | None) -> IntArray:
+    """Return the first layer of each quadrilateral, and the first one above it, (m, 2)."""
+    extent = np.tile([0, len(layers.kind)], (len(grid.quads), 1))
+    if web is not None:
+        extent[grid.web] = [np.abs(layers.ends - z).argmin() for z in (web.low, web.high)]
+    return extent
+
+
+def _existing(grid: SectorGrid, node_level: IntArray, extent: IntArray, planes: int) -> BoolArray:
     """Return where a section node has a node above it: corners also between bottom and top of an element."""
     step = np.where(grid.corner, 1, 2) * 2**node_level
-    return np.asarray(np.arange(planes)[:, None] % step == 0)
+    low, high = np.full(grid.nodes, planes), np.zeros(grid.nodes, dtype=np.int64)
+    np.minimum.at(low, grid.quads.ravel(), np.repeat(2 * extent[:, 0], 8))
+    np.maximum.at(high, grid.quads.ravel(), np.repeat(2 * extent[:, 1], 8))
+    plane = np.arange(planes)[:, None]
+    return np.asarray((plane % step == 0) & (plane >= low) & (plane <= high))
 
 
 def _elements(
-    grid: SectorGrid, layers: Layers, nodes: IntArray, level: IntArray, node_level: IntArray
+    grid: SectorGrid,
+    layers: Layers,
+    nodes: IntArray,
+    level: IntArray,
+    node_level: IntArray,
+    extent: IntArray,
 ) -> tuple[tuple[Batch, ...], IntArray, FloatArray]:
     """Stack the elements layer by layer."""
-    hanging = node_level[grid.quads[:, 0]] > level
+    alike = np.column_stack([level, node_level[grid.quads[:, 0]] > level, extent])
     elements: list[IntArray] = []
     place: list[FloatArray] = []
     batches: list[Batch] = []
     count = 0
-    for lv in range(level.max(initial=0) + 1):
-        for hangs in (False, True):
-            quads = np.flatnonzero((level == lv) & (hanging == hangs))
-            sharing: dict[tuple[int, int], list[IntArray]] = {}
-            for k in range(len(layers.kind) >> lv if len(quads) else 0):
-                first = k << lv
-                half = (-1, 1)[k % 2] if hangs else 0
-                elements.append(_layer(nodes, grid.quads[quads], 2 * first, 2 << lv, half))
-                place.append(np.column_stack([grid.cells[quads], np.full(len(quads), first + 0.5 * 2**lv)]))
-                numbers = count + np.arange(len(quads))
-                sharing.setdefault((int(layers.kind[first]), half), []).append(numbers)
-                count += len(quads)
-            for (kind, half), rows in sharing.items():
-                batches.append(Batch(quads, 2.0**lv * layers.thickness[kind], half, np.array(rows)))
+    for lv, hangs, first_layer, last_layer in np.unique(alike, axis=0):
+        quads = np.flatnonzero((alike == [lv, hangs, first_layer, last_layer]).all(axis=1))
+        sharing: dict[tuple[int, int], list[IntArray]] = {}
+        for first in range(first_layer, last_layer, 1 << lv):
+            half = (-1, 1)[(first >> lv) % 2] if hangs else 0
+            elements.append(_layer(nodes, grid.quads[quads], 2 * first, 2 << lv, half))
+            place.append(np.column_stack([grid.cells[quads], np.full(len(quads), first + 0.5 * 2**lv)]))
+            numbers = count + np.arange(len(quads))
+            sharing.setdefault((int(layers.kind[first]), half), []).append(numbers)
+            count += len(quads)
+        for (kind, half), rows in sharing.items():
+            batches.append(Batch(quads, 2.0**lv * layers.thickness[kind], half, np.array(rows)))
     return tuple(batches), np.concatenate(elements), np.concatenate(place)
 
 

@@ -73,7 +73,7 @@ def lowest_flank_node(profile: ToothProfile, recipe: MeshRecipe) -> float:
 def rim_limit(profile: ToothProfile, recipe: MeshRecipe, s: FloatArray) -> FloatArray:
     """Return the largest element a thin rim admits: its thickness, growing away from the root."""
     gear = profile.gear
-    thickness = max(gear.body_depth, THINNEST * gear.normal_module)
+    thickness = max(gear.rim_thickness, THINNEST * gear.normal_module)
     return thickness + recipe.growth * np.maximum(s - profile.s_root, 0.0)
 
 

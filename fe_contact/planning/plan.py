@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.checks import increasing
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactModel, PatchRule
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import GearPair, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.planning.accuracy import Accuracy
 from fe_contact.planning.discretisation import Discretisation, face_discretisation, plane_discretisation
@@ -68,6 +68,8 @@ class Plan:
         Requested normal forces F_bn in N.
     support : ndarray
         Further loads in N that carry the force extraction down to lift-off and into overload.
+    thin_rim : bool
+        Bodies have the rim and web of their blank; else they are solid.
     """
 
     discretisation: Discretisation
@@ -76,6 +78,13 @@ class Plan:
     nodes: NodeRule
     load: FloatArray
     support: FloatArray
+    thin_rim: bool = True
+
+    def bodies(self, pair: GearPair) -> tuple[Toothing, Toothing]:
+        """Return both gears as their finite elements have them."""
+        if self.thin_rim:
+            return pair.pinion, pair.wheel
+        return pair.pinion.solid(), pair.wheel.solid()
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -97,7 +106,7 @@ def make_plan(pair: GearPair, load: FloatArray, accuracy: Accuracy, model: Conta
         Requested normal forces in N, increasing, > 0.
     accuracy : Accuracy
     model : ContactModel
-        `across_face` asks for three dimensions.
+        `across_face` asks for three dimensions, `thin_rim` for the blanks.
     """
     levels = increasing("load", load)
     discretisation: Discretisation
@@ -109,7 +118,8 @@ def make_plan(pair: GearPair, load: FloatArray, accuracy: Accuracy, model: Conta
         discretisation = plane_discretisation(pair, accuracy.mesh_level, hypothesis)
     patch = _patch_rule(pair, LARGEST_SUPPORT * levels[-1], discretisation.least_patch)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
-    return Plan(discretisation, patch, accuracy.positions, nodes, levels, _support_loads(levels))
+    support = _support_loads(levels)
+    return Plan(discretisation, patch, accuracy.positions, nodes, levels, support, model.thin_rim)
 
 
 def _support_loads(levels: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from fe_contact.errors import FeContactError, InputError
-from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearPair, Shaft
+from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearBlank, GearPair, Shaft
 from fe_contact.material import Material
 from service.convert.errors import translated
 from service.convert.units import DEGREE, GPA, MM, N_PER_UM, UM
@@ -78,10 +78,27 @@ def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> G
             thickness_allowance=given.thickness_allowance_um * UM,
             modification=_modification(given),
             material=_material(given.material or material),
+            blank=_blank(given),
             **{coefficient: getattr(given, coefficient) for coefficient in _COEFFICIENTS},
         )
     except InputError as error:
         raise error.within(name) from None
+
+
+def _blank(given: GearInput) -> GearBlank | None:
+    """Return rim, web and hub of a gear, None for a solid one."""
+    blank = given.blank
+    if blank is None:
+        return None
+    try:
+        return GearBlank(
+            rim_thickness=blank.rim_thickness_mm * MM,
+            web_thickness=blank.web_thickness_mm * MM,
+            hub_diameter=None if blank.hub_diameter_mm is None else blank.hub_diameter_mm * MM,
+            web_offset=blank.web_offset_mm * MM,
+        )
+    except InputError as error:
+        raise error.within("blank") from None
 
 
 def _shaft(name: str, gear: GearInput) -> Shaft | None:

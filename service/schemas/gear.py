@@ -56,6 +56,37 @@ class GearShaftInput(BoundaryModel):
     )
 
 
+class GearBlankInput(BoundaryModel):
+    """Rim, web and hub of a gear; rim and hub are as wide as the face."""
+
+    rim_thickness_mm: float = Field(
+        gt=0.0,
+        le=20_000.0,
+        description="Rim thickness s_R in mm, from the root circle to the inside of the rim",
+        examples=[12.0],
+    )
+    web_thickness_mm: float = Field(
+        gt=0.0,
+        le=5000.0,
+        description="Web thickness b_s in mm; that of the face width is a solid gear",
+        examples=[10.0],
+    )
+    hub_diameter_mm: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=20_000.0,
+        description="Outside of the hub in mm; left out: the web reaches down to the bore",
+        examples=[60.0],
+    )
+    web_offset_mm: float = Field(
+        default=0.0,
+        ge=-5000.0,
+        le=5000.0,
+        description="Middle of the web in mm towards +z from mid-face",
+        examples=[5.0],
+    )
+
+
 class FlankGridInput(BoundaryModel):
     """A free-form flank as a grid: one row of removed material per roll length."""
 
@@ -190,6 +221,11 @@ class GearInput(BoundaryModel):
         default=None,
         description="Steel shaft that bends under the tooth forces; left out: rigid",
         examples=[{"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0}],
+    )
+    blank: GearBlankInput | None = Field(
+        default=None,
+        description="Rim, web and hub; left out: a solid body",
+        examples=[{"rim_thickness_mm": 12.0, "web_thickness_mm": 10.0, "hub_diameter_mm": 60.0}],
     )
     material: MaterialInput | None = Field(
         default=None,

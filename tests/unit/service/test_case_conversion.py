@@ -82,6 +82,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
         "material": {"youngs_modulus_gpa": 100.0},
+        "blank": {"rim_thickness_mm": 8.0, "web_thickness_mm": 10.0},
         "shaft": {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0},
         "flank_grid": {
             "roll_length_mm": [4.0, 20.0],
@@ -97,6 +98,25 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         table["pair"]["center_distance_mm"] = 82.1 if name == "teeth" else 80.2
         pair = gear_pair(validated(Case, table))
         assert (pair.pinion, pair.shafts[0]) != (plain, None), name
+
+
+def test_rim_web_and_hub_arrive_in_si_and_their_errors_in_mm() -> None:
+    given = {
+        "rim_thickness_mm": 8.0,
+        "web_thickness_mm": 10.0,
+        "hub_diameter_mm": 45.0,
+        "web_offset_mm": -2.0,
+    }
+    blank = gear_pair(case(blank=given)).pinion.blank
+    assert blank is not None
+    found = (blank.rim_thickness, blank.web_thickness, blank.hub_diameter, blank.web_offset)
+    assert found == pytest.approx((8e-3, 10e-3, 45e-3, -2e-3), rel=1e-15)
+    with pytest.raises(BadInput) as refusal:
+        gear_pair(case(blank=given | {"rim_thickness_mm": 20.0}))
+    (fault,) = refusal.value.faults
+    assert fault.field == "pair.pinion.blank.rim_thickness_mm"
+    assert "12.5 mm" in fault.bound
+    assert fault.value == pytest.approx(20.0)
 
 
 def test_mating_gears_have_opposite_hands() -> None:

@@ -26,12 +26,13 @@ from fe_contact.compliance.checks_3d import least_eigenvalue, pressure_forces
 from fe_contact.compliance.flank import ComplianceChecks, refuse_broken_laws
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import Gear, RingGear, Toothing
+from fe_contact.geometry import Gear, GearBlank, RingGear, Toothing
 from fe_contact.material import Material
 from fe_contact.mesh import PlaneStrain, SectorRecipe, quad_sector, swept_sector
 
 SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
 HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
+WEBBED = replace(HELICAL, blank=GearBlank(3e-3, 6e-3, 14e-3, web_offset=3e-3))
 GEARS = pytest.mark.parametrize("gear", [SPUR, HELICAL], ids=["spur", "helical"])
 RING = RingGear(
     teeth=30,
@@ -41,9 +42,10 @@ RING = RingGear(
     cutter_teeth=15,
     addendum_coefficient=0.6,
 )
+HELICAL_RING = replace(RING, rim_diameter=160e-3, helix_angle=math.radians(20.0))
 BOTH_KINDS = pytest.mark.parametrize(
     "gear",
-    [SPUR, HELICAL, RING, replace(RING, rim_diameter=160e-3, helix_angle=math.radians(20.0))],
+    [SPUR, HELICAL, RING, HELICAL_RING],
     ids=["spur", "helical", "ring", "helical ring"],
 )
 
@@ -71,7 +73,7 @@ def relative(found: np.ndarray, expected: np.ndarray) -> float:
 def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     """Flank of every tooth under forces on tooth 0, (z, nf, nf), by one sparse factorisation of all teeth."""
     section = quad_sector(gear, recipe)
-    sector = swept_sector(section.grid, gear.face_width, recipe)
+    sector = swept_sector(section.grid, gear.face_width, recipe, web=gear.web)
     stiffness = sector_stiffness(gear, section, sector, flank_frames(section, twist(gear)))
     teeth, size = gear.teeth, sector.size
     own = np.setdiff1d(np.arange(size), sector.left)
@@ -96,7 +98,11 @@ def global_compliance(gear: Toothing, recipe: SectorRecipe) -> np.ndarray:
     return found[number[:, sector.flank]]
 
 
-@BOTH_KINDS
+@pytest.mark.parametrize(
+    "gear",
+    [SPUR, HELICAL, WEBBED, RING, HELICAL_RING],
+    ids=["spur", "helical", "helical with a web", "ring", "helical ring"],
+)
 def test_equals_the_solution_of_the_whole_gear(gear: Toothing) -> None:
     found = flank_compliance_3d(gear, coarse(gear), reach=4)
     direct = global_compliance(gear, coarse(gear))
@@ -355,7 +361,9 @@ def test_pressure_is_shared_consistently() -> None:
 
 
 @pytest.mark.parametrize(
-    "gear", [replace(SPUR, teeth=20, bore_diameter=40e-3), HELICAL], ids=["spur", "helical"]
+    "gear",
+    [replace(SPUR, teeth=20, bore_diameter=40e-3), HELICAL, WEBBED],
+    ids=["spur", "helical", "helical with a web"],
 )
 def test_cost_is_known_before_the_run(gear: Gear) -> None:
     recipe = SectorRecipe.draft(gear)

@@ -1,0 +1,42 @@
+"""Thin rim: gear bodies have the rim and web of their blank instead of being solid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.geometry import blank_factor, web_compliance
+
+
+@dataclass(frozen=True)
+class ThinRim:
+    """A rim on a web gives way where a solid body does not."""
+
+    name: ClassVar[str] = "thin_rim"
+    needs: ClassVar[tuple[str, ...]] = ("gear blank",)
+    adds: ClassVar[tuple[str, ...]] = ("compliance",)
+    cost: ClassVar[str] = "none beside the three-dimensional model it calls for"
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects/thin_rim.md", "ISO 6336-1: gear blank factor C_R")
+    valid_for: ClassVar[str] = "external gears; rim and hub as wide as the face, web a plain disc"
+
+    def called_for(self, scene: ContactScene) -> Verdict:
+        """On where either gear has a web."""
+        webs = {"pinion": scene.pair.pinion.web, "wheel": scene.pair.wheel.web}
+        with_web = [name for name, web in webs.items() if web is not None]
+        if not with_web:
+            return Verdict(False, "both bodies are solid", "nothing")
+        gears = (scene.pair.pinion, scene.pair.wheel)
+        force = float(scene.torque.max()) / scene.pair.pinion.base_radius
+        missing = 1e6 * force * sum(web_compliance(gear) for gear in gears)
+        change = 50.0 * sum(blank_factor(gear) - 1.0 for gear in gears)
+        worth = (
+            f"mean STE at least {-missing:.2g} um at the largest load (the web alone), "
+            f"peak-to-peak about {change:.0f} % (gear blank factor)"
+        )
+        return Verdict(True, f"{' and '.join(with_web)} with rim and web", worth)
+
+    def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
+        """Ask for the bodies as drawn."""
+        return replace(model, thin_rim=True)

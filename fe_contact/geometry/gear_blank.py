@@ -1,0 +1,135 @@
+"""The body of a gear below its teeth: rim, web and hub (gear blank, ISO 6336-1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from fe_contact.checks import finite, positive
+from fe_contact.errors import InfeasibleGeometry
+from fe_contact.types import Json
+
+if TYPE_CHECKING:
+    from fe_contact.geometry.gear import Gear
+
+THINNEST_RIM = 0.5  # in normal modules
+THINNEST_WEB = 0.02  # in face widths
+ROUNDING = 1e-4  # of the face width: faces closer than that are one, since foils of elements are no help
+
+
+@dataclass(frozen=True)
+class GearBlank:
+    """A rim as wide as the face, a web, and a hub as wide as the face.
+
+    Attributes
+    ----------
+    rim_thickness : float
+        s_R, from the root circle down to the inside of the rim, m.
+    web_thickness : float
+        b_s, m. A web as thick as the face is wide is a solid gear.
+    hub_diameter : float, optional
+        Outside of the hub, m; default: the bore, the web reaches down to it.
+    web_offset : float
+        Axial distance of the middle of the web from mid-face, m.
+
+    Raises
+    ------
+    InputError
+        A value out of its bounds.
+    """
+
+    rim_thickness: float
+    web_thickness: float
+    hub_diameter: float | None = None
+    web_offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        positive("rim_thickness", self.rim_thickness, "In m: 12 mm is 0.012.")
+        positive("web_thickness", self.web_thickness, "In m: 8 mm is 0.008.")
+        if self.hub_diameter is not None:
+            positive("hub_diameter", self.hub_diameter, "In m: 60 mm is 0.06.")
+        finite("web_offset", self.web_offset, "In m, from mid-face.")
+
+    def mirrored(self) -> GearBlank:
+        """Return the mirror image in the plane of mid-face."""
+        return replace(self, web_offset=0.0 - self.web_offset)
+
+
+@dataclass(frozen=True)
+class Web:
+    """Where the body is narrower than the face.
+
+    Attributes
+    ----------
+    outer_radius, inner_radius : float
+        Inside of the rim and outside of the hub, m.
+    low, high : float
+        Faces of the web along the axis, m; 0 is mid-face.
+    """
+
+    outer_radius: float
+    inner_radius: float
+    low: float
+    high: float
+
+    @property
+    def thickness(self) -> float:
+        """b_s, m."""
+        return self.high - self.low
+
+    def content(self) -> Json:
+        """Return all fields as plain JSON."""
+        return {name: float(value) for name, value in vars(self).items()}
+
+
+def web_of(gear: Gear) -> Web | None:
+    """Return the web of a gear, None if its body is as wide as the face all the way down."""
+    blank = gear.blank
+    if blank is None or blank.web_thickness >= (1.0 - ROUNDING) * gear.face_width:
+        return None
+    hub = gear.bore_diameter if blank.hub_diameter is None else blank.hub_diameter
+    half, width = 0.5 * blank.web_thickness, 0.5 * gear.face_width
+    low, high = max(blank.web_offset - half, -width), min(blank.web_offset + half, width)
+    return Web(gear.root_radius - blank.rim_thickness, 0.5 * hub, low, high)
+
+
+def refuse_misfit(gear: Gear) -> None:
+    """Raise `InfeasibleGeometry` if the blank of a gear has no room in it."""
+    blank = gear.blank
+    if blank is None:
+        return
+    _refuse_rim(gear, blank)
+    _refuse_web(gear, blank)
+
+
+def _refuse_rim(gear: Gear, blank: GearBlank) -> None:
+    """Refuse a hub inside the bore, a rim that leaves no web, and one that carries no teeth."""
+    hub = gear.bore_diameter if blank.hub_diameter is None else blank.hub_diameter
+    if hub < gear.bore_diameter:
+        bound = f"at least the bore diameter {gear.bore_diameter:.6g} m"
+        raise InfeasibleGeometry("hub", "blank.hub_diameter", hub, bound, "Raise it or leave it out.")
+    deepest = gear.root_radius - 0.5 * hub
+    if not blank.rim_thickness < deepest:
+        bound = f"below {deepest:.6g} m, what lies between root circle and hub (or bore)"
+        advice = "Lower the rim thickness or the hub diameter; leave the blank out for a solid gear."
+        raise InfeasibleGeometry("rim", "blank.rim_thickness", blank.rim_thickness, bound, advice)
+    least = THINNEST_RIM * gear.normal_module
+    if blank.rim_thickness < least:
+        bound = f"at least {least:.6g} m, {THINNEST_RIM:g} normal modules"
+        raise InfeasibleGeometry(
+            "rim", "blank.rim_thickness", blank.rim_thickness, bound, "Raise the rim thickness."
+        )
+
+
+def _refuse_web(gear: Gear, blank: GearBlank) -> None:
+    """Refuse a web that is a foil, or that leaves the face."""
+    least = THINNEST_WEB * gear.face_width
+    if not least <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
+        bound = f"from {least:.6g} to the face width {gear.face_width:.6g} m"
+        advice = "A web as thick as the face is wide is a solid gear."
+        raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, advice)
+    room = 0.5 * (gear.face_width - blank.web_thickness)
+    if abs(blank.web_offset) > room + 1e-9 * gear.face_width:
+        bound = f"from {-room:.6g} to {room:.6g} m, so that the web stays within the face"
+        advice = "Lower the offset or the web thickness."
+        raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, advice)

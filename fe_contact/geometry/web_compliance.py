@@ -1,0 +1,50 @@
+"""How far a plain annular disc gives way between a held inner and a rigid outer edge, in closed form.
+
+Thin discs are in plane stress. Timoshenko and Goodier, Theory of Elasticity, art. 37 (torsion of a ring) and
+Muskhelishvili's complex potentials of a force at the hole of an annulus, both edges rigid.
+"""
+
+from __future__ import annotations
+
+import math
+
+from fe_contact.geometry.gear import Gear
+from fe_contact.material import Material
+
+
+def torsion_compliance(inner: float, outer: float, material: Material) -> float:
+    """Angle per moment between the edges of a disc, times its thickness: m rad / (N m).
+
+    Shear alone: (1/r_i^2 - 1/r_o^2) / (4 pi G); radii in m.
+    """
+    return (inner**-2 - outer**-2) / (4.0 * math.pi * _shear_modulus(material))
+
+
+def shift_compliance(inner: float, outer: float, material: Material) -> float:
+    """In-plane shift per force between the rigid edges of a disc, times its thickness: m^2 / N.
+
+    (kappa ln(r_o/r_i) - (r_o^2 - r_i^2) / (kappa (r_o^2 + r_i^2))) / (2 pi G (1 + kappa)), with
+    kappa = (3 - nu) / (1 + nu); radii in m.
+    """
+    kappa = (3.0 - material.poissons_ratio) / (1.0 + material.poissons_ratio)
+    ratio = (outer**2 - inner**2) / (outer**2 + inner**2)
+    shape = kappa * math.log(outer / inner) - ratio / kappa
+    return shape / (2.0 * math.pi * _shear_modulus(material) * (1.0 + kappa))
+
+
+def web_compliance(gear: Gear) -> float:
+    """How much more than a solid body the web of a gear gives way along the line of action, m/N.
+
+    A lower bound of what the blank adds: rim and hub are rigid here, and the force enters the web evenly.
+    """
+    web = gear.web
+    if web is None:
+        return 0.0
+    radii = (web.inner_radius, web.outer_radius, gear.material)
+    each = gear.base_radius**2 * torsion_compliance(*radii) + shift_compliance(*radii)
+    return each * (1.0 / web.thickness - 1.0 / gear.face_width)
+
+
+def _shear_modulus(material: Material) -> float:
+    """G in Pa."""
+    return 0.5 * material.youngs_modulus / (1.0 + material.poissons_ratio)
