@@ -1,8 +1,9 @@
 """Rigid bodies: shafts, the gears on them, their inertia, and laws of time that move or load them."""
 
+from dynamics.bodies.angle_law import AngleLaw
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.shaft import Shaft
 from dynamics.bodies.time_law import TimeLaw
 
-__all__ = ["GearBody", "Inertia", "Shaft", "TimeLaw", "hollow_cylinder"]
+__all__ = ["AngleLaw", "GearBody", "Inertia", "Shaft", "TimeLaw", "hollow_cylinder"]

@@ -1,8 +1,9 @@
 """What holds bodies: bushings to the ground, pins in a carrier; and what makes them turn."""
 
 from dynamics.joints.bushing import Bushing
+from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
 from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
 
-__all__ = ["Bushing", "FreeRotation", "ImposedRotation", "PlanetBearing"]
+__all__ = ["Bushing", "Coupling", "FreeRotation", "ImposedRotation", "PlanetBearing"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from dynamics.bodies.angle_law import AngleLaw
 from dynamics.bodies.time_law import TimeLaw
 from dynamics.checks import not_negative, positive
 
@@ -18,8 +19,9 @@ class ImposedRotation:
         Unique among the drives.
     shaft : str
         The driven shaft.
-    speed : TimeLaw
-        rad/s about the fixed +z axis; 0: held. The angle is its exact integral from t = 0, where it is 0.
+    speed : TimeLaw or AngleLaw
+        rad/s about the fixed +z axis; 0: held. The angle is its exact integral from t = 0, where it is 0. An
+        `AngleLaw` gives it by the angle over time.
     stiffness : float or None
         N m/rad of a torsional spring between the imposed motion and the shaft, e.g. the torsional support
         of a held ring gear. None: rigid.
@@ -29,7 +31,7 @@ class ImposedRotation:
 
     name: str
     shaft: str
-    speed: TimeLaw
+    speed: TimeLaw | AngleLaw
     stiffness: float | None = None
     damping: float = 0.0
 

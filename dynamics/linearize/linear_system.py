@@ -31,7 +31,8 @@ class LinearSystem:
     rigid : (k, n) array
         Motions that nothing resists: those of trains without a drive.
     spring : tuple of str
-        Names of all springs: meshes, bearings with direction, elastic drives.
+        Names of all springs: meshes, bearings with direction, couplings (once per principal stiffness),
+        elastic drives.
     strain : (p, n) array
         Strain of each spring per freedom, m or rad.
     spring_stiffness : (p,) array
@@ -99,6 +100,15 @@ def _springs(system: System, tangent: FloatArray) -> tuple[tuple[str, ...], Floa
     names += [f"{name}.{axis}" for name in supports.name for axis in "xyz"]
     rows.append(moves.reshape(-1, moves.shape[-1]))
     stiffness.append(supports.stiffness.ravel())
+    for name, motion, matrix in zip(
+        system.couplings.name, system.couplings.motion, system.couplings.stiffness, strict=True
+    ):
+        values, vectors = np.linalg.eigh(matrix)
+        for value, vector in zip(values, vectors.T, strict=True):
+            if value > 0.0:
+                names.append(name)
+                rows.append(system.freedoms.keep(vector @ motion)[None, :])
+                stiffness.append(np.array([value]))
     for shaft, drive in zip(system.kinematics.law_shaft, system.scene.drives, strict=False):
         if drive.stiffness is not None:
             names.append(drive.name)

@@ -29,6 +29,7 @@ def histories(
         "bearing": system.supports.name if wanted.bearing_forces else (),
         "freedom": system.freedoms.name if wanted.displacements else (),
         "drive": tuple(drive.name for drive in scene.drives),
+        "coupling": system.couplings.name,
         "position": flank[0],
         "mesh_frequency": _mesh_frequency(system, laws[SPEED], v),
         "dynamic_transmission_error": flank[1],
@@ -36,6 +37,7 @@ def histories(
         "mesh_force": flank[2],
         "speed": _speed(system, laws[SPEED], v),
         "drive_torque": _drive_torque(system, time, laws[ACCELERATION], flank[2], q, v),
+        "coupling_torque": _coupling_torque(system, q, v),
         "bearing_force": _seen_from_the_ground(system, bearing_force(system, q, v), laws, moved)
         if wanted.bearing_forces
         else np.empty((0, 3, time.size)),
@@ -67,6 +69,15 @@ def _seen_from_the_ground(system: System, force: FloatArray, laws: FloatArray, m
         force[bearing, 0] = np.cos(angle) * x - np.sin(angle) * y
         force[bearing, 1] = np.sin(angle) * x + np.cos(angle) * y
     return force
+
+
+def _coupling_torque(system: System, q: FloatArray, v: FloatArray) -> FloatArray:
+    """Torque about +z from the first shaft of each coupling on the second, (c, T)."""
+    couplings = system.couplings
+    strains = system.freedoms.keep(couplings.motion)
+    elastic = np.einsum("cl,cln,tn->ct", couplings.stiffness[:, ROTATION], strains, q)
+    viscous = np.einsum("cl,cln,tn->ct", couplings.damping[:, ROTATION], strains, v)
+    return np.ascontiguousarray(-elastic - viscous)
 
 
 def _mesh_frequency(system: System, speed: FloatArray, v: FloatArray) -> FloatArray:

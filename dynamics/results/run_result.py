@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RunResult:
-    """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms, d drives.
+    """Time series on a uniform grid of T samples; m meshes, s shafts, b bearings, n freedoms.
 
     Attributes
     ----------
     time : (T,) array
         s.
-    mesh, shaft, bearing, freedom, drive : tuples of str
+    mesh, shaft, bearing, freedom, drive, coupling : tuples of str
         Names along the axes below.
     position : (m, T) array
         Of each mesh by its driver, base pitches in [0, period of its table).
@@ -42,6 +42,8 @@ class RunResult:
         rad/s about +z.
     drive_torque : (d, T) array
         N m about +z, on each drive's shaft.
+    coupling_torque : (c, T) array
+        N m about +z, from the first shaft of each coupling on the second.
     bearing_force : (b, 3, T) array
         Force of the shaft on the ground in the fixed frame x, y, z, N; of a planet on its pin in the
         carrier's turning frame; b = 0 if not asked for.
@@ -64,6 +66,7 @@ class RunResult:
     bearing: tuple[str, ...]
     freedom: tuple[str, ...]
     drive: tuple[str, ...]
+    coupling: tuple[str, ...]
     position: FloatArray
     mesh_frequency: FloatArray
     dynamic_transmission_error: FloatArray
@@ -71,6 +74,7 @@ class RunResult:
     mesh_force: FloatArray
     speed: FloatArray
     drive_torque: FloatArray
+    coupling_torque: FloatArray
     bearing_force: FloatArray
     displacement: FloatArray
     velocity: FloatArray

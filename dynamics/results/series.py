@@ -10,6 +10,7 @@ LABELS = {
     "bearing": "bearing",
     "freedom": "freedom",
     "drive": "drive",
+    "coupling": "coupling",
 }
 
 
@@ -47,6 +48,7 @@ SERIES = (
     Series("mesh_force", ("mesh", "time"), "N", "transverse mesh force"),
     Series("speed", ("shaft", "time"), "rad s-1", "speed about +z"),
     Series("drive_torque", ("drive", "time"), "N m", "drive torque about +z"),
+    Series("coupling_torque", ("coupling", "time"), "N m", "torque from the first to the second shaft"),
     Series("bearing_force", ("bearing", "direction", "time"), "N", "force of the shaft on the ground"),
     Series("displacement", ("freedom", "time"), "m or rad", "deviation from the kinematic motion"),
     Series("velocity", ("freedom", "time"), "m s-1 or rad s-1", "rate of the deviation"),

@@ -10,6 +10,7 @@ import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.system.arrays import SystemArrays
+from dynamics.system.coupling_rows import CouplingRows, gather_couplings
 from dynamics.system.effects import FREEDOMS, MeshOnRotor, SupportedRotor
 from dynamics.system.effects.ledger import EffectLedger, keep_ledger
 from dynamics.system.flanks import Flanks, flank_laws
@@ -50,6 +51,7 @@ class System:
         One per shaft.
     supports : Supports
         Bushings, then planet bearings.
+    couplings : CouplingRows
     bearing_stiffness, bearing_damping : (b, 3, n) arrays
         Force on the ground, or on the pin, at each support per freedom and its rate.
     ledger : EffectLedger
@@ -63,6 +65,7 @@ class System:
     flanks: Flanks
     rotors: tuple[Rotor, ...]
     supports: Supports
+    couplings: CouplingRows
     bearing_stiffness: FloatArray
     bearing_damping: FloatArray
     ledger: EffectLedger
@@ -80,12 +83,12 @@ def assemble(scene: Scene) -> System:
     rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
     forces = nominal_forces(scene, kinematics, turning_inertia(rotors))
-    supports = gather_supports(rotors)
+    supports, couplings = gather_supports(rotors), gather_couplings(scene, rotors)
     ledger = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces))
     freedoms = find_freedoms(rotors, kinematics, ledger)
     _check_mass(freedoms, rotors)
     flanks = flank_laws(scene, kinematics, forces, [rotor.inertia.polar for rotor in rotors])
-    arrays = _arrays(scene, rotors, kinematics, freedoms, lines, flanks, supports)
+    arrays = _arrays(scene, rotors, kinematics, freedoms, lines, flanks, supports, couplings)
     moves = freedoms.keep(supports.motion)
     return System(
         scene,
@@ -96,6 +99,7 @@ def assemble(scene: Scene) -> System:
         flanks,
         rotors,
         supports,
+        couplings,
         supports.stiffness[:, :, None] * moves,
         supports.damping[:, :, None] * moves,
         ledger,
@@ -142,11 +146,16 @@ def _arrays(
     lines: Sequence[LineOfAction],
     flanks: Flanks,
     supports: Supports,
+    couplings: CouplingRows,
 ) -> SystemArrays:
     """Reduce every six-freedom array to the free directions."""
     moves, vectors = freedoms.keep(supports.motion), kinematic_vectors(rotors, kinematics)
     stiffness = supports.matrix(supports.stiffness, moves, moves)
     damping = supports.matrix(supports.damping, moves, moves)
+    if couplings.name:
+        strains = freedoms.keep(couplings.motion)
+        stiffness += couplings.matrix(couplings.stiffness, strains, strains)
+        damping += couplings.matrix(couplings.damping, strains, strains)
     _add_drive_springs(scene, kinematics, freedoms, stiffness, damping)
     full_mass = mass_diagonal(rotors)
     mass = freedoms.motion.T @ (full_mass[:, None] * freedoms.motion)
@@ -163,7 +172,7 @@ def _arrays(
         np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error),
         freedoms.keep(-full_mass * vectors),
         np.ascontiguousarray((vectors * full_mass) @ vectors.T),
-        lay_out_drives(scene, rotors, kinematics, freedoms, supports, gradient, vectors),
+        lay_out_drives(scene, rotors, kinematics, freedoms, supports, couplings, gradient, vectors),
         scale,
         scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
         flanks.law,

@@ -58,7 +58,8 @@ def solve_kinematics(scene: Scene) -> Kinematics:
     """Solve for the speeds of all shafts.
 
     A mesh of gears a and b on the carrier c (none: w_c = 0) asks for (w_a - w_c) z_a = -(w_b - w_c) z_b, with
-    + for a ring gear and its pinion. What meshes leave open, drives and free rotations set.
+    + for a ring gear and its pinion; a coupling for equal speeds. What they leave open, drives and free
+    rotations set.
 
     Raises
     ------
@@ -69,6 +70,13 @@ def solve_kinematics(scene: Scene) -> Kinematics:
     speeds = TrainSpeeds(len(scene.shafts))
     for index in range(len(scene.meshes)):
         _add_mesh(scene, speeds, index)
+    for index, coupling in enumerate(scene.couplings):
+        ends = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
+        found = speeds.ratio(*ends, None)
+        if found is not None and found != 1:
+            bound = f"a shaft of the same speed, not of {found} times it"
+            raise InputError(f"couplings[{index}].second", coupling.second, bound)
+        speeds.join(*ends, None, Fraction(1))
     for place, part in enumerate(scene.references):
         if not speeds.set_by_law(scene.shaft_index(part.shaft)):
             drives = len(scene.drives)

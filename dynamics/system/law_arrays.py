@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.bodies import TimeLaw
+from dynamics.bodies import AngleLaw, TimeLaw
 from dynamics.system.arrays import LawArrays
 from dynamics.types import FloatArray
 
 
-def pack_laws(laws: Sequence[TimeLaw]) -> LawArrays:
+def pack_laws(laws: Sequence[TimeLaw | AngleLaw]) -> LawArrays:
     """Lay out `laws` one after the other."""
     parts = [law.polynomials() for law in laws]
     first = np.cumsum([0, *(start.size for start, _ in parts)], dtype=np.int64)
@@ -21,7 +21,7 @@ def pack_laws(laws: Sequence[TimeLaw]) -> LawArrays:
     return LawArrays(first, start, np.ascontiguousarray(coefficient))
 
 
-def revolutions(law: TimeLaw) -> tuple[FloatArray, FloatArray]:
+def revolutions(law: TimeLaw | AngleLaw) -> tuple[FloatArray, FloatArray]:
     """Return whole and fractional revolutions at the start of each piece of a speed law; 0 at t = 0."""
     start, coefficient = law.polynomials()
     span = np.diff(start)

@@ -43,8 +43,9 @@ def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> Float
     free = [index for index in range(len(scene.shafts)) if index not in driven]
     force, _, rank, _ = np.linalg.lstsq(lever[free], torque[free], rcond=1e-12)
     suggestion = "Give every mesh its nominal_force."
-    if rank < len(scene.meshes) and all(shaft.frame is None for shaft in scene.shafts):
+    if rank < lever.shape[1] and all(shaft.frame is None for shaft in scene.shafts):
         raise InputError("meshes", len(scene.meshes), "loaded in one way only by the torques", suggestion)
+    force = force[: len(scene.meshes)]
     for index, value in enumerate(force):
         if value < -1e-9 * np.max(np.abs(force)):
             raise InputError(
@@ -54,12 +55,15 @@ def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> Float
 
 
 def _levers(scene: Scene, kinematics: Kinematics) -> FloatArray:
-    """Torque on the meshes' side of each shaft's balance per mesh force, m, (shafts, meshes).
+    """Torque on each shaft per mesh force (m) and per torque of a coupling, (shafts, meshes + couplings).
 
     The planets' centres go with the carrier, so that a mesh turns it by the difference of what it turns
     both gears by.
     """
-    lever = np.zeros((len(scene.shafts), len(scene.meshes)))
+    lever = np.zeros((len(scene.shafts), len(scene.meshes) + len(scene.couplings)))
+    for column, coupling in enumerate(scene.couplings, start=len(scene.meshes)):
+        lever[scene.shaft_index(coupling.first), column] = 1.0
+        lever[scene.shaft_index(coupling.second), column] = -1.0
     for column, mesh in enumerate(scene.meshes):
         driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
         a, b, carrier = mesh_shafts(scene, column)

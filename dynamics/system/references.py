@@ -8,6 +8,7 @@ import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.system.arrays import Drives, Loads, Reference
+from dynamics.system.coupling_rows import CouplingRows
 from dynamics.system.freedoms import ROTATION, Freedoms, mass_diagonal
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.law_arrays import pack_laws, revolutions
@@ -70,6 +71,7 @@ def lay_out_drives(
     kinematics: Kinematics,
     freedoms: Freedoms,
     supports: Supports,
+    couplings: CouplingRows,
     gradient: FloatArray,
     vectors: FloatArray,
 ) -> Drives:
@@ -86,6 +88,11 @@ def lay_out_drives(
     moves = freedoms.keep(supports.motion)
     stiffness = supports.matrix(supports.stiffness, strained, moves)
     damping = supports.matrix(supports.damping, strained, moves)
+    if couplings.name:
+        twisted = np.einsum("cki,ai->cka", couplings.motion, turned)
+        strains = freedoms.keep(couplings.motion)
+        stiffness += couplings.matrix(couplings.stiffness, twisted, strains)
+        damping += couplings.matrix(couplings.damping, twisted, strains)
     for law, drive in enumerate(scene.drives):
         if drive.stiffness is not None:
             column = freedoms.find(kinematics.law_shaft[law], ROTATION)

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from dynamics.bodies import GearBody, Shaft, TimeLaw
+from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, integer, not_negative, one_of, positive
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque
-from dynamics.joints import Bushing, FreeRotation, ImposedRotation, PlanetBearing
+from dynamics.joints import Bushing, Coupling, FreeRotation, ImposedRotation, PlanetBearing
 
 METHODS = ("implicit", "explicit")
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
@@ -94,12 +94,22 @@ class Reference(Protocol):
     @property
     def shaft(self) -> str: ...  # noqa: D102
     @property
-    def speed(self) -> TimeLaw: ...  # noqa: D102
+    def speed(self) -> TimeLaw | AngleLaw: ...  # noqa: D102
     @property
     def rigid(self) -> bool: ...  # noqa: D102
 
 
-KINDS = ("shafts", "gears", "bushings", "planet_bearings", "meshes", "drives", "free_rotations", "loads")
+KINDS = (
+    "shafts",
+    "gears",
+    "bushings",
+    "planet_bearings",
+    "couplings",
+    "meshes",
+    "drives",
+    "free_rotations",
+    "loads",
+)
 
 
 @dataclass(frozen=True)
@@ -108,7 +118,7 @@ class Scene:
 
     Attributes
     ----------
-    shafts, gears, bushings, planet_bearings, meshes, drives, free_rotations, loads : tuples
+    shafts, gears, bushings, planet_bearings, couplings, meshes, drives, free_rotations, loads : tuples
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: as many of them as the gearing leaves independent speeds.
     duration : float
@@ -128,6 +138,7 @@ class Scene:
     loads: tuple[LoadTorque, ...] = ()
     planet_bearings: tuple[PlanetBearing, ...] = ()
     free_rotations: tuple[FreeRotation, ...] = ()
+    couplings: tuple[Coupling, ...] = ()
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = Outputs()
     integration: Integration = Integration()
@@ -147,8 +158,12 @@ class Scene:
         for index, mesh in enumerate(self.meshes):
             one_of(f"meshes[{index}].driver", mesh.driver, gears)
             one_of(f"meshes[{index}].driven", mesh.driven, gears)
+        for index, coupling in enumerate(self.couplings):
+            for side in ("first", "second"):
+                one_of(f"couplings[{index}].{side}", getattr(coupling, side), shafts)
         self._check_references()
         check_frames(self.shafts, self.bushings, self.planet_bearings)
+        check_couplings(self.shafts, self.couplings)
 
     def _check_references(self) -> None:
         """Something turns."""
@@ -204,6 +219,19 @@ def check_frames(
             raise InputError(
                 f"bushings[{index}].shaft", shaft.name, bound, "Planets rest on planet bearings."
             )
+
+
+def check_couplings(shafts: tuple[Shaft, ...], couplings: tuple[Coupling, ...]) -> None:
+    """Couplings with matrices join coaxial shafts described in the same frame."""
+    by_name = {shaft.name: shaft for shaft in shafts}
+    for index, coupling in enumerate(couplings):
+        first, second = by_name[coupling.first], by_name[coupling.second]
+        if coupling.stiffness is None and coupling.damping is None:
+            continue
+        if first.frame != second.frame or not on_axis(first, second):
+            suggestion = "Leave the matrices out: torsion alone joins any two shafts."
+            field = f"couplings[{index}].second"
+            raise InputError(field, second.name, "coaxial with the first, in the same frame", suggestion)
 
 
 def on_axis(shaft: Shaft, carrier: Shaft) -> bool:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw, hollow_cylinder
+from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, TimeLaw, hollow_cylinder
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque
-from dynamics.joints import Bushing, FreeRotation, ImposedRotation, PlanetBearing
+from dynamics.joints import Bushing, Coupling, FreeRotation, ImposedRotation, PlanetBearing
 from dynamics.system import Integration, Outputs, Scene, with_planets
 from dynamics.system.kinematics import solve_kinematics
 from fe_contact.ste import PairFacts, SteDatabase
@@ -18,6 +18,7 @@ from service.convert.topology import Teeth, check_center_distances, teeth_of
 from service.convert.units import DEGREE, MM, NM, RPM, UM
 from service.schemas.scene import (
     BushingInput,
+    CouplingInput,
     DriveInput,
     FreeRotationInput,
     GearBodyInput,
@@ -75,6 +76,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             meshes=meshes,
             drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),
             planet_bearings=tuple(_planet_bearing(i, b) for i, b in enumerate(scene.planet_bearings)),
+            couplings=tuple(_coupling(i, part) for i, part in enumerate(scene.couplings)),
             free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
             duration=scene.run.duration_s,
@@ -162,6 +164,21 @@ def _planet_bearing(index: int, given: PlanetBearingInput) -> PlanetBearing:
         )
 
 
+def _coupling(index: int, given: CouplingInput) -> Coupling:
+    """Return a coupling."""
+    with _named(f"couplings[{index}]"):
+        return Coupling(
+            given.name,
+            given.first,
+            given.second,
+            given.torsional_stiffness_n_m_per_rad,
+            given.torsional_damping_n_m_s_per_rad,
+            given.position_mm * MM,
+            given.stiffness_matrix,
+            given.damping_matrix,
+        )
+
+
 def _with_all_planets(given: SceneInput, scene: Scene) -> Scene:
     """Return the scene with every planet there as often as asked for."""
     for index, planets in enumerate(given.planets):
@@ -197,11 +214,15 @@ def _mesh(index: int, given: MeshInput, database: SteDatabase) -> GearMesh:
 def _drive(index: int, given: DriveInput) -> ImposedRotation:
     """Return a drive."""
     with _named(f"drives[{index}]"):
-        speed = tuple(value * RPM for value in given.speed_rpm)
+        law: TimeLaw | AngleLaw
+        if given.angle_deg is not None:
+            law = AngleLaw(given.time_s, tuple(value * DEGREE for value in given.angle_deg))
+        else:
+            law = TimeLaw(given.time_s, tuple(v * RPM for v in given.speed_rpm or ()), given.course)
         return ImposedRotation(
             given.name,
             given.shaft,
-            TimeLaw(given.time_s, speed, given.course),
+            law,
             given.stiffness_n_m_per_rad,
             given.damping_n_m_s_per_rad,
         )

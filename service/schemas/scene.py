@@ -21,6 +21,7 @@ _NAMED = (
     "gears",
     "bushings",
     "planet_bearings",
+    "couplings",
     "meshes",
     "drives",
     "free_rotations",
@@ -146,6 +147,36 @@ class PlanetBearingInput(BushingInput):
     )
 
 
+Row = Annotated[tuple[Number, ...], Strict(False)]
+Rows = Annotated[tuple[Row, ...], Strict(False)]
+
+
+class CouplingInput(BoundaryModel):
+    """A flexible coupling between two shafts of the same speed."""
+
+    name: Name = Field(description="Name of the coupling", examples=["joint"])
+    first: Name = Field(description="One shaft", examples=["output"])
+    second: Name = Field(description="The other shaft", examples=["machine"])
+    torsional_stiffness_n_m_per_rad: float = Field(
+        ge=0.0, le=1e15, description="Torsional stiffness in N m/rad", examples=[5e4]
+    )
+    torsional_damping_n_m_s_per_rad: float = Field(
+        default=0.0, ge=0.0, le=1e12, description="Torsional damping in N m s/rad", examples=[5.0]
+    )
+    position_mm: Coordinate = Field(
+        default=0.0, description="Place along the first shaft in mm, for the matrices", examples=[200.0]
+    )
+    stiffness_matrix: Rows | None = Field(
+        default=None,
+        min_length=6,
+        max_length=6,
+        description="Added: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
+    )
+    damping_matrix: Rows | None = Field(
+        default=None, min_length=6, max_length=6, description="Added: the same for rates; N, m, rad, s"
+    )
+
+
 class PlanetsInput(BoundaryModel):
     """Several planets from one, whose shaft, gears, bearings and meshes are in the scene."""
 
@@ -235,15 +266,26 @@ class MeshInput(BoundaryModel):
 
 
 class DriveInput(BoundaryModel):
-    """A shaft whose speed is imposed over time."""
+    """A shaft whose speed or angle is imposed over time."""
 
     name: Name = Field(description="Name of the drive", examples=["motor"])
     shaft: Name = Field(description="The driven shaft", examples=["input"])
     time_s: Times = Field(
         default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0, 5.0]]
     )
-    speed_rpm: Numbers = Field(
-        min_length=1, max_length=100_000, description="Speeds in rpm at these times", examples=[[0.0, 955.0]]
+    speed_rpm: Numbers | None = Field(
+        default=None,
+        min_length=1,
+        max_length=100_000,
+        description="Speeds in rpm at these times",
+        examples=[[0.0, 955.0]],
+    )
+    angle_deg: Numbers | None = Field(
+        default=None,
+        min_length=4,
+        max_length=100_000,
+        description="Angles in degrees at these times instead of speeds, joined by a cubic spline",
+        examples=[[0.0, 1.0, 2.1, 3.0]],
     )
     course: Course = Field(default="linear", description="Course between the times", examples=["linear"])
     stiffness_n_m_per_rad: float | None = Field(
@@ -259,7 +301,13 @@ class DriveInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _law(self) -> Self:
-        _check_law("speed_rpm", self.time_s, self.speed_rpm)
+        if (self.speed_rpm is None) == (self.angle_deg is None):
+            bound = "given, or angle_deg instead, but not both"
+            refuse("speed_rpm", self.speed_rpm and list(self.speed_rpm), bound, "For example [1000.0].")
+        if self.speed_rpm is not None:
+            _check_law("speed_rpm", self.time_s, self.speed_rpm)
+        if self.angle_deg is not None:
+            _check_law("angle_deg", self.time_s, self.angle_deg)
         return self
 
 
@@ -362,6 +410,7 @@ class SceneInput(BoundaryModel):
     planet_bearings: Annotated[tuple[PlanetBearingInput, ...], Strict(False)] = Field(
         default=(), max_length=1000
     )
+    couplings: Annotated[tuple[CouplingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
     loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     outputs: OutputsInput = Field(default=OutputsInput(), description="What to store", examples=[{}])
@@ -394,6 +443,9 @@ class SceneInput(BoundaryModel):
         for index, shaft in enumerate(self.shafts):
             if shaft.frame is not None:
                 _refuse_unknown(f"shafts[{index}].frame", shaft.frame, shafts)
+        for index, coupling in enumerate(self.couplings):
+            _refuse_unknown(f"couplings[{index}].first", coupling.first, shafts)
+            _refuse_unknown(f"couplings[{index}].second", coupling.second, shafts)
         for index, planets in enumerate(self.planets):
             _refuse_unknown(f"planets[{index}].planet", planets.planet, shafts)
         gears = [gear.name for gear in self.gears]

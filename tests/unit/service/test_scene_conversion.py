@@ -104,6 +104,24 @@ WRONG: dict[str, tuple[Change, str]] = {
         lambda t: t["drives"][0].update(time_s=[5.0, 0.0]),
         "drives[0].time_s",
     ),
+    "speed and angle": (
+        lambda t: t["drives"][0].update(angle_deg=[0.0, 1.0, 2.0, 3.0]),
+        "drives[0].speed_rpm",
+    ),
+    "coupling to nothing": (
+        lambda t: t.update(
+            couplings=[{"name": "c", "first": "input", "second": "x", "torsional_stiffness_n_m_per_rad": 1.0}]
+        ),
+        "couplings[0].second",
+    ),
+    "coupling of two speeds": (
+        lambda t: t.update(
+            couplings=[
+                {"name": "c", "first": "input", "second": "output", "torsional_stiffness_n_m_per_rad": 1.0}
+            ]
+        ),
+        "couplings[0].second",
+    ),
     "speeds without times": (lambda t: t["drives"][0].update(speed_rpm=[1.0]), "drives[0].speed_rpm"),
     "standing still": (lambda t: t["drives"][0].update(speed_rpm=[0.0, 0.0]), "drives[0].speed_rpm"),
     "no drive": (lambda t: t.update(drives=[]), "drives"),
@@ -203,6 +221,28 @@ def planetary(change: Change = lambda _table: None) -> Scene:
     change(table)
     tables = {"sun mesh": small_table(), "ring mesh": ring_table()}
     return dynamic_scene(validated(SceneInput, table), tables)
+
+
+def test_couplings_and_angle_tables_are_in_si() -> None:
+    def change(table: dict[str, Any]) -> None:
+        table["shafts"].append(
+            {"name": "machine", "length_mm": 100.0, "diameter_mm": 50.0, "origin_mm": [80, 0, 200]}
+        )
+        joint = {
+            "name": "joint",
+            "first": "output",
+            "second": "machine",
+            "torsional_stiffness_n_m_per_rad": 5e4,
+        }
+        identity = [[float(i == j) for i in range(6)] for j in range(6)]
+        table["couplings"] = [joint | {"position_mm": 200.0, "stiffness_matrix": identity}]
+        table["drives"][0].pop("speed_rpm")
+        table["drives"][0].update(time_s=[0.0, 1.0, 2.0, 3.0], angle_deg=[0.0, 180.0, 360.0, 540.0])
+
+    found = scene(change)
+    assert found.couplings[0].position == pytest.approx(0.2)
+    assert found.couplings[0].stiffness is not None
+    assert found.drives[0].speed(0.5) == pytest.approx(math.pi)
 
 
 def test_a_planetary_set_has_all_its_planets() -> None:

@@ -159,6 +159,8 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
         mesh_force=np.full((1, time.size), 2660.0),
         speed=np.stack([-0.5 * speed, speed]),
         drive=("drive",),
+        coupling=(),
+        coupling_torque=np.empty((0, time.size)),
         drive_torque=np.full((1, time.size), 100.0),
         bearing_force=force,
         displacement=np.empty((0, time.size)),

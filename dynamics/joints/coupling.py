@@ -1,0 +1,73 @@
+"""A flexible coupling between two shafts: a torsional spring, or a full linear one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.checks import finite, not_negative
+from dynamics.errors import InputError
+
+Matrix = tuple[tuple[float, ...], ...]
+
+SYMMETRY = 1e-9  # relative
+LEAST_EIGENVALUE = -1e-9  # over the largest
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """A massless spring and damper between a point of one shaft and the same point of another.
+
+    Both shafts turn at the same mean speed. The force on `second` is -K (motion of second - motion of first),
+    with the motion (x, y, z, tilt_x, tilt_y, rotation) of both rigid shafts at the coupling.
+
+    Attributes
+    ----------
+    name : str
+        Unique among the couplings.
+    first, second : str
+        The shafts.
+    torsional_stiffness, torsional_damping : float
+        N m/rad, N m s/rad about the axis; >= 0.
+    position : float
+        Of the coupling along the first shaft, m from its left end; for the matrices.
+    stiffness, damping : 6 by 6 matrices or None
+        Added to the torsional ones: symmetric, positive semidefinite, in N, m, rad, s; for coaxial shafts
+        described in the same frame. In a carrier's frame they must be the same in all directions across the
+        axis.
+    """
+
+    name: str
+    first: str
+    second: str
+    torsional_stiffness: float
+    torsional_damping: float = 0.0
+    position: float = 0.0
+    stiffness: Matrix | None = None
+    damping: Matrix | None = None
+
+    def __post_init__(self) -> None:
+        not_negative("torsional_stiffness", self.torsional_stiffness)
+        not_negative("torsional_damping", self.torsional_damping)
+        finite("position", self.position)
+        for name in ("stiffness", "damping"):
+            if getattr(self, name) is not None:
+                _check_matrix(name, np.asarray(getattr(self, name), dtype=float))
+        if self.first == self.second:
+            raise InputError("second", self.second, "another shaft than the first")
+        if self.torsional_stiffness == 0.0 and (self.stiffness is None or self.stiffness[5][5] <= 0.0):
+            suggestion = "Without it the shafts would not turn together."
+            raise InputError("torsional_stiffness", 0.0, "above 0", suggestion)
+
+
+def _check_matrix(name: str, matrix: np.ndarray) -> None:
+    """Refuse what is no symmetric, positive semidefinite 6 by 6 matrix."""
+    if matrix.shape != (6, 6) or not np.all(np.isfinite(matrix)):
+        raise InputError(name, f"shape {matrix.shape}", "6 by 6 finite numbers")
+    largest = float(np.max(np.abs(matrix)))
+    if np.any(np.abs(matrix - matrix.T) > SYMMETRY * largest):
+        raise InputError(name, "not symmetric", "symmetric", "Use half the sum with its transpose.")
+    per = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    if np.linalg.eigvalsh(matrix / np.outer(per, per))[0] < LEAST_EIGENVALUE:
+        raise InputError(name, "with a negative eigenvalue", "positive semidefinite")

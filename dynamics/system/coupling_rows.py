@@ -1,0 +1,70 @@
+"""Couplings between shafts as six strains each, with their matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.joints.coupling import Matrix
+from dynamics.system.planets import rigid_motion
+from dynamics.system.rotor import Rotor
+from dynamics.system.scene import Scene
+from dynamics.types import FloatArray
+
+ROTATION = 5
+
+
+@dataclass(frozen=True)
+class CouplingRows:
+    """c couplings.
+
+    Attributes
+    ----------
+    name : tuple of str
+    motion : (c, 6, 6 r) array
+        Strain per freedom: motion of the second shaft at the coupling less that of the first, m and rad.
+    stiffness, damping : (c, 6, 6) arrays
+        Force and moment per strain and its rate, N, m, rad, s.
+    """
+
+    name: tuple[str, ...]
+    motion: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+    def matrix(self, coefficient: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
+        """Return left^T coefficient right for strains (c, 6, a) and (c, 6, b)."""
+        return np.asarray(np.einsum("cki,ckl,clj->ij", left, coefficient, right))
+
+
+def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
+    """Lay out the couplings of `scene`."""
+    motion = np.zeros((len(scene.couplings), 6, 6 * len(rotors)))
+    for index, coupling in enumerate(scene.couplings):
+        first, second = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
+        place = np.add(scene.shafts[first].origin, (0.0, 0.0, coupling.position))
+        for shaft, sign in ((first, -1.0), (second, 1.0)):
+            motion[index, :, 6 * shaft : 6 * shaft + 6] = sign * _section(rotors[shaft], place[2])
+    stiffness = [_full(c.stiffness, c.torsional_stiffness) for c in scene.couplings]
+    damping = [_full(c.damping, c.torsional_damping) for c in scene.couplings]
+    return CouplingRows(
+        tuple(coupling.name for coupling in scene.couplings),
+        motion,
+        np.array(stiffness).reshape(-1, 6, 6),
+        np.array(damping).reshape(-1, 6, 6),
+    )
+
+
+def _section(rotor: Rotor, z: float) -> FloatArray:
+    """Motion of a rotor's section at the height z per freedom, (6, 6)."""
+    moves = rigid_motion(np.array([0.0, 0.0, z - rotor.center[2]]))
+    return np.vstack([moves, np.eye(6)[3:]])
+
+
+def _full(matrix: Matrix | None, torsional: float) -> FloatArray:
+    """Return the whole 6 by 6 matrix."""
+    full = np.zeros((6, 6)) if matrix is None else np.array(matrix, dtype=float)
+    full[ROTATION, ROTATION] += torsional
+    return full
