@@ -19,7 +19,15 @@ if TYPE_CHECKING:
         flank_results,
         study_sensitivity,
     )
-    from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearBlank, GearPair, Shaft
+    from fe_contact.geometry import (
+        FlankGrid,
+        FlankModification,
+        Gear,
+        GearBlank,
+        GearPair,
+        PitchDeviation,
+        Shaft,
+    )
     from fe_contact.material import STEEL, Material
     from fe_contact.ste import SteDatabase
     from fe_contact.types import Estimate, Status
@@ -35,6 +43,7 @@ __all__ = [
     "GearPair",
     "LoadDistribution",
     "Material",
+    "PitchDeviation",
     "Sensitivity",
     "Shaft",
     "Status",
@@ -58,6 +67,7 @@ _HOME = {
     "Gear": "fe_contact.geometry",
     "GearBlank": "fe_contact.geometry",
     "GearPair": "fe_contact.geometry",
+    "PitchDeviation": "fe_contact.geometry",
     "Shaft": "fe_contact.geometry",
     "STEEL": "fe_contact.material",
     "Material": "fe_contact.material",

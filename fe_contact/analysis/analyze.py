@@ -22,6 +22,7 @@ def analyze(
     time_budget: float | None = None,
     model: str = "auto",
     positions: int | None = None,
+    pitches: int | None = None,
     misalignments: Sequence[float] = (0.0,),
     center_distance_changes: Sequence[float] = (0.0,),
     effects: Mapping[str, str] | None = None,
@@ -43,7 +44,11 @@ def analyze(
         "auto" (three dimensions where the scene acts across the face, else plane strain), "plane_strain",
         "plane_stress" or "3d".
     positions : int, optional
-        Equally spaced positions; default: nodes placed so that interpolation keeps 0.2 % of peak-to-peak.
+        Equally spaced positions in a base pitch; default: nodes placed so that interpolation keeps 0.2 % of
+        peak-to-peak.
+    pitches : int, optional
+        Base pitches that the table covers where gears have pitch deviations; default: until all repeats. A
+        smaller number closes the table on itself: teeth that never meet stand side by side at its seam.
     misalignments, center_distance_changes : sequence of float
         Table axes in m, increasing. Misalignment is the growth of the gap over the common face width in the
         plane of action, zero at its middle.
@@ -78,6 +83,7 @@ def analyze(
         time_budget=time_budget,
         model=model,
         positions=positions,
+        pitches=pitches,
         misalignments=misalignments,
         center_distance_changes=center_distance_changes,
         effects=effects,

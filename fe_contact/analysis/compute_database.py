@@ -7,14 +7,15 @@ from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
+
 from fe_contact.analysis.error_estimate import ErrorSources, estimate_errors, worst_residual
 from fe_contact.analysis.pair_contact import pair_contact
-from fe_contact.analysis.position_nodes import table_nodes
 from fe_contact.analysis.request import Checked, Request
+from fe_contact.analysis.table_nodes import table_nodes
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.effects import LedgerEntry
 from fe_contact.planning import Plan, make_plan
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
@@ -47,23 +48,24 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
     with clock.stage("contact"):
         nodes = table_nodes(fine, plan)
         report("contact", 0.3)
-        solved = [place.solve(nodes.position, plan.load) for place in fine.places]
-        support = [place.solve(nodes.position, plan.support) for place in fine.places]
+        pitches = np.arange(fine.period)
+        solved = [place.solve_pitches(nodes.position, plan.load, pitches) for place in fine.places]
+        support = [place.solve_pitches(nodes.position, plan.support, pitches) for place in fine.places]
         report("contact", 1.0)
     coarse = _places(request, plan, clock, report, cache, coarse=True)
     with clock.stage("error estimate"):
-        rough = [place.solve(nodes.position, plan.load)[1] for place in coarse.places]
+        rough = [place.solve_pitches(nodes.position, plan.load, pitches)[1] for place in coarse.places]
         errors = estimate_errors(fine, [solution for _, solution in solved], rough, nodes, plan)
     return SteDatabase(
-        position=nodes.position,
+        position=(pitches[:, None] + nodes.position).ravel(),
         force=plan.load,
         torque=request.torque,
         misalignment=request.misalignment,
         center_distance_change=request.center_distance_change,
         facts=pair_facts(request.pair),
-        period=1,
+        period=fine.period,
         error_estimate=errors.total,
-        metadata=_metadata(case, plan, checked.ledger, clock, errors, solved),
+        metadata=_metadata(case, plan, checked, clock, errors, solved),
         **table_fields(fine, solved),
         **table_support(fine, support),
     )
@@ -84,7 +86,7 @@ def _places(
 def _metadata(
     case: Json,
     plan: Plan,
-    ledger: tuple[LedgerEntry, ...],
+    checked: Checked,
     clock: StageClock,
     errors: ErrorSources,
     solved: list[tuple[ContactProblem, ContactSolution]],
@@ -97,9 +99,11 @@ def _metadata(
         "residuals_max": max(worst_residual(solution) for _, solution in solved),
         "patch_outgrown_points": sum(int(solution.beyond.sum()) for _, solution in solved),
     }
+    if checked.cycle is not None:
+        receipt["predicted"] = checked.cycle.to_json()
     return Metadata(
         case=case,
-        effect_ledger=[entry.to_json() for entry in ledger],
+        effect_ledger=[entry.to_json() for entry in checked.ledger],
         receipt=receipt,
         content_hash=content_hash(case, SOLVER_VERSION, SCHEMA_VERSION),
         software_versions=software_versions(),

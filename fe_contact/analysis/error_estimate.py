@@ -77,7 +77,7 @@ def estimate_errors(
         np.nan_to_num(np.abs(one.deflection - other.deflection)) * made.remaining
         for one, other in zip(fine, coarse, strict=True)
     ]
-    judged = nodes.error.reshape(len(nodes.position), len(places.judged), -1).max(axis=1)
+    judged = nodes.error.reshape(len(nodes.error), -1, plan.load.size).max(axis=1)
     return ErrorSources(
         places.gathered(differences),
         places.gathered([judged] * len(fine)),

@@ -54,7 +54,8 @@ def flank_results(
     misalignment, center_distance_change : float
         See `analyze`, m.
     at : array_like, optional
-        Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them.
+        Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them. Teeth
+        with pitch deviations are those that mesh there: the first ones of the lists in 0 to 1.
     tolerance, level, time_budget, model, effects, case, progress, cache
         See `analyze`.
 
@@ -80,6 +81,7 @@ def flank_results(
         misalignments=[misalignment],
         center_distance_changes=[center_distance_change],
         effects=effects,
+        whole_table=False,
     )
     found = _solved(checked, _positions(at), progress or _silent, cache)
     return replace(found, metadata=_metadata(checked, found, case))
@@ -95,7 +97,8 @@ def _solved(checked: Checked, position: FloatArray, report: Progress, cache: Pat
     report("compliance", 1.0)
     with clock.stage("contact"):
         (place,) = table_places(request.scene, request.choices, nominal).places
-        problem, solution = place.solve(position, plan.load)
+        pitch = np.floor(position).astype(np.int64)
+        problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
     report("contact", 1.0)
     if not solution.converged:
         failed = int(np.count_nonzero(solution.status))

@@ -177,7 +177,8 @@ def load_distribution(
     force = solution.force[:, load]
     pressure = peak_pressure(force / candidates.width, candidates.radius, problem.modulus)
     gap = _loaded_gap(problem, force, solution.deflection[:, load])
-    nominal, _ = pair.roll_lengths(candidates.position[:, None], candidates.pair)
+    phase = candidates.position - np.floor(candidates.position)
+    nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)
     nominal = nominal - candidates.face_position * math.tan(candidates.base_helix_angle)
     path = pair.path_of_contact
     touch = candidates.touch

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
+
 from fe_contact.compliance import (
     FlankCompliance,
     FlankCompliance3D,
@@ -21,6 +23,7 @@ from fe_contact.contact import (
     contact_candidates,
     contact_problem,
     face_contact_problem,
+    in_pitches,
     solve_contact,
     with_compliances,
     with_gaps,
@@ -28,7 +31,7 @@ from fe_contact.contact import (
 from fe_contact.geometry import GearPair, Toothing
 from fe_contact.mesh import MeshRecipe
 from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 KEPT_PROBLEMS = 2
 """Position sets whose compliance is kept: the table's, while another is tried."""
@@ -56,11 +59,18 @@ class PairContact:
     _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
     def solve(
-        self, model: ContactModel, position: FloatArray, load: FloatArray
+        self, model: ContactModel, position: FloatArray, load: FloatArray, pitch: IntArray | None = None
     ) -> tuple[ContactProblem, ContactSolution]:
-        """Solve positions (P,) at normal forces (L,) in N."""
+        """Solve positions (P,) in [0, 1) at normal forces (L,) in N, each in the first base pitch.
+
+        With `pitch` (R,), R a multiple of P, there are R rows: position r modulo P in whole pitch `pitch[r]`.
+        Rows of one position share its compliance.
+        """
         problem = self._problem(model, position)
         problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
+        if pitch is not None or model.tooth_gaps:
+            first = np.zeros(position.size, dtype=np.int64)
+            problem = in_pitches(problem, model, first if pitch is None else pitch)
         return problem, solve_contact(problem, load)
 
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.analysis.table_places import Places
-from fe_contact.planning import NodeRule, Plan
+from fe_contact.planning import NodeRule
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray
 
@@ -27,7 +26,8 @@ class PositionNodes:
     position : ndarray, shape (P,)
         Increasing in [0, 1).
     interval_error : ndarray, shape (P, L)
-        Difference in m between interpolant and solution in the interval after each node, at the worst probe.
+        Difference in m between interpolant and solution in the interval after each node, at the worst probe;
+        (T P, L) where it is known for each of T base pitches.
     """
 
     position: FloatArray
@@ -35,27 +35,15 @@ class PositionNodes:
 
     @property
     def error(self) -> FloatArray:
-        """Largest error beside each node (P, L), m."""
+        """Largest error beside each node, m; shape of `interval_error`."""
         return np.maximum(self.interval_error, np.roll(self.interval_error, 1, axis=0))
 
 
 def fixed_nodes(count: int, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
     """`count` equally spaced nodes; the error is measured at the middles of all intervals."""
     nodes = np.arange(count) / count
-    return PositionNodes(nodes, _probed(nodes, solve(nodes), solve, np.ones(count, dtype=bool), MIDDLE)[2])
-
-
-def table_nodes(places: Places, plan: Plan) -> PositionNodes:
-    """Place the positions of a table: the number asked for, or where the curves of its judged places bend."""
-
-    def solve(position: FloatArray) -> FloatArray:
-        """STE (P, places x L) in m."""
-        curves = [place.solve(position, plan.load)[1].deflection for place in places.judged]
-        return np.concatenate(curves, axis=1)
-
-    if plan.positions is not None:
-        return fixed_nodes(plan.positions, solve)
-    return adaptive_nodes(plan.nodes, solve)
+    everywhere = np.ones(count, dtype=bool)
+    return PositionNodes(nodes, _probed(nodes, solve(nodes), solve, everywhere, MIDDLE)[2])
 
 
 def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
@@ -66,7 +54,8 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     rule : NodeRule
         Nodes to begin with, largest error, largest number.
     solve : callable
-        Positions (P,) to STE (P, L) in m.
+        Positions (P,) to STE (W, P, L) in m: of one base pitch that repeats (W = 1), or of one with the pitch
+        before and the pitch after it (W = 3).
 
     Notes
     -----
@@ -77,9 +66,10 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     nodes = np.arange(rule.start) / rule.start
     values = solve(nodes)
     settled = np.zeros(rule.start, dtype=bool)
-    error = np.full_like(values, np.inf)
+    error = np.full(values.shape[1:], np.inf)
     for remaining in reversed(range(MAX_ROUNDS)):
-        allowed = np.maximum(rule.tolerance * np.ptp(values, axis=0), 1e-6 * np.abs(values).max(axis=0))
+        own = values[values.shape[0] // 2]
+        allowed = np.maximum(rule.tolerance * np.ptp(own, axis=0), 1e-6 * np.abs(own).max(axis=0))
         middles, found, probed = _probed(nodes, values, solve, ~settled, PROBES)
         error[~settled] = probed[~settled]
         missed = np.any(error > allowed, axis=1)
@@ -97,14 +87,22 @@ def _probed(
     probes: FloatArray,
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Middles, solutions there, and largest errors at the probes, of the open intervals (others zero)."""
-    axis = Axis(nodes, 1.0)
-    where = nodes[open_, None] + axis.spacing[open_, None] * probes
+    spacing = Axis(nodes, 1.0).spacing
+    where = nodes[open_, None] + spacing[open_, None] * probes
     solved = solve(where.ravel())
-    missed = np.abs(interpolate(axis, values, where.ravel()) - solved).reshape(*where.shape, -1)
-    found, error = np.zeros((2, *values.shape))
-    found[open_] = solved.reshape(*where.shape, -1)[:, probes.size // 2]
+    own = solved[solved.shape[0] // 2]
+    missed = np.abs(_interpolated(nodes, values, where.ravel()) - own).reshape(*where.shape, -1)
+    found, error = np.zeros_like(values), np.zeros(values.shape[1:])
+    found[:, open_] = solved.reshape(solved.shape[0], *where.shape, -1)[:, :, probes.size // 2]
     error[open_] = missed.max(axis=1)
-    return nodes + 0.5 * axis.spacing, found, error
+    return nodes + 0.5 * spacing, found, error
+
+
+def _interpolated(nodes: FloatArray, values: FloatArray, where: FloatArray) -> FloatArray:
+    """Interpolant (Q, L) of the middle one of W base pitches, at `where` in [0, 1]; all of them repeat."""
+    pitches = np.arange(values.shape[0]) - values.shape[0] // 2
+    knots = (pitches[:, None] + nodes).ravel()
+    return interpolate(Axis(knots, float(pitches.size)), values.reshape(knots.size, -1), where)
 
 
 def _inserted(
@@ -121,7 +119,7 @@ def _inserted(
     merged = np.concatenate([nodes, middles[missed]])[order]
     return (
         merged,
-        np.concatenate([values, found[missed]])[order],
+        np.concatenate([values, found[:, missed]], axis=1)[:, order],
         np.concatenate([~touched, np.zeros(int(missed.sum()), dtype=bool)])[order],
-        np.concatenate([error, np.full((int(missed.sum()), values.shape[1]), np.inf)])[order],
+        np.concatenate([error, np.full((int(missed.sum()), error.shape[1]), np.inf)])[order],
     )

@@ -7,16 +7,17 @@ from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
-from fe_contact.checks import increasing, positive, within
+from fe_contact.checks import increasing, integer, positive, within
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, LedgerEntry, compose
 from fe_contact.errors import InputError
 from fe_contact.geometry import GearPair
-from fe_contact.planning import Accuracy
+from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
 from fe_contact.types import FloatArray, Json
 
 LARGEST_DEVIATION = 0.01
 """m; larger values of an axis are micrometres given as metres."""
+LARGEST_PERIOD = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,8 @@ class Request:
     accuracy : Accuracy
     misalignment, center_distance_change : ndarray
         Table axes, m.
+    pitches : int, optional
+        Base pitches that the table shall cover where teeth differ; None: until all repeats.
     effects : mapping
         Effect name to "on", "off" or "auto".
     """
@@ -41,6 +44,7 @@ class Request:
     misalignment: FloatArray
     center_distance_change: FloatArray
     effects: Mapping[str, str] = field(default_factory=dict)
+    pitches: int | None = None
 
     @property
     def torque(self) -> FloatArray:
@@ -50,7 +54,8 @@ class Request:
     @property
     def scene(self) -> ContactScene:
         """What the effects judge by."""
-        return ContactScene(self.pair, self.torque, self.misalignment, self.center_distance_change)
+        alignments = self.misalignment, self.center_distance_change
+        return ContactScene(self.pair, self.torque, *alignments, pitches=self.pitches)
 
     @property
     def choices(self) -> dict[str, str]:
@@ -67,16 +72,21 @@ class Request:
             "misalignment": self.misalignment.tolist(),
             "center_distance_change": self.center_distance_change.tolist(),
             "effects": dict(sorted(self.effects.items())),
+            "pitches": self.pitches,
         }
 
 
 @dataclass(frozen=True)
 class Checked:
-    """A request that can be computed, with the model its effects compose and their ledger."""
+    """A request that can be computed, with the model its effects compose and their ledger.
+
+    `cycle` is what a table over several base pitches costs, None for one pitch.
+    """
 
     request: Request
     model: ContactModel
     ledger: tuple[LedgerEntry, ...]
+    cycle: CycleCost | None = None
 
 
 def check_request(
@@ -89,11 +99,15 @@ def check_request(
     time_budget: float | None = None,
     model: str = "auto",
     positions: int | None = None,
+    pitches: int | None = None,
     misalignments: Sequence[float] | FloatArray = (0.0,),
     center_distance_changes: Sequence[float] | FloatArray = (0.0,),
     effects: Mapping[str, str] | None = None,
+    whole_table: bool = True,
 ) -> Checked:
-    """Check everything that `analyze` is given, without computing anything; parameters are its.
+    """Check everything that `analyze` is given, without computing anything.
+
+    Parameters are its; `whole_table` = False leaves out the limit on the size of a table.
 
     Raises
     ------
@@ -108,6 +122,7 @@ def check_request(
         axis("misalignments", misalignments),
         axis("center_distance_changes", center_distance_changes),
         dict(effects or {}),
+        None if pitches is None else integer("pitches", pitches, 1, LARGEST_PERIOD),
     )
     composed, ledger = compose(request.scene, request.choices, EFFECTS)
     if not composed.across_face:
@@ -115,7 +130,26 @@ def check_request(
         if composed.thin_rim:
             refuse_web_off_center(request.scene)
     _refuse_distances(request)
-    return Checked(request, composed, ledger)
+    _refuse_idle_pitches(request)
+    cycle = _cycle_cost(request, composed) if whole_table and composed.period > 1 else None
+    return Checked(request, composed, ledger, cycle)
+
+
+def _refuse_idle_pitches(request: Request) -> None:
+    """Refuse a number of pitches where all of them are alike."""
+    gears = (request.pair.pinion, request.pair.wheel)
+    if request.pitches is not None and all(gear.pitch_deviation.neutral for gear in gears):
+        bound = "left out where all teeth are alike"
+        raise InputError("pitches", request.pitches, bound, "Give a gear its pitch deviations.")
+
+
+def _cycle_cost(request: Request, model: ContactModel) -> CycleCost:
+    """Predict the cost of the whole table; refuse one that is too long to be made."""
+    plan = make_plan(request.pair, request.load, request.accuracy, model)
+    alignments = request.misalignment.size * request.center_distance_change.size
+    cost = cycle_cost(request.pair, plan, model.period, alignments)
+    refuse_long_cycle(cost)
+    return cost
 
 
 def _refuse_internal_pair(pair: object) -> None:

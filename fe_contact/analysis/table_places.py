@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from fe_contact.analysis.pair_contact import PairContact
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,19 @@ class Place:
     contact: PairContact
     model: ContactModel
 
-    def solve(self, position: FloatArray, load: FloatArray) -> tuple[ContactProblem, ContactSolution]:
-        """Solve positions (P,) at normal forces (L,) in N."""
-        return self.contact.solve(self.model, position, load)
+    def solve(
+        self, position: FloatArray, load: FloatArray, pitch: IntArray | None = None
+    ) -> tuple[ContactProblem, ContactSolution]:
+        """Solve positions (P,) at normal forces (L,) in N; `pitch` as in `PairContact.solve`."""
+        return self.contact.solve(self.model, position, load, pitch)
+
+    def solve_pitches(
+        self, position: FloatArray, load: FloatArray, pitches: IntArray
+    ) -> tuple[ContactProblem, ContactSolution]:
+        """Solve positions (P,) in each of the base pitches (T,), pitch by pitch: T P rows."""
+        if self.model.period == 1:
+            return self.solve(position, load)
+        return self.solve(position, load, np.repeat(pitches, position.size))
 
 
 @dataclass(frozen=True)
@@ -41,6 +51,11 @@ class Places:
 
     shape: tuple[int, int]
     places: tuple[Place, ...]
+
+    @property
+    def period(self) -> int:
+        """Whole base pitches after which every place repeats."""
+        return self.places[0].model.period
 
     @property
     def judged(self) -> tuple[Place, ...]:
@@ -72,7 +87,7 @@ def table_places(scene: ContactScene, choices: Mapping[str, str], nominal: PairC
     places = []
     for misalignment in scene.misalignment:
         for contact in contacts:
-            here = ContactScene(contact.pair, scene.torque, np.array([misalignment]))
+            here = ContactScene(contact.pair, scene.torque, np.array([misalignment]), pitches=scene.pitches)
             places.append(Place(contact, compose(here, decided, EFFECTS)[0]))
     return Places((scene.misalignment.size, len(contacts)), tuple(places))
 

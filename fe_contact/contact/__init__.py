@@ -4,7 +4,8 @@ from fe_contact.contact.added_compliance import with_compliances
 from fe_contact.contact.assembly import contact_problem
 from fe_contact.contact.candidates import PatchRule, contact_candidates, with_gaps
 from fe_contact.contact.face_assembly import face_contact_problem
-from fe_contact.contact.model import ComplianceTerm, ContactModel, GapTerm
+from fe_contact.contact.model import ComplianceTerm, ContactModel, GapTerm, ToothGap
+from fe_contact.contact.pitches import in_pitches
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution import ContactSolution
@@ -19,9 +20,11 @@ __all__ = [
     "GapTerm",
     "PatchRule",
     "Slices",
+    "ToothGap",
     "contact_candidates",
     "contact_problem",
     "face_contact_problem",
+    "in_pitches",
     "solve_contact",
     "with_compliances",
     "with_gaps",

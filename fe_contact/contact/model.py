@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
 from fe_contact.geometry import GearPair
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 
 class GapTerm(Protocol):
@@ -27,6 +28,23 @@ class GapTerm(Protocol):
 
         Taken at the touching roll lengths of the two flanks and at `face`, the distance from the pinion's
         mid-face, in m; the three broadcast.
+        """
+        ...
+
+
+class ToothGap(Protocol):
+    """A rigid gap that differs from tooth to tooth, the same all over a flank."""
+
+    @property
+    def period(self) -> int:
+        """Number of base pitches after which it repeats."""
+        ...
+
+    def __call__(self, meeting: IntArray) -> FloatArray:
+        """Gap in m, > 0 where material is missing, of the `meeting`-th tooth pair since position 0.
+
+        Meeting 0 is pair 0 at position 0; meeting k touches at the pitch point at position k, with the k-th
+        next teeth of both gears. Values repeat with the period, also below 0.
         """
         ...
 
@@ -63,6 +81,7 @@ class ContactModel:
     thin_rim : bool
         Bodies have the rim and web of their blank; else they are solid.
     gaps : tuple of GapTerm
+    tooth_gaps : tuple of ToothGap
     compliances : tuple of ComplianceTerm
     """
 
@@ -71,4 +90,10 @@ class ContactModel:
     across_face: bool = False
     thin_rim: bool = False
     gaps: tuple[GapTerm, ...] = ()
+    tooth_gaps: tuple[ToothGap, ...] = ()
     compliances: tuple[ComplianceTerm, ...] = ()
+
+    @property
+    def period(self) -> int:
+        """Whole base pitches after which the contact repeats."""
+        return math.lcm(1, *(term.period for term in self.tooth_gaps))

@@ -85,10 +85,14 @@ class Candidates:
 class ContactProblem:
     """Candidates with the finite-element compliance between them.
 
+    The candidates may repeat the positions of the compliance in further base pitches: it does not know one
+    tooth from the next.
+
     Attributes
     ----------
     candidates : Candidates
-    compliance : ndarray, shape (P, n, n)
+    compliance : ndarray, shape (Q, n, n)
+        Of position p at row p modulo Q, P a multiple of Q.
         Normal approach of candidate i per unit normal force at j, both gears, m/N.
     modulus : float
         Contact modulus E*, Pa.

@@ -72,7 +72,7 @@ def _sweep(
     """Fill the result arrays, each load started from the one below it."""
     for p in range(gap.shape[0]):
         law = local_law(radius[p], edge_slope[p], width, patch_1[p], patch_2[p], modulus, k1, k2)
-        point = PointProblem(compliance[p], gap[p], motion_arm[p], torque_arm[p], law)
+        point = PointProblem(compliance[p % compliance.shape[0]], gap[p], motion_arm[p], torque_arm[p], law)
         start = np.zeros(gap.shape[1])
         for k in range(loads.size):
             if k > 0:

@@ -77,8 +77,9 @@ def compose(
         ledger.append(LedgerEntry(effect.name, on, choice, verdict, effect.cost))
     # a fixed order of the sums, so that the order of the registry changes no bit
     gaps = tuple(sorted(model.gaps, key=repr))
+    tooth_gaps = tuple(sorted(model.tooth_gaps, key=repr))
     compliances = tuple(sorted(model.compliances, key=repr))
-    return replace(model, gaps=gaps, compliances=compliances), tuple(ledger)
+    return replace(model, gaps=gaps, tooth_gaps=tooth_gaps, compliances=compliances), tuple(ledger)
 
 
 def check_choices(choices: Mapping[str, str], registry: Sequence[Effect]) -> None:

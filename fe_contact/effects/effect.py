@@ -30,12 +30,15 @@ class ContactScene:
         action, zero at its middle.
     center_distance_change : ndarray
         Changes of the table axis, m.
+    pitches : int, optional
+        Base pitches that the table shall cover where teeth differ; None: until all repeats.
     """
 
     pair: GearPair
     torque: FloatArray
     misalignment: FloatArray = field(default_factory=lambda: np.zeros(1))
     center_distance_change: FloatArray = field(default_factory=lambda: np.zeros(1))
+    pitches: int | None = None
 
 
 @dataclass(frozen=True)

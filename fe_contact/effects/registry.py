@@ -7,6 +7,7 @@ from fe_contact.effects.effect import Effect
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.misalignment import Misalignment
+from fe_contact.effects.pitch_error import PitchError
 from fe_contact.effects.profile_modification import ProfileModification
 from fe_contact.effects.shaft_deflection import ShaftDeflection
 from fe_contact.effects.thin_rim import ThinRim
@@ -19,6 +20,7 @@ EFFECTS: tuple[Effect, ...] = (
     FaceLoadDistribution(),
     LeadModification(),
     Misalignment(),
+    PitchError(),
     ShaftDeflection(),
     ThinRim(),
 )

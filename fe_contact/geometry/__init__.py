@@ -11,6 +11,7 @@ from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, blank_factor
 from fe_contact.geometry.modification import FlankModification
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.path_of_contact import PathOfContact
+from fe_contact.geometry.pitch_deviation import PitchDeviation
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.shaft import Shaft
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
@@ -29,6 +30,7 @@ __all__ = [
     "Iso6336Stiffness",
     "ParallelAxes",
     "PathOfContact",
+    "PitchDeviation",
     "RingGear",
     "Shaft",
     "Side",

@@ -14,6 +14,7 @@ from fe_contact.geometry.form_point import FormPoint, find_form_point
 from fe_contact.geometry.gear_blank import GearBlank, Web, web_of
 from fe_contact.geometry.gear_feasibility import refuse_infeasible_gear
 from fe_contact.geometry.modification import UNMODIFIED, FlankModification
+from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.geometry.trochoid import Trochoid
 from fe_contact.material import STEEL, Material
@@ -51,6 +52,8 @@ class Gear(Toothing):
         Elasticity.
     blank : GearBlank, optional
         Rim, web and hub; None is a solid body.
+    pitch_deviation : PitchDeviation
+        Of the loaded flank of every tooth.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class Gear(Toothing):
     modification: FlankModification = UNMODIFIED
     material: Material = STEEL
     blank: GearBlank | None = None
+    pitch_deviation: PitchDeviation = NO_PITCH_DEVIATION
 
     def __post_init__(self) -> None:
         integer("teeth", self.teeth, 4, 2000, "Count the teeth of an external gear.")
@@ -85,6 +89,7 @@ class Gear(Toothing):
         self._check_thickness_allowance()
         refuse_infeasible_gear(self)
         self.modification.check_fits(self)
+        self.pitch_deviation.check_fits(self)
 
     def _check_thickness_allowance(self) -> None:
         """Check the basic rack, and the allowance against the tooth it is taken from."""

@@ -14,6 +14,7 @@ from fe_contact.geometry.form_point import FormPoint
 from fe_contact.geometry.involute import inverse_involute, involute_function
 from fe_contact.geometry.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.pinion_cutter import PinionCutter
+from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation
 from fe_contact.geometry.ring_gear_feasibility import refuse_infeasible_ring, refuse_shift_sum_of_cutter
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import STEEL, Material
@@ -59,6 +60,8 @@ class RingGear(Toothing):
         Departures of the flanks from the involute helicoid.
     material : Material
         Elasticity.
+    pitch_deviation : PitchDeviation
+        Of the loaded flank of every tooth.
 
     Raises
     ------
@@ -82,6 +85,7 @@ class RingGear(Toothing):
     thickness_allowance: float = 0.0
     modification: FlankModification = UNMODIFIED
     material: Material = STEEL
+    pitch_deviation: PitchDeviation = NO_PITCH_DEVIATION
 
     sign: ClassVar[int] = -1
 
@@ -96,6 +100,7 @@ class RingGear(Toothing):
         self._check_tool()
         refuse_infeasible_ring(self)
         self.modification.check_fits(self)
+        self.pitch_deviation.check_fits(self)
 
     def _check_tool(self) -> None:
         """Check the numbers that describe the tool."""

@@ -40,15 +40,18 @@ class NodeRule:
         Interpolation error to keep, as a fraction of each load's peak-to-peak STE.
     most : int
         Largest number of nodes.
+    judged_pitches : int
+        Base pitches of a longer period that are looked at.
     """
 
     start: int
     tolerance: float
     most: int
+    judged_pitches: int = 3
 
 
-PLANE_NODES = NodeRule(64, 0.0015, 768)
-FACE_NODES = NodeRule(64, 0.005, 192)
+PLANE_NODES = NodeRule(64, 0.0015, 768, 12)
+FACE_NODES = NodeRule(64, 0.005, 192, 3)
 """Positions cost a hundred times as much over the face, and its curves are smoother."""
 
 

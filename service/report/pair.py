@@ -6,7 +6,7 @@ import json
 
 from pydantic import ValidationError
 
-from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.material import Material
 from fe_contact.ste import SteDatabase
@@ -45,5 +45,6 @@ def _gear(content: Json) -> Gear:
     parts = {
         "modification": FlankModification(**content["modification"]),
         "material": Material(**content["material"]),
+        "pitch_deviation": PitchDeviation(**content.get("pitch_deviation", {})),
     }
     return Gear(**(content | parts))

@@ -1,0 +1,74 @@
+"""The positions of a table: one set for all its alignments and base pitches, and the error between them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fe_contact.analysis.position_nodes import PositionNodes, adaptive_nodes, fixed_nodes
+from fe_contact.analysis.table_places import Places
+from fe_contact.contact import ContactModel
+from fe_contact.planning import MOST_ROWS, Plan
+from fe_contact.ste.interpolation import Axis, interpolate
+from fe_contact.types import FloatArray, IntArray
+
+
+def table_nodes(places: Places, plan: Plan) -> PositionNodes:
+    """Place the positions: the number asked for, or where the curves of judged places and pitches bend.
+
+    Over several base pitches the error is then measured in every one of them, at the middle of every
+    interval.
+    """
+    windows = judged_windows(places.places[0].model, plan.nodes.judged_pitches)
+
+    def solve(position: FloatArray) -> FloatArray:
+        """STE (W, P, windows x places x L) in m."""
+        curves = [_curves(places, plan, position, window) for window in windows]
+        return np.concatenate(curves, axis=2)
+
+    if plan.positions is not None:
+        nodes = fixed_nodes(plan.positions, solve)
+    else:
+        rows = places.period * len(places.places)
+        most = max(min(plan.nodes.most, MOST_ROWS // rows), plan.nodes.start)
+        nodes = adaptive_nodes(replace(plan.nodes, most=most), solve)
+    return nodes if places.period == 1 else _measured(nodes.position, places, plan)
+
+
+def judged_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
+    """Return base pitches to judge, each with its neighbours.
+
+    Where all teeth are alike, the one pitch there is: ``([0],)``. Else ``[m - 1, m, m + 1]`` of pitches m, at
+    most `most`, evenly taken from all in the order of how much the gaps of their three pairs differ, both
+    ends among them: these differences move and steepen the handovers.
+    """
+    if model.period == 1:
+        return (np.zeros(1, dtype=np.int64),)
+    meeting = np.arange(model.period)[:, None] + np.arange(-1, 2)
+    spread = np.ptp(sum(term(meeting) for term in model.tooth_gaps), axis=1)
+    order = np.argsort(spread, kind="stable")
+    chosen = np.unique(np.linspace(0, order.size - 1, min(most, order.size)).astype(int))
+    return tuple(order[k] + np.arange(-1, 2) for k in chosen)
+
+
+def _curves(places: Places, plan: Plan, position: FloatArray, pitches: IntArray) -> FloatArray:
+    """STE (T, P, places x L) in m of the judged places in the given pitches."""
+    shape = (pitches.size, position.size, -1)
+    curves = [
+        place.solve_pitches(position, plan.load, pitches)[1].deflection.reshape(shape)
+        for place in places.judged
+    ]
+    return np.concatenate(curves, axis=2)
+
+
+def _measured(nodes: FloatArray, places: Places, plan: Plan) -> PositionNodes:
+    """Measure the error at the middles of the intervals of all pitches."""
+    pitches = np.arange(places.period)
+    axis = Axis((pitches[:, None] + nodes).ravel(), float(places.period))
+    values = _curves(places, plan, nodes, pitches).reshape(axis.knots.size, -1)
+    middles = nodes + 0.5 * np.diff(nodes, append=nodes[0] + 1.0)
+    found = _curves(places, plan, middles, pitches)
+    query = (pitches[:, None] + middles).ravel()
+    error = np.abs(interpolate(axis, values, query) - found.reshape(query.size, -1))
+    return PositionNodes(nodes, error)

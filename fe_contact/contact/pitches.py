@@ -1,0 +1,63 @@
+"""The same positions in several base pitches: other teeth, hence other gaps, but the same compliance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.contact.patch import Patches
+from fe_contact.contact.problem import ContactProblem
+from fe_contact.contact.touch import Touch
+from fe_contact.types import FloatArray, IntArray
+
+Arrays = TypeVar("Arrays", Touch, Patches)
+
+
+def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) -> ContactProblem:
+    """Put the positions of a problem into whole base pitches, and add the gaps of the teeth that meet there.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+        P positions in [0, 1), with all other gaps in it.
+    model : ContactModel
+        Its `tooth_gaps` are added.
+    pitch : ndarray of int, shape (R,)
+        Whole base pitches, R a multiple of P: row r is position r modulo P in this pitch.
+
+    Returns
+    -------
+    ContactProblem
+        R positions; its compliance stays that of the P positions.
+
+    Notes
+    -----
+    Pair j of pitch m is the pair of teeth that meets (m - j)-th: one pitch later each pair has moved on to
+    the place of the next one. The touching points stay those of perfect pitches: micrometres of rolling are
+    nothing to the curvatures there.
+    """
+    candidates = problem.candidates
+    times = pitch.size // candidates.position.size
+    touch = _repeated(candidates.touch, times)
+    if model.tooth_gaps:
+        meeting = pitch[:, None] - candidates.pair
+        touch = replace(touch, gap=touch.gap + sum(term(meeting) for term in model.tooth_gaps))
+    moved = replace(
+        candidates,
+        position=np.tile(candidates.position, times) + pitch,
+        touch=touch,
+        patch_1=_repeated(candidates.patch_1, times),
+        patch_2=_repeated(candidates.patch_2, times),
+    )
+    return problem.touching(moved)
+
+
+def _repeated(arrays: Arrays, times: int) -> Arrays:
+    """Write arrays (P, n) out so many times, one below the other."""
+    tiled: dict[str, FloatArray] = {
+        name: np.tile(values, (times, 1)) for name, values in vars(arrays).items()
+    }
+    return type(arrays)(**tiled)

@@ -1,0 +1,75 @@
+"""Pitch error: teeth of either gear out of their places, tooth by tooth."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+import numpy as np
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class PitchGap:
+    """Gap of every tooth along the line of action, m, in the order of meshing.
+
+    Attributes
+    ----------
+    pinion, wheel : tuple of float
+        As many as the gear has teeth, or one for all of them.
+    period : int
+        Base pitches after which both gears are taken to show the same teeth again.
+    """
+
+    pinion: tuple[float, ...]
+    wheel: tuple[float, ...]
+    period: int
+
+    def __call__(self, meeting: IntArray) -> FloatArray:
+        """Sum over both teeth of the `meeting`-th pair, m."""
+        count = np.asarray(meeting) % self.period
+        gears = (np.array(self.pinion), np.array(self.wheel))
+        return np.asarray(sum(gap[count % gap.size] for gap in gears))
+
+
+@dataclass(frozen=True)
+class PitchError:
+    """Cumulative pitch deviations of both gears; the table then covers more than one base pitch."""
+
+    name: ClassVar[str] = "pitch_error"
+    needs: ClassVar[tuple[str, ...]] = ("position", "tooth numbers")
+    adds: ClassVar[tuple[str, ...]] = ("gap", "period")
+    cost: ClassVar[str] = "a contact sweep for every base pitch of the period; no finite-element work"
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects/pitch_error.md", "ISO 1328-1")
+    valid_for: ClassVar[str] = "flanks that are out of place as a whole"
+
+    def called_for(self, scene: ContactScene) -> Verdict:
+        """On where a tooth of either gear is out of its place."""
+        gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
+        erring = [(name, gear.pitch_deviation) for name, gear in gears if not gear.pitch_deviation.neutral]
+        if not erring:
+            return Verdict(False, "all teeth are in their places", "nothing")
+        figures = ", ".join(
+            f"{name} f_p {1e6 * error.single:.3g} um, F_p {1e6 * error.total:.3g} um"
+            for name, error in erring
+        )
+        worth = f"STE up to the deviations themselves, over {_period(scene)} base pitches"
+        return Verdict(True, figures, worth)
+
+    def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
+        """Add the gap of both gears' teeth."""
+        gears = (scene.pair.pinion, scene.pair.wheel)
+        if all(gear.pitch_deviation.neutral for gear in gears):
+            return model
+        first, second = (tuple((-gear.pitch_deviation.on_line_of_action(gear)).tolist()) for gear in gears)
+        return replace(model, tooth_gaps=(*model.tooth_gaps, PitchGap(first, second, _period(scene))))
+
+
+def _period(scene: ContactScene) -> int:
+    """Return the pitches asked for, or those after which the deviations of both gears repeat together."""
+    gears = (scene.pair.pinion, scene.pair.wheel)
+    return scene.pitches or math.lcm(*(gear.pitch_deviation.period for gear in gears))
