@@ -7,13 +7,13 @@ from pathlib import Path
 
 from fe_contact.analysis.compute_database import Progress, compute_database
 from fe_contact.analysis.request import check_request
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 
 
 def analyze(
-    pair: GearPair,
+    pair: ParallelAxes,
     *,
     torques: Sequence[float] | FloatArray | None = None,
     normal_forces: Sequence[float] | FloatArray | None = None,
@@ -34,7 +34,7 @@ def analyze(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
         External gears on parallel axes, spur or helical.
     torques : sequence of float
         Torques on the driving gear in N m, increasing, > 0; or `normal_forces` in N.

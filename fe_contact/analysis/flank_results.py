@@ -17,7 +17,7 @@ from fe_contact.analysis.request import Checked, check_request
 from fe_contact.analysis.table_places import table_places
 from fe_contact.checks import finite
 from fe_contact.errors import InputError, SolveError
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import make_plan
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata
@@ -28,7 +28,7 @@ POSITIONS = 64
 
 
 def flank_results(
-    pair: GearPair,
+    pair: ParallelAxes,
     *,
     torque: float | None = None,
     normal_force: float | None = None,
@@ -48,7 +48,7 @@ def flank_results(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     torque, normal_force : float
         Torque on the driving gear in N m, or normal force in N; exactly one.
     misalignment, center_distance_change : float

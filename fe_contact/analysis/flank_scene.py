@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 
 from fe_contact.analysis.tabulate import pair_facts
 from fe_contact.errors import DatabaseError
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from fe_contact.types import Json
 
@@ -59,7 +59,7 @@ class FlankScene:
 
 
 def flank_scene(
-    pair: GearPair, normal_force: float, misalignment: float = 0.0, center_distance_change: float = 0.0
+    pair: ParallelAxes, normal_force: float, misalignment: float = 0.0, center_distance_change: float = 0.0
 ) -> FlankScene:
     """Describe a pair that stands at its changed centre distance, under a normal force in N."""
     path = pair.path_of_contact

@@ -11,7 +11,8 @@ import numpy as np
 
 from fe_contact.analysis.flank_scene import FlankScene, flank_scene
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.geometry import GearPair
+from fe_contact.contact.touch import rolls_at
+from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import peak_pressure
 from fe_contact.ste import Metadata
 from fe_contact.types import BoolArray, FloatArray, IntArray
@@ -146,7 +147,7 @@ class LoadDistribution:
 
 
 def load_distribution(
-    pair: GearPair,
+    pair: ParallelAxes,
     problem: ContactProblem,
     solution: ContactSolution,
     load: int = 0,
@@ -159,7 +160,7 @@ def load_distribution(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
         At its centre distance.
     problem : ContactProblem
     solution : ContactSolution
@@ -181,14 +182,14 @@ def load_distribution(
     nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)
     nominal = nominal - candidates.face_position * math.tan(candidates.base_helix_angle)
     path = pair.path_of_contact
-    touch = candidates.touch
+    roll_1, roll_2 = rolls_at(pair, candidates.touch.s_1, candidates.touch.s_2)
     return LoadDistribution(
         position=candidates.position,
         pair=candidates.pair[:: face.size],
         face_position=face,
         deflection=solution.deflection[:, load],
-        roll_length_1=np.sqrt(2.0 * pair.pinion.base_radius * touch.s_1).reshape(shape),
-        roll_length_2=np.sqrt(2.0 * pair.wheel.base_radius * touch.s_2).reshape(shape),
+        roll_length_1=roll_1.reshape(shape),
+        roll_length_2=roll_2.reshape(shape),
         on_path=((nominal >= path.start) & (nominal <= path.end)).reshape(shape),
         force=force.reshape(shape),
         lever=candidates.torque_share.reshape(shape),

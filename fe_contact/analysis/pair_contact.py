@@ -28,7 +28,7 @@ from fe_contact.contact import (
     with_compliances,
     with_gaps,
 )
-from fe_contact.geometry import GearPair, Toothing
+from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe
 from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation
 from fe_contact.types import FloatArray, IntArray
@@ -46,13 +46,13 @@ class PairContact:
 
     Attributes
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     plan : Plan
     plane, face : pair of compliances or None
         Of both gears, in the plane or over the face width; exactly one of the two.
     """
 
-    pair: GearPair
+    pair: ParallelAxes
     plan: Plan
     plane: PlaneFlanks | None = None
     face: FaceFlanks | None = None
@@ -94,12 +94,12 @@ class PairContact:
         raise ValueError("a pair contact needs the compliance of its gears")
 
 
-def pair_contact(pair: GearPair, plan: Plan, cache: Path | None, coarse: bool = False) -> PairContact:
+def pair_contact(pair: ParallelAxes, plan: Plan, cache: Path | None, coarse: bool = False) -> PairContact:
     """Compute or fetch the compliance of both gears; identical gears are computed once.
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     plan : Plan
     cache : Path, optional
         Directory of stored compliances; None computes afresh.
@@ -109,14 +109,17 @@ def pair_contact(pair: GearPair, plan: Plan, cache: Path | None, coarse: bool = 
     made = plan.discretisation
     gears = plan.bodies(pair)
     if isinstance(made, FaceDiscretisation):
-        over_face = flank_compliances_3d(gears, made.coarse_recipes if coarse else made.recipes, cache=cache)
-        return PairContact(pair, plan, face=(over_face[0], over_face[1]))
+        first, second = flank_compliances_3d(
+            gears, made.coarse_recipes if coarse else made.recipes, cache=cache
+        )
+        # a ring's right flank is the loaded one as seen from the other side: its z runs against the pinion's
+        return PairContact(pair, plan, face=(first, second.mirrored() if pair.internal else second))
     recipes = made.coarse_recipes if coarse else made.recipes
     return PairContact(pair, plan, plane=_plane_flanks(pair, gears, made, recipes, cache))
 
 
 def _plane_flanks(
-    pair: GearPair,
+    pair: ParallelAxes,
     gears: tuple[Toothing, Toothing],
     made: PlaneDiscretisation,
     recipes: tuple[MeshRecipe, MeshRecipe],

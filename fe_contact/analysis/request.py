@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from fe_contact.checks import increasing, integer, positive, within
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, LedgerEntry, compose
 from fe_contact.errors import InputError
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
 from fe_contact.types import FloatArray, Json
 
@@ -26,7 +26,7 @@ class Request:
 
     Attributes
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     load : ndarray
         Normal forces F_bn in N, increasing.
     accuracy : Accuracy
@@ -38,7 +38,7 @@ class Request:
         Effect name to "on", "off" or "auto".
     """
 
-    pair: GearPair
+    pair: ParallelAxes
     load: FloatArray
     accuracy: Accuracy
     misalignment: FloatArray
@@ -90,7 +90,7 @@ class Checked:
 
 
 def check_request(
-    pair: GearPair,
+    pair: ParallelAxes,
     *,
     torques: Sequence[float] | FloatArray | None = None,
     normal_forces: Sequence[float] | FloatArray | None = None,
@@ -114,7 +114,6 @@ def check_request(
     InputError
         A value that cannot be used, by field name.
     """
-    _refuse_internal_pair(pair)
     request = Request(
         pair,
         load_levels(pair, torques, normal_forces),
@@ -152,18 +151,11 @@ def _cycle_cost(request: Request, model: ContactModel) -> CycleCost:
     return cost
 
 
-def _refuse_internal_pair(pair: object) -> None:
-    """Refuse a pair that is known by its geometry alone: there is no mesh of a ring gear yet."""
-    if not isinstance(pair, GearPair):
-        advice = "Ring gears have their geometry and interference checks, but no contact analysis yet."
-        raise InputError("pair", type(pair).__name__, "a GearPair of two external gears", advice)
-
-
 def _refuse_distances(request: Request) -> None:
     """Refuse a change of the centre distance at which the gears do not mesh, by its place in the list."""
     for i, change in enumerate(request.center_distance_change):
         try:
-            replace(request.pair, center_distance=request.pair.center_distance + float(change))
+            request.pair.at_center_distance(request.pair.center_distance + float(change))
         except InputError as error:
             bound = f"a change at which the gears mesh: {error.field} {error.bound}"
             field_name = f"center_distance_changes[{i}]"
@@ -171,7 +163,9 @@ def _refuse_distances(request: Request) -> None:
 
 
 def load_levels(
-    pair: GearPair, torques: Sequence[float] | FloatArray | None, forces: Sequence[float] | FloatArray | None
+    pair: ParallelAxes,
+    torques: Sequence[float] | FloatArray | None,
+    forces: Sequence[float] | FloatArray | None,
 ) -> FloatArray:
     """Return the load levels as normal forces.
 
@@ -224,6 +218,6 @@ def refuse_beyond_plane(scene: ContactScene) -> None:
 def refuse_web_off_center(scene: ContactScene) -> None:
     """Refuse a web that tilts its gear: the plane has no tilt."""
     for name, gear in (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel)):
-        if gear.web is not None and gear.blank is not None and gear.blank.web_offset != 0.0:
-            advice = "Use the 3-D model for it."
-            raise InputError(f"{name}.blank.web_offset", gear.blank.web_offset, "0 for a plane model", advice)
+        if gear.web is not None and gear.web.low + gear.web.high != 0.0:
+            offset, advice = 0.5 * (gear.web.low + gear.web.high), "Use the 3-D model for it."
+            raise InputError(f"{name}.blank.web_offset", offset, "0 for a plane model", advice)

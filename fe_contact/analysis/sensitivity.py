@@ -11,7 +11,7 @@ import numpy as np
 from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.compute_database import Progress
 from fe_contact.effects.corner_contact import CornerContact
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 
@@ -49,7 +49,7 @@ class Sensitivity:
 
 
 def study_sensitivity(
-    pair: GearPair,
+    pair: ParallelAxes,
     *,
     normal_force: float,
     misalignments: Sequence[float] | FloatArray,
@@ -67,7 +67,7 @@ def study_sensitivity(
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     normal_force : float
         F_bn in N.
     misalignments, center_distance_changes : sequence of float

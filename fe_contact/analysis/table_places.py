@@ -99,4 +99,4 @@ def _contacts(nominal: PairContact, changes: FloatArray) -> Iterator[PairContact
             yield nominal
         else:
             distance = nominal.pair.center_distance + float(change)
-            yield replace(nominal, pair=replace(nominal.pair, center_distance=distance), _problems={})
+            yield replace(nominal, pair=nominal.pair.at_center_distance(distance), _problems={})

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import peak_pressure
 from fe_contact.ste import PairFacts
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 
 
-def pair_facts(pair: GearPair) -> PairFacts:
+def pair_facts(pair: ParallelAxes) -> PairFacts:
     """Closed-form facts of the pair that users of the table need."""
     return PairFacts(
         teeth=(pair.pinion.teeth, pair.wheel.teeth),
@@ -26,6 +26,7 @@ def pair_facts(pair: GearPair) -> PairFacts:
         working_pressure_angle=pair.working_pressure_angle,
         face_width=pair.face_width,
         helix_hand=int(np.sign(pair.base_helix_angle)),
+        internal=pair.internal,
     )
 
 

@@ -27,7 +27,7 @@ from fe_contact.compliance.cyclic_compliance import compliance_key_3d, flank_com
 from fe_contact.compliance.flank import FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear
+from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
 from fe_contact.mesh.bore_support import ClampedBore, PlaneStrain
 from fe_contact.types import FloatArray, IntArray
@@ -71,7 +71,7 @@ class FiniteWidthCompliance:
 
 
 def finite_width_compliances(
-    gears: Sequence[Gear], recipes: Sequence[SectorRecipe], teeth: int, *, cache: Path | None = None
+    gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], teeth: int, *, cache: Path | None = None
 ) -> tuple[FiniteWidthCompliance, ...]:
     """Return the compliance of each gear beyond plane strain; gears alike are computed once.
 
@@ -105,7 +105,7 @@ def finite_width_compliances(
 
 
 def _beyond_plane_strain(
-    gear: Gear, recipe: SectorRecipe, reach: int, cache: Path | None
+    gear: Toothing, recipe: SectorRecipe, reach: int, cache: Path | None
 ) -> FiniteWidthCompliance:
     """Solve the solid, and the same mesh held along the axis: the same functions, but for the axial ones."""
     solid = flank_compliance_3d(gear, recipe, reach=reach, cache=cache)

@@ -7,10 +7,10 @@ from dataclasses import replace
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.touch import rolls_at
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 
 
-def with_compliances(pair: GearPair, problem: ContactProblem, model: ContactModel) -> ContactProblem:
+def with_compliances(pair: ParallelAxes, problem: ContactProblem, model: ContactModel) -> ContactProblem:
     """Add the compliance terms of the model, at the touching points of plain involutes.
 
     They couple all candidates of all pairs, whether or not the teeth themselves are coupled. Without terms

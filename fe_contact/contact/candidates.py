@@ -12,7 +12,7 @@ from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -33,13 +33,13 @@ class PatchRule:
 
 
 def contact_candidates(
-    pair: GearPair, model: ContactModel, position: FloatArray, rule: PatchRule, slices: Slices
+    pair: ParallelAxes, model: ContactModel, position: FloatArray, rule: PatchRule, slices: Slices
 ) -> Candidates:
     """Find where the tooth pairs can touch at each position.
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     model : ContactModel
         Whether tip edges may touch; its gaps are added by `with_gaps`.
     position : ndarray, shape (P,)
@@ -57,13 +57,13 @@ def contact_candidates(
     roll_1, _ = pair.roll_lengths(position[:, None], pairs)
     # on a right-hand driving gear the contact line runs towards the root as the face position grows
     roll_1 = roll_1 - face * math.tan(pair.base_helix_angle)
-    touch = conjugate_touch(pair, roll_1, pair.common_tangent - roll_1, model.corner_contact)
+    touch = conjugate_touch(pair, roll_1, pair.mating_roll_length(roll_1), model.corner_contact)
     touching = np.any(np.isfinite(touch.gap), axis=0).reshape(index.size, -1).any(axis=1)
     keep = np.repeat(touching, slices.center.size)
     return _candidates(pair, position, pairs[keep], face[keep], touch.columns(keep), rule, slices.width)
 
 
-def with_gaps(pair: GearPair, candidates: Candidates, model: ContactModel) -> Candidates:
+def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> Candidates:
     """Add the gaps of the model: how far apart the rigid flanks are, and how they open at a tip edge.
 
     The load patches stay where plain involutes touch, so that the compliance between the candidates depends
@@ -75,7 +75,7 @@ def with_gaps(pair: GearPair, candidates: Candidates, model: ContactModel) -> Ca
     return candidates.touching(touch)
 
 
-def _pair_indices(pair: GearPair, position: FloatArray, slices: Slices) -> IntArray:
+def _pair_indices(pair: ParallelAxes, position: FloatArray, slices: Slices) -> IntArray:
     """Return all pairs between A and E in any slice, and one more beyond either end."""
     path = pair.path_of_contact
     lead = slices.center * math.tan(pair.base_helix_angle)
@@ -85,7 +85,7 @@ def _pair_indices(pair: GearPair, position: FloatArray, slices: Slices) -> IntAr
 
 
 def _candidates(
-    pair: GearPair,
+    pair: ParallelAxes,
     position: FloatArray,
     pairs: IntArray,
     face: FloatArray,

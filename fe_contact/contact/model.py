@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -22,7 +22,7 @@ class GapTerm(Protocol):
         ...
 
     def __call__(
-        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+        self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
         """Gap in m, > 0 where material is missing.
 
@@ -56,7 +56,7 @@ class ComplianceTerm(Protocol):
     """
 
     def __call__(
-        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+        self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
         """Return the normal approach (P, n, n) in m of each candidate per N at each other.
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
 
@@ -26,7 +26,7 @@ class Slices:
     width: float
 
     @classmethod
-    def of_pair(cls, pair: GearPair, count: int) -> Slices:
+    def of_pair(cls, pair: ParallelAxes, count: int) -> Slices:
         """Divide the common face width of `pair` into `count` slices; one slice is the plane model."""
         width = pair.face_width / count
         center = pair.common_face_center + (np.arange(count) - 0.5 * (count - 1)) * width

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.contact.model import GapTerm
-from fe_contact.geometry import Gear, GearPair, Side, corner_contact
+from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray
 
@@ -49,26 +49,28 @@ class Touch:
         return Touch(*(getattr(self, name)[:, keep] for name in self.__dataclass_fields__))
 
 
-def conjugate_touch(pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, corners: bool) -> Touch:
+def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, corners: bool) -> Touch:
     """Touching points of plain involutes.
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     roll_1, roll_2 : ndarray, shape (P, n)
         Nominal roll lengths, m; beyond A and E too.
     corners : bool
         Whether tip edges may touch before A and after E.
     """
     tip_1, tip_2 = pair.pinion.tip_roll_length, pair.wheel.tip_roll_length
-    gap = np.where((roll_1 <= tip_1) & (roll_2 <= tip_2), 0.0, np.inf)
+    beyond_1, beyond_2 = roll_1 - tip_1, pair.wheel.sign * (roll_2 - tip_2)
+    gap = np.where((beyond_1 <= 0.0) & (beyond_2 <= 0.0), 0.0, np.inf)
     touched_1 = np.clip(roll_1, pair.path_of_contact.start, tip_1)
-    touched_2 = np.clip(roll_2, pair.common_tangent - pair.path_of_contact.end, tip_2)
+    ends_2 = float(pair.mating_roll_length(pair.path_of_contact.end)), tip_2
+    touched_2 = np.clip(roll_2, min(ends_2), max(ends_2))
     lever_1, lever_2 = np.ones((2, *gap.shape))
     opening_1, opening_2 = np.zeros((2, *gap.shape))
     sides: tuple[tuple[Side, FloatArray, FloatArray, FloatArray], ...] = (
-        ("approach", roll_2 - tip_2, touched_1, opening_2),
-        ("exit", roll_1 - tip_1, touched_2, opening_1),
+        ("approach", beyond_2, touched_1, opening_2),
+        ("exit", beyond_1, touched_2, opening_1),
     )
     for side, overshoot, touched, opening in sides if corners else ():
         at = np.nonzero(overshoot > 0.0)
@@ -78,19 +80,19 @@ def conjugate_touch(pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, corn
         opening[found] = corner.slope_angle[corner.valid]
         lever_1[found] = corner.lever_arm_ratio_pinion[corner.valid]
         lever_2[found] = corner.lever_arm_ratio_wheel[corner.valid]
-    radius = relative_radius(touched_1, touched_2)
+    radius = relative_radius(touched_1, pair.wheel.sign * touched_2)
     s_1, s_2 = flank_coordinate(pair.pinion, touched_1), flank_coordinate(pair.wheel, touched_2)
     offset_1 = flank_coordinate(pair.pinion, tip_1) - s_1 - opening_1 * radius
     offset_2 = flank_coordinate(pair.wheel, tip_2) - s_2 - opening_2 * radius
     return Touch(s_1, s_2, offset_1, offset_2, gap, radius, lever_1, lever_2)
 
 
-def flank_coordinate(gear: Gear, roll: FloatArray | float) -> FloatArray:
-    """Flank coordinate s in m of a roll length."""
-    return np.asarray(np.square(roll) / (2.0 * gear.base_radius))
+def flank_coordinate(gear: Toothing, roll: FloatArray | float) -> FloatArray:
+    """Flank coordinate s in m of a roll length; negative on a ring gear (see `FlankProfile`)."""
+    return np.asarray(gear.sign * np.square(roll) / (2.0 * gear.base_radius))
 
 
-def modified_touch(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
+def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
     """Touching points of modified flanks.
 
     Sloping modifications move the touching point off the line of action: over the distance x along the flank
@@ -99,7 +101,7 @@ def modified_touch(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[G
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     touch : Touch
         Of plain involutes.
     face : ndarray, shape (n,)
@@ -114,7 +116,7 @@ def modified_touch(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[G
     return replace(found, gap=found.gap + sum(term(pair, roll_1, roll_2, face) for term in steady))
 
 
-def _shifted(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
+def _shifted(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
     """Move the touching points to where conjugate gap and `gaps` together are least."""
     possible = np.isfinite(touch.gap)
     here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
@@ -148,16 +150,16 @@ def _shifted(pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm
     return replace(touch, **result)
 
 
-def rolls_at(pair: GearPair, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:
+def rolls_at(pair: ParallelAxes, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Roll lengths in m of flank coordinates of both gears."""
     return (
         np.sqrt(2.0 * pair.pinion.base_radius * np.maximum(s_1, 0.0)),
-        np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(s_2, 0.0)),
+        np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(pair.wheel.sign * s_2, 0.0)),
     )
 
 
 def _gap_beside(
-    pair: GearPair, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...], shift: FloatArray
+    pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...], shift: FloatArray
 ) -> FloatArray:
     """Gap in m over the conjugate one at `shift` (n, k) from the touching points (n,) towards tip 1."""
     roll_1, roll_2 = rolls_at(pair, touch.s_1[:, None] + shift, touch.s_2[:, None] - shift)

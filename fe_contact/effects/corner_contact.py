@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
-from fe_contact.geometry import Gear
+from fe_contact.geometry import Toothing
 
 _ALONG_EDGE = 33
 
@@ -45,7 +45,7 @@ class CornerContact:
         return replace(model, corner_contact=True)
 
 
-def _least_tip_relief(gear: Gear) -> float:
+def _least_tip_relief(gear: Toothing) -> float:
     """Least material removed at the tip edge, m: the edge must be clear all over the face."""
     face = np.linspace(-0.5, 0.5, _ALONG_EDGE) * gear.face_width
     return float(gear.modification.material_removed(gear, gear.tip_roll_length, face).min())

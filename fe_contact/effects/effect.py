@@ -12,7 +12,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
 
@@ -22,7 +22,7 @@ class ContactScene:
 
     Attributes
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     torque : ndarray
         Torques on the driving gear, N m.
     misalignment : ndarray
@@ -34,7 +34,7 @@ class ContactScene:
         Base pitches that the table shall cover where teeth differ; None: until all repeats.
     """
 
-    pair: GearPair
+    pair: ParallelAxes
     torque: FloatArray
     misalignment: FloatArray = field(default_factory=lambda: np.zeros(1))
     center_distance_change: FloatArray = field(default_factory=lambda: np.zeros(1))

@@ -21,7 +21,7 @@ class FaceLoadDistribution:
     adds: ClassVar[tuple[str, ...]] = ("compliance", "candidates")
     cost: ClassVar[str] = "1 to 5 CPU s of finite elements instead of about 0.5; 31 times the candidates"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/face_load_distribution.md",)
-    valid_for: ClassVar[str] = "every external pair"
+    valid_for: ClassVar[str] = "every pair"
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where anything acts across the face."""

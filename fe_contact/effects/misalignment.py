@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
 
@@ -21,7 +21,7 @@ class MisalignmentGap:
     along_profile: ClassVar[bool] = False
 
     def __call__(
-        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+        self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
         """Gap in m, negative on the side that comes closer."""
         return np.asarray(self.growth * (face - pair.common_face_center) / pair.face_width + 0.0 * roll_1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fe_contact.geometry import FlankModification, GearPair
+from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.types import FloatArray
 
 
@@ -27,7 +27,7 @@ class ModificationGap:
         return self.pinion.varies_along_profile or self.wheel.varies_along_profile
 
     def __call__(
-        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+        self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
         """Sum over both flanks in m; each gear's face position counts from its own mid-face."""
         return self.pinion.material_removed(pair.pinion, roll_1, face) + self.wheel.material_removed(

@@ -13,7 +13,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from fe_contact.geometry import GearPair, Shaft
+from fe_contact.geometry import ParallelAxes, Shaft
 from fe_contact.types import FloatArray
 
 
@@ -90,15 +90,16 @@ class ShaftCompliance:
     wheel: SeatCompliance | None
 
     def __call__(
-        self, pair: GearPair, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
+        self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray
     ) -> FloatArray:
         """Return the normal approach (P, n, n) in m/N; roll lengths (P, n) and face positions (n,) in m."""
         across, along = math.cos(pair.base_helix_angle), math.sin(pair.base_helix_angle)
         total = np.zeros((*roll_1.shape, face.size))
+        second = pair.wheel.sign * roll_2
         sides = (
             (self.pinion, pair.pinion.base_radius, across * face - along * roll_1),
-            # seen from the wheel's axis the line of action runs the other way
-            (self.wheel, pair.wheel.base_radius, across * (face - pair.axial_offset) + along * roll_2),
+            # seen from an external wheel's axis the line of action runs the other way
+            (self.wheel, pair.wheel.base_radius, across * (face - pair.axial_offset) + along * second),
         )
         for seat, radius, arm in sides:
             if seat is not None:

@@ -22,7 +22,7 @@ class ShaftDeflection:
     adds: ClassVar[tuple[str, ...]] = ("compliance",)
     cost: ClassVar[str] = "none beside the three-dimensional model it needs"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/shaft_deflection.md", "Cowper 1966")
-    valid_for: ClassVar[str] = "external pairs; round shafts on two bearings, the gear rigid on its seat"
+    valid_for: ClassVar[str] = "round shafts on two bearings, the gear rigid on its seat"
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either gear has a shaft."""

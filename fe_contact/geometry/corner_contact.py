@@ -9,6 +9,10 @@ tau = alpha_wt + (l_a - l) / r_b from the line of centres, which places the edge
 from the other centre gives the roll length sqrt(rho^2 - r_b^2) of the flank point it can touch, and its
 polar angle there the rotation at which that gear touches it. The gap is what the conjugate rotation lacks
 of it, times the base radius.
+
+Signs. Angles of an external pair are seen from either gear towards the other, half a turn apart. A ring gear
+and its pinion are seen the same way, both from the ring's centre towards the mesh. With the gears' signs
+(`Toothing.sign`; their product is the pair's) one set of formulas serves both kinds.
 """
 
 from __future__ import annotations
@@ -20,8 +24,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_contact.errors import InputError
-from fe_contact.geometry.gear import Gear
-from fe_contact.geometry.gear_pair import GearPair
+from fe_contact.geometry.parallel_axes import ParallelAxes
+from fe_contact.geometry.toothing import Toothing
 from fe_contact.types import BoolArray, FloatArray
 
 Side = Literal["approach", "exit"]
@@ -68,12 +72,12 @@ class _Touch(NamedTuple):
     lever_arm_ratio: FloatArray  # of the tip gear
 
 
-def corner_contact(pair: GearPair, side: Side, overshoot: ArrayLike) -> CornerContact:
+def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> CornerContact:
     """Exact rigid corner contact of one tooth pair.
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
         The gears; their modifications are not included.
     side : {"approach", "exit"}
         Whether the pair has not reached the path of contact yet (edge of gear 2 on flank 1), or has left it
@@ -100,43 +104,45 @@ def corner_contact(pair: GearPair, side: Side, overshoot: ArrayLike) -> CornerCo
         touch = _touch(pair, pair.pinion, pair.wheel, pair.pinion.tip_roll_length + beyond)
         return _masked(touch, pair.wheel, touch.lever_arm_ratio, one)
     if side == "approach":
-        touch = _touch_by_tip_gear(pair, pair.wheel, pair.pinion, pair.wheel.tip_roll_length + beyond)
+        nominal = pair.wheel.tip_roll_length + pair.wheel.sign * beyond
+        touch = _touch_by_tip_gear(pair, pair.wheel, pair.pinion, nominal)
         return _masked(touch, pair.pinion, one, touch.lever_arm_ratio)
     raise InputError("side", side, 'one of "approach" and "exit"')
 
 
-def corner_gap(pair: GearPair, side: Side, overshoot: ArrayLike) -> FloatArray:
+def corner_gap(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> FloatArray:
     """Rigid gap of `corner_contact` in m, NaN where the edge meets no involute."""
     return corner_contact(pair, side, overshoot).gap
 
 
-def _touch(pair: GearPair, tip: Gear, flank: Gear, roll_length: FloatArray) -> _Touch:
+def _touch(pair: ParallelAxes, tip: Toothing, flank: Toothing, roll_length: FloatArray) -> _Touch:
     """Turn the flank gear until it touches the edge of the tip gear held at its nominal `roll_length`."""
-    working, distance = pair.working_pressure_angle, pair.center_distance
+    working, sign = pair.working_pressure_angle, tip.sign * flank.sign
+    distance = tip.sign * pair.center_distance  # of the tip gear's centre along the flank gear's +x
     tip_foot = working + (tip.tip_roll_length - roll_length) / tip.base_radius
     sine, cosine = np.sin(tip_foot), np.cos(tip_foot)
-    # the edge as seen from the flank gear's centre, the tip gear's centre lying on +x
-    x = distance - tip.base_radius * cosine - tip.tip_roll_length * sine
-    y = tip.tip_roll_length * cosine - tip.base_radius * sine
+    # the edge as seen from the flank gear's centre
+    x = distance - sign * tip.base_radius * cosine - sign * tip.tip_roll_length * sine
+    y = sign * (tip.tip_roll_length * cosine - tip.base_radius * sine)
     with np.errstate(invalid="ignore"):
         touched = np.sqrt(x**2 + y**2 - flank.base_radius**2)
     flank_foot = np.arctan2(y, x) + np.arctan2(touched, flank.base_radius)
     rolled = touched - flank.base_radius * (flank_foot - working)
-    gap = rolled - pair.common_tangent + roll_length
-    arm = (distance * np.cos(flank_foot) - flank.base_radius) / tip.base_radius
+    gap = flank.sign * (rolled - tip.sign * pair.common_tangent + sign * roll_length)
+    arm = sign * (distance * np.cos(flank_foot) - flank.base_radius) / tip.base_radius
     return _Touch(gap, touched, flank_foot - tip_foot, arm)
 
 
-def _touch_by_tip_gear(pair: GearPair, tip: Gear, flank: Gear, roll_length: FloatArray) -> _Touch:
+def _touch_by_tip_gear(pair: ParallelAxes, tip: Toothing, flank: Toothing, roll_length: FloatArray) -> _Touch:
     """Turn the tip gear until its edge touches the flank gear, held where conjugate to `roll_length`.
 
-    A lag e brings the tip gear to roll_length + e, and it touches if the flank gear, turned instead, would
-    need just that: e = gap(roll_length + e). The gap is convex, so Newton's iteration from e = 0 ascends to
-    the root.
+    A lag e brings the tip gear to roll_length + e (a ring gear to roll_length - e), and it touches if the
+    flank gear, turned instead, would need just that: e = gap(roll_length + e). The gap is convex, so Newton's
+    iteration from e = 0 ascends to the root.
     """
     lag = np.zeros_like(roll_length)
     for _ in range(_ITERATIONS):
-        touch = _touch(pair, tip, flank, roll_length + lag)
+        touch = _touch(pair, tip, flank, roll_length + tip.sign * lag)
         reachable = touch.lever_arm_ratio > 0.0
         step = np.where(reachable, touch.gap - lag, np.nan) / np.where(reachable, touch.lever_arm_ratio, 1.0)
         lag = lag + step
@@ -145,11 +151,12 @@ def _touch_by_tip_gear(pair: GearPair, tip: Gear, flank: Gear, roll_length: Floa
     return touch._replace(gap=lag)
 
 
-def _masked(touch: _Touch, flank: Gear, pinion_arm: FloatArray, wheel_arm: FloatArray) -> CornerContact:
+def _masked(touch: _Touch, flank: Toothing, pinion_arm: FloatArray, wheel_arm: FloatArray) -> CornerContact:
     """Blank what lies off the flank's involute or cannot drive."""
     slack = 1e-9 * flank.normal_module
     roll = touch.flank_roll_length
-    valid = (roll >= flank.form_roll_length - slack) & (roll <= flank.tip_roll_length + slack)
+    valid = flank.sign * (roll - flank.form_roll_length) >= -slack
+    valid &= flank.sign * (roll - flank.tip_roll_length) <= slack
     valid &= np.isfinite(touch.gap) & (touch.lever_arm_ratio > 0.0)
     parts = (np.maximum(touch.gap, 0.0), roll, np.maximum(touch.slope_angle, 0.0), pinion_arm, wheel_arm)
     gap, flank_roll_length, slope, arm_1, arm_2 = (np.where(valid, part, np.nan) for part in parts)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fe_contact.geometry.gear_pair import GearPair
+from fe_contact.geometry.parallel_axes import ParallelAxes
 
 PLANE_STRESS_EXCESS = 0.075
 """Relative excess of plane stress over plane strain (0.073 to 0.080 for steel pairs of 17 to 80 teeth)."""
@@ -10,7 +10,7 @@ DECAY_WIDTH = 5.0
 """Face width in modules at which half of it is left."""
 
 
-def finite_width_excess(pair: GearPair) -> float:
+def finite_width_excess(pair: ParallelAxes) -> float:
     """Relative excess of the mean STE of a spur pair of finite width over plane strain.
 
     The ends of the face are free, so a narrow gear is in plane stress and a very wide one in plane strain;

@@ -14,6 +14,7 @@ from fe_contact.geometry.internal_pair_feasibility import (
 from fe_contact.geometry.pair_feasibility import refuse_strangers
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry.shaft import Shafts
 from fe_contact.geometry.trimming import radial_clearance
 
 
@@ -21,7 +22,8 @@ from fe_contact.geometry.trimming import radial_clearance
 class InternalGearPair(ParallelAxes):
     """The external gear (`pinion`, gear 1) drives the ring gear (`wheel`, gear 2); see `ParallelAxes`.
 
-    When the ring drives, the same contacts are run through in the opposite order.
+    When the ring drives, the same contacts are run through in the opposite order: deflections and forces at a
+    position are the same, the position falls with time.
 
     Attributes
     ----------
@@ -34,6 +36,8 @@ class InternalGearPair(ParallelAxes):
         allowance, so that the allowances become backlash. Backlash falls as the distance grows.
     axial_offset : float
         Distance in m of the wheel's mid-face from the pinion's, along the pinion's axis.
+    shafts : (Shaft or None, Shaft or None)
+        What carries pinion and ring between two bearings each; None is rigid.
     radial_assembly : bool
         Whether the pinion is put in its place radially, which "trimming interference" may forbid; else it is
         put in along the axis.
@@ -52,6 +56,7 @@ class InternalGearPair(ParallelAxes):
     wheel: RingGear
     center_distance: float = None  # type: ignore[assignment]  # a float after construction
     axial_offset: float = 0.0
+    shafts: Shafts = (None, None)
     radial_assembly: bool = False
 
     def __post_init__(self) -> None:

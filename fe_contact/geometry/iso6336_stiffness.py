@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from fe_contact.checks import positive
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
+from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import STEEL
 
 _PER_MM_UM = 1e9  # N/(mm um) in N/m per m of face width
@@ -67,7 +68,7 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
     return Iso6336Stiffness(theoretical, single, mesh, 0.85 * mesh)
 
 
-def blank_factor(gear: Gear) -> float:
+def blank_factor(gear: Toothing) -> float:
     """Gear blank factor C_R of ISO 6336-1 (method B): 1 for a solid disc, below 1 for a rim on a web.
 
     C_R = 1 + ln(b_s/b) / (5 exp(s_R / (5 m_n))), with b_s/b taken as at least 0.2 and s_R/m_n as at least 1.

@@ -7,8 +7,9 @@ standard, multiplies its base radius.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,9 +20,11 @@ from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
     from fe_contact.geometry.gear import Gear
+    from fe_contact.geometry.shaft import Shafts
     from fe_contact.geometry.toothing import Toothing
 
 
+@dataclass(frozen=True)
 class ParallelAxes:
     """Two gears on parallel axes; use `GearPair` or `InternalGearPair`. Gear 1 (`pinion`) drives gear 2."""
 
@@ -43,7 +46,26 @@ class ParallelAxes:
         def axial_offset(self) -> float:
             """Distance in m of the wheel's mid-face from the pinion's, along the pinion's axis."""
 
+        @property
+        def shafts(self) -> Shafts:
+            """What carries pinion and wheel."""
+
+    def at_center_distance(self, center_distance: float) -> Self:
+        """Return the same gears at another distance in m.
+
+        Raises
+        ------
+        InputError
+            They do not mesh there.
+        """
+        return replace(self, center_distance=center_distance)  # type: ignore[call-arg]  # a field of the kinds
+
     # Kinematics
+
+    @property
+    def internal(self) -> bool:
+        """Whether the wheel is a ring gear: both gears then turn the same way."""
+        return self.wheel.sign < 0
 
     @cached_property
     def working_pressure_angle(self) -> float:
@@ -139,7 +161,12 @@ class ParallelAxes:
         """
         phase = np.asarray(position, dtype=float) + np.asarray(pair_index)
         first = np.asarray(self.path_of_contact.pitch_point + phase * self.base_pitch, dtype=float)
-        return first, np.asarray(self.common_tangent - self.wheel.sign * first, dtype=float)
+        return first, self.mating_roll_length(first)
+
+    def mating_roll_length(self, roll_length: ArrayLike) -> FloatArray:
+        """Roll length l_2 in m of the wheel where the line of action has `roll_length` l_1 of the pinion."""
+        first = np.asarray(roll_length, dtype=float)
+        return np.asarray(self.common_tangent - self.wheel.sign * first, dtype=float)
 
     def position(self, roll_length: ArrayLike) -> FloatArray:
         """Position (not wrapped) at which pair 0 touches at `roll_length` of gear 1."""
@@ -149,7 +176,7 @@ class ParallelAxes:
     def relative_curvature(self, roll_length: ArrayLike) -> FloatArray:
         """Transverse 1/l_1 + 1/l_2 in 1/m at `roll_length` of gear 1; 1/l_1 - 1/l_2 in a hollow ring."""
         first = np.asarray(roll_length, dtype=float)
-        second = self.common_tangent - self.wheel.sign * first
+        second = self.mating_roll_length(first)
         return np.asarray(1.0 / first + self.wheel.sign / second, dtype=float)
 
     # Backlash

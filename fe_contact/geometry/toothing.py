@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from fe_contact.geometry.form_point import FormPoint
     from fe_contact.geometry.gear_blank import Web
     from fe_contact.geometry.modification import FlankModification
+    from fe_contact.geometry.pitch_deviation import PitchDeviation
     from fe_contact.material import Material
     from fe_contact.types import Json
 
@@ -73,6 +74,10 @@ class Toothing:
         @property
         def modification(self) -> FlankModification:
             """Departures of the flanks from the involute helicoid."""
+
+        @property
+        def pitch_deviation(self) -> PitchDeviation:
+            """Of the loaded flank of every tooth."""
 
         @property
         def material(self) -> Material:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import Material
 
 
@@ -32,7 +32,7 @@ def shift_compliance(inner: float, outer: float, material: Material) -> float:
     return shape / (2.0 * math.pi * _shear_modulus(material) * (1.0 + kappa))
 
 
-def web_compliance(gear: Gear) -> float:
+def web_compliance(gear: Toothing) -> float:
     """How much more than a solid body the web of a gear gives way along the line of action, m/N.
 
     A lower bound of what the blank adds: rim and hub are rigid here, and the force enters the web evenly.

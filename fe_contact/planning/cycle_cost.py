@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict, dataclass
 
 from fe_contact.errors import InputError
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.plan import Plan
 from fe_contact.types import Json
 
@@ -52,7 +52,7 @@ class CycleCost:
         return asdict(self)
 
 
-def cycle_cost(pair: GearPair, plan: Plan, pitches: int, alignments: int) -> CycleCost:
+def cycle_cost(pair: ParallelAxes, plan: Plan, pitches: int, alignments: int) -> CycleCost:
     """Predict the cost of a table over `pitches` base pitches."""
     positions = plan.positions or plan.nodes.start
     pairs = math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 2

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 
 from fe_contact.compliance import PlaneHypothesis
-from fe_contact.geometry import Gear, GearPair
+from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.types import Json
 
 PLANE_REFINEMENT = {"draft": 0.6, "standard": 1.0, "fine": 2.0}
-SECTOR_RECIPE: dict[str, Callable[[Gear], SectorRecipe]] = {
+SECTOR_RECIPE: dict[str, Callable[[Toothing], SectorRecipe]] = {
     "draft": SectorRecipe.draft,
     "standard": SectorRecipe.standard,
     "fine": SectorRecipe.fine,
@@ -82,7 +82,7 @@ class FaceDiscretisation:
 Discretisation = PlaneDiscretisation | FaceDiscretisation
 
 
-def plane_discretisation(pair: GearPair, level: str, hypothesis: PlaneHypothesis) -> PlaneDiscretisation:
+def plane_discretisation(pair: ParallelAxes, level: str, hypothesis: PlaneHypothesis) -> PlaneDiscretisation:
     """Choose the sections of both gears."""
     factor = PLANE_REFINEMENT[level]
     standard = (MeshRecipe.standard(pair.pinion), MeshRecipe.standard(pair.wheel))
@@ -90,7 +90,7 @@ def plane_discretisation(pair: GearPair, level: str, hypothesis: PlaneHypothesis
     return PlaneDiscretisation(hypothesis, (first, second), (first.refined(0.5), second.refined(0.5)))
 
 
-def face_discretisation(pair: GearPair, level: str) -> FaceDiscretisation:
+def face_discretisation(pair: ParallelAxes, level: str) -> FaceDiscretisation:
     """Choose the sectors of both gears and the slices.
 
     A slice needs half a layer of its own, else the slices' forces move the same freedoms and the compliance

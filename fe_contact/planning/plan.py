@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.checks import increasing
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactModel, PatchRule
-from fe_contact.geometry import GearPair, Toothing
+from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.planning.accuracy import Accuracy
 from fe_contact.planning.discretisation import Discretisation, face_discretisation, plane_discretisation
@@ -83,7 +83,7 @@ class Plan:
     support: FloatArray
     thin_rim: bool = True
 
-    def bodies(self, pair: GearPair) -> tuple[Toothing, Toothing]:
+    def bodies(self, pair: ParallelAxes) -> tuple[Toothing, Toothing]:
         """Return both gears as their finite elements have them."""
         if self.thin_rim:
             return pair.pinion, pair.wheel
@@ -99,12 +99,12 @@ class Plan:
         }
 
 
-def make_plan(pair: GearPair, load: FloatArray, accuracy: Accuracy, model: ContactModel) -> Plan:
+def make_plan(pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: ContactModel) -> Plan:
     """Choose meshes, slices, patches, positions and support loads.
 
     Parameters
     ----------
-    pair : GearPair
+    pair : GearPair or InternalGearPair
     load : ndarray
         Requested normal forces in N, increasing, > 0.
     accuracy : Accuracy
@@ -132,16 +132,16 @@ def _support_loads(levels: FloatArray) -> FloatArray:
     return np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
 
 
-def _patch_rule(pair: GearPair, force: float, least: float) -> PatchRule:
+def _patch_rule(pair: ParallelAxes, force: float, least: float) -> PatchRule:
     """Return patches wider than any contact strip and than the meshes ask for."""
     edge = EDGE_PATCH * pair.pinion.normal_module
     return PatchRule(max(least, _widest_strip(pair, force) / 0.6), edge)
 
 
-def _widest_strip(pair: GearPair, force: float) -> float:
+def _widest_strip(pair: ParallelAxes, force: float) -> float:
     """Hertz half-width in m at the pitch point under the whole force; no aligned contact is much wider."""
     roll_1, roll_2 = pair.roll_lengths(0.0, 0)
     cosine = math.cos(pair.base_helix_angle)
-    radius = relative_radius(roll_1, roll_2) / cosine
+    radius = relative_radius(roll_1, pair.wheel.sign * roll_2) / cosine
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
     return float(half_width(force * cosine / pair.face_width, radius, modulus))

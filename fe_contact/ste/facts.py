@@ -20,9 +20,9 @@ class PairFacts:
     Attributes
     ----------
     teeth : tuple of int
-        Numbers of teeth, driving gear first.
+        Numbers of teeth, driving gear first; > 0 for a ring gear too.
     base_radius : tuple of float
-        r_b1, r_b2 in m.
+        r_b1, r_b2 in m, > 0 for a ring gear too.
     base_pitch : float
         Transverse base pitch p_bt in m.
     base_helix_angle : float
@@ -34,7 +34,11 @@ class PairFacts:
     face_width : float
         Common face width in m.
     helix_hand : int
-        Hand of gear 1: 1 right, -1 left, 0 spur.
+        Hand of gear 1: 1 right, -1 left, 0 spur. An external wheel has the opposite hand, a ring gear the
+        same.
+    internal : bool
+        Whether gear 2 is a ring gear: a cos(alpha_wt) is then r_b2 - r_b1, else r_b1 + r_b2, and both gears
+        turn the same way. STE stays r_b1 theta_1 - r_b2 theta_2, either angle counted as its gear is driven.
     """
 
     teeth: tuple[int, int]
@@ -45,6 +49,7 @@ class PairFacts:
     working_pressure_angle: float
     face_width: float
     helix_hand: int
+    internal: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "teeth", (int(self.teeth[0]), int(self.teeth[1])))
@@ -60,14 +65,18 @@ class PairFacts:
             "in [0, pi/2)",
         )
         _require("helix_hand", self.helix_hand, lambda hand: hand in (-1, 0, 1), "-1, 0 or 1")
+        _require("internal", self.internal, lambda value: isinstance(value, bool), "true or false")
 
     def normal_force(self, torque: float) -> float:
         """Total normal tooth force F_bn in N that carries `torque` in N m on gear 1."""
         return torque / (self.base_radius[0] * math.cos(self.base_helix_angle))
 
     def to_json(self) -> Json:
-        """Plain JSON with the same names."""
-        return asdict(self)
+        """Plain JSON with the same names; `internal` only if true, as files before it had none."""
+        content = asdict(self)
+        if not self.internal:
+            del content["internal"]
+        return content
 
     @classmethod
     def from_json(cls, content: Json) -> PairFacts:

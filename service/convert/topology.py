@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from service.convert.units import MM
 from service.problems import BadInput
@@ -27,7 +27,7 @@ class Teeth:
     internal: bool = False
 
 
-def facts_of(pair: GearPair) -> PairFacts:
+def facts_of(pair: ParallelAxes) -> PairFacts:
     """Return the facts that a database of `pair` will carry."""
     pinion, wheel = pair.pinion, pair.wheel
     return PairFacts(
@@ -39,6 +39,7 @@ def facts_of(pair: GearPair) -> PairFacts:
         working_pressure_angle=pair.working_pressure_angle,
         face_width=min(pinion.face_width, wheel.face_width),
         helix_hand=(pair.base_helix_angle > 0.0) - (pair.base_helix_angle < 0.0),
+        internal=pair.internal,
     )
 
 
@@ -65,12 +66,10 @@ def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Tee
 def _side(facts: PairFacts, side: int) -> Teeth:
     """Return one gear of a pair; the hands of external gears are opposite, those in a ring gear the same."""
     radius = facts.base_radius[side]
-    difference = (facts.base_radius[1] - facts.base_radius[0]) / math.cos(facts.working_pressure_angle)
-    ring = math.isclose(difference, facts.center_distance, rel_tol=_SAME)
-    hand = facts.helix_hand if side == 0 or ring else -facts.helix_hand
+    hand = facts.helix_hand if side == 0 or facts.internal else -facts.helix_hand
     diameter = 2.0 * radius / math.cos(facts.working_pressure_angle)
-    helix = hand * facts.base_helix_angle
-    return Teeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring and side == 1)
+    helix, ring = hand * facts.base_helix_angle, facts.internal and side == 1
+    return Teeth(facts.teeth[side], radius, helix, diameter, facts.face_width, ring)
 
 
 def check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:

@@ -1,4 +1,9 @@
-"""Corner contact against brute force: exact profiles in place, the driven gear turned until they touch."""
+"""Corner contact against brute force: exact profiles in place, the driven gear turned until they touch.
+
+Gear 1's centre is at the origin, its tooth up, seen so that its right flank is the loaded one. An external
+wheel's tooth points down from a centre on +y; a ring's stands on +y of a centre on -y and points down too, so
+that its loaded flank is the left one here.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +14,16 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from fe_contact.geometry import Gear, GearPair, corner_contact, tooth_profile
+from fe_contact.geometry import (
+    Gear,
+    GearPair,
+    InternalGearPair,
+    ParallelAxes,
+    RingGear,
+    Toothing,
+    corner_contact,
+    tooth_profile,
+)
 from fe_contact.geometry.corner_contact import Side
 
 
@@ -18,7 +32,12 @@ def gear(teeth: int, **fields: Any) -> Gear:
     return Gear(teeth=teeth, **(defaults | fields))
 
 
-PAIRS = {
+def ring(teeth: int, **fields: Any) -> RingGear:
+    size = {"normal_module": 4e-3, "face_width": 25e-3, "rim_diameter": 5e-3 * teeth}
+    return RingGear(teeth=teeth, **(size | fields))
+
+
+PAIRS: dict[str, ParallelAxes] = {
     "20/20": GearPair(gear(20), gear(20)),
     "17/43 shifted": GearPair(
         gear(17, profile_shift_coefficient=0.4), gear(43, profile_shift_coefficient=0.2), 0.1225
@@ -28,20 +47,29 @@ PAIRS = {
     ),
     "40/80": GearPair(gear(40), gear(80)),
     "25/31 helical": GearPair(gear(25, helix_angle=0.35), gear(31, helix_angle=-0.35)),
+    "36/96 internal": InternalGearPair(gear(36), ring(96, addendum_coefficient=0.9)),
+    "19/60 internal shifted": InternalGearPair(
+        gear(19, profile_shift_coefficient=0.4), ring(60, profile_shift_coefficient=-0.6), 0.0814
+    ),
+    "24/70 internal helical": InternalGearPair(
+        gear(24, helix_angle=0.3, profile_shift_coefficient=0.2),
+        ring(70, helix_angle=0.3, addendum_coefficient=0.8, profile_shift_coefficient=-0.1),
+    ),
 }
 
 
 class Assembly:
-    """Both right flanks in one plane: gear 1's centre at the origin, gear 2's on +y, its tooth down."""
+    """Both loaded flanks in one plane."""
 
-    def __init__(self, pair: GearPair) -> None:
-        self.pair = pair
+    def __init__(self, pair: ParallelAxes) -> None:
+        self.pair, self.sign = pair, pair.wheel.sign
+        self.up = np.array([0.0, self.sign * pair.center_distance])
         self.flanks = tuple(_sampled_flank(each) for each in (pair.pinion, pair.wheel))
         first, second = (np.array([radius]) for radius in pair.operating_pitch_radii)
         self.start = -_polar_angle(pair.pinion, first)[0], _polar_angle(pair.wheel, second)[0]
 
     def turns(self, roll_length: float, lag: float) -> tuple[float, float]:
-        """Clockwise turn of gear 1 and counter-clockwise turn of gear 2."""
+        """Turns of both gears: clockwise, but counter-clockwise of an external gear 2."""
         rolled = roll_length - self.pair.path_of_contact.pitch_point
         first = self.start[0] + rolled / self.pair.pinion.base_radius
         return first, self.start[1] + (rolled - lag) / self.pair.wheel.base_radius
@@ -49,17 +77,28 @@ class Assembly:
     def clearance(self, roll_length: float, lag: float) -> float:
         """Smallest clearance (arc in m) of all flank points, each against the other flank at its radius."""
         first, second = self.turns(roll_length, lag)
-        up = np.array([0.0, self.pair.center_distance])
         on_first = _clockwise(self.flanks[0], first)
-        on_second = _clockwise(self.flanks[1], math.pi - second) + up
-        against_second = _angle_past(on_first - up, self.pair.wheel, math.pi - second)
+        on_second = self.placed(self.flanks[1], second) + self.up
+        against_second = _angle_past(self.own_frame(on_first - self.up, second), self.pair.wheel, 0.0)
         against_first = _angle_past(on_second, self.pair.pinion, first)
         return min(against_first, against_second)
 
+    def placed(self, vectors: np.ndarray, second: float) -> np.ndarray:
+        """Vectors of gear 2's tooth frame as they stand at its turn `second`."""
+        if self.sign > 0:
+            return _clockwise(vectors, math.pi - second)
+        return _clockwise(vectors * [-1.0, 1.0], second)
 
-def _sampled_flank(each: Gear) -> np.ndarray:
+    def own_frame(self, vectors: np.ndarray, second: float) -> np.ndarray:
+        """The way back."""
+        if self.sign > 0:
+            return _clockwise(vectors, second - math.pi)
+        return _clockwise(vectors, -second) * [-1.0, 1.0]
+
+
+def _sampled_flank(each: Toothing) -> np.ndarray:
     roll = np.linspace(each.form_roll_length, each.tip_roll_length, 41)
-    return tooth_profile(each).flank(roll**2 / (2.0 * each.base_radius))
+    return tooth_profile(each).flank(each.sign * roll**2 / (2.0 * each.base_radius))
 
 
 def _clockwise(points: np.ndarray, angle: float) -> np.ndarray:
@@ -67,21 +106,22 @@ def _clockwise(points: np.ndarray, angle: float) -> np.ndarray:
     return points @ np.array([[cosine, -sine], [sine, cosine]])
 
 
-def _polar_angle(each: Gear, radius: np.ndarray) -> np.ndarray:
+def _polar_angle(each: Toothing, radius: np.ndarray) -> np.ndarray:
     """Angle from the tooth's centre line at which the flank has a radius, by bisection on the profile."""
     profile = tooth_profile(each)
     low, high = np.full(radius.shape, profile.s_form), np.full(radius.shape, profile.s_tip)
     for _ in range(50):
         middle = 0.5 * (low + high)
-        below = np.hypot(*profile.flank(middle).T) < radius
+        below = each.sign * (np.hypot(*profile.flank(middle).T) - radius) < 0.0
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     x, y = profile.flank(0.5 * (low + high)).T
     return np.arctan2(x, y)
 
 
-def _angle_past(points: np.ndarray, each: Gear, turn: float) -> float:
+def _angle_past(points: np.ndarray, each: Toothing, turn: float) -> float:
     radius = np.hypot(*points.T)
-    within = (radius >= each.form_radius) & (radius <= each.tip_radius)
+    within = each.sign * (radius - each.form_radius) >= 0.0
+    within &= each.sign * (radius - each.tip_radius) <= 0.0
     if not np.any(within):
         return 1.0
     x, y = points[within].T
@@ -90,7 +130,7 @@ def _angle_past(points: np.ndarray, each: Gear, turn: float) -> float:
     return float(np.min(past * radius[within]))
 
 
-def _overshoots(pair: GearPair, side: Side) -> np.ndarray:
+def _overshoots(pair: ParallelAxes, side: Side) -> np.ndarray:
     """Four overshoots up to where the edge leaves the flank."""
     candidates = np.linspace(0.0, 0.02, 2001)
     limit = candidates[corner_contact(pair, side, candidates).valid][-1]
@@ -122,24 +162,26 @@ def test_touching_point_slope_and_lever_arms_are_those_of_the_placed_gears(name:
         state = corner_contact(pair, side, over)
         roll = (path.end if side == "exit" else path.start) + (over if side == "exit" else -over)
         first, second = assembly.turns(float(roll), float(state.gap))
-        up = np.array([0.0, pair.center_distance])
         rolls = [pair.pinion.tip_roll_length, float(state.flank_roll_length)]
         if side == "approach":
             rolls = [float(state.flank_roll_length), pair.wheel.tip_roll_length]
         profiles = tooth_profile(pair.pinion), tooth_profile(pair.wheel)
-        s = [0.5 * length**2 / each.gear.base_radius for length, each in zip(rolls, profiles, strict=True)]
+        s = [
+            each.gear.sign * 0.5 * length**2 / each.gear.base_radius
+            for length, each in zip(rolls, profiles, strict=True)
+        ]
         point = _clockwise(profiles[0].flank([s[0]]), first)[0]
-        mate = _clockwise(profiles[1].flank([s[1]]), math.pi - second)[0] + up
+        mate = assembly.placed(profiles[1].flank([s[1]]), second)[0] + assembly.up
         assert mate == pytest.approx(point, abs=1e-12)
         normals = (
             _clockwise(profiles[0].normal([s[0]]), first)[0],
-            -_clockwise(profiles[1].normal([s[1]]), math.pi - second)[0],
+            -assembly.placed(profiles[1].normal([s[1]]), second)[0],
         )
         cross = normals[0][0] * normals[1][1] - normals[0][1] * normals[1][0]
         assert abs(math.asin(cross)) == pytest.approx(float(state.slope_angle), abs=1e-9)
         force = normals[1] if side == "exit" else normals[0]  # along the mating flank's normal
         arm_1 = abs(point[0] * force[1] - point[1] * force[0]) / pair.pinion.base_radius
-        from_2 = point - up
+        from_2 = point - assembly.up
         arm_2 = abs(from_2[0] * force[1] - from_2[1] * force[0]) / pair.wheel.base_radius
         assert arm_1 == pytest.approx(float(state.lever_arm_ratio_pinion), abs=1e-9)
         assert arm_2 == pytest.approx(float(state.lever_arm_ratio_wheel), abs=1e-9)

@@ -181,7 +181,7 @@ def ring_table() -> Any:
 
     table = small_table()
     fields = {name: getattr(table, name) for name in table.__dataclass_fields__}
-    facts = replace(table.facts, teeth=(20, 60), base_radius=(BASE_RADIUS, 3.0 * BASE_RADIUS))
+    facts = replace(table.facts, teeth=(20, 60), base_radius=(BASE_RADIUS, 3.0 * BASE_RADIUS), internal=True)
     return type(table)(**fields | {"facts": facts})
 
 

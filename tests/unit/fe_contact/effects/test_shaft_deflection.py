@@ -16,7 +16,7 @@ from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.shaft_compliance import SeatCompliance, ShaftCompliance
 from fe_contact.effects.shaft_deflection import ShaftDeflection
 from fe_contact.errors import InputError
-from fe_contact.geometry import Gear, GearPair, Shaft
+from fe_contact.geometry import Gear, GearPair, InternalGearPair, ParallelAxes, RingGear, Shaft
 
 SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06, bearing_stiffness=4e8)
 E, NU = SHAFT.material.youngs_modulus, SHAFT.material.poissons_ratio
@@ -109,7 +109,13 @@ def make_pair(helix: float = 0.0, offset: float = 0.0, **fields: Any) -> GearPai
     return GearPair(pinion, replace(pinion, teeth=31, helix_angle=-helix), axial_offset=offset, **fields)
 
 
-def places(pair: GearPair) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def internal_pair(helix: float, offset: float) -> InternalGearPair:
+    pinion = Gear(20, 4e-3, 24e-3, 40e-3, helix_angle=helix, profile_shift_coefficient=0.3)
+    ring = RingGear(80, 4e-3, 24e-3, 0.42, helix_angle=helix, addendum_coefficient=0.8)
+    return InternalGearPair(pinion, ring, axial_offset=offset)
+
+
+def places(pair: ParallelAxes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Roll lengths (P, n) and face positions (n,) of touching points."""
     slices = Slices.of_pair(pair, 5)
     found = contact_candidates(pair, ContactModel(), np.arange(3) / 3, PatchRule(3e-4, 2e-4), slices)
@@ -131,7 +137,10 @@ def moved_by_wrenches(pair, seats, roll_1, roll_2, face) -> np.ndarray:
     beside = face - pair.axial_offset
     origins = (
         [pair.pinion.base_radius * n + roll * t + y * z for roll, y in zip(roll_1, face, strict=True)],
-        [-pair.wheel.base_radius * n - roll * t + y * z for roll, y in zip(roll_2, beside, strict=True)],
+        [
+            -pair.wheel.sign * (pair.wheel.base_radius * n + roll * t) + y * z
+            for roll, y in zip(roll_2, beside, strict=True)
+        ],
     )
     for found, arms in zip(seats, origins, strict=True):
         space = np.zeros((6, 6))
@@ -146,8 +155,10 @@ def moved_by_wrenches(pair, seats, roll_1, roll_2, face) -> np.ndarray:
 
 
 @pytest.mark.parametrize("helix", [0.0, 0.35, -0.35])
-def test_the_term_is_the_work_of_wrenches_on_the_seats(helix):
-    pair = make_pair(helix, offset=3e-3)
+@pytest.mark.parametrize("make", [make_pair, internal_pair])
+def test_the_term_is_the_work_of_wrenches_on_the_seats(make, helix):
+    """A ring's axis lies on the pinion's side of the line of action, its foot behind the pinion's."""
+    pair = make(helix, offset=3e-3)
     seats = seat(), seat(length=0.15, position=0.1, diameter=0.05)
     roll_1, roll_2, face = places(pair)
     found = ShaftCompliance(*seats)(pair, roll_1, roll_2, face)

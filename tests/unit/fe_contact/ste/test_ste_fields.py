@@ -128,6 +128,7 @@ class TestFacts:
             ("base_radius", (0.03, -1.0)),
             ("base_helix_angle", 1.6),
             ("helix_hand", 2),
+            ("internal", 1),
             ("face_width", math.nan),
         ],
     )

@@ -45,6 +45,19 @@ def test_a_second_round_trip_gives_the_same_table(stored, tmp_path):
     assert SteDatabase.from_netcdf(tmp_path / "again.nc").identical(database)
 
 
+def test_a_ring_gear_is_remembered_and_an_external_pair_says_nothing_of_it(stored, tmp_path):
+    database, path = stored
+    ring = replace(database, facts=replace(database.facts, internal=True))
+    ring.to_netcdf(tmp_path / "ring.nc")
+    back = SteDatabase.from_netcdf(tmp_path / "ring.nc")
+    assert back.facts.internal
+    assert back.identical(ring)
+    assert not back.identical(database)
+    with xarray.open_dataset(path, engine="h5netcdf") as dataset:
+        assert "internal" not in json.loads(dataset.attrs["facts"])
+    assert not SteDatabase.from_netcdf(path).facts.internal
+
+
 def test_large_receipts_survive(make, tmp_path):
     """HDF5 limits plain attributes to 64 kB."""
     database = make()
