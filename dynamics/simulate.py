@@ -12,6 +12,7 @@ from dynamics.integrators import Progress, StaticSolution, Trajectory, integrate
 from dynamics.integrators.workspace import Count
 from dynamics.results import EnergyAudit, RunResult, StepStatistics
 from dynamics.results.case import resolved_case
+from dynamics.results.contact_check import contact_checks
 from dynamics.results.histories import histories
 from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
@@ -66,6 +67,8 @@ def _result(system: System, trajectory: Trajectory, seconds: dict[str, float], e
     """Put the result together."""
     began = clock.perf_counter()
     series = histories(system, trajectory.time, trajectory.q, trajectory.v, trajectory.moved)
+    flanks = (series[name] for name in ("position", "dynamic_transmission_error", "mesh_force"))
+    checks = contact_checks(system, *flanks)
     audit = EnergyAudit.from_arrays(trajectory.work, trajectory.stored)
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
     return RunResult(
@@ -73,7 +76,7 @@ def _result(system: System, trajectory: Trajectory, seconds: dict[str, float], e
         status=trajectory.status,
         statistics=_statistics(system, trajectory),
         energy=audit if system.scene.outputs.energy_audit else None,
-        effect_ledger=system.ledger.to_json(),
+        effect_ledger={**system.ledger.to_json(), "checks": checks},
         receipt={"seconds": seconds, "error": error},
         case=resolved_case(system),
     )
@@ -110,7 +113,7 @@ def _error_estimate(
         fixed_step=integration.fixed_step and ERROR_CHECK_FACTOR * integration.fixed_step,
     )
     check = integrate(system, start, finer, progress)
-    difference = (trajectory.q - check.q) @ system.arrays.direction.T
+    difference = (trajectory.q - check.q) @ system.arrays.direction[: len(system.scene.meshes)].T
     rms = float(np.sqrt(np.mean(difference**2))) if difference.size else 0.0
     source = f"difference from a run at {ERROR_CHECK_FACTOR:g} of the tolerance"
     return {"time_step": {"rms": rms, "unit": "m", "source": source, "seconds": check.seconds}}

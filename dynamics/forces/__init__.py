@@ -1,7 +1,8 @@
 """Forces between bodies and on them: gear mesh, load torque."""
 
+from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.gear_mesh import GearMesh
 from dynamics.forces.load_torque import LoadTorque
 from dynamics.forces.mesh_table import MeshTable
 
-__all__ = ["GearMesh", "LoadTorque", "MeshTable"]
+__all__ = ["CoastFlank", "GearMesh", "LoadTorque", "MeshTable"]

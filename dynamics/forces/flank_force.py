@@ -41,7 +41,7 @@ def flank_force(
     fade = ratio * ratio * (3.0 - 2.0 * ratio)
     fade_slope = 6.0 * ratio * (1.0 - ratio) / law.reach[flank]
     force = elastic + law.damping[flank] * fade * rate
-    if force <= 0.0:
+    if force < 0.0:
         return 0.0, elastic, 0.0, 0.0, k
     tangent = stiffness * (1.0 + law.damping[flank] * fade_slope * rate)
     return force, elastic, tangent, law.damping[flank] * fade, k

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dynamics.checks import finite, not_negative, one_of, positive
+from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.mesh_table import MeshTable, check_table
 
 DEFAULT_DAMPING_RATIO = 0.05
@@ -39,6 +40,8 @@ class GearMesh:
         Position in base pitches at t = 0.
     misalignment, center_distance_change : float
         m; where the table has such axes, the constant place at which it is used.
+    coast : CoastFlank or None
+        The backs of the teeth, for the effect ``"backlash"``. None: only the driving flank carries force.
     """
 
     name: str
@@ -52,6 +55,7 @@ class GearMesh:
     position_offset: float = 0.0
     misalignment: float = 0.0
     center_distance_change: float = 0.0
+    coast: CoastFlank | None = None
 
     def __post_init__(self) -> None:
         check_table("table", self.table)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.forces.table_energy import table_energy
+from dynamics.forces.compiled import compiled
+from dynamics.forces.element_laws import Elements, LocalState, potential
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.observation import observe_flanks, observe_laws
+from dynamics.system.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray
 
 
@@ -23,7 +24,14 @@ def stored_energy(
     kinetic = (
         0.5 * v @ system.mass @ v - speed @ system.inertial @ v + 0.5 * speed @ system.total_inertia @ speed
     )
-    flank = observe_flanks(system, at, q[None, :], v[None, :], moved[None, :])
-    table = system.flank.table
-    mesh = sum(table_energy(table, f, flank[0, f, 0], flank[1, f, 0], 0)[0] for f in range(flank.shape[1]))
+    mesh = _in_elements(system.elements, local_state(system, time, q, v, moved))
     return np.array([kinetic, 0.5 * q @ system.stiffness @ q - system.constant @ q, mesh])
+
+
+@compiled
+def _in_elements(elements: Elements, local: LocalState) -> float:
+    """Sum of the energies that the elements store."""
+    total = 0.0
+    for e in range(elements.law.size):
+        total += potential(elements, local, e)[0]
+    return total

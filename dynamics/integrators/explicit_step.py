@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dynamics.forces.compiled import inner
-from dynamics.forces.flank_force import flank_force
+from dynamics.forces.element_laws import evaluate
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.rung import prepare_rung, row_product
-from dynamics.integrators.stage import add_flank_motion, finish_step, set_motion
+from dynamics.integrators.stage import finish_step, set_motion
 from dynamics.integrators.tableaus import (
     EXPLICIT_EMBEDDED,
     EXPLICIT_NODES,
@@ -15,6 +15,7 @@ from dynamics.integrators.tableaus import (
 )
 from dynamics.integrators.workspace import Workspace
 from dynamics.system.arrays import SystemArrays
+from dynamics.system.motion import add_motion
 from dynamics.types import FloatArray
 
 STAGE_COUNT = 7
@@ -54,23 +55,24 @@ def accelerate(
     v: FloatArray,
     acceleration: FloatArray,
 ) -> None:
-    """Write the accelerations (n,) in the state `q`, `v` at `time`, and the flank state into `work`.
+    """Write the accelerations (n,) in the state `q`, `v` at `time`, and the local state into `work`.
 
     The last rung's step is 0, so its matrix is M alone.
     """
     rung = work.ladder.size - 1
     if not work.ready[rung]:
         prepare_rung(system, work, rung, 0.0)
-    set_motion(system, work, time)
-    add_flank_motion(system, work, q, v)
+    local = work.local
+    set_motion(system, work, time, local.position)
+    add_motion(system, q, v, local.position, local.coordinate, local.rate)
     for i in range(q.size):
         work.external[i] -= row_product(system.damping, system.block, v, i)
         work.external[i] -= row_product(system.stiffness, system.block, q, i)
     for i in range(q.size):
         acceleration[i] = row_product(work.inverse[rung], system.block, work.external, i)
-    for f in range(work.force.size):
-        work.force[f], work.elastic[f], _, _, work.hint[f] = flank_force(
-            system.flank, f, work.position[f], work.deflection[f], work.rate[f], work.hint[f]
-        )
+    for e in range(system.elements.law.size):
+        evaluate(system.elements, local, e)
+    for r in range(work.force.size):
+        work.force[r] = local.force[r]
         for i in range(q.size):
-            acceleration[i] -= work.response[rung, f, i] * work.force[f]
+            acceleration[i] -= work.response[rung, r, i] * work.force[r]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dynamics.forces.compiled import inner
-from dynamics.integrators.flank_newton import solve_flanks
+from dynamics.integrators.local_newton import solve_local_forces
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.rung import prepare_rung, row_product
-from dynamics.integrators.stage import add_flank_motion, finish_step, set_motion
+from dynamics.integrators.stage import finish_step, set_motion
 from dynamics.integrators.tableaus import (
     IMPLICIT_DIAGONAL,
     IMPLICIT_EMBEDDED,
@@ -16,6 +16,7 @@ from dynamics.integrators.tableaus import (
 )
 from dynamics.integrators.workspace import Count, Workspace
 from dynamics.system.arrays import SystemArrays
+from dynamics.system.motion import add_motion
 
 STAGE_COUNT = 6
 
@@ -50,11 +51,11 @@ def _stage(system: SystemArrays, work: Workspace, rung: int, stage: int, toleran
     """Solve one stage for its acceleration.
 
     With s = diagonal * step the stage's rates are v = v* + s a and q = q* + s v* + s^2 a, where v* and q*
-    hold what earlier stages contribute; (M + s C + s^2 K) a = external - C v* - K (q* + s v*) - sum g F.
+    hold what earlier stages contribute; (M + s C + s^2 K) a = external - C v* - K (q* + s v*) - G^T f.
     """
     step, size = work.ladder[rung], work.q.size
     span = IMPLICIT_DIAGONAL * step
-    set_motion(system, work, work.time[0] + IMPLICIT_NODES[stage] * step)
+    set_motion(system, work, work.time[0] + IMPLICIT_NODES[stage] * step, work.free_position)
     q, v = work.q_new, work.v_new
     for i in range(size):
         displacement, rate = 0.0, 0.0
@@ -71,12 +72,12 @@ def _stage(system: SystemArrays, work: Workspace, rung: int, stage: int, toleran
     for i in range(size):
         v[i] += span * work.linear[i]
         q[i] += span * span * work.linear[i]
-    add_flank_motion(system, work, q, v)
-    iterations = solve_flanks(system, work, rung, span, tolerance)
+    add_motion(system, q, v, work.free_position, work.free, work.free_rate)
+    iterations = solve_local_forces(system, work, rung, span, tolerance)
     for i in range(size):
         pushed = 0.0
-        for f in range(work.force.size):
-            pushed += work.response[rung, f, i] * work.force[f]
+        for r in range(work.force.size):
+            pushed += work.response[rung, r, i] * work.force[r]
         work.stage_a[stage, i] = work.linear[i] - pushed
         v[i] -= span * pushed
         q[i] -= span * span * pushed

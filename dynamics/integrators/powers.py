@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
 from dynamics.forces.compiled import inner
-from dynamics.forces.table_energy import table_energy
+from dynamics.forces.element_laws import potential
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.system.arrays import SystemArrays
@@ -15,7 +13,7 @@ from dynamics.types import FloatArray
 
 @inner
 def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float) -> None:
-    """Write row `stage` of ``work.power`` from the flank state at that stage and its rates ``work.stage_v``.
+    """Write row `stage` of ``work.power`` from the local state at that stage and its rates ``work.stage_v``.
 
     Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
     the line of action; what dV/dx stores as the position moves on is counted as supplied by the position.
@@ -36,16 +34,15 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     bushing, mesh, position = 0.0, 0.0, 0.0
     for i in range(velocity.size):
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
-    for f in range(work.force.size):
-        mesh += (work.force[f] - work.elastic[f]) * work.rate[f]
-        slope = table_energy(system.flank.table, f, work.position[f], work.deflection[f], work.hint[f])[1]
-        rate = 0.0
-        for k in range(laws):
-            per_turn = system.reference.numerator[f, k] / system.reference.denominator[f, k]
-            rate += per_turn * work.motion[k, SPEED] / (2.0 * math.pi)
-        for i in range(velocity.size):
-            rate += system.turn[f, i] * velocity[i]
-        position += slope * rate
+    for r in range(work.force.size):
+        mesh += (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
+    for e in range(system.elements.law.size):
+        m = system.elements.mesh[e]
+        if m >= 0:
+            rate = work.local.pace[m]
+            for i in range(velocity.size):
+                rate += system.turn[m, i] * velocity[i]
+            position += potential(system.elements, work.local, e)[1] * rate
     work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
     work.power[stage, Power.POSITION] = position
@@ -67,6 +64,6 @@ def _drive_torque(
             torque -= system.load.drive[load, law] * law_value(system.load.torque, load, time)
     for i in range(velocity.size):
         torque += drive.stiffness[law, i] * work.q_new[i] + drive.damping[law, i] * velocity[i]
-    for f in range(work.force.size):
-        torque += drive.direction[law, f] * work.force[f]
+    for r in range(work.force.size):
+        torque += drive.direction[law, r] * work.force[r]
     return float(torque)

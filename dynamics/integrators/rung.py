@@ -1,4 +1,4 @@
-"""Compiled preparation of one step size: inverse of the stage matrix, responses to the flanks."""
+"""Compiled preparation of one step size: inverse of the stage matrix, responses to local forces."""
 
 from __future__ import annotations
 
@@ -12,23 +12,24 @@ from dynamics.types import FloatArray, IntArray
 def prepare_rung(system: SystemArrays, work: Workspace, rung: int, diagonal: float) -> None:
     """Fill the matrices of `rung` for the stage weight `diagonal` (0: an explicit method, M alone)."""
     span = diagonal * work.ladder[rung]
-    flanks, size = work.force.size, work.q.size
+    rows, size = work.force.size, work.q.size
     matrix = work.matrix
     for i in range(size):
         for j in range(size):
             matrix[i, j] = system.mass[i, j] + span * (system.damping[i, j] + span * system.stiffness[i, j])
     invert_blocks(matrix, system.block, work.inverse[rung])
-    for f in range(flanks):
+    for r in range(rows):
         for i in range(size):
             total = 0.0
             for j in range(size):
-                total += work.inverse[rung, i, j] * system.direction[f, j]
-            work.response[rung, f, i] = total
-    for e in range(flanks):
-        for f in range(flanks):
-            for i in range(size):
-                work.approach[rung, e, f] += system.direction[e, i] * work.response[rung, f, i]
-                work.turning[rung, e, f] += system.turn[e, i] * work.response[rung, f, i]
+                total += work.inverse[rung, i, j] * system.direction[r, j]
+            work.response[rung, r, i] = total
+    for r in range(rows):
+        for i in range(size):
+            for k in range(rows):
+                work.approach[rung, k, r] += system.direction[k, i] * work.response[rung, r, i]
+            for m in range(system.turn.shape[0]):
+                work.turning[rung, m, r] += system.turn[m, i] * work.response[rung, r, i]
     work.ready[rung] = True
 
 

@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.forces.table_lookup import table_deflection, table_force
+from dynamics.forces.element_laws import Law
+from dynamics.forces.table_lookup import table_deflection
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
-from dynamics.system.observation import observe_flanks, observe_laws
-from dynamics.types import FloatArray, StaticStatus
+from dynamics.system.force_balance import ForceBalance, force_balance
+from dynamics.system.observation import local_state, observe_laws
+from dynamics.types import FloatArray, IntArray, StaticStatus
 
 ITERATION_LIMIT = 50
 RESIDUAL_LIMIT = 1e-10  # of the largest force
@@ -28,7 +30,7 @@ class StaticSolution:
     displacement : (n,) array
         Deviations from the kinematic motion, m and rad.
     mesh_force : (m,) array
-        Transverse, N.
+        Transverse, of the driving flanks, N.
     residual : float
         Largest unbalanced force (torques over the freedom's scale), N.
     iterations : int
@@ -44,25 +46,27 @@ class StaticSolution:
 def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     """Balance bushings and meshes against loads and the inertia of the imposed motion at `time`.
 
-    Newton's method with step halving, from the state in which every mesh is a spring of its nominal force.
+    Newton's method with step halving, from the state in which every mesh is a spring of its nominal force,
+    on the flank that the load presses.
     """
-    arrays = system.arrays
+    arrays, meshes = system.arrays, system.flanks.nominal_force.size
     external = _external(system, time)
     q = _first_guess(system, time, external)
-    residual, stiffness, force = _residual(arrays, time, q, external)
+    found = force_balance(arrays, time, q, np.zeros(q.size), external)
     scale = max(
-        float(np.max(np.abs(external / arrays.scale), initial=0.0)), float(np.max(force, initial=0.0))
+        float(np.max(np.abs(external / arrays.scale), initial=0.0)),
+        float(np.max(np.abs(found.local.force), initial=0.0)),
     )
     for iteration in range(ITERATION_LIMIT + 1):
-        size = float(np.max(np.abs(residual / arrays.scale), initial=0.0))
+        size = _size(arrays, found)
         if size <= RESIDUAL_LIMIT * scale:
+            force = found.local.force[:meshes]
             return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
-        matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", arrays.direction, stiffness, arrays.direction)
-        update = _solve(arrays, matrix, residual, q)
-        q, residual, stiffness, force = _line_search(arrays, time, q, update, external, size)
-    lost = bool(np.any(force <= LOST_CONTACT * scale))
+        update = _solve(arrays, found.stiffness, found.force, q)
+        q, found = _line_search(arrays, time, q, update, external, size)
+    lost = bool(np.any(_per_mesh(arrays, found.local.force) <= LOST_CONTACT * scale))
     status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
-    return StaticSolution(status, q, force, size, ITERATION_LIMIT)
+    return StaticSolution(status, q, found.local.force[:meshes], size, ITERATION_LIMIT)
 
 
 def _external(system: System, time: float) -> FloatArray:
@@ -80,19 +84,39 @@ def _external(system: System, time: float) -> FloatArray:
 
 
 def _first_guess(system: System, time: float, external: FloatArray) -> FloatArray:
-    """Displacements if every mesh were a spring: its secant from lift-off to the nominal force."""
-    arrays, flanks = system.arrays, system.flanks
-    n, m = external.size, flanks.nominal_force.size
-    position = _observe(arrays, time, np.zeros(n))[0]
-    table = arrays.flank.table
+    """Displacements if every mesh were a spring, on the coast flank where the driving one would pull."""
+    flanks = system.flanks
+    carrying = np.arange(flanks.nominal_force.size)
+    q, force = _on_springs(system, time, external, carrying)
+    for place, mesh in enumerate(flanks.coast, start=carrying.size):
+        if force[mesh] < 0.0:
+            carrying[mesh] = place
+    if np.any(carrying >= carrying.size):
+        q, _ = _on_springs(system, time, external, carrying)
+    return q
+
+
+def _on_springs(
+    system: System, time: float, external: FloatArray, carrying: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Displacements (n,) and forces (m,) if the flanks `carrying` (m,) were springs of their nominal force.
+
+    A spring's stiffness is the secant from lift-off to the nominal force.
+    """
+    arrays, n = system.arrays, external.size
+    position = local_state(arrays, time, np.zeros(n), np.zeros(n)).position
+    table, offset = arrays.elements.laws.flank.table, arrays.elements.offset[carrying]
     # at lift-off a table may have no stiffness to start from, so unloaded flanks start a little pressed
-    touch = LEAST_TOUCH * table.level[table.offset[:, 4] + 1]
-    force = np.maximum(flanks.nominal_force, touch)
-    touching = np.array([table_deflection(table, f, position[f], 0.0) for f in range(m)])
-    deflection = np.array([table_deflection(table, f, position[f], force[f]) for f in range(m)])
-    secant = force / (deflection - touching)
-    matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", arrays.direction, secant, arrays.direction)
-    return _solve(arrays, matrix, external + (secant * touching) @ arrays.direction, np.zeros(n))
+    touch = LEAST_TOUCH * table.level[table.offset[carrying, 4] + 1]
+    force = np.maximum(system.flanks.nominal_force, touch)
+    flanks = list(enumerate(carrying))
+    touching = np.array([table_deflection(table, flank, position[f], 0.0) for f, flank in flanks])
+    deflection = np.array([table_deflection(table, flank, position[f], force[f]) for f, flank in flanks])
+    secant, rows = force / (deflection - touching), arrays.direction[carrying]
+    matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", rows, secant, rows)
+    pushed = external + (secant * (touching - offset)) @ rows
+    q = _solve(arrays, matrix, pushed, np.zeros(n))
+    return q, secant * (rows @ q + offset - touching)
 
 
 def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: FloatArray) -> FloatArray:
@@ -107,30 +131,28 @@ def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: Float
     return np.asarray(np.linalg.lstsq(left, right, rcond=1e-14)[0])
 
 
-def _observe(arrays: SystemArrays, time: float, q: FloatArray) -> FloatArray:
-    """Position, transmission error and force of every flank at rest in `q`, (3, m)."""
-    return observe_flanks(arrays, np.array([time]), q[None, :], np.zeros((1, q.size)))[:, :, 0]
+def _per_mesh(arrays: SystemArrays, values: FloatArray) -> FloatArray:
+    """Return the sum of `values` (R,) over the flanks of each mesh, (m,)."""
+    elements, total = arrays.elements, np.zeros(arrays.turn.shape[0])
+    flank = elements.law == Law.FLANK
+    np.add.at(total, elements.mesh[flank], values[elements.first[:-1][flank]])
+    return total
 
 
-def _residual(
-    arrays: SystemArrays, time: float, q: FloatArray, external: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Unbalanced force (n,), tangent stiffness (m,) and force (m,) of the flanks."""
-    position, deflection, force = _observe(arrays, time, q)
-    table = arrays.flank.table
-    stiffness = np.array([table_force(table, f, position[f], deflection[f], 0)[1] for f in range(force.size)])
-    return external - arrays.stiffness @ q - force @ arrays.direction, stiffness, force
+def _size(arrays: SystemArrays, balance: ForceBalance) -> float:
+    """Largest unbalanced force, torques over the freedom's scale, N."""
+    return float(np.max(np.abs(balance.force / arrays.scale), initial=0.0))
 
 
 def _line_search(
     arrays: SystemArrays, time: float, q: FloatArray, update: FloatArray, external: FloatArray, size: float
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Halve the update until it lowers the residual with all flanks in contact (or is tiny)."""
+) -> tuple[FloatArray, ForceBalance]:
+    """Halve the update until it lowers the residual with all meshes in contact (or is tiny)."""
     for halving in range(30):
         trial = q + update * 0.5**halving
-        residual, stiffness, force = _residual(arrays, time, trial, external)
-        better = float(np.max(np.abs(residual / arrays.scale))) < size
+        found = force_balance(arrays, time, trial, np.zeros(q.size), external)
         # beyond lift-off there is no stiffness to come back by, however small the residual is there
-        if better and (np.all(stiffness > 0.0) or np.max(np.abs(residual)) == 0.0):
+        touching = np.all(_per_mesh(arrays, found.local.tangent[:, 0]) > 0.0)
+        if _size(arrays, found) < size and (touching or np.max(np.abs(found.force)) == 0.0):
             break
-    return trial, residual, stiffness, force
+    return trial, found

@@ -64,7 +64,7 @@ def step_error(system: SystemArrays, work: Workspace) -> float:
 
 @inner
 def slow_enough(system: SystemArrays, work: Workspace, rung: int) -> int:
-    """Return the first rung, `rung` or later, in whose step no flank moves by more than POSITION_LIMIT.
+    """Return the first rung, `rung` or later, in whose step no mesh moves by more than POSITION_LIMIT.
 
     An error estimate knows the table only where the stages look; a step over half a pitch could miss a
     handover.
@@ -72,10 +72,10 @@ def slow_enough(system: SystemArrays, work: Workspace, rung: int) -> int:
     reference = system.reference
     write_motion(reference, work.time[0], work.moved, work.motion)
     rate = 0.0
-    for f in range(work.force.size):
+    for m in range(reference.per_radian.shape[0]):
         moving = 0.0
         for k in range(work.motion.shape[0]):
-            per_turn = reference.numerator[f, k] / reference.denominator[f, k]
+            per_turn = reference.numerator[m, k] / reference.denominator[m, k]
             moving += law_speed(reference, k, work.motion, work.v) / (2.0 * math.pi) * per_turn
         rate = max(rate, abs(moving))
     while rate * work.ladder[rung] > POSITION_LIMIT and rung < work.ladder.size - 2:

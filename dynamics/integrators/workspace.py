@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.forces.element_laws import LocalState, make_local
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
@@ -40,7 +41,7 @@ class Count(IntEnum):
 
 
 class Workspace(NamedTuple):
-    """State and scratch of a run with n freedoms and m flanks.
+    """State and scratch of a run with n freedoms, m meshes and R local coordinates of elements.
 
     The step sizes are those of a ladder, RUNGS_PER_OCTAVE to a factor of 2, so that the matrices of the
     implicit stages are inverted once per rung and run.
@@ -54,18 +55,22 @@ class Workspace(NamedTuple):
     q_new, v_new, a_new, q_error, v_error : (n,) arrays
         At the end of the step tried.
     external, linear : (n,) arrays
-        Scratch: external force; acceleration without flank forces.
+        Scratch: external force; acceleration without the elements' forces.
     stage_v, stage_a : (STAGES, n) arrays
-    force, elastic, deflection, rate, position : (m,) arrays
-        Of the flanks at the current stage: total and elastic force, transmission error, its rate, position.
+    force : (R,) array
+        Local forces at the current stage, as Newton's method found them, N.
+    local : LocalState
+        Of the elements at the current stage.
+    free, free_rate : (R,) arrays
+        Local coordinates and their rates without the elements' forces.
+    free_position : (m,) array
+        Positions without them.
     motion : (k, 4) array
         Of the laws at the current stage.
     moved : (k,) int array
         Quanta of a revolution by which each free train's own rotation was moved into the reference.
-    jacobian : (m, m + 1) array
+    jacobian : (R, R + 1) array
         Scratch of Newton's method.
-    hint : (m,) int array
-        Level intervals of the last look-up.
     power : (STAGES, 5) array
         Per stage; columns `Power`.
     work : (5,) array
@@ -80,10 +85,12 @@ class Workspace(NamedTuple):
         Whether the matrices of a rung are there.
     inverse : (r, n, n) array
         Of M + h g C + (h g)^2 K.
-    response : (r, m, n) array
-        inverse times flank direction.
-    approach, turning : (r, m, m) arrays
-        Transmission error, position of flank e per response to flank f.
+    response : (r, R, n) array
+        inverse times the rows' directions.
+    approach : (r, R, R) array
+        Local coordinate k per response to local force r.
+    turning : (r, m, R) array
+        Position of each mesh per response to local force r.
     """
 
     time: FloatArray
@@ -101,14 +108,13 @@ class Workspace(NamedTuple):
     stage_v: FloatArray
     stage_a: FloatArray
     force: FloatArray
-    elastic: FloatArray
-    deflection: FloatArray
-    rate: FloatArray
-    position: FloatArray
+    local: LocalState
+    free: FloatArray
+    free_rate: FloatArray
+    free_position: FloatArray
     motion: FloatArray
     moved: IntArray
     jacobian: FloatArray
-    hint: IntArray
     power: FloatArray
     work: FloatArray
     counts: IntArray
@@ -129,12 +135,11 @@ def step_ladder(largest: float, smallest: float) -> FloatArray:
 
 def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, first_step: float) -> Workspace:
     """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
-    n, m, r = q.size, system.direction.shape[0], ladder.size
+    n, rows, meshes, r = q.size, system.direction.shape[0], system.turn.shape[0], ladder.size
     counts = np.zeros(len(Count), dtype=np.int64)
     counts[Count.RUNG] = min(int(np.searchsorted(-ladder, -first_step)), r - 2)
     counts[Count.SMALLEST_RUNG] = r - 1
     per_freedom = ("v", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "linear")
-    per_flank = ("force", "elastic", "deflection", "rate", "position")
     return Workspace(
         time=np.zeros(1),
         error=np.ones(1),
@@ -142,11 +147,12 @@ def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, firs
         **{name: np.zeros(n) for name in per_freedom},
         stage_v=np.zeros((STAGES, n)),
         stage_a=np.zeros((STAGES, n)),
-        **{name: np.zeros(m) for name in per_flank},
+        **{name: np.zeros(rows) for name in ("force", "free", "free_rate")},
+        local=make_local(system.elements, meshes),
+        free_position=np.zeros(meshes),
         motion=np.zeros((system.inertial.shape[0], MOTION_COLUMNS)),
         moved=np.zeros(system.inertial.shape[0], dtype=np.int64),
-        jacobian=np.zeros((m, m + 1)),
-        hint=np.zeros(m, dtype=np.int64),
+        jacobian=np.zeros((rows, rows + 1)),
         power=np.zeros((STAGES, len(Power))),
         work=np.zeros(len(Power)),
         counts=counts,
@@ -154,7 +160,7 @@ def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, firs
         matrix=np.zeros((n, n)),
         ready=np.zeros(r, dtype=np.bool_),
         inverse=np.zeros((r, n, n)),
-        response=np.zeros((r, m, n)),
-        approach=np.zeros((r, m, m)),
-        turning=np.zeros((r, m, m)),
+        response=np.zeros((r, rows, n)),
+        approach=np.zeros((r, rows, rows)),
+        turning=np.zeros((r, meshes, rows)),
     )

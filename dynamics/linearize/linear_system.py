@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import SolveError
-from dynamics.forces.flank_force import flank_force
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.system.assemble import System
-from dynamics.system.observation import observe_flanks
+from dynamics.system.force_balance import force_balance
 from dynamics.types import FloatArray
 
 
@@ -64,15 +63,16 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     if not start.status.usable:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
     arrays = system.arrays
-    tangent, viscous = _flank_derivatives(system, time, start.displacement)
+    rest = np.zeros(start.displacement.size)
+    balance = force_balance(arrays, time, start.displacement, rest, rest)
     free = arrays.reference.freedom >= 0
-    names, strain, coefficient = _springs(system, tangent)
+    names, strain, coefficient = _springs(system, balance.local.tangent[: len(system.scene.meshes), 0])
     return LinearSystem(
         system.freedoms.name,
         arrays.scale,
         arrays.mass,
-        arrays.damping + np.einsum("fi,f,fj->ij", arrays.direction, viscous, arrays.direction),
-        arrays.stiffness + np.einsum("fi,f,fj->ij", arrays.direction, tangent, arrays.direction),
+        balance.damping,
+        balance.stiffness,
         arrays.reference.vector[free],
         names,
         strain,
@@ -81,20 +81,10 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     )
 
 
-def _flank_derivatives(system: System, time: float, q: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Tangent stiffness and damping of every flank at rest in `q`, (m,) each."""
-    arrays = system.arrays
-    observed = observe_flanks(arrays, np.array([time]), q[None, :], np.zeros((1, q.size)))[:, :, 0]
-    laws = [
-        flank_force(arrays.flank, f, observed[0, f], observed[1, f], 0.0, 0) for f in range(observed.shape[1])
-    ]
-    return np.array([law[2] for law in laws]), np.array([law[3] for law in laws])
-
-
 def _springs(system: System, tangent: FloatArray) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
     """Names, strains per freedom and stiffnesses of all springs."""
     names = [mesh.name for mesh in system.scene.meshes]
-    rows, stiffness = [system.arrays.direction], [tangent]
+    rows, stiffness = [system.arrays.direction[: len(names)]], [tangent]
     supports = system.supports
     moves = system.freedoms.keep(supports.motion)
     names += [f"{name}.{axis}" for name in supports.name for axis in "xyz"]

@@ -7,6 +7,7 @@ from dataclasses import asdict
 
 import numpy as np
 
+from dynamics.forces import GearMesh
 from dynamics.system.assemble import System
 from dynamics.types import Json
 
@@ -33,7 +34,7 @@ def resolved_case(system: System) -> Json:
         "outputs": asdict(scene.outputs),
         "integration": asdict(scene.integration),
         "freedoms": list(system.freedoms.name),
-        "damping_reach": [float(value) for value in flanks.law.reach],
+        "damping_reach": [float(value) for value in flanks.law.reach[: len(scene.meshes)]],
     }
     plain: Json = json.loads(json.dumps(case, default=float))  # lists for tuples, as a file gives them back
     return plain
@@ -57,9 +58,21 @@ def _mesh(system: System, index: int) -> Json:
         "working_pressure_angle": line.working_pressure_angle,
         "line_of_action": [float(value) for value in line.force],
         "point_of_action": [float(value) for value in line.point],
+        "coast": _coast(mesh),
         "table": {
             "positions": np.size(mesh.table.position),
             "levels": np.size(mesh.table.level),
             "period": int(mesh.table.period),
         },
+    }
+
+
+def _coast(mesh: GearMesh) -> Json | None:
+    """Return the coast flank of a mesh as given."""
+    if mesh.coast is None:
+        return None
+    return {
+        "backlash": mesh.coast.backlash,
+        "thickness": mesh.coast.thickness,
+        "own_table": mesh.coast.table is not None,
     }

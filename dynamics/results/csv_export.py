@@ -18,6 +18,8 @@ def write_csv(result: RunResult, path: Path) -> None:
         if series.dimensions[-1] != "time":
             continue
         values = getattr(result, series.name)
+        if not values.size:
+            continue
         labels = _labels(result, series.dimensions[:-1])
         for label, column in zip(labels, values.reshape(-1, result.time.size), strict=True):
             names.append(f"{series.name}{label} ({series.units})")

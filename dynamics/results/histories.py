@@ -10,7 +10,7 @@ import numpy as np
 from dynamics.system.assemble import System
 from dynamics.system.freedoms import ROTATION
 from dynamics.system.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
-from dynamics.system.observation import observe_flanks, observe_laws, static_deflections
+from dynamics.system.observation import observe, observe_laws, static_deflections
 from dynamics.types import FloatArray, IntArray
 
 
@@ -20,8 +20,8 @@ def histories(
     """Return the series of `RunResult` for the states `q`, `v` (T, n), `moved` (T, k) at `time` (T,)."""
     arrays, scene = system.arrays, system.scene
     laws = observe_laws(arrays, time)
-    flank = observe_flanks(arrays, time, q, v, moved)
-    wanted = scene.outputs
+    seen = observe(arrays, time, q, v, moved)
+    meshes, wanted = len(scene.meshes), scene.outputs
     return {
         "time": time,
         "mesh": tuple(mesh.name for mesh in scene.meshes),
@@ -30,13 +30,14 @@ def histories(
         "freedom": system.freedoms.name if wanted.displacements else (),
         "drive": tuple(drive.name for drive in scene.drives),
         "coupling": system.couplings.name,
-        "position": flank[0],
+        "position": seen.position,
         "mesh_frequency": _mesh_frequency(system, laws[SPEED], v),
-        "dynamic_transmission_error": flank[1],
-        "static_transmission_error": _static(system, flank[0]),
-        "mesh_force": flank[2],
+        "dynamic_transmission_error": seen.coordinate[:meshes],
+        "static_transmission_error": _static(system, seen.position),
+        "mesh_force": seen.force[:meshes],
+        "coast_force": _coast_force(system, seen.force),
         "speed": _speed(system, laws[SPEED], v),
-        "drive_torque": _drive_torque(system, time, laws[ACCELERATION], flank[2], q, v),
+        "drive_torque": _drive_torque(system, time, laws[ACCELERATION], seen.force, q, v),
         "coupling_torque": _coupling_torque(system, q, v),
         "bearing_force": _seen_from_the_ground(system, bearing_force(system, q, v), laws, moved)
         if wanted.bearing_forces
@@ -88,6 +89,15 @@ def _mesh_frequency(system: System, speed: FloatArray, v: FloatArray) -> FloatAr
         if place >= 0:
             turning[law] += v[:, place]
     return np.asarray(np.abs((reference.numerator / reference.denominator) @ turning) / (2.0 * math.pi))
+
+
+def _coast_force(system: System, force: FloatArray) -> FloatArray:
+    """Force of the coast flanks, (m, T); (0, T) where no mesh has one."""
+    meshes, coast = len(system.scene.meshes), system.flanks.coast
+    found = np.zeros((meshes if coast else 0, force.shape[1]))
+    for place, mesh in enumerate(coast, start=meshes):
+        found[mesh] = force[place]
+    return found
 
 
 def _static(system: System, position: FloatArray) -> FloatArray:

@@ -113,7 +113,7 @@ def _from_dataset(dataset: xarray.Dataset) -> RunResult:
     fields |= {
         entry.name: np.asarray(dataset[entry.name].values, dtype=float)
         if entry.name in dataset
-        else np.empty([sizes.get(dimension, 0) for dimension in entry.dimensions])
+        else np.empty([0, *(sizes.get(dimension, 0) for dimension in entry.dimensions[1:])])
         for entry in SERIES
     }
     energy = json.loads(dataset.attrs["energy"])

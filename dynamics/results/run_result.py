@@ -37,7 +37,9 @@ class RunResult:
     static_transmission_error : (m, T) array
         m; the table's at the nominal force and the same position: the static reference.
     mesh_force : (m, T) array
-        Transverse force in N, damping included, >= 0.
+        Transverse force of the driving flank in N, damping included, >= 0.
+    coast_force : (m, T) array
+        Transverse force of the coast flank in N, >= 0; m = 0 here if backlash is off in all meshes.
     speed : (s, T) array
         rad/s about +z.
     drive_torque : (d, T) array
@@ -72,6 +74,7 @@ class RunResult:
     dynamic_transmission_error: FloatArray
     static_transmission_error: FloatArray
     mesh_force: FloatArray
+    coast_force: FloatArray
     speed: FloatArray
     drive_torque: FloatArray
     coupling_torque: FloatArray

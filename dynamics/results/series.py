@@ -46,6 +46,7 @@ SERIES = (
         "static_transmission_error", ("mesh", "time"), "m", "static transmission error at the nominal force"
     ),
     Series("mesh_force", ("mesh", "time"), "N", "transverse mesh force"),
+    Series("coast_force", ("mesh", "time"), "N", "transverse force of the coast flank"),
     Series("speed", ("shaft", "time"), "rad s-1", "speed about +z"),
     Series("drive_torque", ("drive", "time"), "N m", "drive torque about +z"),
     Series("coupling_torque", ("coupling", "time"), "N m", "torque from the first to the second shaft"),

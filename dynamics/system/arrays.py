@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from dynamics.forces.flank_force import FlankLaws
+from dynamics.forces.element_laws import Elements
 from dynamics.types import FloatArray, IntArray
 
 
@@ -36,11 +36,13 @@ class Reference(NamedTuple):
     whole, fraction : (S,) arrays
         Revolutions of the law at the start of each piece, integer and remainder.
     numerator, denominator : (m, k) int arrays
-        Base pitches per revolution of each law for each flank, exact fractions.
+        Base pitches per revolution of each law for each mesh, exact fractions.
+    per_radian : (m, k) array
+        Base pitches per radian of each law: the same, rounded.
     offset : (m,) array
-        Position of each flank at t = 0, base pitches.
+        Position of each mesh at t = 0, base pitches.
     period : (m,) int array
-        Base pitches after which the flank's table repeats.
+        Base pitches after which the mesh's table repeats.
     freedom : (k,) int array
         For the law of a free train the place of its shaft's rotation in q; -1 for a drive.
     vector : (k, n) array
@@ -52,6 +54,7 @@ class Reference(NamedTuple):
     fraction: FloatArray
     numerator: IntArray
     denominator: IntArray
+    per_radian: FloatArray
     offset: FloatArray
     period: IntArray
     freedom: IntArray
@@ -82,12 +85,12 @@ class Loads(NamedTuple):
 class Drives(NamedTuple):
     """Torque of each law's shaft, about +z; zero for free rotations.
 
-    T_k = direction F + stiffness q + damping q' + inertia phi'' - constant - loads, phi'' those of all laws.
+    T_k = direction f + stiffness q + damping q' + inertia phi'' - constant - loads, phi'' those of all laws.
 
     Attributes
     ----------
-    direction : (k, m) array
-        Derivative of each transmission error in the rotation of a rigid drive's shaft alone.
+    direction : (k, R) array
+        Derivative of the elements' local coordinates in the rotation of a rigid drive's shaft alone.
     stiffness, damping : (k, n) arrays
         Of springs and dampers that the shaft's rotation strains; of the drive's own spring.
     inertia : (k, k) array
@@ -104,9 +107,9 @@ class Drives(NamedTuple):
 
 
 class SystemArrays(NamedTuple):
-    """n freedoms q (deviations from the kinematic motion), m flanks.
+    """n freedoms q (deviations from the kinematic motion), m meshes, force elements with R rows in all.
 
-    M q'' + C q' + K q + sum_f g_f F_f(x_f, g_f q, g_f q') = external(t).
+    M q'' + C q' + K q + G^T f(G q + y0, G q', x) = external(t).
     k laws set the kinematic motion.
 
     Attributes
@@ -114,11 +117,12 @@ class SystemArrays(NamedTuple):
     mass, damping, stiffness : (n, n) arrays
         M, C, K; symmetric.
     block : (n, 2) int array
-        First and end column of each row's diagonal block, shared by M, C and K: only flanks couple blocks.
-    direction : (m, n) array
-        g_f: derivative of the transmission error in q.
+        First and end column of each row's diagonal block, shared by M, C and K: only elements couple them.
+    direction : (R, n) array
+        G: derivative of the elements' local coordinates in q. The first m rows are the driving flanks', whose
+        coordinate is the transmission error.
     turn : (m, n) array
-        Derivative of the flank's position in q, base pitches.
+        Derivative of the meshes' positions in q, base pitches.
     constant : (n,) array
         External force that never changes: of pins off their place.
     inertial : (k, n) array
@@ -147,6 +151,6 @@ class SystemArrays(NamedTuple):
     drive: Drives
     scale: FloatArray
     rate_scale: FloatArray
-    flank: FlankLaws
+    elements: Elements
     reference: Reference
     load: Loads

@@ -9,11 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import InputError
+from dynamics.forces.element_laws import ElementLaws
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.coupling_rows import CouplingRows, gather_couplings
 from dynamics.system.effects import FREEDOMS, MeshOnRotor, SupportedRotor
 from dynamics.system.effects.ledger import EffectLedger, keep_ledger
-from dynamics.system.flanks import Flanks, flank_laws
+from dynamics.system.elements import Element, gradients, pack_elements
+from dynamics.system.flank_elements import flank_elements
+from dynamics.system.flanks import Flanks, flank_laws, with_coast_flanks
 from dynamics.system.freedoms import (
     ROTATION,
     Freedoms,
@@ -23,6 +26,7 @@ from dynamics.system.freedoms import (
 )
 from dynamics.system.kinematics import Kinematics, mesh_shafts, solve_kinematics
 from dynamics.system.line_of_action import LineOfAction, line_of_action
+from dynamics.system.loaded_meshes import loaded_meshes
 from dynamics.system.nominal_forces import nominal_forces
 from dynamics.system.planets import kinematic_vectors, turning_inertia
 from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_reference
@@ -30,6 +34,8 @@ from dynamics.system.rotor import Rotor, build_rotor
 from dynamics.system.scene import Scene
 from dynamics.system.supports import Supports, gather_supports
 from dynamics.types import FloatArray
+
+GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
 
 
 @dataclass(frozen=True)
@@ -47,6 +53,8 @@ class System:
         One per mesh.
     flanks : Flanks
         Force laws as resolved: nominal forces, damping, tables.
+    elements : tuple of Element
+        The driving flanks of all meshes, then everything else.
     rotors : tuple of Rotor
         One per shaft.
     supports : Supports
@@ -63,6 +71,7 @@ class System:
     kinematics: Kinematics
     lines: tuple[LineOfAction, ...]
     flanks: Flanks
+    elements: tuple[Element, ...]
     rotors: tuple[Rotor, ...]
     supports: Supports
     couplings: CouplingRows
@@ -82,13 +91,20 @@ def assemble(scene: Scene) -> System:
     kinematics = solve_kinematics(scene)
     rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
-    forces = nominal_forces(scene, kinematics, turning_inertia(rotors))
+    inertia = turning_inertia(rotors)
+    forces = nominal_forces(scene, kinematics, inertia)
     supports, couplings = gather_supports(rotors), gather_couplings(scene, rotors)
-    ledger = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces))
+    _check_rotation(rotors, kinematics)
+    polar = [rotor.inertia.polar for rotor in rotors]
+    flanks = flank_laws(scene, kinematics, forces, polar)
+    meshes = loaded_meshes(scene, kinematics, flanks, polar, inertia)
+    ledger = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces), meshes)
     freedoms = find_freedoms(rotors, kinematics, ledger)
     _check_mass(freedoms, rotors)
-    flanks = flank_laws(scene, kinematics, forces, [rotor.inertia.polar for rotor in rotors])
-    arrays = _arrays(scene, rotors, kinematics, freedoms, lines, flanks, supports, couplings)
+    coast = [index for index, mesh in enumerate(scene.meshes) if ledger.on("backlash", mesh.name)]
+    flanks = with_coast_flanks(flanks, scene.meshes, coast)
+    elements = flank_elements(scene, rotors, kinematics.mesh_sense, lines, flanks)
+    arrays = _arrays(scene, rotors, kinematics, freedoms, flanks, elements, supports, couplings)
     moves = freedoms.keep(supports.motion)
     return System(
         scene,
@@ -97,6 +113,7 @@ def assemble(scene: Scene) -> System:
         kinematics,
         lines,
         flanks,
+        elements,
         rotors,
         supports,
         couplings,
@@ -143,8 +160,8 @@ def _arrays(
     rotors: Sequence[Rotor],
     kinematics: Kinematics,
     freedoms: Freedoms,
-    lines: Sequence[LineOfAction],
     flanks: Flanks,
+    elements: Sequence[Element],
     supports: Supports,
     couplings: CouplingRows,
 ) -> SystemArrays:
@@ -159,9 +176,9 @@ def _arrays(
     _add_drive_springs(scene, kinematics, freedoms, stiffness, damping)
     full_mass = mass_diagonal(rotors)
     mass = freedoms.motion.T @ (full_mass[:, None] * freedoms.motion)
-    gradient = _gradients(scene, rotors, lines)
+    gradient = gradients(elements, 6 * len(rotors))
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
-    held = np.diag(stiffness) + flanks.mean_stiffness @ direction**2
+    held = np.diag(stiffness) + flanks.mean_stiffness @ direction[: len(scene.meshes)] ** 2
     return SystemArrays(
         np.ascontiguousarray(mass),
         damping,
@@ -175,7 +192,7 @@ def _arrays(
         lay_out_drives(scene, rotors, kinematics, freedoms, supports, couplings, gradient, vectors),
         scale,
         scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
-        flanks.law,
+        pack_elements(elements, ElementLaws(flanks.law)),
         lay_out_reference(scene, kinematics, freedoms, vectors),
         lay_out_loads(scene, kinematics, freedoms),
     )
@@ -192,22 +209,18 @@ def _add_drive_springs(
             damping[place, place] += drive.damping
 
 
+def _check_rotation(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:
+    """Every shaft free to turn needs a moment of inertia."""
+    for index, rotor in enumerate(rotors):
+        if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
+            raise InputError(f"inertia of {rotor.shaft.name}.rotation", 0.0, "above 0", GIVE_INERTIA)
+
+
 def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:
     """Every free direction needs inertia."""
     for name, value in zip(freedoms.name, mass_diagonal(rotors)[freedoms.place], strict=True):
         if value <= 0.0:
-            suggestion = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
-            raise InputError(f"inertia of {name}", float(value), "above 0", suggestion)
-
-
-def _gradients(scene: Scene, rotors: Sequence[Rotor], lines: Sequence[LineOfAction]) -> FloatArray:
-    """Return the derivatives of each transmission error in six freedoms of all rotors, (m, 6 r)."""
-    gradient = np.zeros((len(lines), len(rotors), 6))
-    for row, (mesh, line) in enumerate(zip(scene.meshes, lines, strict=True)):
-        for name, sign in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
-            index = scene.shaft_index(scene.gear(name).shaft)
-            gradient[row, index] += sign * line.gradient(rotors[index].center)
-    return gradient.reshape(len(lines), 6 * len(rotors))
+            raise InputError(f"inertia of {name}", float(value), "above 0", GIVE_INERTIA)
 
 
 def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:

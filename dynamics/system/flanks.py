@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dynamics.errors import InputError
+from dynamics.forces.coast_flank import mirrored
 from dynamics.forces.flank_force import FlankLaws
-from dynamics.forces.mesh_table import MeshTable
+from dynamics.forces.gear_mesh import GearMesh
 from dynamics.forces.packed_tables import PackedTables, pack_tables
 from dynamics.forces.table_lookup import table_deflection, table_force
 from dynamics.forces.technique import PlainTable, secant_table, table_at
@@ -23,7 +24,7 @@ DAMPING_REACH = 0.05
 
 @dataclass(frozen=True)
 class Flanks:
-    """Resolved force laws of m flanks (for now one per mesh, its driving flank).
+    """Resolved force laws of the driving flanks of m meshes, and after them of the coast flanks in use.
 
     Attributes
     ----------
@@ -31,24 +32,30 @@ class Flanks:
         Transverse, N.
     mean_stiffness : (m,) array
         Tangent stiffness of the table at the nominal force, mean over the positions, N/m.
+    used : tuple of PlainTable
+        The tables after the mesh's technique.
     law : FlankLaws
         Table, damping (N s/m) and reach (N), for the compiled loops.
+    coast : tuple of int
+        The meshes whose coast flanks follow.
     static : PackedTables
-        The tables themselves, whatever the technique: the static reference.
+        The driving flanks' tables themselves, whatever the technique: the static reference.
     """
 
     nominal_force: FloatArray
     mean_stiffness: FloatArray
+    used: tuple[PlainTable, ...]
     law: FlankLaws
+    coast: tuple[int, ...]
     static: PackedTables
 
 
 def flank_laws(
     scene: Scene, kinematics: Kinematics, nominal: FloatArray, polar_inertia: Sequence[float]
 ) -> Flanks:
-    """Resolve the force law of every mesh."""
+    """Resolve the force law of every driving flank."""
     static: list[PlainTable] = []
-    used: list[MeshTable] = []
+    used: list[PlainTable] = []
     for index, mesh in enumerate(scene.meshes):
         try:
             static.append(table_at(mesh.table, mesh.misalignment, mesh.center_distance_change))
@@ -64,7 +71,38 @@ def flank_laws(
     )
     top = np.array([table.level[-1] for table in static])
     reach = DAMPING_REACH * np.where(nominal > 0.0, nominal, top)
-    return Flanks(nominal, stiffness, FlankLaws(pack_tables(used), damping, reach), packed)
+    law = FlankLaws(pack_tables(used), damping, reach)
+    return Flanks(nominal, stiffness, tuple(used), law, (), packed)
+
+
+def with_coast_flanks(flanks: Flanks, meshes: Sequence[GearMesh], coast: Sequence[int]) -> Flanks:
+    """Return `flanks` with the coast flanks of the meshes `coast`, damped as their driving flanks."""
+    if not coast:
+        return flanks
+    backs = []
+    for index in coast:
+        try:
+            backs.append(_coast_table(meshes[index], flanks, index))
+        except InputError as error:
+            raise error.within(f"meshes[{index}].coast") from None
+    chosen = [*range(len(meshes)), *coast]
+    law = FlankLaws(pack_tables([*flanks.used, *backs]), flanks.law.damping[chosen], flanks.law.reach[chosen])
+    return replace(flanks, law=law, coast=tuple(coast))
+
+
+def _coast_table(mesh: GearMesh, flanks: Flanks, index: int) -> PlainTable:
+    """Return the table of a coast flank against the position of the driving flank.
+
+    Seen turned about the line of centres, the gap of a misalignment grows towards the other end.
+    """
+    back = mesh.coast
+    if back is None:
+        raise InputError("coast", None, "given", "Give the backlash and the thickness of the driver's teeth.")
+    if back.table is None and np.size(mesh.table.misalignment) == 1:
+        return mirrored(flanks.used[index], back.thickness)
+    table = table_at(back.table or mesh.table, -mesh.misalignment, mesh.center_distance_change)
+    used = _apply_technique(mesh.technique, table, float(flanks.nominal_force[index]))
+    return mirrored(used, back.thickness)
 
 
 def mean_stiffness(packed: PackedTables, flank: int, force: float, positions: FloatArray) -> float:
@@ -93,9 +131,15 @@ def _damping(
     mesh = scene.meshes[index]
     if mesh.damping is not None:
         return mesh.damping
-    mobility = 0.0
+    mobility = mesh_mobility(scene, kinematics, index, polar_inertia)
+    return 2.0 * mesh.damping_ratio * float(np.sqrt(stiffness / mobility))
+
+
+def mesh_mobility(scene: Scene, kinematics: Kinematics, index: int, polar_inertia: Sequence[float]) -> float:
+    """Return 1/m of the gears turning against each other on mesh `index`: sum of base_radius^2 / inertia."""
+    mesh, mobility = scene.meshes[index], 0.0
     for gear in (scene.gear(mesh.driver), scene.gear(mesh.driven)):
         shaft = scene.shaft_index(gear.shaft)
         if shaft not in kinematics.imposed:
             mobility += gear.base_radius**2 / polar_inertia[shaft]
-    return 2.0 * mesh.damping_ratio * float(np.sqrt(stiffness / mobility))
+    return mobility

@@ -21,6 +21,14 @@ def pack_laws(laws: Sequence[TimeLaw | AngleLaw]) -> LawArrays:
     return LawArrays(first, start, np.ascontiguousarray(coefficient))
 
 
+def slope(law: TimeLaw | AngleLaw, moment: FloatArray) -> FloatArray:
+    """Return the derivative of `law` at `moment` (s), from the right where it jumps."""
+    start, coefficient = law.polynomials()
+    piece = np.searchsorted(start[1:], moment, side="right")
+    elapsed, c = moment - start[piece], coefficient[piece]
+    return np.asarray(c[..., 1] + elapsed * (2.0 * c[..., 2] + 3.0 * elapsed * c[..., 3]), dtype=float)
+
+
 def revolutions(law: TimeLaw | AngleLaw) -> tuple[FloatArray, FloatArray]:
     """Return whole and fractional revolutions at the start of each piece of a speed law; 0 at t = 0."""
     start, coefficient = law.polynomials()

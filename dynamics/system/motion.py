@@ -1,4 +1,4 @@
-"""Compiled kinematic motion, flank positions and external forces at a time."""
+"""Compiled kinematic motion, mesh positions, local coordinates and external forces at a time."""
 
 from __future__ import annotations
 
@@ -54,19 +54,50 @@ def write_motion(reference: Reference, time: float, moved: IntArray, motion: Flo
 
 
 @compiled
-def flank_phase(reference: Reference, flank: int, motion: FloatArray) -> float:
-    """Return the flank's position in the kinematic motion, in [0, period): whole periods drop exactly.
+def flank_phase(reference: Reference, mesh: int, motion: FloatArray) -> float:
+    """Return a mesh's position in the kinematic motion, in [0, period): whole periods drop exactly.
 
     Base pitches per revolution of a law are a fraction of integers, so that what whole revolutions add is an
     integer number of periods and a remainder of integers: no digit is lost however far the shafts turn.
     """
-    phase = reference.offset[flank]
+    phase = reference.offset[mesh]
     for k in range(motion.shape[0]):
-        numerator, denominator = reference.numerator[flank, k], reference.denominator[flank, k]
-        cycle = denominator * reference.period[flank]
+        numerator, denominator = reference.numerator[mesh, k], reference.denominator[mesh, k]
+        cycle = denominator * reference.period[mesh]
         remainder = (int(motion[k, WHOLE]) % cycle) * numerator % cycle
         phase += remainder / denominator + motion[k, FRACTION] * numerator / denominator
-    return wrapped(phase, float(reference.period[flank]))
+    return wrapped(phase, float(reference.period[mesh]))
+
+
+@inner
+def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, pace: FloatArray) -> None:
+    """Write the meshes' positions (base pitches) and their rates (per second) in the kinematic motion."""
+    for m in range(position.size):
+        position[m] = flank_phase(reference, m, motion)
+        pace[m] = 0.0
+        for k in range(motion.shape[0]):
+            pace[m] += reference.per_radian[m, k] * motion[k, SPEED]
+
+
+@inner
+def add_motion(
+    system: SystemArrays,
+    q: FloatArray,
+    v: FloatArray,
+    position: FloatArray,
+    coordinate: FloatArray,
+    rate: FloatArray,
+) -> None:
+    """Add `q` to the positions, and write the elements' local coordinates and their rates."""
+    for r in range(coordinate.size):
+        moved, moving = system.elements.offset[r], 0.0
+        for i in range(q.size):
+            moved += system.direction[r, i] * q[i]
+            moving += system.direction[r, i] * v[i]
+        coordinate[r], rate[r] = moved, moving
+    for m in range(position.size):
+        for i in range(q.size):
+            position[m] += system.turn[m, i] * q[i]
 
 
 @inner

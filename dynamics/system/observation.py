@@ -1,55 +1,101 @@
-"""Observation of the flanks and the laws at given states: position, transmission error, force, speeds."""
+"""Observation of the elements and the laws at given states: positions, local coordinates, forces, speeds."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from dynamics.forces.compiled import compiled
-from dynamics.forces.flank_force import flank_force
+from dynamics.forces.element_laws import LocalState, evaluate, make_local
 from dynamics.forces.packed_tables import PackedTables
 from dynamics.forces.table_lookup import table_deflection, wrapped
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import MOTION_COLUMNS, flank_phase, write_motion
+from dynamics.system.motion import MOTION_COLUMNS, add_motion, set_phases, write_motion
 from dynamics.types import FloatArray, IntArray
 
 
-def observe_flanks(
+class Observed(NamedTuple):
+    """Elements of m meshes with R rows at T times.
+
+    Attributes
+    ----------
+    position : (m, T) array
+        Base pitches in [0, period).
+    coordinate, force : (R, T) arrays
+        Local coordinates, m, and local forces, N.
+    """
+
+    position: FloatArray
+    coordinate: FloatArray
+    force: FloatArray
+
+
+def observe(
     system: SystemArrays, time: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray | None = None
-) -> FloatArray:
-    """Return position, transmission error and force of every flank at T states, (3, m, T).
+) -> Observed:
+    """Return what the elements do at T states.
 
     `time` (T,), `q` and `v` (T, n); `moved` (T, k) counts the quanta of free trains moved into the reference.
     """
-    flanks, laws = system.direction.shape[0], system.inertial.shape[0]
-    observed = np.empty((3, flanks, time.size))
-    counted = np.zeros((time.size, laws), dtype=np.int64) if moved is None else moved
-    _observe_flanks(system, time, counted, q, v, np.empty((laws, MOTION_COLUMNS)), observed)
-    return observed
+    rows, meshes = system.direction.shape[0], system.turn.shape[0]
+    seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows)))
+    counted = np.zeros((time.size, system.inertial.shape[0]), dtype=np.int64) if moved is None else moved
+    _observe(system, make_local(system.elements, meshes), _motion(system), time, counted, q, v, seen)
+    return seen
+
+
+def local_state(
+    system: SystemArrays, time: float, q: FloatArray, v: FloatArray, moved: IntArray | None = None
+) -> LocalState:
+    """Return coordinates, forces and derivatives of the elements in the state `q`, `v` (n,) at `time`."""
+    local = make_local(system.elements, system.turn.shape[0])
+    counted = np.zeros(system.inertial.shape[0], dtype=np.int64) if moved is None else moved
+    _evaluate(system, local, _motion(system), time, counted, q, v)
+    return local
+
+
+def _motion(system: SystemArrays) -> FloatArray:
+    """Return room for the motion of the laws."""
+    return np.empty((system.inertial.shape[0], MOTION_COLUMNS))
 
 
 @compiled
-def _observe_flanks(
+def _observe(
     system: SystemArrays,
+    local: LocalState,
+    motion: FloatArray,
     time: FloatArray,
     moved: IntArray,
     q: FloatArray,
     v: FloatArray,
-    motion: FloatArray,
-    observed: FloatArray,
+    seen: Observed,
 ) -> None:
-    """Write what `observe_flanks` returns."""
+    """Fill `seen`."""
     for k in range(time.size):
-        write_motion(system.reference, time[k], moved[k], motion)
-        for f in range(system.direction.shape[0]):
-            position = flank_phase(system.reference, f, motion)
-            deflection, rate = 0.0, 0.0
-            for i in range(q.shape[1]):
-                position += system.turn[f, i] * q[k, i]
-                deflection += system.direction[f, i] * q[k, i]
-                rate += system.direction[f, i] * v[k, i]
-            observed[0, f, k] = wrapped(position, float(system.reference.period[f]))
-            observed[1, f, k] = deflection
-            observed[2, f, k] = flank_force(system.flank, f, position, deflection, rate, 0)[0]
+        _evaluate(system, local, motion, time[k], moved[k], q[k], v[k])
+        for m in range(local.position.size):
+            seen.position[m, k] = wrapped(local.position[m], float(system.reference.period[m]))
+        for r in range(local.force.size):
+            seen.coordinate[r, k], seen.force[r, k] = local.coordinate[r], local.force[r]
+
+
+@compiled
+def _evaluate(
+    system: SystemArrays,
+    local: LocalState,
+    motion: FloatArray,
+    time: float,
+    moved: IntArray,
+    q: FloatArray,
+    v: FloatArray,
+) -> None:
+    """Evaluate all elements in one state."""
+    write_motion(system.reference, time, moved, motion)
+    set_phases(system.reference, motion, local.position, local.pace)
+    add_motion(system, q, v, local.position, local.coordinate, local.rate)
+    for e in range(system.elements.law.size):
+        evaluate(system.elements, local, e)
 
 
 def observe_laws(system: SystemArrays, time: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -39,6 +40,8 @@ def lay_out_reference(
         np.array(
             [[rate.denominator for rate in row] for row in kinematics.mesh_rate], dtype=np.int64
         ).reshape(shape),
+        np.array([[float(rate) for rate in row] for row in kinematics.mesh_rate]).reshape(shape)
+        / (2.0 * math.pi),
         np.array([mesh.position_offset for mesh in scene.meshes], dtype=float),
         np.array([mesh.table.period for mesh in scene.meshes], dtype=np.int64),
         np.array(free, dtype=np.int64),

@@ -15,7 +15,7 @@ from service.report.figure import Figure, Table, number
 from service.report.page import Headline, Section
 from service.report.run_series import RunSeries, run_series
 
-_LEDGER = {"effect": "effect", "shaft": "shaft", "on": "simulated", "reason": "because"}
+_LEDGER = {"effect": "effect", "part": "part", "on": "simulated", "reason": "because"}
 
 
 def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:

@@ -1,6 +1,25 @@
 """Optional physics of the multibody model: one effect per file, a registry, a ledger."""
 
-from dynamics.system.effects.effect import FREEDOMS, Effect, MeshOnRotor, SupportedRotor, Verdict
-from dynamics.system.effects.registry import EFFECTS, LEFT_OUT
+from dynamics.system.effects.effect import (
+    FREEDOMS,
+    Effect,
+    LoadedMesh,
+    MeshEffect,
+    MeshOnRotor,
+    SupportedRotor,
+    Verdict,
+)
+from dynamics.system.effects.registry import EFFECTS, LEFT_OUT, MESH_EFFECTS
 
-__all__ = ["EFFECTS", "FREEDOMS", "LEFT_OUT", "Effect", "MeshOnRotor", "SupportedRotor", "Verdict"]
+__all__ = [
+    "EFFECTS",
+    "FREEDOMS",
+    "LEFT_OUT",
+    "MESH_EFFECTS",
+    "Effect",
+    "LoadedMesh",
+    "MeshEffect",
+    "MeshOnRotor",
+    "SupportedRotor",
+    "Verdict",
+]

@@ -57,14 +57,37 @@ class SupportedRotor:
 
 
 @dataclass(frozen=True)
+class LoadedMesh:
+    """What effects of a mesh decide on.
+
+    Attributes
+    ----------
+    name : str
+        The mesh's.
+    least_force : float
+        Least over the run of the force that balances loads and imposed accelerations, N; < 0: the coast
+        flank's.
+    force_swing : float
+        Half the peak-to-peak transmission error times stiffness, amplified as in resonance, N.
+    backlash : float or None
+        m, along the line of action; None: no coast flank given.
+    """
+
+    name: str
+    least_force: float
+    force_swing: float
+    backlash: float | None
+
+
+@dataclass(frozen=True)
 class Verdict:
-    """Whether a rotor calls for an effect.
+    """Whether a rotor or a mesh calls for an effect.
 
     Attributes
     ----------
     on : bool
     possible : bool
-        False: the supports leave no such freedom, and asking for it changes nothing.
+        False: the scene has no such freedom or data, and asking for it changes nothing.
     reason : str
         In words.
     worth : float
@@ -78,7 +101,7 @@ class Verdict:
 
 
 class Effect(Protocol):
-    """One optional piece of physics of the multibody model."""
+    """One optional piece of physics of a rotor: freedoms."""
 
     @property
     def name(self) -> str:
@@ -97,4 +120,22 @@ class Effect(Protocol):
 
     def called_for(self, rotor: SupportedRotor) -> Verdict:
         """Decide for one rotor."""
+        ...
+
+
+class MeshEffect(Protocol):
+    """One optional piece of physics of a mesh: how its force acts."""
+
+    @property
+    def name(self) -> str:
+        """What a scene calls it."""
+        ...
+
+    @property
+    def cost(self) -> str:
+        """What it costs, in words."""
+        ...
+
+    def called_for(self, mesh: LoadedMesh) -> Verdict:
+        """Decide for one mesh."""
         ...

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 from dynamics.checks import one_of
-from dynamics.system.effects.effect import Effect, SupportedRotor
-from dynamics.system.effects.registry import EFFECTS, LEFT_OUT
+from dynamics.system.effects.effect import Effect, LoadedMesh, MeshEffect, SupportedRotor, Verdict
+from dynamics.system.effects.registry import EFFECTS, LEFT_OUT, MESH_EFFECTS
 from dynamics.types import Json
 
 CHOICES = ("auto", "on", "off")
@@ -19,8 +19,8 @@ class LedgerEntry:
 
     Attributes
     ----------
-    effect, shaft : str
-        What, and for which shaft.
+    effect, part : str
+        What, and for which shaft or mesh.
     choice : str
         What the scene asked for: ``"auto"``, ``"on"``, ``"off"``.
     on : bool
@@ -32,7 +32,7 @@ class LedgerEntry:
     """
 
     effect: str
-    shaft: str
+    part: str
     choice: str
     on: bool
     reason: str
@@ -47,39 +47,53 @@ class EffectLedger:
 
     def freedoms(self, shaft: str) -> tuple[str, ...]:
         """Return the names of the freedoms that effects give `shaft`."""
-        on = {entry.effect for entry in self.entries if entry.on and entry.shaft == shaft}
+        on = {entry.effect for entry in self.entries if entry.on and entry.part == shaft}
         return tuple(freedom for effect in EFFECTS if effect.name in on for freedom in effect.adds)
+
+    def on(self, effect: str, mesh: str) -> bool:
+        """Whether an effect of a mesh is on."""
+        return any(entry.on and entry.part == mesh for entry in self.entries if entry.effect == effect)
 
     def to_json(self) -> Json:
         """Return plain lists and dictionaries."""
         return {"entries": [asdict(entry) for entry in self.entries], "left_out": dict(LEFT_OUT)}
 
 
-def keep_ledger(choices: Mapping[str, str], rotors: Sequence[SupportedRotor]) -> EffectLedger:
-    """Decide every effect for every rotor.
+def keep_ledger(
+    choices: Mapping[str, str], rotors: Sequence[SupportedRotor], meshes: Sequence[LoadedMesh]
+) -> EffectLedger:
+    """Decide every effect for every rotor or mesh.
 
     Raises
     ------
     InputError
         If `choices` names an unknown effect or choice.
     """
-    names = [effect.name for effect in EFFECTS]
+    names = [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
     for name, choice in choices.items():
         one_of("effects", name, names)
         one_of(f"effects.{name}", choice, CHOICES)
-    return EffectLedger(
-        tuple(
-            _decide(effect, rotor, choices.get(effect.name, "auto")) for effect in EFFECTS for rotor in rotors
-        )
-    )
+    on_rotors = [
+        _decide(effect, rotor.name, effect.called_for(rotor), choices)
+        for effect in EFFECTS
+        for rotor in rotors
+    ]
+    on_meshes = [
+        _decide(effect, mesh.name, effect.called_for(mesh), choices)
+        for effect in MESH_EFFECTS
+        for mesh in meshes
+    ]
+    return EffectLedger((*on_rotors, *on_meshes))
 
 
-def _decide(effect: Effect, rotor: SupportedRotor, choice: str) -> LedgerEntry:
-    """Obey an explicit choice as far as the supports allow, else follow the verdict."""
-    verdict = effect.called_for(rotor)
+def _decide(
+    effect: Effect | MeshEffect, part: str, verdict: Verdict, choices: Mapping[str, str]
+) -> LedgerEntry:
+    """Obey an explicit choice as far as the scene allows, else follow the verdict."""
+    choice = choices.get(effect.name, "auto")
     on, reason = verdict.on, verdict.reason
     if choice != "auto" and verdict.possible:
         on = choice == "on"
         if on != verdict.on:
             reason = f"asked for; else: {verdict.reason}" if on else f"switched off, though: {verdict.reason}"
-    return LedgerEntry(effect.name, rotor.name, choice, on, reason, verdict.worth)
+    return LedgerEntry(effect.name, part, choice, on, reason, verdict.worth)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dynamics.system.effects.axial import Axial
-from dynamics.system.effects.effect import Effect
+from dynamics.system.effects.backlash import Backlash
+from dynamics.system.effects.effect import Effect, MeshEffect
 from dynamics.system.effects.lateral import Lateral
 from dynamics.system.effects.tilt import Tilt
 
 EFFECTS: tuple[Effect, ...] = (Lateral(), Axial(), Tilt())
 
+MESH_EFFECTS: tuple[MeshEffect, ...] = (Backlash(),)
+
 LEFT_OUT: dict[str, str] = {
-    "coast flank": "only the driving flank carries force; below lift-off there is none",
     "gyroscopic terms": "shafts tilt slowly against their rotation, or not at all",
     "gravity": "weights are small against mesh forces",
     "friction": "the mesh force acts along the line of action",

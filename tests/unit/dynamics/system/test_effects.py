@@ -10,7 +10,7 @@ from geared_scenes import gear_pair_scene, with_bushings, with_gear
 from dynamics.bodies import Inertia
 from dynamics.errors import InputError
 from dynamics.system.assemble import assemble
-from dynamics.system.effects import EFFECTS, LEFT_OUT
+from dynamics.system.effects import EFFECTS, LEFT_OUT, MESH_EFFECTS
 
 
 def kinds(scene, shaft="output"):
@@ -31,7 +31,7 @@ def test_a_gear_off_the_middle_tilts_its_shaft_only():
     assert kinds(scene, "input") == ["x", "y"]
     massless = with_gear(scene, 1, inertia=Inertia())  # the centre of mass stays in the middle
     entries = assemble(massless).ledger.entries
-    reasons = {entry.shaft: (entry.on, entry.reason) for entry in entries if entry.effect == "tilt"}
+    reasons = {entry.part: (entry.on, entry.reason) for entry in entries if entry.effect == "tilt"}
     assert reasons["output"] == (True, "a mesh is off the supports' centre")
     assert not reasons["input"][0]
 
@@ -65,16 +65,17 @@ def test_choices_are_obeyed_and_their_price_is_stated():
     ]
 
 
-@pytest.mark.parametrize("effects", [{"friction": "on"}, {"tilt": "yes"}])
+@pytest.mark.parametrize("effects", [{"weather": "on"}, {"tilt": "yes"}])
 def test_unknown_effects_and_choices_are_refused(effects):
     with pytest.raises(InputError, match="effects"):
         assemble(gear_pair_scene(effects=effects))
 
 
-def test_the_ledger_speaks_of_every_effect_and_shaft_and_of_what_is_left_out():
+def test_the_ledger_speaks_of_every_effect_shaft_and_mesh_and_of_what_is_left_out():
     ledger = assemble(gear_pair_scene()).ledger
-    assert {(e.effect, e.shaft) for e in ledger.entries} == {
-        (f.name, s) for f in EFFECTS for s in ("input", "output")
+    assert {(e.effect, e.part) for e in ledger.entries} == {
+        *((f.name, s) for f in EFFECTS for s in ("input", "output")),
+        *((f.name, "mesh") for f in MESH_EFFECTS),
     }
     assert all(e.reason for e in ledger.entries)
     assert ledger.to_json()["left_out"] == LEFT_OUT

@@ -1,0 +1,138 @@
+"""Compiled force elements: one evaluation for all, which hands each to its law by kind.
+
+An element has p local coordinates y = G q + y0 in metres and gives p local forces f(y, y', x) in newtons,
+which act on the freedoms as -G^T f. To add a law: its file (what a scene holds, packed arrays, compiled
+function), a member of `Law`, a field of `ElementLaws`, a branch in `evaluate` and in `potential`.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.forces.compiled import inner
+from dynamics.forces.flank_force import FlankLaws, flank_force
+from dynamics.forces.table_energy import table_energy
+from dynamics.types import FloatArray, IntArray
+
+
+class Law(IntEnum):
+    """Kinds of force laws."""
+
+    FLANK = 0  # p = 1: a flank in contact, from its table
+
+
+FLANK = int(Law.FLANK)
+
+
+class ElementLaws(NamedTuple):
+    """The packed laws of all kinds, one field per kind."""
+
+    flank: FlankLaws
+
+
+class Elements(NamedTuple):
+    """E elements with R local coordinates in all, of m meshes.
+
+    Attributes
+    ----------
+    law : (E,) int array
+        See `Law`.
+    place : (E,) int array
+        Of each within the arrays of its law.
+    first : (E + 1,) int array
+        First row of each element, and R.
+    mesh : (E,) int array
+        The mesh whose position it reads; -1: none.
+    offset : (R,) array
+        y0: local coordinates at q = 0, m.
+    laws : ElementLaws
+    """
+
+    law: IntArray
+    place: IntArray
+    first: IntArray
+    mesh: IntArray
+    offset: FloatArray
+    laws: ElementLaws
+
+
+class LocalState(NamedTuple):
+    """What laws read and write at one instant; P = the largest p.
+
+    Attributes
+    ----------
+    position : (m,) array
+        Of the meshes, base pitches.
+    pace : (m,) array
+        Their rates in the kinematic motion, base pitches per second.
+    coordinate, rate : (R,) arrays
+        y (m) and y' (m/s).
+    force, elastic : (R,) arrays
+        f and the part of it that stores energy, N.
+    tangent, viscous : (R, P) arrays
+        Row r: df_r/dy and df_r/dy' in the coordinates of its own element, N/m and N s/m.
+    hint : (E,) int array
+        Where the last look-up ended: the next starts there.
+    """
+
+    position: FloatArray
+    pace: FloatArray
+    coordinate: FloatArray
+    rate: FloatArray
+    force: FloatArray
+    elastic: FloatArray
+    tangent: FloatArray
+    viscous: FloatArray
+    hint: IntArray
+
+
+def make_local(elements: Elements, meshes: int) -> LocalState:
+    """Allocate for `elements` of that many meshes."""
+    rows, count = elements.offset.size, elements.law.size
+    most = int(np.max(np.diff(elements.first), initial=1))
+    return LocalState(
+        np.zeros(meshes),
+        np.zeros(meshes),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros(rows),
+        np.zeros((rows, most)),
+        np.zeros((rows, most)),
+        np.zeros(count, dtype=np.int64),
+    )
+
+
+@inner
+def evaluate(elements: Elements, local: LocalState, e: int) -> None:
+    """Write forces and derivatives of element `e` at the coordinates, rates and position in `local`."""
+    row, place = elements.first[e], elements.place[e]
+    if elements.law[e] == FLANK:
+        force, elastic, tangent, viscous, hint = flank_force(
+            elements.laws.flank,
+            place,
+            local.position[elements.mesh[e]],
+            local.coordinate[row],
+            local.rate[row],
+            local.hint[e],
+        )
+        local.force[row], local.elastic[row], local.hint[e] = force, elastic, hint
+        local.tangent[row, 0], local.viscous[row, 0] = tangent, viscous
+
+
+@inner
+def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, float]:
+    """Return the energy element `e` stores, J, and its derivative in the position, J per base pitch."""
+    row, place = elements.first[e], elements.place[e]
+    if elements.law[e] == FLANK:
+        return table_energy(
+            elements.laws.flank.table,
+            place,
+            local.position[elements.mesh[e]],
+            local.coordinate[row],
+            local.hint[e],
+        )
+    return 0.0, 0.0

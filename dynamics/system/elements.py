@@ -1,0 +1,53 @@
+"""Force elements as a scene's assembly gathers them, and their arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.forces.element_laws import ElementLaws, Elements, Law
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class Element:
+    """One element with p local coordinates y = gradient q + offset, in metres.
+
+    Attributes
+    ----------
+    law : Law
+    place : int
+        Its place in the arrays of its law.
+    mesh : int
+        The mesh whose position it reads; -1: none.
+    gradient : (p, 6 r) array
+        In the six freedoms of all r rotors.
+    offset : (p,) array
+        m.
+    """
+
+    law: Law
+    place: int
+    mesh: int
+    gradient: FloatArray
+    offset: FloatArray
+
+
+def pack_elements(elements: Sequence[Element], laws: ElementLaws) -> Elements:
+    """Lay out `elements`; their rows follow each other in this order."""
+    sizes = [element.offset.size for element in elements]
+    return Elements(
+        np.array([int(element.law) for element in elements], dtype=np.int64),
+        np.array([element.place for element in elements], dtype=np.int64),
+        np.cumsum([0, *sizes], dtype=np.int64),
+        np.array([element.mesh for element in elements], dtype=np.int64),
+        np.concatenate([np.empty(0), *(element.offset for element in elements)]),
+        laws,
+    )
+
+
+def gradients(elements: Sequence[Element], columns: int) -> FloatArray:
+    """Return the rows of all elements, (R, columns)."""
+    return np.concatenate([np.empty((0, columns)), *(element.gradient for element in elements)])

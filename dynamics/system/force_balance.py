@@ -1,0 +1,61 @@
+"""All forces in one state and their derivatives: what statics, linearisation and shooting start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.forces.element_laws import Elements, LocalState
+from dynamics.system.arrays import SystemArrays
+from dynamics.system.observation import local_state
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class ForceBalance:
+    """Forces on n freedoms in a state (q, v) at a time, without inertia.
+
+    Attributes
+    ----------
+    force : (n,) array
+        What accelerates: M q'' = external - C v - K q - G^T f, N and N m.
+    stiffness, damping : (n, n) arrays
+        K + G^T (df/dy) G and C + G^T (df/dy') G: minus the derivatives of `force` in q and v. How forces
+        change with the meshes' positions is left out: of the order of a deflection over a base pitch.
+    local : LocalState
+        Of the elements.
+    """
+
+    force: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    local: LocalState
+
+
+def force_balance(
+    arrays: SystemArrays, time: float, q: FloatArray, v: FloatArray, external: FloatArray
+) -> ForceBalance:
+    """Return the balance of `external` (n,), supports and elements in the state `q`, `v` (n,) at `time`."""
+    local = local_state(arrays, time, q, v)
+    force = external - arrays.damping @ v - arrays.stiffness @ q - local.force @ arrays.direction
+    return ForceBalance(
+        force,
+        arrays.stiffness + _on_freedoms(arrays, local.tangent),
+        arrays.damping + _on_freedoms(arrays, local.viscous),
+        local,
+    )
+
+
+def _on_freedoms(arrays: SystemArrays, derivative: FloatArray) -> FloatArray:
+    """Return G^T D G with D the elements' blocks in `derivative` (R, P)."""
+    return np.asarray(arrays.direction.T @ block_diagonal(arrays.elements, derivative) @ arrays.direction)
+
+
+def block_diagonal(elements: Elements, derivative: FloatArray) -> FloatArray:
+    """Return the (R, R) matrix of the elements' blocks, whose rows `derivative` (R, P) holds."""
+    rows = elements.offset.size
+    matrix = np.zeros((rows, rows))
+    for first, end in zip(elements.first[:-1], elements.first[1:], strict=True):
+        matrix[first:end, first:end] = derivative[first:end, : end - first]
+    return matrix
