@@ -12,10 +12,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fe_contact.analysis import (
         ContactPattern,
+        DeformedPair,
         LoadDistribution,
         Sensitivity,
         analyze,
         contact_pattern,
+        deformed_pairs,
         flank_results,
         study_sensitivity,
     )
@@ -35,6 +37,7 @@ if TYPE_CHECKING:
 __all__ = [
     "STEEL",
     "ContactPattern",
+    "DeformedPair",
     "Estimate",
     "FlankGrid",
     "FlankModification",
@@ -50,6 +53,7 @@ __all__ = [
     "SteDatabase",
     "analyze",
     "contact_pattern",
+    "deformed_pairs",
     "flank_results",
     "study_sensitivity",
 ]
@@ -57,9 +61,11 @@ __all__ = [
 _HOME = {
     "analyze": "fe_contact.analysis",
     "contact_pattern": "fe_contact.analysis",
+    "deformed_pairs": "fe_contact.analysis",
     "flank_results": "fe_contact.analysis",
     "study_sensitivity": "fe_contact.analysis",
     "ContactPattern": "fe_contact.analysis",
+    "DeformedPair": "fe_contact.analysis",
     "LoadDistribution": "fe_contact.analysis",
     "Sensitivity": "fe_contact.analysis",
     "FlankGrid": "fe_contact.geometry",

@@ -2,6 +2,7 @@
 
 from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.contact_pattern import ContactPattern, contact_pattern
+from fe_contact.analysis.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.analysis.flank_results import flank_results
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.request import check_request
@@ -9,12 +10,14 @@ from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sens
 
 __all__ = [
     "ContactPattern",
+    "DeformedPair",
     "LoadDistribution",
     "RippleCurve",
     "Sensitivity",
     "analyze",
     "check_request",
     "contact_pattern",
+    "deformed_pairs",
     "flank_results",
     "load_distribution",
     "study_sensitivity",

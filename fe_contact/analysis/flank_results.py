@@ -12,13 +12,9 @@ from numpy.typing import ArrayLike
 from fe_contact.analysis.compute_database import SOLVER_VERSION, Progress, software_versions
 from fe_contact.analysis.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
-from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.request import Checked, check_request
-from fe_contact.analysis.table_places import table_places
-from fe_contact.checks import finite
-from fe_contact.errors import InputError, SolveError
+from fe_contact.analysis.solved_place import checked_positions, solve_place
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning import make_plan
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata
 from fe_contact.ste.content_hash import content_hash
@@ -83,33 +79,22 @@ def flank_results(
         effects=effects,
         whole_table=False,
     )
-    found = _solved(checked, _positions(at), progress or _silent, cache)
+    position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
+    found = _solved(checked, position, progress or _silent, cache)
     return replace(found, metadata=_metadata(checked, found, case))
 
 
 def _solved(checked: Checked, position: FloatArray, report: Progress, cache: Path | None) -> LoadDistribution:
     """Solve one place of the table at one load; the receipt is all that its metadata hold."""
     clock, request = StageClock(), checked.request
-    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
-    report("compliance", 0.0)
-    with clock.stage("compliance"):
-        nominal = pair_contact(request.pair, plan, cache)
-    report("compliance", 1.0)
-    with clock.stage("contact"):
-        (place,) = table_places(request.scene, request.choices, nominal).places
-        pitch = np.floor(position).astype(np.int64)
-        problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
-    report("contact", 1.0)
-    if not solution.converged:
-        failed = int(np.count_nonzero(solution.status))
-        raise SolveError(f"{failed} of {position.size} positions have no solution", partial=solution)
+    solved = solve_place(checked, position, clock, report, cache)
     return load_distribution(
-        place.contact.pair,
-        problem,
-        solution,
+        solved.contact.pair,
+        solved.problem,
+        solved.solution,
         misalignment=float(request.misalignment[0]),
         center_distance_change=float(request.center_distance_change[0]),
-        metadata=Metadata(receipt=clock.to_json() | {"plan": plan.to_json()}),
+        metadata=Metadata(receipt=clock.to_json() | {"plan": solved.contact.plan.to_json()}),
     )
 
 
@@ -134,15 +119,3 @@ def _metadata(checked: Checked, found: LoadDistribution, case: Json | None) -> M
 
 def _silent(_stage: str, _fraction: float) -> None:
     """Report no progress."""
-
-
-def _positions(at: ArrayLike | None) -> FloatArray:
-    """Positions asked for, or a whole mesh cycle."""
-    if at is None:
-        return np.arange(POSITIONS) / POSITIONS
-    position = np.atleast_1d(np.asarray(at, dtype=float))
-    if position.ndim != 1 or position.size == 0:
-        raise InputError("at", at, "a list of positions in base pitches")
-    for i, value in enumerate(position):
-        finite(f"at[{i}]", float(value), "In base pitches: 0 to 1 is one mesh cycle.")
-    return position

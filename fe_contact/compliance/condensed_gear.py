@@ -25,6 +25,7 @@ def condensed_gear(
     reach: int,
     support: BoreSupport,
     clock: StageClock,
+    probes: FloatArray | None = None,
 ) -> tuple[CondensedGear, FloatArray]:
     """Sweep, condense one sector and close the ring.
 
@@ -42,13 +43,16 @@ def condensed_gear(
         How the bore is held.
     clock : StageClock
         Gets the stages ``assembly``, ``condensation``, ``ring``.
+    probes : (nf, p) array, optional
+        Loads on tooth 0 for which all cuts are wanted, N; default `probe_loads`.
 
     Returns
     -------
-    CondensedGear, (nf, 2) array
+    CondensedGear, (nf, p) array
         The solution and the probe loads it was solved for, N.
     """
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
+    loads = loads if probes is None else probes
     ring = close_ring(tooth.held, gear.teeth, reach, loads)
     clock.finish("ring")
     return CondensedGear(tooth.sector, tooth.stiffness, tooth.condensation, tooth.held, ring), loads

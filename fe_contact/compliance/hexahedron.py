@@ -90,11 +90,7 @@ def in_frames(stiffness: FloatArray, frames: FloatArray) -> FloatArray:
 def _gradients(nodes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return the gradients (m, q, 20, 3) of the functions, and the volume of each Gauss point (m, q)."""
     at, weights = get_quadrature(ElementHexS2, QUADRATURE_ORDER)
-    element = ElementHexS2()
-    here = np.abs(element.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2).argmin(axis=0)
-    slopes = np.stack([element.lbasis(at.copy(), i)[1] for i in here]).transpose(2, 1, 0)  # (q, 3, 20)
-    jacobian = slopes @ nodes[:, None]
-    determinant = np.linalg.det(jacobian)
+    gradient, determinant = gradients_at(nodes, at)
     if not determinant.min() > 0.0:
         worst = int(determinant.min(axis=1).argmin())
         x, y = 1e3 * nodes[worst, :, :2].mean(axis=0)
@@ -102,8 +98,23 @@ def _gradients(nodes: FloatArray) -> tuple[FloatArray, FloatArray]:
             f"tooth sector: element {worst} at ({x:.4g}, {y:.4g}) mm is folded. "
             "Try other element sizes in the sector recipe."
         )
+    return gradient, determinant * weights
+
+
+def gradients_at(nodes: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the gradients (m, q, 20, 3) of the functions and the determinants (m, q) at points (3, q).
+
+    The points are of scikit-fem's reference cube, 0 to 1 each way.
+    """
+    element = ElementHexS2()
+    here = np.abs(element.doflocs[:, None] - 0.5 * (REFERENCE + 1.0)).sum(axis=2).argmin(axis=0)
+    slopes = np.stack([element.lbasis(at.copy(), i)[1] for i in here]).transpose(2, 1, 0)  # (q, 3, 20)
+    jacobian = slopes @ nodes[:, None]
+    determinant = np.linalg.det(jacobian)
+    singular = np.abs(determinant) <= 0.0
+    jacobian[singular] = np.eye(3)  # a folded element, which the determinant tells
     gradient = np.linalg.solve(jacobian, np.broadcast_to(slopes, (len(nodes), *slopes.shape)))
-    return np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), determinant * weights
+    return np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), determinant
 
 
 def cylindrical_frames(nodes: FloatArray) -> FloatArray:

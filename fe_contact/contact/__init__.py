@@ -4,6 +4,7 @@ from fe_contact.contact.added_compliance import with_compliances
 from fe_contact.contact.assembly import contact_problem
 from fe_contact.contact.candidates import PatchRule, contact_candidates, with_gaps
 from fe_contact.contact.face_assembly import face_contact_problem
+from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_forces
 from fe_contact.contact.model import ComplianceTerm, ContactModel, GapTerm, ToothGap
 from fe_contact.contact.pitches import in_pitches
 from fe_contact.contact.problem import Candidates, ContactProblem
@@ -24,7 +25,9 @@ __all__ = [
     "contact_candidates",
     "contact_problem",
     "face_contact_problem",
+    "face_flank_forces",
     "in_pitches",
+    "plane_flank_forces",
     "solve_contact",
     "with_compliances",
     "with_gaps",

@@ -65,7 +65,7 @@ def scaled_jacobian(nodes: FloatArray) -> FloatArray:
     The determinant is a quadratic polynomial, hence between its least and largest Bernstein coefficients:
     the corner values, and 2 det(middle) - (det(corner) + det(corner)) / 2 for each side.
     """
-    gradients = np.einsum("qdk,mkx->mqdx", _shape_derivatives(_NODES), nodes)
+    gradients = np.einsum("qdk,mkx->mqdx", shape_derivatives(_NODES), nodes)
     determinant = gradients[..., 0, 0] * gradients[..., 1, 1] - gradients[..., 0, 1] * gradients[..., 1, 0]
     corner, middle = determinant[:, :3], determinant[:, 3:]
     bernstein = np.concatenate([corner, 2.0 * middle - 0.5 * (corner + np.roll(corner, -1, axis=1))], axis=1)
@@ -73,7 +73,7 @@ def scaled_jacobian(nodes: FloatArray) -> FloatArray:
     return np.asarray(bernstein.min(axis=1) / largest)
 
 
-def _shape_derivatives(at: FloatArray) -> FloatArray:
+def shape_derivatives(at: FloatArray) -> FloatArray:
     """Return the derivatives (n, 2, 6) of the quadratic shape functions at reference points (n, 2)."""
     x, y = at.T
     z, zero = 1.0 - x - y, np.zeros(len(at))

@@ -63,13 +63,13 @@ def _arguments(request: CurveRequest) -> dict[str, Any]:
     return {
         "torque_n_m": request.torque,
         "force_n": request.force,
-        "at": None if request.at is None else _positions(request.at),
+        "at": None if request.at is None else positions(request.at),
         "misalignment_um": request.misalignment_um,
         "center_distance_change_mm": request.center_distance_change_mm,
     }
 
 
-def _positions(text: str) -> list[float]:
+def positions(text: str) -> list[float]:
     """Positions of ``--at``."""
     bound = f"numbers from {-_FARTHEST:g} to {_FARTHEST:g}, separated by commas"
     try:

@@ -53,20 +53,24 @@ def flanks_of(
     JobFailed
         No mesh, or positions without a solution.
     """
+    with boundary_errors():
+        arguments = point_arguments(case)
+        return flank_results(
+            gear_pair(case), case=case_json(case), progress=progress, cache=cache, **arguments
+        )
+
+
+def point_arguments(case: Case) -> Json:
+    """Return what a case of one load and one alignment asks for, as keyword arguments in SI."""
     arguments = analysis_arguments(case)
     torques, forces = arguments["torques"], arguments["normal_forces"]
-    with boundary_errors():
-        return flank_results(
-            gear_pair(case),
-            torque=torques[0] if torques else None,
-            normal_force=forces[0] if forces else None,
-            misalignment=arguments["misalignments"][0],
-            center_distance_change=arguments["center_distance_changes"][0],
-            case=case_json(case),
-            progress=progress,
-            cache=cache,
-            **{name: arguments[name] for name in _PASSED_ON},
-        )
+    return {
+        "torque": torques[0] if torques else None,
+        "normal_force": forces[0] if forces else None,
+        "misalignment": arguments["misalignments"][0],
+        "center_distance_change": arguments["center_distance_changes"][0],
+        **{name: arguments[name] for name in _PASSED_ON},
+    }
 
 
 def flank_json(found: LoadDistribution) -> Json:

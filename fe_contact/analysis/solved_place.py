@@ -1,0 +1,74 @@
+"""Contact of one load and one alignment: what flank results and deformed gears start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_contact.analysis.compute_database import Progress
+from fe_contact.analysis.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.table_places import table_places
+from fe_contact.checks import finite
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.errors import InputError, SolveError
+from fe_contact.planning import make_plan
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray
+
+
+@dataclass(frozen=True)
+class SolvedPlace:
+    """A converged solution with the pair it was made for, which stands at its centre distance."""
+
+    contact: PairContact
+    problem: ContactProblem
+    solution: ContactSolution
+
+
+def solve_place(
+    checked: Checked, position: FloatArray, clock: StageClock, report: Progress, cache: Path | None
+) -> SolvedPlace:
+    """Solve the one load and the one alignment of a request at positions (P,).
+
+    Beyond the first base pitch pairs are counted from the one that is then at the place of pair 0.
+
+    Raises
+    ------
+    MeshError, SolveError
+        No acceptable mesh, or positions without a solution.
+    """
+    request = checked.request
+    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+    report("compliance", 0.0)
+    with clock.stage("compliance"):
+        nominal = pair_contact(request.pair, plan, cache)
+    report("compliance", 1.0)
+    with clock.stage("contact"):
+        (place,) = table_places(request.scene, request.choices, nominal).places
+        pitch = np.floor(position).astype(np.int64)
+        problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
+    report("contact", 1.0)
+    if not solution.converged:
+        failed = int(np.count_nonzero(solution.status))
+        raise SolveError(f"{failed} of {position.size} positions have no solution", partial=solution)
+    return SolvedPlace(place.contact, problem, solution)
+
+
+def checked_positions(at: ArrayLike) -> FloatArray:
+    """Return the positions asked for.
+
+    Raises
+    ------
+    InputError
+        They are no numbers, or none.
+    """
+    position = np.atleast_1d(np.asarray(at, dtype=float))
+    if position.ndim != 1 or position.size == 0:
+        raise InputError("at", at, "a list of positions in base pitches")
+    for i, value in enumerate(position):
+        finite(f"at[{i}]", float(value), "In base pitches: 0 to 1 is one mesh cycle.")
+    return position

@@ -1,0 +1,183 @@
+"""Tooth sectors of a gear of finite width under flank loads on several teeth, expanded from their flanks.
+
+The ring of teeth is closed for every loaded tooth as if it were tooth 0; the fields of the others follow by
+turning. A sector's inside follows from its flank and both cuts (`Condensation.expand`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.compliance.checks_3d import CondensedGear, element_forces
+from fe_contact.compliance.condensed_gear import condensed_gear
+from fe_contact.compliance.deformed_gear import DeformedGear, nodal_mean, turn_about_axis
+from fe_contact.compliance.sector_elements import SectorElements, sector_elements
+from fe_contact.geometry import Toothing
+from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
+from fe_contact.mesh.quad_sector import quad_sector
+from fe_contact.mesh.sector_recipe import SectorRecipe
+from fe_contact.mesh.swept_sector import SweptSector, swept_sector
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray, IntArray
+
+Load = Mapping[int, FloatArray]
+# VTK's order of a hexahedron with bottom and top exchanged
+UPSIDE_DOWN = [4, 5, 6, 7, 0, 1, 2, 3, 12, 13, 14, 15, 8, 9, 10, 11, 16, 17, 18, 19]
+
+
+def deformed_solids(
+    gear: Toothing,
+    recipe: SectorRecipe,
+    loads: Sequence[Load],
+    beside: int = 1,
+    support: BoreSupport | None = None,
+    *,
+    seen_from_behind: bool = False,
+) -> tuple[DeformedGear, ...]:
+    """Solve for each set of loads; the gear is condensed once, which costs what its compliance costs.
+
+    Parameters
+    ----------
+    gear : Gear or RingGear
+    recipe, support
+        As for `flank_compliance_3d`.
+    loads : sequence of mapping
+        Tooth number to nodal forces (nf,) along the outward normal, in the freedoms of `FlankCompliance3D`,
+        N: a load presses with negative forces.
+    beside : int
+        How many unloaded teeth to show on either side of the loaded ones.
+    seen_from_behind : bool
+        The loads, and the flank displacements returned, are in the freedoms of the mirrored compliance, as
+        the contact of a ring gear has them.
+    """
+    right = gear.right_handed()
+    section = quad_sector(right, recipe)
+    support = support or ClampedBore()
+    left, mirror = gear.helix_angle < 0.0, None
+    if left != seen_from_behind:
+        planes = swept_sector(section.grid, gear.face_width, recipe, support, right.web).flank_index[::-1]
+        mirror = planes[planes >= 0]
+    sources = [(case, tooth) for case, load in enumerate(loads) for tooth in load]
+    columns = np.stack([_mirrored_back(loads[case][tooth], mirror) for case, tooth in sources], axis=1)
+    solved, _ = condensed_gear(right, section, recipe, 0, support, StageClock(), columns)
+    elements = sector_elements(right, section, solved.sector)
+    found = []
+    for case in range(len(loads)):
+        own = [i for i, (number, _) in enumerate(sources) if number == case]
+        loaded = _Loaded(np.array([sources[i][1] for i in own]), np.array(own), columns[:, own])
+        found.append(_deformed(gear.teeth, solved, elements, loaded, beside, mirror, left))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class _Loaded:
+    """Loaded teeth of one case: their numbers, their columns among the probe loads, and the loads (nf, p)."""
+
+    teeth: IntArray
+    columns: IntArray
+    forces: FloatArray
+
+
+def _mirrored_back(values: FloatArray, mirror: IntArray | None) -> FloatArray:
+    """Return flank values in the numbering of the gear's mirror image."""
+    if mirror is None:
+        return values
+    back = np.empty_like(values)
+    back[mirror] = values
+    return back
+
+
+def _shown(loaded: IntArray, beside: int, teeth: int) -> IntArray:
+    """Return consecutive tooth numbers from the first to the last loaded one and beside them, at most all."""
+    shown = np.arange(loaded.min() - beside, loaded.max() + beside + 1)
+    return shown if len(shown) <= teeth else np.arange(teeth) - (teeth - 1) // 2
+
+
+def _fields(gear: CondensedGear, loaded: _Loaded, shown: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return all freedoms (n, T) and the flank loads (nf, T) of the teeth `shown`."""
+    left = gear.ring.left
+    size, teeth = gear.held.cut_size, len(left)
+    cuts = np.zeros((2 * size, len(shown)))
+    forces = np.zeros((len(loaded.forces), len(shown)))
+    for tooth, column, force in zip(loaded.teeth, loaded.columns, loaded.forces.T, strict=True):
+        apart = shown - tooth
+        cuts[:size] += left[apart % teeth, :, column].T
+        cuts[size:] += left[(apart - 1) % teeth, :, column].T
+        forces[:, apart % teeth == 0] += force[:, None]
+    flank = gear.held.flank @ forces + gear.held.transmitted.T @ cuts
+    return gear.condensation.expand(np.concatenate([flank, cuts])), forces
+
+
+def _deformed(
+    teeth: int,
+    gear: CondensedGear,
+    elements: SectorElements,
+    loaded: _Loaded,
+    beside: int,
+    mirror: IntArray | None,
+    left: bool,
+) -> DeformedGear:
+    """Expand the sectors of one case and put them together."""
+    shown = _shown(loaded.teeth, beside, teeth)
+    fields, forces = _fields(gear, loaded, shown)
+    closed = len(shown) == teeth
+    numbers = _numbers(gear.sector, elements, len(shown), closed)
+    count = int(numbers.max()) + 1
+    points, displacement = np.empty((count, 3)), np.empty((count, 3))
+    stress = np.empty((*numbers.shape, 3, 3))
+    for i, tooth in enumerate(shown):
+        turn = turn_about_axis(2.0 * math.pi * tooth / teeth)
+        moved = elements.displacement(fields[:, i])
+        points[numbers[i]] = elements.nodes @ turn.T
+        displacement[numbers[i]] = moved @ turn.T
+        stress[i] = turn @ elements.stress(moved) @ turn.T
+    cells = numbers.reshape(-1, numbers.shape[-1])
+    mean = nodal_mean(cells, stress.reshape(-1, *stress.shape[2:]), count)
+    flip = np.array([1.0, 1.0, -1.0 if left else 1.0])
+    flank = fields[gear.sector.flank]
+    return DeformedGear(
+        points=points * flip,
+        cells=cells[:, UPSIDE_DOWN] if left else cells,
+        tooth=np.repeat(shown, len(gear.sector.elements)),
+        displacement=displacement * flip,
+        stress=mean * np.outer(flip, flip),
+        quality={name: np.tile(values, len(shown)) for name, values in elements.quality.items()},
+        flank_displacement={
+            int(tooth): flank[:, i] if mirror is None else flank[mirror, i] for i, tooth in enumerate(shown)
+        },
+        residual=_residual(gear, fields, forces, closed),
+    )
+
+
+def _numbers(sector: SweptSector, elements: SectorElements, count: int, closed: bool) -> IntArray:
+    """Return the point of every element node, (T, e, 20); a left cut is the next sector's right cut."""
+    each = elements.points
+    numbers = np.arange(count * each).reshape(count, each)
+    left, right = (sector.nodes[:, column] for column in (sector.grid.left, sector.grid.right))
+    left, right = left[left >= 0], right[right >= 0]
+    following = range(count) if closed else range(count - 1)
+    for i in following:
+        numbers[i, left] = numbers[(i + 1) % count, right]
+    _, packed = np.unique(numbers, return_inverse=True)
+    return np.asarray(packed.reshape(count, each)[:, elements.numbers])
+
+
+def _residual(gear: CondensedGear, fields: FloatArray, forces: FloatArray, closed: bool) -> float:
+    """Return the norm of f - K u over that of f; on cuts between two sectors both of them count."""
+    sector = gear.sector
+    free = sector.element_freedoms >= 0
+    out = np.empty_like(fields)
+    for i in range(fields.shape[1]):
+        inside = element_forces(sector, gear.stiffness, fields[:, i])
+        out[:, i] = -np.bincount(sector.element_freedoms[free], inside[free], minlength=sector.size)
+    out[sector.flank] += forces
+    meeting = out[sector.left] + np.roll(out[sector.right], -1, axis=1)
+    if not closed:
+        meeting = meeting[:, :-1]
+    out[sector.left] = out[sector.right] = 0.0
+    norm = math.hypot(float(np.linalg.norm(out)), float(np.linalg.norm(meeting)))
+    return norm / float(np.linalg.norm(forces))

@@ -1,0 +1,97 @@
+"""The mesh of a gear as it bends: displacement and stress at its nodes, for viewers and checks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class DeformedGear:
+    """Finite elements of a gear, or of some of its teeth, under flank loads.
+
+    Attributes
+    ----------
+    points : (n, 3) array
+        Nodes without load, m. As made: tooth 0 on +y, mid-face at z = 0; see `placed`.
+    cells : (m, 6) or (m, 20) int array
+        Six-node triangles of the transverse section or 20-node hexahedra, numbered as in VTK.
+    tooth : (m,) int array
+        Tooth number of each element, `fe_contact.mesh.export.HUB` in the hub.
+    displacement : (n, 3) array
+        Elastic displacement with the bore held, m.
+    stress : (n, 3, 3) array
+        Mean of the adjoining elements' stresses, each extrapolated from its inner Gauss points, Pa.
+    quality : mapping
+        Quality measures of the elements by name, (m,).
+    flank_displacement : mapping
+        Displacement along the flank's normal by tooth number, m: in the freedoms and with the sign of the
+        flank compliance of the gear.
+    residual : float
+        Norm of f - K u over that of f, on all free freedoms of these elements but outer cuts.
+    """
+
+    points: FloatArray
+    cells: IntArray
+    tooth: IntArray
+    displacement: FloatArray
+    stress: FloatArray
+    quality: Mapping[str, FloatArray]
+    flank_displacement: Mapping[int, FloatArray]
+    residual: float
+
+    @property
+    def von_mises(self) -> FloatArray:
+        """Equivalent stress after von Mises (n,), Pa."""
+        deviator = self.stress - np.trace(self.stress, axis1=1, axis2=2)[:, None, None] * np.eye(3) / 3.0
+        return np.asarray(np.sqrt(1.5 * np.sum(deviator**2, axis=(1, 2))))
+
+    @property
+    def principal_stress(self) -> FloatArray:
+        """Principal stresses (n, 3), Pa, the least first."""
+        return np.asarray(np.linalg.eigvalsh(self.stress))
+
+    def turned_over(self) -> DeformedGear:
+        """Return the gear seen from behind: turned by half a turn about y."""
+        over = np.diag([-1.0, 1.0, -1.0])
+        return replace(
+            self,
+            points=self.points @ over,
+            displacement=self.displacement @ over,
+            stress=over @ self.stress @ over,
+        )
+
+    def placed(self, angle: float, centre: tuple[float, float, float]) -> DeformedGear:
+        """Return the gear turned counter-clockwise by `angle` (rad) about its axis, its centre moved (m)."""
+        turn = turn_about_axis(angle)
+        return replace(
+            self,
+            points=self.points @ turn.T + np.asarray(centre),
+            displacement=self.displacement @ turn.T,
+            stress=turn @ self.stress @ turn.T,
+        )
+
+
+def turn_about_axis(angle: float) -> FloatArray:
+    """Return the matrix that turns vectors counter-clockwise about z."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def nodal_mean(cells: IntArray, values: FloatArray, count: int) -> FloatArray:
+    """Return the mean (count, ...) over elements of values (m, p, ...) at their nodes (m, p)."""
+    total = np.zeros((count, *values.shape[2:]))
+    np.add.at(total, cells, values)
+    times = np.bincount(cells.ravel(), minlength=count).reshape(-1, *(1,) * (values.ndim - 2))
+    return np.asarray(total / np.maximum(times, 1))
+
+
+def stress_of(gradient: FloatArray, lame: tuple[float, float]) -> FloatArray:
+    """Return lambda tr(e) I + mu (g + g') for displacement gradients g (..., 3, 3), Pa."""
+    lam, mu = lame
+    trace = np.trace(gradient, axis1=-2, axis2=-1)[..., None, None]
+    return np.asarray(lam * trace * np.eye(3) + mu * (gradient + np.swapaxes(gradient, -1, -2)))

@@ -1,0 +1,105 @@
+"""Nodal forces on the flanks of both gears under a solved contact: what presses on the finite elements."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+
+from fe_contact.compliance import FlankCompliance, FlankCompliance3D
+from fe_contact.contact.face_patch import FaceGrid, face_loads
+from fe_contact.contact.patch import Patches, load_vector
+from fe_contact.contact.problem import Candidates
+from fe_contact.types import FloatArray
+
+ByTooth = dict[int, FloatArray]
+Side: TypeAlias = tuple[Patches, FloatArray, int]
+
+
+def plane_flank_forces(
+    candidates: Candidates,
+    force: FloatArray,
+    position: int,
+    flanks: tuple[FlankCompliance, FlankCompliance],
+) -> tuple[ByTooth, ByTooth]:
+    """Return the forces on the loaded teeth of both gears of a plane model.
+
+    Parameters
+    ----------
+    candidates : Candidates
+    force : ndarray, shape (P, n)
+        N.
+    position : int
+        Index of the position.
+    flanks : (FlankCompliance, FlankCompliance)
+        Driving and driven gear: their flank nodes.
+
+    Returns
+    -------
+    dict, dict
+        Tooth number to inward nodal forces (k,) per unit face width, N/m. A force at a tip edge acts along
+        the mating flank's normal, so it counts by its lever (see `contact_problem`).
+    """
+    found: list[ByTooth] = []
+    for flank, (patches, lever, direction) in zip(flanks, _sides(candidates), strict=True):
+        by_tooth: ByTooth = {}
+        for i in np.flatnonzero(force[position]):
+            unit = np.zeros(flank.s.size)
+            at = (patches.center[position, i], patches.half_width[position, i])
+            load_vector(flank.s, *at, patches.edge_share[position, i], unit)
+            share = force[position, i] * lever[position, i] / candidates.width
+            _add(by_tooth, int(direction * candidates.pair[i]), share * unit)
+        found.append(by_tooth)
+    return found[0], found[1]
+
+
+def face_flank_forces(
+    candidates: Candidates,
+    force: FloatArray,
+    position: int,
+    flanks: tuple[FlankCompliance3D, FlankCompliance3D],
+    axial_offset: float = 0.0,
+) -> tuple[ByTooth, ByTooth]:
+    """Return the forces on the loaded teeth of both gears over their face width.
+
+    Parameters are those of `plane_flank_forces`, with the distance in m of the driven gear's mid-face from
+    the driving gear's.
+
+    Returns
+    -------
+    dict, dict
+        Tooth number to nodal forces (nf,) against the outward normal, in the freedoms of the compliance, N.
+    """
+    found: list[ByTooth] = []
+    sides = zip(flanks, _sides(candidates), (0.0, axial_offset), strict=True)
+    for flank, (patches, lever, direction), offset in sides:
+        carrying = np.flatnonzero(force[position])
+        along = candidates.face_position[carrying] - offset
+        loads = face_loads(
+            FaceGrid(flank.s, flank.z, flank.index),
+            patches.center[position, carrying],
+            patches.half_width[position, carrying],
+            patches.edge_share[position, carrying],
+            np.maximum(along - 0.5 * candidates.slice_width, flank.z[0]),
+            np.minimum(along + 0.5 * candidates.slice_width, flank.z[-1]),
+        )
+        by_tooth: ByTooth = {}
+        for row, i in enumerate(carrying):
+            used = loads.used[row]
+            nodal = np.zeros(flank.blocks.shape[1])
+            nodal[loads.nodes[row, :used]] = loads.forces[row, :used]
+            share = force[position, i] * lever[position, i]
+            _add(by_tooth, int(direction * candidates.pair[i]), -share * nodal)
+        found.append(by_tooth)
+    return found[0], found[1]
+
+
+def _sides(candidates: Candidates) -> tuple[Side, Side]:
+    """Return patches, lever and direction of counting of both gears: pair j is tooth -j of gear 1."""
+    touch = candidates.touch
+    return (candidates.patch_1, touch.lever_1, -1), (candidates.patch_2, touch.lever_2, 1)
+
+
+def _add(by_tooth: ByTooth, tooth: int, forces: FloatArray) -> None:
+    """Add forces to those of a tooth."""
+    by_tooth[tooth] = by_tooth.get(tooth, 0.0) + forces

@@ -1,0 +1,101 @@
+"""``loa export``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis import DeformedPair, deformed_pairs
+from fe_contact.types import FloatArray
+from service.cli.output import console, print_json, progress_bar, table
+from service.cli.ste import positions
+from service.convert.case import boundary_errors
+from service.convert.checks import check_case
+from service.convert.flanks import case_at, point_arguments
+from service.convert.units import UM
+from service.problems import BadInput
+from service.schemas import Case, read_model, validated
+from service.schemas.flank import FlankPoint
+from service.settings import cache_home
+
+_MOST_POSITIONS = 256
+
+
+def run_export(
+    file: Path, output: Path, point: dict[str, float | None], at: str, beside: int, *, as_json: bool
+) -> None:
+    """Solve, expand, write, print; `point` holds the fields of `FlankPoint` that were given."""
+    chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
+    case = case_at(read_model(Case, file), chosen)
+    where = positions(at)
+    if len(where) > _MOST_POSITIONS:
+        raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MOST_POSITIONS} positions")
+    _refuse_output(output)
+    pair = check_case(case)
+    with progress_bar() as report, boundary_errors():
+        found = deformed_pairs(
+            pair,
+            at=where,
+            beside=beside,
+            progress=report,
+            cache=cache_home() / "compliance",
+            **point_arguments(case),
+        )
+    written = _written(found, output)
+    if as_json:
+        print_json({"written": [str(path) for path in written], "positions": _figures(found)})
+    else:
+        _show(found, written)
+
+
+def _refuse_output(output: Path) -> None:
+    """Refuse a folder that cannot be one, before the work is done."""
+    if output.is_file() or output.suffix == ".vtu":
+        raise BadInput.of("output", str(output), "a folder", "It gets pinion.vtu and wheel.vtu.")
+    if not output.is_dir() and not output.parent.is_dir():
+        raise BadInput.of("output", str(output), "in a folder that exists", "Make the folder first.")
+
+
+def _written(found: tuple[DeformedPair, ...], output: Path) -> list[Path]:
+    """Write two files per position, numbered if there are several, as viewers group them."""
+    output.mkdir(exist_ok=True)
+    written = []
+    for number, pair in enumerate(found):
+        ending = f"_{number:03d}.vtu" if len(found) > 1 else ".vtu"
+        files = [output / f"{gear}{ending}" for gear in ("pinion", "wheel")]
+        pair.write(*files)
+        written += files
+    return written
+
+
+def _figures(found: tuple[DeformedPair, ...]) -> list[dict[str, float]]:
+    """Return what each position came to."""
+    return [
+        {
+            "position": pair.position,
+            "ste_um": pair.deflection / UM,
+            "largest_displacement_pinion_um": _largest(pair.pinion.displacement),
+            "largest_displacement_wheel_um": _largest(pair.wheel.displacement),
+            "residual": max(pair.pinion.residual, pair.wheel.residual),
+        }
+        for pair in found
+    ]
+
+
+def _largest(displacement: FloatArray) -> float:
+    """Return the largest magnitude in um."""
+    return float(np.linalg.norm(displacement, axis=1).max() / UM)
+
+
+def _show(found: tuple[DeformedPair, ...], written: list[Path]) -> None:
+    """Print the figures for people."""
+    columns = ["position", "STE um", "pinion moves um", "wheel moves um", "residual"]
+    rows = [
+        [f"{row['position']:.4g}", *(f"{value:.4g}" for name, value in row.items() if name != "position")]
+        for row in _figures(found)
+    ]
+    out = console()
+    out.print(table(columns, rows))
+    for path in written:
+        out.print(f"written to {path}", highlight=False)

@@ -1,0 +1,86 @@
+"""``loa export``: what it writes and prints, and how it refuses."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import meshio
+import pytest
+from typer.testing import CliRunner, Result
+
+from service.cli.commands import app
+
+SMALL = """
+[pair]
+normal_module_mm = 4.0
+center_distance_mm = 80.0
+[pair.pinion]
+teeth = 20
+face_width_mm = 25.0
+bore_diameter_mm = 40.0
+[pair.wheel]
+teeth = 20
+face_width_mm = 25.0
+bore_diameter_mm = 40.0
+[load]
+torque_n_m = [50, 100]
+[accuracy]
+level = "draft"
+model = "plane_strain"
+"""
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["export", *(str(argument) for argument in arguments)])
+
+
+@pytest.fixture
+def small(tmp_path: Path) -> Path:
+    file = tmp_path / "small.toml"
+    file.write_text(SMALL)
+    return file
+
+
+def test_one_position_is_two_files_and_several_are_numbered(small: Path, tmp_path: Path) -> None:
+    assert loa(small, "-o", tmp_path / "one").exit_code == 0
+    assert sorted(file.name for file in (tmp_path / "one").iterdir()) == ["pinion.vtu", "wheel.vtu"]
+    result = loa(small, "--torque", 50, "--at", "0,0.5", "-o", tmp_path / "two", "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    names = ["pinion_000.vtu", "wheel_000.vtu", "pinion_001.vtu", "wheel_001.vtu"]
+    assert [Path(file).name for file in answer["written"]] == names
+    assert [row["position"] for row in answer["positions"]] == [0.0, 0.5]
+    assert all(row["residual"] < 1e-10 for row in answer["positions"])
+    # one pair at the pitch point, two half a pitch on; half the load bends half as much, but for the contact
+    assert answer["positions"][0]["ste_um"] > answer["positions"][1]["ste_um"]
+    high, low = (
+        meshio.read(tmp_path / name).point_data["von_mises_stress"].max()
+        for name in ("one/pinion.vtu", "two/pinion_000.vtu")
+    )
+    assert high == pytest.approx(2.0 * low, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--at", "0,x"], "--at = '0,x'"),
+        (["--at", ",".join(["0"] * 257)], "at most 256 positions"),
+        (["--torque", "5", "--force", "5"], "normal_force_n = 5.0: must be left out"),
+    ],
+)
+def test_bad_arguments_are_one_line_before_the_work(
+    small: Path, tmp_path: Path, arguments: list[str], said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.cli.export.deformed_pairs", None)  # were it called, exit code 5
+    result = loa(small, "-o", tmp_path / "out", *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert said in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("output", ["small.toml", "out.vtu", "no/such"])
+def test_a_folder_that_cannot_be_one_is_refused(small: Path, tmp_path: Path, output: str) -> None:
+    result = loa(small, "-o", tmp_path / output)
+    assert result.exit_code == 2
+    assert "output = " in result.stderr
