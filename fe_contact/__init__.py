@@ -22,6 +22,7 @@ if TYPE_CHECKING:
         study_sensitivity,
     )
     from fe_contact.geometry import (
+        BoreSeat,
         FlankGrid,
         FlankModification,
         Gear,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "STEEL",
+    "BoreSeat",
     "ContactPattern",
     "DeformedPair",
     "Estimate",
@@ -68,6 +70,7 @@ _HOME = {
     "DeformedPair": "fe_contact.analysis",
     "LoadDistribution": "fe_contact.analysis",
     "Sensitivity": "fe_contact.analysis",
+    "BoreSeat": "fe_contact.geometry",
     "FlankGrid": "fe_contact.geometry",
     "FlankModification": "fe_contact.geometry",
     "Gear": "fe_contact.geometry",

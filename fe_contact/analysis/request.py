@@ -11,7 +11,7 @@ from fe_contact.checks import increasing, integer, positive, within
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, LedgerEntry, compose
 from fe_contact.errors import InputError
-from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry import CLAMPED, ParallelAxes
 from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
 from fe_contact.types import FloatArray, Json
 
@@ -128,6 +128,8 @@ def check_request(
         refuse_beyond_plane(request.scene)
         if composed.thin_rim:
             refuse_web_off_center(request.scene)
+        if composed.bore_seat:
+            refuse_seats(request.scene)
     _refuse_distances(request)
     _refuse_idle_pitches(request)
     cycle = _cycle_cost(request, composed) if whole_table and composed.period > 1 else None
@@ -221,3 +223,11 @@ def refuse_web_off_center(scene: ContactScene) -> None:
         if gear.web is not None and gear.web.low + gear.web.high != 0.0:
             offset, advice = 0.5 * (gear.web.low + gear.web.high), "Use the 3-D model for it."
             raise InputError(f"{name}.blank.web_offset", offset, "0 for a plane model", advice)
+
+
+def refuse_seats(scene: ContactScene) -> None:
+    """Refuse seats of bores: in the plane every bore is fixed."""
+    for name, gear in (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel)):
+        if gear.seat != CLAMPED:
+            advice = "Use the 3-D model for it."
+            raise InputError(f"{name}.seat", "given", "left out for a plane model", advice)

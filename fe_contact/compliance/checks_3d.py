@@ -152,6 +152,7 @@ def bore_moment(gear: CondensedGear, loads: FloatArray, bore_radius: float) -> f
     forces = element_forces(gear.sector, gear.stiffness, field).reshape(-1, 20, 3)
     nodes = gear.sector.nodes[:, gear.sector.grid.bore]
     on_bore = np.isin(gear.sector.elements, nodes[nodes >= 0])
+    on_bore[gear.sector.bodies :] = False  # an elastic seat takes up what the bodies pass to it
     return bore_radius * float(forces[on_bore][:, 1].sum())
 
 

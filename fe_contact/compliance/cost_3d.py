@@ -17,6 +17,7 @@ from fe_contact.compliance.cyclic_compliance import usual_reach
 from fe_contact.compliance.elimination_tree import EliminationTree
 from fe_contact.compliance.sector_tree import sector_tree
 from fe_contact.geometry import Toothing, tooth_profile
+from fe_contact.mesh.bore_support import bore_support
 from fe_contact.mesh.sector_outline import sector_outline
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
@@ -60,7 +61,7 @@ class SectorSizes(NamedTuple):
 def predict_cost(
     gear: Toothing, recipe: SectorRecipe | None = None, reach: int | None = None
 ) -> PredictedCost:
-    """Predict what `flank_compliance_3d` costs for a gear that is not in the cache, its bore clamped.
+    """Predict what `flank_compliance_3d` costs for a gear that is not in the cache.
 
     Parameters
     ----------
@@ -73,7 +74,7 @@ def predict_cost(
     """
     recipe = recipe or SectorRecipe.standard(gear)
     grid = sector_outline(tooth_profile(gear), recipe).grid
-    sector = swept_sector(grid, gear.face_width, recipe, web=gear.web)
+    sector = swept_sector(grid, gear.face_width, recipe, bore_support(gear), gear.web)
     tree = sector_tree(sector)
     distance = usual_reach(gear) if reach is None else reach
     sizes = sector_sizes(sector, gear.teeth, distance)

@@ -12,7 +12,7 @@ from fe_contact.compliance.cache import content_hash, read_compliance, write_com
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.geometry import Toothing, tooth_profile
-from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
+from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from fe_contact.mesh.quad_sector import quad_sector
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.stage_clock import StageClock
@@ -43,7 +43,7 @@ def flank_compliance_3d(
     reach : int, optional
         Largest distance in teeth that is kept, from 0 to half the teeth; default `usual_reach`.
     support : BoreSupport, optional
-        Default `ClampedBore()`.
+        How the right-hand gear is held; default: clamped, or on the gear's seat.
     cache : Path, optional
         Directory of kept results (see `default_cache_directory`); None: neither read nor written.
 
@@ -56,7 +56,7 @@ def flank_compliance_3d(
     SolveError
         The stiffness is singular, or the result breaks a law.
     """
-    recipe, support = recipe or SectorRecipe.standard(gear), support or ClampedBore()
+    recipe, support = recipe or SectorRecipe.standard(gear), support or bore_support(gear.right_handed())
     reach = usual_reach(gear) if reach is None else integer("reach", reach, 0, gear.teeth // 2)
     key = compliance_key_3d(gear, recipe, reach, support)
     result = read_compliance(cache, key, FlankCompliance3D) if cache is not None else None
@@ -82,7 +82,7 @@ def flank_compliances_3d(
     found: dict[str, FlankCompliance3D] = {}
     results = []
     for gear, recipe in zip(gears, recipes, strict=True):
-        key = compliance_key_3d(gear, recipe, usual_reach(gear), support or ClampedBore())
+        key = compliance_key_3d(gear, recipe, usual_reach(gear), support or bore_support(gear.right_handed()))
         if key not in found:
             found[key] = flank_compliance_3d(gear, recipe, support=support, cache=cache)
         alike = found[key].base_helix_angle * gear.helix_angle >= 0.0

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.compliance.elastic_seat import seat_stiffness
 from fe_contact.compliance.hanging_nodes import coarse_face
 from fe_contact.compliance.hexahedron import (
     SECTION,
@@ -79,7 +80,10 @@ def sector_stiffness(
     axes = np.tile(np.eye(3), (sector.grid.nodes, 1, 1))
     axes[sector.grid.flank] = frames
     matrices = [
-        _batch_stiffness(gear.material, section, batch, axes, twist(gear)) for batch in sector.batches
+        np.tile(seat_stiffness(gear, sector.grid, batch.thickness, sector.seat), (len(batch.quads), 1, 1))
+        if batch.seat
+        else _batch_stiffness(gear.material, section, batch, axes, twist(gear))
+        for batch in sector.batches
     ]
     of_element = np.empty(len(sector.elements), dtype=np.int64)
     first = 0

@@ -16,7 +16,7 @@ from fe_contact.compliance.root_stress import RootStress
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
+from fe_contact.mesh.bore_support import BoreSupport, bore_support
 
 MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found
 
@@ -72,7 +72,7 @@ def root_stress_3d(
     SolveError
         The stiffness is singular, or the result breaks a law.
     """
-    recipe, support = recipe or SectorRecipe.standard(gear), support or ClampedBore()
+    recipe, support = recipe or SectorRecipe.standard(gear), support or bore_support(gear.right_handed())
     distance = usual_reach(gear) if reach is None else reach
 
     def compute() -> RootStress:
@@ -111,7 +111,7 @@ def root_stresses_3d(
     found: dict[str, RootStress] = {}
     results = []
     for gear, recipe in zip(gears, recipes, strict=True):
-        key = compliance_key_3d(gear, recipe, usual_reach(gear), ClampedBore())
+        key = compliance_key_3d(gear, recipe, usual_reach(gear), bore_support(gear.right_handed()))
         if key not in found:
             right_hand = gear.right_handed()
             found[key] = root_stress_3d(right_hand, recipe, cache=cache)

@@ -80,6 +80,8 @@ class ContactModel:
         Load distributes over the face width: three dimensions instead of the plane.
     thin_rim : bool
         Bodies have the rim and web of their blank; else they are solid.
+    bore_seat : bool
+        Bores rest on their seats; else they are fixed all over.
     gaps : tuple of GapTerm
     tooth_gaps : tuple of ToothGap
     compliances : tuple of ComplianceTerm
@@ -89,6 +91,7 @@ class ContactModel:
     corner_contact: bool = False
     across_face: bool = False
     thin_rim: bool = False
+    bore_seat: bool = False
     gaps: tuple[GapTerm, ...] = ()
     tooth_gaps: tuple[ToothGap, ...] = ()
     compliances: tuple[ComplianceTerm, ...] = ()

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.geometry import CLAMPED
 from fe_contact.geometry.finite_width import finite_width_excess
 
 
@@ -50,6 +51,8 @@ def across_face(scene: ContactScene) -> list[str]:
         reasons.append("shafts that bend")
     if pair.pinion.web or pair.wheel.web:
         reasons.append("a web narrower than the face")
+    if pair.pinion.seat != CLAMPED or pair.wheel.seat != CLAMPED:
+        reasons.append("a seat of the bore")
     if pair.pinion.face_width != pair.wheel.face_width or pair.axial_offset != 0.0:
         reasons.append("faces that do not cover each other")
     return reasons

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.effect import Effect
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
@@ -23,4 +24,5 @@ EFFECTS: tuple[Effect, ...] = (
     PitchError(),
     ShaftDeflection(),
     ThinRim(),
+    BoreSeatElasticity(),
 )

@@ -1,6 +1,7 @@
 """Involute gear geometry: one gear, its exact tooth profile, and the pair (ISO 21771-1 vocabulary)."""
 
 from fe_contact.geometry.basic_rack import BasicRack
+from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat, seat_compliance
 from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap
 from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.geometry.gear import Gear
@@ -19,7 +20,9 @@ from fe_contact.geometry.toothing import Toothing
 from fe_contact.geometry.web_compliance import web_compliance
 
 __all__ = [
+    "CLAMPED",
     "BasicRack",
+    "BoreSeat",
     "CornerContact",
     "FlankGrid",
     "FlankModification",
@@ -40,6 +43,7 @@ __all__ = [
     "corner_contact",
     "corner_gap",
     "iso6336_stiffness",
+    "seat_compliance",
     "tooth_profile",
     "web_compliance",
 ]

@@ -10,6 +10,7 @@ import numpy as np
 
 from fe_contact.checks import integer, positive, within
 from fe_contact.geometry.basic_rack import BasicRack
+from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
 from fe_contact.geometry.form_point import FormPoint, find_form_point
 from fe_contact.geometry.gear_blank import GearBlank, Web, web_of
 from fe_contact.geometry.gear_feasibility import refuse_infeasible_gear
@@ -54,13 +55,16 @@ class Gear(Toothing):
         Rim, web and hub; None is a solid body.
     pitch_deviation : PitchDeviation
         Of the loaded flank of every tooth.
+    seat : BoreSeat
+        How the bore sits on its shaft; default: the whole bore is fixed.
 
     Raises
     ------
     InputError
         A value out of its bounds.
     InfeasibleGeometry
-        No such gear: "root radius", "bore", "rim", "web", "hub", "tip diameter", "undercut", "pointed tooth".
+        No such gear: "root radius", "bore", "rim", "web", "hub", "seat", "tip diameter", "undercut",
+        "pointed tooth".
     """
 
     bore_diameter: float
@@ -76,6 +80,7 @@ class Gear(Toothing):
     material: Material = STEEL
     blank: GearBlank | None = None
     pitch_deviation: PitchDeviation = NO_PITCH_DEVIATION
+    seat: BoreSeat = CLAMPED
 
     def __post_init__(self) -> None:
         integer("teeth", self.teeth, 4, 2000, "Count the teeth of an external gear.")
@@ -145,12 +150,16 @@ class Gear(Toothing):
         """Return the gear with a solid body."""
         return self if self.blank is None else replace(self, blank=None)
 
+    def clamped(self) -> Gear:
+        """Return the gear with its whole bore fixed."""
+        return self if self.seat == CLAMPED else replace(self, seat=CLAMPED)
+
     def right_handed(self) -> Gear:
         """Return the gear itself, or the mirror image in the plane of mid-face if it is left-handed."""
         if self.helix_angle >= 0.0:
             return self
         blank = None if self.blank is None else self.blank.mirrored()
-        return replace(self, helix_angle=-self.helix_angle, blank=blank)
+        return replace(self, helix_angle=-self.helix_angle, blank=blank, seat=self.seat.mirrored())
 
     def macro_geometry(self) -> Json:
         """All that decides the shape of the unmodified gear, as plain numbers (for content hashes).

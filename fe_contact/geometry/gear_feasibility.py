@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fe_contact.errors import InfeasibleGeometry
+from fe_contact.geometry.bore_seat import refuse_misfit_seat
 from fe_contact.geometry.gear_blank import refuse_misfit
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ def refuse_infeasible_gear(gear: Gear) -> None:
     """Raise `InfeasibleGeometry` if no such gear can be generated."""
     _refuse_bore(gear)
     refuse_misfit(gear)
+    refuse_misfit_seat(gear)
     _refuse_tip_diameter(gear)
     _refuse_undercut(gear)
     _refuse_pointed_tooth(gear)

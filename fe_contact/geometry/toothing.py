@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
 
+from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
 from fe_contact.geometry.involute import involute_function, roll_length_at_radius
 
 if TYPE_CHECKING:
@@ -144,6 +145,15 @@ class Toothing:
     def solid(self) -> Toothing:
         """Return the gear with a solid body."""
         return self
+
+    def clamped(self) -> Toothing:
+        """Return the gear with its whole bore fixed."""
+        return self
+
+    @property
+    def seat(self) -> BoreSeat:
+        """How the gear is held at `held_radius`."""
+        return CLAMPED
 
     @property
     def web(self) -> Web | None:

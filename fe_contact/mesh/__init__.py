@@ -1,6 +1,6 @@
 """Meshes on exact tooth profiles, made by gmsh in a child process, checked for quality."""
 
-from fe_contact.mesh.bore_support import BoreSupport, ClampedBore, PlaneStrain
+from fe_contact.mesh.bore_support import BoreSupport, ClampedBore, PlaneStrain, SeatedBore, bore_support
 from fe_contact.mesh.gear_mesh import FlankNodes, GearMesh
 from fe_contact.mesh.meshing import mesh_gear
 from fe_contact.mesh.quad_sector import QuadSector, quad_sector
@@ -19,8 +19,10 @@ __all__ = [
     "PlaneStrain",
     "QuadSector",
     "QualityLimits",
+    "SeatedBore",
     "SectorRecipe",
     "SweptSector",
+    "bore_support",
     "mesh_gear",
     "mesh_quality",
     "quad_sector",

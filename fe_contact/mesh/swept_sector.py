@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from fe_contact.errors import InputError
+from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
 from fe_contact.geometry.gear_blank import ROUNDING, Web
 from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
 from fe_contact.mesh.layers import Layers, layers_across, layers_to_mid_face
@@ -40,12 +41,15 @@ class Batch:
         0: conforming. -1, +1: the lower face is the lower or upper half of a face of the next coarser layer.
     elements : (c, m) int array
         Rows of `SweptSector.elements`, one line for each of the c layers.
+    seat : bool
+        An elastic seat below the bodies' elements on the bore instead of bodies.
     """
 
     quads: IntArray
     thickness: float
     half: int
     elements: IntArray
+    seat: bool = False
 
 
 @dataclass(frozen=True)
@@ -69,6 +73,8 @@ class SweptSector:
         The elements by equal matrices.
     freedoms : (N, 3) int array
         Number of each node's freedoms, -1 where held.
+    seat : BoreSeat
+        What the bore rests on.
     """
 
     grid: SectorGrid
@@ -78,6 +84,12 @@ class SweptSector:
     place: FloatArray
     batches: tuple[Batch, ...]
     freedoms: IntArray
+    seat: BoreSeat = CLAMPED
+
+    @property
+    def bodies(self) -> int:
+        """Number of elements that are bodies; those of an elastic seat follow them."""
+        return sum(batch.elements.size for batch in self.batches if not batch.seat)
 
     @property
     def size(self) -> int:
@@ -140,7 +152,8 @@ def swept_sector(
     web : Web, optional
         The rows `SectorGrid.web_rows` have elements between its faces only.
     """
-    layers = _layers(face_width, recipe, web)
+    support = support or ClampedBore()
+    layers = _layers(face_width, recipe, web, support.seat)
     planes = 2 * len(layers.kind) + 1
     level = np.sum(grid.cells[:, 1, None] < np.array(recipe.merge_rows, dtype=int), axis=1)
     node_level = np.zeros(grid.nodes, dtype=np.int64)
@@ -149,20 +162,33 @@ def swept_sector(
     exists = _existing(grid, node_level, extent, planes)
     nodes = np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
     batches, elements, place = _elements(grid, layers, nodes, level, node_level, extent)
-    held = (support or ClampedBore()).held(grid, planes)
+    batches, elements, place = _with_seat(
+        grid, layers, (batches, elements, place), support.seat.ends(face_width), support.seat.elastic
+    )
+    held = support.held(grid, between_ends(layers.ends))
     held[0, :, 2] |= recipe.half_face
     free = ~held[exists]
     freedoms = np.where(free, np.cumsum(free).reshape(free.shape) - 1, -1)
-    return SweptSector(grid, layers, nodes, elements, place, batches, freedoms)
+    return SweptSector(grid, layers, nodes, elements, place, batches, freedoms, support.seat)
 
 
-def _layers(face_width: float, recipe: SectorRecipe, web: Web | None) -> Layers:
-    """Divide the face, or its half above mid-face; groups of layers end at the faces of a web."""
+def between_ends(ends: FloatArray) -> FloatArray:
+    """Return the axial positions of all planes of nodes: ends and middles of layers."""
+    z = np.repeat(ends, 2)[:-1]
+    z[1::2] = 0.5 * (ends[1:] + ends[:-1])
+    return z
+
+
+def _layers(face_width: float, recipe: SectorRecipe, web: Web | None, seat: BoreSeat) -> Layers:
+    """Divide the face, or its half above mid-face; groups of layers end where web and seat end."""
     faces: tuple[float, ...] = () if web is None else (web.low, web.high)
+    if seat.width is not None:
+        faces = (*faces, *seat.ends(face_width))
     if recipe.half_face:
         if abs(sum(faces)) > ROUNDING * face_width:
-            raise InputError("half_face", True, "False for a web off the middle", "Sweep the whole face.")
-        above = inner_breaks(faces[1:], face_width)
+            bound = "False for a web or a seat off the middle"
+            raise InputError("half_face", True, bound, "Sweep the whole face.")
+        above = inner_breaks([z for z in faces if z > 0.0], face_width)
         return layers_to_mid_face(face_width, recipe.layers, recipe.layer_growth, above)
     breaks = inner_breaks(faces, face_width)
     return layers_across(face_width, recipe.layers, recipe.layer_group, recipe.layer_growth, breaks)
@@ -222,6 +248,37 @@ def _elements(
         for (kind, half), rows in sharing.items():
             batches.append(Batch(quads, 2.0**lv * layers.thickness[kind], half, np.array(rows)))
     return tuple(batches), np.concatenate(elements), np.concatenate(place)
+
+
+Stack = tuple[tuple[Batch, ...], IntArray, FloatArray]
+
+
+def _with_seat(
+    grid: SectorGrid, layers: Layers, bodies: Stack, ends: tuple[float, float], elastic: bool
+) -> Stack:
+    """Add the elements of an elastic seat: the nodes of the bodies above them."""
+    batches, elements, place = bodies
+    if not elastic:
+        return bodies
+    low, high = (np.abs(layers.ends - z).argmin() for z in ends)
+    on_bore = grid.cells[:, 1] == -grid.body_rows
+    added: list[IntArray] = []
+    count, more = len(elements), []
+    for batch in batches:
+        columns = on_bore[batch.quads]
+        lines = (place[batch.elements[:, 0], 2] > low) & (place[batch.elements[:, 0], 2] < high)
+        chosen = batch.elements[lines][:, columns]
+        if chosen.size:
+            numbers = count + np.arange(chosen.size).reshape(chosen.shape)
+            more.append(Batch(batch.quads[columns], batch.thickness, 0, numbers, seat=True))
+            added.append(chosen.ravel())
+            count += chosen.size
+    rows = np.concatenate(added)
+    return (
+        (*batches, *more),
+        np.concatenate([elements, elements[rows]]),
+        np.concatenate([place, place[rows]]),
+    )
 
 
 def _layer(nodes: IntArray, quads: IntArray, low: int, height: int, half: int) -> IntArray:

@@ -73,6 +73,8 @@ class Plan:
         Further loads in N that carry the force extraction down to lift-off and into overload.
     thin_rim : bool
         Bodies have the rim and web of their blank; else they are solid.
+    bore_seat : bool
+        Bores rest on their seats; else they are fixed all over.
     """
 
     discretisation: Discretisation
@@ -82,12 +84,16 @@ class Plan:
     load: FloatArray
     support: FloatArray
     thin_rim: bool = True
+    bore_seat: bool = True
 
     def bodies(self, pair: ParallelAxes) -> tuple[Toothing, Toothing]:
         """Return both gears as their finite elements have them."""
-        if self.thin_rim:
-            return pair.pinion, pair.wheel
-        return pair.pinion.solid(), pair.wheel.solid()
+        return self._body(pair.pinion), self._body(pair.wheel)
+
+    def _body(self, gear: Toothing) -> Toothing:
+        """Return a gear without what is left out of it."""
+        body = gear if self.thin_rim else gear.solid()
+        return body if self.bore_seat else body.clamped()
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -109,7 +115,7 @@ def make_plan(pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: C
         Requested normal forces in N, increasing, > 0.
     accuracy : Accuracy
     model : ContactModel
-        `across_face` asks for three dimensions, `thin_rim` for the blanks.
+        `across_face` asks for three dimensions, `thin_rim` for the blanks, `bore_seat` for the seats.
     """
     levels = increasing("load", load)
     discretisation: Discretisation
@@ -122,7 +128,9 @@ def make_plan(pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: C
     patch = _patch_rule(pair, LARGEST_SUPPORT * levels[-1], discretisation.least_patch)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     support = _support_loads(levels)
-    return Plan(discretisation, patch, accuracy.positions, nodes, levels, support, model.thin_rim)
+    return Plan(
+        discretisation, patch, accuracy.positions, nodes, levels, support, model.thin_rim, model.bore_seat
+    )
 
 
 def _support_loads(levels: FloatArray) -> FloatArray:

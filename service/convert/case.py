@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from typing import Any
 
 from fe_contact.errors import FeContactError, InputError
-from fe_contact.geometry import FlankGrid, FlankModification, Gear, GearBlank, GearPair, Shaft
+from fe_contact.geometry import BoreSeat, FlankGrid, FlankModification, Gear, GearBlank, GearPair, Shaft
 from fe_contact.material import Material
 from service.convert.errors import translated
-from service.convert.units import DEGREE, GPA, MM, N_PER_UM, UM
+from service.convert.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, UM
 from service.problems import BadInput
 from service.schemas import Case, GearInput, MaterialInput, PairInput
 
@@ -79,6 +79,7 @@ def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> G
             modification=_modification(given),
             material=_material(given.material or material),
             blank=_blank(given),
+            seat=_seat(given),
             **{coefficient: getattr(given, coefficient) for coefficient in _COEFFICIENTS},
         )
     except InputError as error:
@@ -99,6 +100,23 @@ def _blank(given: GearInput) -> GearBlank | None:
         )
     except InputError as error:
         raise error.within("blank") from None
+
+
+def _seat(given: GearInput) -> BoreSeat:
+    """Return the seat of the bore; without one it is fixed."""
+    seat = given.seat
+    if seat is None:
+        return BoreSeat()
+    foundation = {
+        name: None if value is None else value * N_PER_MM3
+        for name in ("radial_foundation", "tangential_foundation", "axial_foundation")
+        for value in [getattr(seat, f"{name}_n_per_mm3")]
+    }
+    width = None if seat.width_mm is None else seat.width_mm * MM
+    try:
+        return BoreSeat(**foundation, width=width, offset=seat.offset_mm * MM)
+    except InputError as error:
+        raise error.within("seat") from None
 
 
 def _shaft(name: str, gear: GearInput) -> Shaft | None:

@@ -11,10 +11,12 @@ GPA = 1e9
 DEGREE = math.pi / 180.0
 RPM = 2.0 * math.pi / 60.0
 N_PER_UM = 1e6
+N_PER_MM3 = 1e9
 
 BY_SUFFIX: dict[str, float] = {
     "_mm": MM,
     "_n_per_um": N_PER_UM,
+    "_n_per_mm3": N_PER_MM3,
     "_um": UM,
     "_nm": NM,
     "_gpa": GPA,

@@ -87,6 +87,38 @@ class GearBlankInput(BoundaryModel):
     )
 
 
+class BoreSeatInput(BoundaryModel):
+    """The seat of the bore on its shaft; stiffnesses are traction per displacement."""
+
+    radial_foundation_n_per_mm3: float | None = Field(
+        default=None, gt=0.0, le=1e9, description="Radial, in N/mm^3; left out: rigid", examples=[20_000.0]
+    )
+    tangential_foundation_n_per_mm3: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e9,
+        description="Tangential, in N/mm^3; left out: rigid",
+        examples=[10_000.0],
+    )
+    axial_foundation_n_per_mm3: float | None = Field(
+        default=None, gt=0.0, le=1e9, description="Axial, in N/mm^3; left out: rigid", examples=[10_000.0]
+    )
+    width_mm: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=5000.0,
+        description="Axial length of the seat in mm; left out: the face width",
+        examples=[20.0],
+    )
+    offset_mm: float = Field(
+        default=0.0,
+        ge=-5000.0,
+        le=5000.0,
+        description="Middle of the seat in mm towards +z from mid-face",
+        examples=[2.0],
+    )
+
+
 class FlankGridInput(BoundaryModel):
     """A free-form flank as a grid: one row of removed material per roll length."""
 
@@ -109,9 +141,7 @@ class GearInput(BoundaryModel):
 
     teeth: int = Field(ge=5, le=1000, description="Number of teeth", examples=[20])
     face_width_mm: float = Field(gt=0.0, le=5000.0, description="Face width in mm", examples=[25.0])
-    bore_diameter_mm: float = Field(
-        gt=0.0, le=20_000.0, description="Bore diameter in mm; the bore is taken as rigid", examples=[40.0]
-    )
+    bore_diameter_mm: float = Field(gt=0.0, le=20_000.0, description="Bore diameter in mm", examples=[40.0])
     profile_shift_coefficient: float = Field(
         default=0.0, ge=-5.0, le=5.0, description="Profile shift in normal modules", examples=[0.2]
     )
@@ -226,6 +256,11 @@ class GearInput(BoundaryModel):
         default=None,
         description="Rim, web and hub; left out: a solid body",
         examples=[{"rim_thickness_mm": 12.0, "web_thickness_mm": 10.0, "hub_diameter_mm": 60.0}],
+    )
+    seat: BoreSeatInput | None = Field(
+        default=None,
+        description="Seat of the bore; left out: the whole bore is fixed",
+        examples=[{"tangential_foundation_n_per_mm3": 10_000.0, "width_mm": 20.0}],
     )
     material: MaterialInput | None = Field(
         default=None,

@@ -82,6 +82,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
         "material": {"youngs_modulus_gpa": 100.0},
+        "seat": {"tangential_foundation_n_per_mm3": 1e4},
         "blank": {"rim_thickness_mm": 8.0, "web_thickness_mm": 10.0},
         "shaft": {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0},
         "flank_grid": {
@@ -117,6 +118,20 @@ def test_rim_web_and_hub_arrive_in_si_and_their_errors_in_mm() -> None:
     assert fault.field == "pair.pinion.blank.rim_thickness_mm"
     assert "12.5 mm" in fault.bound
     assert fault.value == pytest.approx(20.0)
+
+
+def test_a_seat_arrives_in_si_and_its_errors_in_mm() -> None:
+    given = {
+        f"{name}_foundation_n_per_mm3": 1e3 * i for i, name in enumerate(("radial", "tangential", "axial"), 1)
+    }
+    seat = gear_pair(case(seat=given | {"width_mm": 20.0, "offset_mm": -2.0})).pinion.seat
+    assert seat.stiffness == pytest.approx((1e12, 2e12, 3e12), rel=1e-15)
+    assert (seat.width, seat.offset) == pytest.approx((20e-3, -2e-3), rel=1e-15)
+    with pytest.raises(BadInput) as refusal:
+        gear_pair(case(seat={"width_mm": 30.0}))
+    (fault,) = refusal.value.faults
+    assert (fault.field, fault.value) == ("pair.pinion.seat.width_mm", pytest.approx(30.0))
+    assert "25 mm" in fault.bound
 
 
 def test_mating_gears_have_opposite_hands() -> None:

@@ -28,7 +28,7 @@ from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffnes
 from fe_contact.errors import InputError, SolveError
 from fe_contact.geometry import Gear, GearBlank, RingGear, Toothing
 from fe_contact.material import Material
-from fe_contact.mesh import PlaneStrain, SectorRecipe, quad_sector, swept_sector
+from fe_contact.mesh import ClampedBore, PlaneStrain, SectorRecipe, quad_sector, swept_sector
 
 SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
 HELICAL = replace(SPUR, helix_angle=math.radians(25.0))
@@ -168,7 +168,7 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(
     mirrored = flank_compliance_3d(left, coarse(gear), reach=2)
     for module in (stiffness_module, gear_module):
         monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
-    swept = flow.compute_flank_compliance_3d(left, coarse(gear), 2, flow.ClampedBore())
+    swept = flow.compute_flank_compliance_3d(left, coarse(gear), 2, ClampedBore())
     assert relative(swept.blocks, mirrored.blocks) < 1e-10
 
 
@@ -272,7 +272,7 @@ def test_the_cache_returns_the_same_bits(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 def test_all_that_decides_the_result_is_in_the_key() -> None:
-    clamped, recipe = flow.ClampedBore(), coarse(SPUR)
+    clamped, recipe = ClampedBore(), coarse(SPUR)
     keys = [
         flow.compliance_key_3d(SPUR, recipe, 2, clamped),
         flow.compliance_key_3d(SPUR, recipe, 1, clamped),

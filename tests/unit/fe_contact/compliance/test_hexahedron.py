@@ -18,7 +18,7 @@ from fe_contact.compliance.hexahedron import (
 )
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.errors import MeshError
-from fe_contact.geometry import Gear
+from fe_contact.geometry import BoreSeat, Gear
 from fe_contact.mesh import QuadSector, SectorRecipe, SweptSector, quad_sector, swept_sector
 
 LAME = (121e9, 81e9)
@@ -123,9 +123,10 @@ class FreeBore:
     """Nothing is held."""
 
     name = "free"
+    seat = BoreSeat()
 
-    def held(self, grid: object, planes: int) -> np.ndarray:
-        return np.zeros((planes, grid.nodes, 3), dtype=bool)  # type: ignore[attr-defined]
+    def held(self, grid: object, z: np.ndarray) -> np.ndarray:
+        return np.zeros((len(z), grid.nodes, 3), dtype=bool)  # type: ignore[attr-defined]
 
 
 def test_constant_strain_is_exact_in_a_merged_helical_sector(section: QuadSector) -> None:

@@ -1,0 +1,39 @@
+"""Bore seat: the bore rests on its shaft elastically, over part of the face, or on a key."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from fe_contact.contact.model import ContactModel
+from fe_contact.effects.effect import ContactScene, Verdict
+from fe_contact.geometry import CLAMPED, seat_compliance
+
+
+@dataclass(frozen=True)
+class BoreSeatElasticity:
+    """A bore that is not fixed all over lets the gear turn, shift and tilt."""
+
+    name: ClassVar[str] = "bore_seat"
+    needs: ClassVar[tuple[str, ...]] = ("bore seat",)
+    adds: ClassVar[tuple[str, ...]] = ("compliance",)
+    cost: ClassVar[str] = "none beside the three-dimensional model it calls for"
+    sources: ClassVar[tuple[str, ...]] = ("docs/effects/bore_seat.md",)
+    valid_for: ClassVar[str] = "external gears; a seat that pulls as well as it pushes"
+
+    def called_for(self, scene: ContactScene) -> Verdict:
+        """On where either bore has a seat that is not fixed all over."""
+        gears = {"pinion": scene.pair.pinion, "wheel": scene.pair.wheel}
+        seated = [name for name, gear in gears.items() if gear.seat != CLAMPED]
+        if not seated:
+            return Verdict(False, "both bores are fixed all over", "nothing")
+        force = float(scene.torque.max()) / scene.pair.pinion.base_radius
+        missing = 1e6 * force * sum(seat_compliance(gear) for gear in gears.values())
+        worth = "no cheap estimate: a rigid seat over part of the face"
+        if missing:
+            worth = f"mean STE at least {-missing:.2g} um at the largest load (rotation on the seats)"
+        return Verdict(True, f"{' and '.join(seated)} on a seat of the bore", worth)
+
+    def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
+        """Ask for the seats."""
+        return replace(model, bore_seat=True)

@@ -1,0 +1,50 @@
+"""Bore seat: called for by a seat, worth the turn on it, and nothing for fixed bores."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from fe_contact import BoreSeat, Gear, GearPair
+from fe_contact.analysis.request import check_request
+from fe_contact.contact import ContactModel
+from fe_contact.effects import ContactScene
+from fe_contact.effects.bore_seat import BoreSeatElasticity
+from fe_contact.errors import InputError
+from fe_contact.geometry import seat_compliance
+from fe_contact.planning import Accuracy, make_plan
+
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+SEATED = replace(GEAR, seat=BoreSeat(tangential_foundation=1e13))
+FIXED, PAIR = GearPair(GEAR, GEAR), GearPair(SEATED, GEAR)
+
+
+def test_called_for_by_a_seat_only() -> None:
+    off, on = (BoreSeatElasticity().called_for(ContactScene(p, np.array([100.0]))) for p in (FIXED, PAIR))
+    assert (off.on, off.worth) == (False, "nothing")
+    assert (on.on, on.reason) == (True, "pinion on a seat of the bore")
+    (worth,) = (float(x) for x in re.findall(r"(-[\d.]+) um", on.worth))
+    assert worth == pytest.approx(-1e6 * 100.0 / GEAR.base_radius * seat_compliance(SEATED), rel=0.05)
+
+
+def test_contributes_nothing_else_and_off_is_the_fixed_bore() -> None:
+    model = ContactModel()
+    after = BoreSeatElasticity().contribute(ContactScene(PAIR, np.array([100.0])), model)
+    assert [f.name for f in fields(model) if getattr(after, f.name) != getattr(model, f.name)] == [
+        "bore_seat"
+    ]
+    loads = np.array([1e3])
+    assert make_plan(PAIR, loads, Accuracy(), model).bodies(PAIR) == (GEAR, GEAR)
+    assert make_plan(PAIR, loads, Accuracy(), after).bodies(PAIR) == (SEATED, GEAR)
+    assert make_plan(FIXED, loads, Accuracy(), after).bodies(FIXED)[0] is GEAR
+
+
+def test_a_seat_acts_across_the_face_and_is_refused_in_the_plane() -> None:
+    assert check_request(PAIR, torques=[1.0]).model.across_face
+    with pytest.raises(InputError) as refusal:
+        check_request(PAIR, torques=[1.0], model="plane_strain")
+    assert refusal.value.field == "pinion.seat"
+    check_request(PAIR, torques=[1.0], model="plane_strain", effects={"bore_seat": "off"})
