@@ -4,6 +4,7 @@ from dynamics.bodies.angle_law import AngleLaw
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.shaft import Shaft
+from dynamics.bodies.speed_curve import SpeedCurve
 from dynamics.bodies.time_law import TimeLaw
 
-__all__ = ["AngleLaw", "GearBody", "Inertia", "Shaft", "TimeLaw", "hollow_cylinder"]
+__all__ = ["AngleLaw", "GearBody", "Inertia", "Shaft", "SpeedCurve", "TimeLaw", "hollow_cylinder"]

@@ -47,11 +47,12 @@ class AngleLaw:
         s = moment - start[piece]
         return np.asarray(c[piece, 0] + s * (c[piece, 1] + s * c[piece, 2]), dtype=float)
 
-    def slope(self, moment: float) -> float:
-        """Return the acceleration at `moment` (s), rad/s^2, from the right where it jumps."""
+    def slope(self, time: float | FloatArray) -> FloatArray:
+        """Return the acceleration at `time` (s), rad/s^2, from the right where it jumps."""
         start, c = self.polynomials()
-        piece = int(np.searchsorted(start[1:], moment, side="right"))
-        return float(c[piece, 1] + 2.0 * (moment - start[piece]) * c[piece, 2])
+        moment = np.asarray(time, dtype=float)
+        piece = np.searchsorted(start[1:], moment, side="right")
+        return np.asarray(c[piece, 1] + 2.0 * (moment - start[piece]) * c[piece, 2], dtype=float)
 
     def polynomials(self) -> tuple[FloatArray, FloatArray]:
         """Return start times and ascending coefficients of the speed, as `TimeLaw.polynomials` does."""

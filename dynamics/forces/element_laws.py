@@ -14,6 +14,7 @@ import numpy as np
 
 from dynamics.forces.compiled import inner
 from dynamics.forces.flank_force import FlankLaws, flank_force
+from dynamics.forces.speed_torque import SpeedTorqueLaws, speed_torque
 from dynamics.forces.table_energy import table_energy
 from dynamics.types import FloatArray, IntArray
 
@@ -22,15 +23,17 @@ class Law(IntEnum):
     """Kinds of force laws."""
 
     FLANK = 0  # p = 1: a flank in contact, from its table
+    SPEED_TORQUE = 1  # p = 1: a torque that depends on a shaft's speed
 
 
-FLANK = int(Law.FLANK)
+FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
 
 
 class ElementLaws(NamedTuple):
     """The packed laws of all kinds, one field per kind."""
 
     flank: FlankLaws
+    speed_torque: SpeedTorqueLaws
 
 
 class Elements(NamedTuple):
@@ -48,6 +51,9 @@ class Elements(NamedTuple):
         The mesh whose position it reads; -1: none.
     offset : (R,) array
         y0: local coordinates at q = 0, m.
+    drift : (R, k) array
+        Rates of the local coordinates in the kinematic motion per unit speed of each law, m/rad; 0 for
+        flanks, whose coordinates that motion does not change.
     laws : ElementLaws
     """
 
@@ -56,6 +62,7 @@ class Elements(NamedTuple):
     first: IntArray
     mesh: IntArray
     offset: FloatArray
+    drift: FloatArray
     laws: ElementLaws
 
 
@@ -69,7 +76,9 @@ class LocalState(NamedTuple):
     pace : (m,) array
         Their rates in the kinematic motion, base pitches per second.
     coordinate, rate : (R,) arrays
-        y (m) and y' (m/s).
+        y (m) and y' (m/s), those of the deviations from the kinematic motion.
+    drift : (R,) array
+        What the kinematic motion adds to the rates, m/s.
     force, elastic : (R,) arrays
         f and the part of it that stores energy, N.
     tangent, viscous : (R, P) arrays
@@ -82,6 +91,7 @@ class LocalState(NamedTuple):
     pace: FloatArray
     coordinate: FloatArray
     rate: FloatArray
+    drift: FloatArray
     force: FloatArray
     elastic: FloatArray
     tangent: FloatArray
@@ -96,6 +106,7 @@ def make_local(elements: Elements, meshes: int) -> LocalState:
     return LocalState(
         np.zeros(meshes),
         np.zeros(meshes),
+        np.zeros(rows),
         np.zeros(rows),
         np.zeros(rows),
         np.zeros(rows),
@@ -121,6 +132,9 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
         )
         local.force[row], local.elastic[row], local.hint[e] = force, elastic, hint
         local.tangent[row, 0], local.viscous[row, 0] = tangent, viscous
+    elif elements.law[e] == SPEED_TORQUE:
+        rate = local.rate[row] + local.drift[row]
+        local.force[row], local.viscous[row, 0] = speed_torque(elements.laws.speed_torque, place, rate)
 
 
 @inner

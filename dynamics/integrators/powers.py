@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dynamics.forces.compiled import inner
-from dynamics.forces.element_laws import potential
+from dynamics.forces.element_laws import SPEED_TORQUE, potential
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.system.arrays import SystemArrays
@@ -34,8 +34,12 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     bushing, mesh, position = 0.0, 0.0, 0.0
     for i in range(velocity.size):
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
-    for r in range(work.force.size):
-        mesh += (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
+    for e in range(system.elements.law.size):
+        for r in range(system.elements.first[e], system.elements.first[e + 1]):
+            if system.elements.law[e] == SPEED_TORQUE:
+                loads -= work.force[r] * (work.local.rate[r] + work.local.drift[r])
+            else:
+                mesh += (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
     for e in range(system.elements.law.size):
         m = system.elements.mesh[e]
         if m >= 0:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dynamics.forces.compiled import inner
 from dynamics.integrators.workspace import Workspace
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import external_force, set_phases, write_motion
+from dynamics.system.motion import external_force, set_drift, set_phases, write_motion
 from dynamics.types import FloatArray
 
 
@@ -15,6 +15,7 @@ def set_motion(system: SystemArrays, work: Workspace, time: float, position: Flo
     write_motion(system.reference, time, work.moved, work.motion)
     external_force(system, time, work.motion, work.external)
     set_phases(system.reference, work.motion, position, work.local.pace)
+    set_drift(system.elements, work.motion, work.local.drift)
 
 
 @inner

@@ -78,21 +78,31 @@ def _external(system: System, time: float) -> FloatArray:
     free = arrays.reference.freedom >= 0
     if np.any(free):
         vector = arrays.reference.vector[free]
-        taken = np.linalg.solve(vector @ arrays.mass @ vector.T, vector @ force)
+        unbalanced = force + _by_speed(arrays, time)
+        taken = np.linalg.solve(vector @ arrays.mass @ vector.T, vector @ unbalanced)
         force = force - arrays.mass @ vector.T @ taken
     return np.asarray(force)
+
+
+def _by_speed(arrays: SystemArrays, time: float) -> FloatArray:
+    """Return the forces (n,) of torques that depend on speed, at the speeds of the kinematic motion."""
+    none = np.zeros(arrays.mass.shape[0])
+    local = local_state(arrays, time, none, none)
+    rows = arrays.elements.first[:-1][arrays.elements.law == Law.SPEED_TORQUE]
+    return np.asarray(-local.force[rows] @ arrays.direction[rows])
 
 
 def _first_guess(system: System, time: float, external: FloatArray) -> FloatArray:
     """Displacements if every mesh were a spring, on the coast flank where the driving one would pull."""
     flanks = system.flanks
     carrying = np.arange(flanks.nominal_force.size)
-    q, force = _on_springs(system, time, external, carrying)
+    loads = external + _by_speed(system.arrays, time)
+    q, force = _on_springs(system, time, loads, carrying)
     for place, mesh in enumerate(flanks.coast, start=carrying.size):
         if force[mesh] < 0.0:
             carrying[mesh] = place
     if np.any(carrying >= carrying.size):
-        q, _ = _on_springs(system, time, external, carrying)
+        q, _ = _on_springs(system, time, loads, carrying)
     return q
 
 

@@ -32,6 +32,7 @@ from dynamics.system.planets import kinematic_vectors, turning_inertia
 from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.system.rotor import Rotor, build_rotor
 from dynamics.system.scene import Scene
+from dynamics.system.speed_elements import speed_elements
 from dynamics.system.supports import Supports, gather_supports
 from dynamics.types import FloatArray
 
@@ -103,8 +104,10 @@ def assemble(scene: Scene) -> System:
     _check_mass(freedoms, rotors)
     coast = [index for index, mesh in enumerate(scene.meshes) if ledger.on("backlash", mesh.name)]
     flanks = with_coast_flanks(flanks, scene.meshes, coast)
-    elements = flank_elements(scene, rotors, kinematics.mesh_sense, lines, flanks)
-    arrays = _arrays(scene, rotors, kinematics, freedoms, flanks, elements, supports, couplings)
+    by_speed, speed_laws = speed_elements(scene, kinematics)
+    elements = (*flank_elements(scene, rotors, kinematics.mesh_sense, lines, flanks), *by_speed)
+    laws = ElementLaws(flanks.law, speed_laws)
+    arrays = _arrays(scene, rotors, kinematics, freedoms, flanks, elements, laws, supports, couplings)
     moves = freedoms.keep(supports.motion)
     return System(
         scene,
@@ -162,6 +165,7 @@ def _arrays(
     freedoms: Freedoms,
     flanks: Flanks,
     elements: Sequence[Element],
+    laws: ElementLaws,
     supports: Supports,
     couplings: CouplingRows,
 ) -> SystemArrays:
@@ -192,7 +196,7 @@ def _arrays(
         lay_out_drives(scene, rotors, kinematics, freedoms, supports, couplings, gradient, vectors),
         scale,
         scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
-        pack_elements(elements, ElementLaws(flanks.law)),
+        pack_elements(elements, laws, len(scene.references)),
         lay_out_reference(scene, kinematics, freedoms, vectors),
         lay_out_loads(scene, kinematics, freedoms),
     )

@@ -26,6 +26,8 @@ class Element:
         In the six freedoms of all r rotors.
     offset : (p,) array
         m.
+    drift : (p, k) array or None
+        Rate of the coordinates per unit speed of each law of the kinematic motion, m/rad; None: 0.
     """
 
     law: Law
@@ -33,10 +35,15 @@ class Element:
     mesh: int
     gradient: FloatArray
     offset: FloatArray
+    drift: FloatArray | None = None
 
 
-def pack_elements(elements: Sequence[Element], laws: ElementLaws) -> Elements:
-    """Lay out `elements`; their rows follow each other in this order."""
+def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) -> Elements:
+    """Lay out `elements`, their rows one after the other, in a kinematic motion of that many laws."""
+    drift = [
+        np.zeros((element.offset.size, motions)) if element.drift is None else element.drift
+        for element in elements
+    ]
     sizes = [element.offset.size for element in elements]
     return Elements(
         np.array([int(element.law) for element in elements], dtype=np.int64),
@@ -44,6 +51,7 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws) -> Elements:
         np.cumsum([0, *sizes], dtype=np.int64),
         np.array([element.mesh for element in elements], dtype=np.int64),
         np.concatenate([np.empty(0), *(element.offset for element in elements)]),
+        np.concatenate([np.empty((0, motions)), *drift]),
         laws,
     )
 

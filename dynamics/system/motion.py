@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from dynamics.forces.compiled import compiled, inner
+from dynamics.forces.element_laws import Elements
 from dynamics.forces.table_lookup import wrapped
 from dynamics.system.arrays import LawArrays, Reference, SystemArrays
 from dynamics.types import FloatArray, IntArray
@@ -77,6 +78,15 @@ def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, p
         pace[m] = 0.0
         for k in range(motion.shape[0]):
             pace[m] += reference.per_radian[m, k] * motion[k, SPEED]
+
+
+@inner
+def set_drift(elements: Elements, motion: FloatArray, drift: FloatArray) -> None:
+    """Write what the kinematic motion adds to the rates of the elements' local coordinates."""
+    for r in range(drift.size):
+        drift[r] = 0.0
+        for k in range(motion.shape[0]):
+            drift[r] += elements.drift[r, k] * motion[k, SPEED]
 
 
 @inner

@@ -93,6 +93,11 @@ def _loads(scene: Scene, kinematics: Kinematics, moments: FloatArray) -> FloatAr
     for load in scene.loads:
         shaft = scene.shaft_index(load.shaft)
         torque[shaft] -= kinematics.sense[shaft] * load.torque(moments)
+    laws = np.array([part.speed(moments) for part in scene.references])
+    for part in scene.speed_torques:
+        shaft = scene.shaft_index(part.shaft)
+        sense = kinematics.sense[shaft]
+        torque[shaft] -= sense * part.curve(sense * (kinematics.float_ratio[shaft] @ laws))
     return torque
 
 

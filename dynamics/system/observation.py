@@ -11,7 +11,7 @@ from dynamics.forces.element_laws import LocalState, evaluate, make_local
 from dynamics.forces.packed_tables import PackedTables
 from dynamics.forces.table_lookup import table_deflection, wrapped
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import MOTION_COLUMNS, add_motion, set_phases, write_motion
+from dynamics.system.motion import MOTION_COLUMNS, add_motion, set_drift, set_phases, write_motion
 from dynamics.types import FloatArray, IntArray
 
 
@@ -93,6 +93,7 @@ def _evaluate(
     """Evaluate all elements in one state."""
     write_motion(system.reference, time, moved, motion)
     set_phases(system.reference, motion, local.position, local.pace)
+    set_drift(system.elements, motion, local.drift)
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
     for e in range(system.elements.law.size):
         evaluate(system.elements, local, e)

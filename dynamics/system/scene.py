@@ -10,7 +10,7 @@ from typing import Protocol
 from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, integer, not_negative, one_of, positive
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, LoadTorque
+from dynamics.forces import GearMesh, LoadTorque, SpeedTorque
 from dynamics.joints import Bushing, Coupling, FreeRotation, ImposedRotation, PlanetBearing
 
 METHODS = ("implicit", "explicit")
@@ -109,6 +109,7 @@ KINDS = (
     "drives",
     "free_rotations",
     "loads",
+    "speed_torques",
 )
 
 
@@ -119,6 +120,7 @@ class Scene:
     Attributes
     ----------
     shafts, gears, bushings, planet_bearings, couplings, meshes, drives, free_rotations, loads : tuples
+    speed_torques : tuple
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: as many of them as the gearing leaves independent speeds.
     duration : float
@@ -139,6 +141,7 @@ class Scene:
     planet_bearings: tuple[PlanetBearing, ...] = ()
     free_rotations: tuple[FreeRotation, ...] = ()
     couplings: tuple[Coupling, ...] = ()
+    speed_torques: tuple[SpeedTorque, ...] = ()
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = Outputs()
     integration: Integration = Integration()
@@ -152,7 +155,15 @@ class Scene:
             distinct(kind, [part.name for part in getattr(self, kind)])
         shafts, gears = _names(self.shafts), _names(self.gears)
         distinct("planet_bearings", _names((*self.bushings, *self.planet_bearings)))
-        for kind in ("gears", "bushings", "planet_bearings", "drives", "free_rotations", "loads"):
+        for kind in (
+            "gears",
+            "bushings",
+            "planet_bearings",
+            "drives",
+            "free_rotations",
+            "loads",
+            "speed_torques",
+        ):
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
         for index, mesh in enumerate(self.meshes):

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
-from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, TimeLaw, hollow_cylinder
+from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, SpeedCurve, TimeLaw, hollow_cylinder
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, LoadTorque
+from dynamics.forces import GearMesh, LoadTorque, SpeedTorque
 from dynamics.joints import Bushing, Coupling, FreeRotation, ImposedRotation, PlanetBearing
 from dynamics.system import Integration, Outputs, Scene, with_planets
 from dynamics.system.kinematics import solve_kinematics
@@ -28,6 +28,7 @@ from service.schemas.scene import (
     PlanetBearingInput,
     SceneInput,
     ShaftInput,
+    SpeedTorqueInput,
 )
 
 _SMALLEST_STEP_S = 1e-12
@@ -77,6 +78,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),
             planet_bearings=tuple(_planet_bearing(i, b) for i, b in enumerate(scene.planet_bearings)),
             couplings=tuple(_coupling(i, part) for i, part in enumerate(scene.couplings)),
+            speed_torques=tuple(_speed_torque(i, part) for i, part in enumerate(scene.speed_torques)),
             free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
             duration=scene.run.duration_s,
@@ -238,6 +240,19 @@ def _load(index: int, given: LoadTorqueInput) -> LoadTorque:
     """Return a load."""
     with _named(f"loads[{index}]"):
         return LoadTorque(given.name, given.shaft, TimeLaw(given.time_s, given.torque_n_m, given.course))
+
+
+def _speed_torque(index: int, given: SpeedTorqueInput) -> SpeedTorque:
+    """Return a torque by speed."""
+    with _named(f"speed_torques[{index}]"):
+        speed = [value * RPM for value in given.speed_rpm]
+        if given.kind == "table":
+            curve = SpeedCurve.table(speed, given.torque_n_m)
+        elif given.kind == "quadratic":
+            curve = SpeedCurve.quadratic(given.torque_n_m[0], speed[0])
+        else:
+            curve = SpeedCurve.constant(given.torque_n_m[0], speed[0])
+        return SpeedTorque(given.name, given.shaft, curve)
 
 
 def _outputs(scene: SceneInput) -> Outputs:

@@ -74,6 +74,7 @@ _LAST = {
     "angle": "angle_deg",
     "initial_speed": "initial_speed_rpm",
     "angles": "angles_deg",
+    "fade": "speed_rpm",
     "speed": "speed_rpm",
     "torque": "torque_n_m",
     "sample_rate": "sample_rate_hz",

@@ -26,6 +26,7 @@ _NAMED = (
     "drives",
     "free_rotations",
     "loads",
+    "speed_torques",
 )
 _SOURCES = ("case", "case_file", "database_file", "database_hash")
 
@@ -346,6 +347,41 @@ class LoadTorqueInput(BoundaryModel):
         return self
 
 
+class SpeedTorqueInput(BoundaryModel):
+    """A torque that depends on the shaft's speed."""
+
+    name: Name = Field(description="Name of the torque", examples=["fan"])
+    shaft: Name = Field(description="The shaft it acts on", examples=["output"])
+    kind: Literal["table", "quadratic", "constant"] = Field(
+        description="Through a table; as the square of the speed; constant against either sense of rotation",
+        examples=["table"],
+    )
+    speed_rpm: Numbers = Field(
+        min_length=1,
+        max_length=100_000,
+        description="Speeds of a table; the speed of the torque of a square; where a constant has set in",
+        examples=[[0.0, 1500.0]],
+    )
+    torque_n_m: Numbers = Field(
+        min_length=1,
+        max_length=100_000,
+        description="Torques in N m against the rotation at these speeds; negative: driving",
+        examples=[[-50.0, -40.0]],
+    )
+
+    @model_validator(mode="after")
+    def _as_many(self) -> Self:
+        """Refuse a table of fewer than two points, and more than one for the others."""
+        least, most = (2, 100_000) if self.kind == "table" else (1, 1)
+        if not least <= len(self.speed_rpm) <= most:
+            bound = "a list of at least 2" if self.kind == "table" else "a list of one"
+            refuse("speed_rpm", list(self.speed_rpm), bound)
+        if len(self.torque_n_m) != len(self.speed_rpm):
+            bound = f"a list of {len(self.speed_rpm)}, one for each of speed_rpm"
+            refuse("torque_n_m", list(self.torque_n_m), bound, "Give one value per speed.")
+        return self
+
+
 def _check_law(field: str, times: tuple[float, ...], values: tuple[float, ...]) -> None:
     """As many values as times, and times that increase."""
     if any(later <= earlier for earlier, later in pairwise(times)):
@@ -411,6 +447,7 @@ class SceneInput(BoundaryModel):
         default=(), max_length=1000
     )
     couplings: Annotated[tuple[CouplingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    speed_torques: Annotated[tuple[SpeedTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
     loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     outputs: OutputsInput = Field(default=OutputsInput(), description="What to store", examples=[{}])
@@ -437,7 +474,8 @@ class SceneInput(BoundaryModel):
         for kind in _NAMED:
             _refuse_repeated(kind, [part.name for part in getattr(self, kind)])
         shafts = [shaft.name for shaft in self.shafts]
-        for kind in ("gears", "bushings", "planet_bearings", "drives", "free_rotations", "loads"):
+        on_one_shaft = ("gears", "bushings", "planet_bearings", "drives", "free_rotations", "loads")
+        for kind in (*on_one_shaft, "speed_torques"):
             for index, part in enumerate(getattr(self, kind)):
                 _refuse_unknown(f"{kind}[{index}].shaft", part.shaft, shafts)
         for index, shaft in enumerate(self.shafts):

@@ -104,6 +104,22 @@ WRONG: dict[str, tuple[Change, str]] = {
         lambda t: t["drives"][0].update(time_s=[5.0, 0.0]),
         "drives[0].time_s",
     ),
+    "curve of one point": (
+        lambda t: t.update(
+            speed_torques=[
+                {"name": "m", "shaft": "input", "kind": "table", "speed_rpm": [1.0], "torque_n_m": [1.0]}
+            ]
+        ),
+        "speed_torques[0].speed_rpm",
+    ),
+    "fan at rest": (
+        lambda t: t.update(
+            speed_torques=[
+                {"name": "m", "shaft": "input", "kind": "quadratic", "speed_rpm": [0.0], "torque_n_m": [1.0]}
+            ]
+        ),
+        "speed_torques[0].speed_rpm",
+    ),
     "speed and angle": (
         lambda t: t["drives"][0].update(angle_deg=[0.0, 1.0, 2.0, 3.0]),
         "drives[0].speed_rpm",
@@ -243,6 +259,17 @@ def test_couplings_and_angle_tables_are_in_si() -> None:
     assert found.couplings[0].position == pytest.approx(0.2)
     assert found.couplings[0].stiffness is not None
     assert found.drives[0].speed(0.5) == pytest.approx(math.pi)
+
+
+def test_torques_by_speed_are_in_si() -> None:
+    fan = {"name": "fan", "shaft": "output", "kind": "quadratic", "speed_rpm": [1000.0], "torque_n_m": [40.0]}
+    motor = {"name": "m", "shaft": "input", "kind": "table", "speed_rpm": [0, 1500], "torque_n_m": [-50, 0]}
+    dry = {"name": "d", "shaft": "input", "kind": "constant", "speed_rpm": [1.0], "torque_n_m": [2.0]}
+    found = scene(lambda t: t.update(speed_torques=[fan, motor, dry])).speed_torques
+    rpm = math.pi / 30.0
+    assert found[0].curve(500.0 * rpm) == pytest.approx(10.0)
+    assert found[1].curve(0.0) == pytest.approx(-50.0)
+    assert found[2].curve(-3.0 * rpm) == pytest.approx(-2.0)
 
 
 def test_a_planetary_set_has_all_its_planets() -> None:

@@ -107,3 +107,16 @@ def test_couplings_that_cannot_be_are_refused(make, field):
 def test_a_coupled_shaft_turns_with_the_train():
     scene = coupled(speed=TimeLaw.constant(50.0))
     assert solve_kinematics(scene).ratio[2] == (-1,)
+
+
+def test_a_drive_behind_a_coupling_takes_its_torque_from_it():
+    """Motor shaft driven rigidly, gear behind a coupling: drive torque = coupling torque = load."""
+    scene = gear_pair_scene(spring_table(4e8), speed=TimeLaw.constant(50.0), duration=0.02)
+    motor = Shaft("motor", 0.1, (0.0, 0.0, -0.1), Inertia(4.0, 0.5, 0.02))
+    drive = replace(scene.drives[0], shaft="motor")
+    joint = Coupling("joint", "motor", "input", TORSION, 5.0)
+    scene = replace(scene, shafts=(*scene.shafts, motor), drives=(drive,), couplings=(joint,))
+    result = simulate(scene)
+    assert result.drive_torque[0].mean() == pytest.approx(100.0, rel=1e-6)
+    assert result.coupling_torque[0].mean() == pytest.approx(100.0, rel=1e-6)
+    assert result.energy.relative_to_throughput < 1e-8

@@ -29,7 +29,8 @@ def only_first(scene):
 @pytest.mark.parametrize(("driver", "sense"), [("sun", "+z"), ("sun", "-z"), ("ring", "+z")])
 def test_copies_have_the_phases_and_places_of_the_set(driver, sense):
     """A sun that turns backwards, and a ring that drives, meet the planets in the other order."""
-    gears = published_set(3, driver=driver, sun_sense=sense, ring_phase=0.3)
+    teeth = (28, 35, 98)  # a third of a pitch from planet to planet
+    gears = published_set(3, teeth=teeth, driver=driver, sun_sense=sense, ring_phase=0.3)
     speed = -100.0 if sense == "-z" else 100.0
     whole = driven_scene(gears)
     sun = replace(whole.drives[0], speed=replace(whole.drives[0].speed, value=(speed,)))

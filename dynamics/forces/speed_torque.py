@@ -1,0 +1,78 @@
+"""A torque on a shaft that depends on its speed, and its compiled law."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.bodies.speed_curve import SpeedCurve
+from dynamics.forces.compiled import inner
+from dynamics.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class SpeedTorque:
+    """A torque by speed: a fan that resists, a motor that drives.
+
+    Attributes
+    ----------
+    name : str
+        Unique among the speed torques.
+    shaft : str
+        The shaft it acts on.
+    curve : SpeedCurve
+        Torque against the sense of the shaft's kinematic motion, N m, at the speed in that sense, rad/s.
+    """
+
+    name: str
+    shaft: str
+    curve: SpeedCurve
+
+
+class SpeedTorqueLaws(NamedTuple):
+    """Curves one after the other in flat arrays.
+
+    Attributes
+    ----------
+    first : (l + 1,) int array
+        First piece of each curve.
+    start : (S,) array
+        Start of the pieces, rad/s.
+    coefficient : (S, 4) array
+        Ascending, in N m and rad/s.
+    radius : (l,) array
+        At which torques count as forces and angles as displacements, m.
+    """
+
+    first: IntArray
+    start: FloatArray
+    coefficient: FloatArray
+    radius: FloatArray
+
+
+def pack_speed_torques(parts: Sequence[SpeedTorque], radius: float) -> SpeedTorqueLaws:
+    """Lay out the curves of `parts`."""
+    starts = [part.curve.start for part in parts]
+    return SpeedTorqueLaws(
+        np.cumsum([0, *(start.size for start in starts)], dtype=np.int64),
+        np.concatenate([np.empty(0), *starts]),
+        np.concatenate([np.empty((0, 4)), *(np.asarray(part.curve.coefficient) for part in parts)]),
+        np.full(len(parts), radius),
+    )
+
+
+@inner
+def speed_torque(laws: SpeedTorqueLaws, place: int, rate: float) -> tuple[float, float]:
+    """Return the force (N) at the speed `rate` (m/s) of the law's radius, and its derivative (N s/m)."""
+    radius = laws.radius[place]
+    speed = rate / radius
+    piece = laws.first[place]
+    while piece + 1 < laws.first[place + 1] and speed >= laws.start[piece + 1]:
+        piece += 1
+    s, c = speed - laws.start[piece], laws.coefficient
+    torque = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
+    slope = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
+    return torque / radius, slope / (radius * radius)
