@@ -41,8 +41,8 @@ def analyze(
     tolerance, level, time_budget
         Asked accuracy: relative error, "draft" | "standard" | "fine", or seconds; at most one.
     model : str
-        "auto" (three dimensions where the scene acts across the face, else plane strain), "plane_strain",
-        "plane_stress" or "3d".
+        "auto" (three dimensions where the scene acts across the face, else plane strain corrected for
+        the finite face width), "plane_strain", "plane_stress" or "3d".
     positions : int, optional
         Equally spaced positions in a base pitch; default: nodes placed so that interpolation keeps 0.2 % of
         peak-to-peak.

@@ -11,6 +11,7 @@ import numpy as np
 
 from fe_contact.analysis.error_estimate import ErrorSources, estimate_errors, worst_residual
 from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.table_nodes import table_nodes
 from fe_contact.analysis.table_places import Places, table_places
@@ -24,7 +25,7 @@ from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 
 Progress = Callable[[str, float], None]
-SOLVER_VERSION = "1"
+SOLVER_VERSION = "2"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 
@@ -55,7 +56,9 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
     coarse = _places(request, plan, clock, report, cache, coarse=True)
     with clock.stage("error estimate"):
         rough = [place.solve_pitches(nodes.position, plan.load, pitches)[1] for place in coarse.places]
-        errors = estimate_errors(fine, [solution for _, solution in solved], rough, nodes, plan)
+        found = [solution for _, solution in solved]
+        plane = _in_plane_strain(fine, nodes, plan) if plan.discretisation.corrected else found
+        errors = estimate_errors(fine, found, plane, rough, nodes, plan)
     return SteDatabase(
         position=(pitches[:, None] + nodes.position).ravel(),
         force=plan.load,
@@ -81,6 +84,13 @@ def _places(
         nominal = pair_contact(request.pair, plan, cache, coarse)
     report(stage, 1.0)
     return table_places(request.scene, request.choices, nominal)
+
+
+def _in_plane_strain(places: Places, nodes: PositionNodes, plan: Plan) -> list[ContactSolution]:
+    """Solve every place without the correction for its finite width."""
+    pitches = np.arange(places.period)
+    flat = [place.in_plane_strain for place in places.places]
+    return [place.solve_pitches(nodes.position, plan.load, pitches)[1] for place in flat]
 
 
 def _metadata(

@@ -3,8 +3,9 @@
 The finite-element error comes from a second, coarser discretisation solved at the same points; with
 quadratic elements and Galerkin patches the error falls at least with the square of the element size, which
 bounds what is left of the difference (`Discretisation.remaining`). The table's error is measured at the
-middles between its nodes. What the plane model leaves out against a gear of finite width is reported beside
-these and not added in.
+middles between its nodes. Where the plane stands in for three dimensions, a part of what it was corrected by
+is its error; it is measured against three-dimensional solutions (docs/effects/finite_width.md). What plane
+strain leaves out where it was asked for is reported beside these and not added in.
 """
 
 from __future__ import annotations
@@ -15,10 +16,15 @@ import numpy as np
 
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.table_places import Places
+from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.planning import Plan
+from fe_contact.geometry.parallel_axes import ParallelAxes
+from fe_contact.planning import Plan, PlaneDiscretisation
 from fe_contact.types import FloatArray, Json, Status
+
+CORRECTION_ERROR = 0.03
+"""Error of the correction for a finite width in parts of the correction itself."""
 
 
 @dataclass(frozen=True)
@@ -27,21 +33,23 @@ class ErrorSources:
 
     Attributes
     ----------
-    discretisation, interpolation, contact : ndarray
-        Finite elements, table beside the node, contact solver.
+    discretisation, interpolation, contact, finite_width : ndarray
+        Finite elements, table beside the node, contact solver, correction of the plane.
     model : float
-        Relative excess of the mean STE that the plane model leaves out; 0 in three dimensions.
+        Relative excess of the mean STE that plane strain leaves out; 0 where it is corrected for it, in plane
+        stress, and in three dimensions.
     """
 
     discretisation: FloatArray
     interpolation: FloatArray
     contact: FloatArray
+    finite_width: FloatArray
     model: float
 
     @property
     def total(self) -> FloatArray:
-        """Sum of the numerical sources at each point, m."""
-        return self.discretisation + self.interpolation + self.contact
+        """Sum of the sources at each point, m."""
+        return self.discretisation + self.interpolation + self.contact + self.finite_width
 
     def to_json(self) -> Json:
         """Return the largest of each source by load, m, and the model's own uncertainty."""
@@ -49,6 +57,7 @@ class ErrorSources:
             "discretisation_m": self.discretisation,
             "table_interpolation_m": self.interpolation,
             "contact_solver_m": self.contact,
+            "finite_width_m": self.finite_width,
         }
         worst = {name: values.max(axis=(0, 2, 3)).tolist() for name, values in sources.items()}
         return worst | {"plane_for_finite_width_relative": self.model}
@@ -57,6 +66,7 @@ class ErrorSources:
 def estimate_errors(
     places: Places,
     fine: list[ContactSolution],
+    plane: list[ContactSolution],
     coarse: list[ContactSolution],
     nodes: PositionNodes,
     plan: Plan,
@@ -67,23 +77,35 @@ def estimate_errors(
     ----------
     places : Places
     fine, coarse : list of ContactSolution
-        Of every place, on both meshes.
+        Of every place, on both meshes; on the coarse one without the correction for the finite width.
+    plane : list of ContactSolution
+        On the fine meshes without that correction; `fine` if there is none.
     nodes : PositionNodes
         With the interpolation error of the judged places; the largest of them stands for every place.
     plan : Plan
     """
     made = plan.discretisation
-    differences = [
-        np.nan_to_num(np.abs(one.deflection - other.deflection)) * made.remaining
-        for one, other in zip(fine, coarse, strict=True)
-    ]
     judged = nodes.error.reshape(len(nodes.error), -1, plan.load.size).max(axis=1)
     return ErrorSources(
-        places.gathered(differences),
+        places.gathered(_differences(plane, coarse, made.remaining)),
         places.gathered([judged] * len(fine)),
         places.gathered([contact_error(solution) for solution in fine]),
-        0.0 if made.slices > 1 else finite_width_excess(places.places[0].contact.pair),
+        places.gathered(_differences(fine, plane, CORRECTION_ERROR)),
+        _left_out(plan, places.places[0].contact.pair),
     )
+
+
+def _differences(these: list[ContactSolution], those: list[ContactSolution], part: float) -> list[FloatArray]:
+    """Return a part of the differences of STE (P, F) of every place, m."""
+    pairs = zip(these, those, strict=True)
+    return [part * np.nan_to_num(np.abs(one.deflection - other.deflection)) for one, other in pairs]
+
+
+def _left_out(plan: Plan, pair: ParallelAxes) -> float:
+    """Return the relative excess of the mean STE that plane strain leaves out where it was asked for."""
+    made = plan.discretisation
+    asked = isinstance(made, PlaneDiscretisation) and made.hypothesis is PlaneHypothesis.PLANE_STRAIN
+    return finite_width_excess(pair) if asked and not made.corrected else 0.0
 
 
 def contact_error(solution: ContactSolution) -> FloatArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from fe_contact.compliance import (
     FlankCompliance,
     FlankCompliance3D,
+    finite_width_compliances,
     flank_compliances,
     flank_compliances_3d,
 )
@@ -50,12 +51,15 @@ class PairContact:
     plan : Plan
     plane, face : pair of compliances or None
         Of both gears, in the plane or over the face width; exactly one of the two.
+    uncorrected : pair of compliances or None
+        Those in the plane before they were corrected for the finite width, if they were.
     """
 
     pair: ParallelAxes
     plan: Plan
     plane: PlaneFlanks | None = None
     face: FaceFlanks | None = None
+    uncorrected: PlaneFlanks | None = None
     _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
     def solve(
@@ -72,6 +76,13 @@ class PairContact:
             first = np.zeros(position.size, dtype=np.int64)
             problem = in_pitches(problem, model, first if pitch is None else pitch)
         return problem, solve_contact(problem, load)
+
+    @property
+    def in_plane_strain(self) -> PairContact:
+        """The same pair without the correction for its finite width; itself if it has none."""
+        if self.uncorrected is None:
+            return self
+        return replace(self, plane=self.uncorrected, uncorrected=None, _problems={})
 
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
@@ -104,7 +115,8 @@ def pair_contact(pair: ParallelAxes, plan: Plan, cache: Path | None, coarse: boo
     cache : Path, optional
         Directory of stored compliances; None computes afresh.
     coarse : bool
-        Take the coarse meshes, which serve the error estimate.
+        Take the coarse meshes, which serve the error estimate; in the plane without the correction for the
+        finite width, which has an error of its own.
     """
     made = plan.discretisation
     gears = plan.bodies(pair)
@@ -114,8 +126,12 @@ def pair_contact(pair: ParallelAxes, plan: Plan, cache: Path | None, coarse: boo
         )
         # a ring's right flank is the loaded one as seen from the other side: its z runs against the pinion's
         return PairContact(pair, plan, face=(first, second.mirrored() if pair.internal else second))
-    recipes = made.coarse_recipes if coarse else made.recipes
-    return PairContact(pair, plan, plane=_plane_flanks(pair, gears, made, recipes, cache))
+    flat = _plane_flanks(pair, gears, made, made.coarse_recipes if coarse else made.recipes, cache)
+    if made.finite_width is None or coarse:
+        return PairContact(pair, plan, plane=flat)
+    ends = finite_width_compliances(gears, made.finite_width, flat[0].teeth.size, cache=cache)
+    corrected = (ends[0].added_to(flat[0]), ends[1].added_to(flat[1]))
+    return PairContact(pair, plan, plane=corrected, uncorrected=flat)
 
 
 def _plane_flanks(

@@ -9,7 +9,7 @@ import numpy as np
 
 from fe_contact.checks import increasing, integer, positive, within
 from fe_contact.contact import ContactModel
-from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, LedgerEntry, compose
+from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth, LedgerEntry, compose
 from fe_contact.errors import InputError
 from fe_contact.geometry import CLAMPED, ParallelAxes
 from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
@@ -59,9 +59,13 @@ class Request:
 
     @property
     def choices(self) -> dict[str, str]:
-        """Choice of each effect; an explicit model decides about the face load distribution."""
+        """Choice of each effect; an explicit model decides about the face and its finite width."""
         asked = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.accuracy.model)
-        return dict(self.effects) | ({FaceLoadDistribution.name: asked} if asked else {})
+        if asked is not None:
+            return dict(self.effects) | {FaceLoadDistribution.name: asked, FiniteWidth.name: "off"}
+        if self.effects.get(FaceLoadDistribution.name) == "on":
+            return dict(self.effects) | {FiniteWidth.name: "off"}
+        return dict(self.effects)
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units: what decides the result."""

@@ -36,6 +36,11 @@ class Place:
             return self.solve(position, load)
         return self.solve(position, load, np.repeat(pitches, position.size))
 
+    @property
+    def in_plane_strain(self) -> Place:
+        """The same place without the correction for the finite width."""
+        return replace(self, contact=self.contact.in_plane_strain)
+
 
 @dataclass(frozen=True)
 class Places:

@@ -77,7 +77,7 @@ def finite_width_compliances(
 
     Parameters
     ----------
-    gears : sequence of Gear
+    gears : sequence of Toothing
         Spur gears, bores clamped. Modification plays no part.
     recipes : sequence of SectorRecipe
         Of half the face, one per gear; `SectorRecipe.even_load` is made for it.

@@ -78,6 +78,9 @@ class ContactModel:
         Tip edges may touch off the line of action, before A and after E.
     across_face : bool
         Load distributes over the face width: three dimensions instead of the plane.
+    finite_width : bool
+        The plane stands in for gears of finite width: their compliance is that of plane strain and what
+        their free ends add. In three dimensions it is in the compliance anyway.
     thin_rim : bool
         Bodies have the rim and web of their blank; else they are solid.
     bore_seat : bool
@@ -90,6 +93,7 @@ class ContactModel:
     couple_teeth: bool = False
     corner_contact: bool = False
     across_face: bool = False
+    finite_width: bool = False
     thin_rim: bool = False
     bore_seat: bool = False
     gaps: tuple[GapTerm, ...] = ()

@@ -6,6 +6,7 @@ from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.effect import Effect
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
+from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.misalignment import Misalignment
 from fe_contact.effects.pitch_error import PitchError
@@ -19,6 +20,7 @@ EFFECTS: tuple[Effect, ...] = (
     CornerContact(),
     ProfileModification(),
     FaceLoadDistribution(),
+    FiniteWidth(),
     LeadModification(),
     Misalignment(),
     PitchError(),

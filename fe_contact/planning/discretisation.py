@@ -30,11 +30,14 @@ class PlaneDiscretisation:
     hypothesis : PlaneHypothesis
     recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
         Driving and driven gear; the coarse ones are half as fine, for the discretisation error.
+    finite_width : (SectorRecipe, SectorRecipe) or None
+        Solids of half the face that give what a finite width adds; None: the plane alone.
     """
 
     hypothesis: PlaneHypothesis
     recipes: tuple[MeshRecipe, MeshRecipe]
     coarse_recipes: tuple[MeshRecipe, MeshRecipe]
+    finite_width: tuple[SectorRecipe, SectorRecipe] | None = None
 
     slices = 1
     remaining = 1.0 / 3.0
@@ -47,7 +50,15 @@ class PlaneDiscretisation:
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        return {"model": self.hypothesis.value, "mesh": [recipe.content() for recipe in self.recipes]}
+        plane = {"model": self.hypothesis.value, "mesh": [recipe.content() for recipe in self.recipes]}
+        if self.finite_width is None:
+            return plane
+        return plane | {"finite_width": [recipe.content() for recipe in self.finite_width]}
+
+    @property
+    def corrected(self) -> bool:
+        """Whether the plane is corrected for the finite width."""
+        return self.finite_width is not None
 
 
 @dataclass(frozen=True)
@@ -66,6 +77,7 @@ class FaceDiscretisation:
     coarse_recipes: tuple[SectorRecipe, SectorRecipe]
     slices: int
 
+    corrected = False
     remaining = 0.8
     """Error left over the difference of the two meshes: ratio one and a half, second order."""
 
@@ -82,12 +94,20 @@ class FaceDiscretisation:
 Discretisation = PlaneDiscretisation | FaceDiscretisation
 
 
-def plane_discretisation(pair: ParallelAxes, level: str, hypothesis: PlaneHypothesis) -> PlaneDiscretisation:
-    """Choose the sections of both gears."""
+def plane_discretisation(
+    pair: ParallelAxes, level: str, hypothesis: PlaneHypothesis, finite_width: bool = False
+) -> PlaneDiscretisation:
+    """Choose the sections of both gears, and the solids that correct them for their finite width."""
     factor = PLANE_REFINEMENT[level]
     standard = (MeshRecipe.standard(pair.pinion), MeshRecipe.standard(pair.wheel))
     first, second = (recipe if factor == 1.0 else recipe.refined(factor) for recipe in standard)
-    return PlaneDiscretisation(hypothesis, (first, second), (first.refined(0.5), second.refined(0.5)))
+    solids = (SectorRecipe.even_load(pair.pinion), SectorRecipe.even_load(pair.wheel))
+    return PlaneDiscretisation(
+        hypothesis,
+        (first, second),
+        (first.refined(0.5), second.refined(0.5)),
+        solids if finite_width else None,
+    )
 
 
 def face_discretisation(pair: ParallelAxes, level: str) -> FaceDiscretisation:

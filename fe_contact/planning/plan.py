@@ -115,7 +115,8 @@ def make_plan(pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: C
         Requested normal forces in N, increasing, > 0.
     accuracy : Accuracy
     model : ContactModel
-        `across_face` asks for three dimensions, `thin_rim` for the blanks, `bore_seat` for the seats.
+        `across_face` asks for three dimensions, `finite_width` for a plane corrected towards them, `thin_rim`
+        for the blanks, `bore_seat` for the seats.
     """
     levels = increasing("load", load)
     discretisation: Discretisation
@@ -124,7 +125,7 @@ def make_plan(pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: C
     else:
         stress = accuracy.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
-        discretisation = plane_discretisation(pair, accuracy.mesh_level, hypothesis)
+        discretisation = plane_discretisation(pair, accuracy.mesh_level, hypothesis, model.finite_width)
     patch = _patch_rule(pair, LARGEST_SUPPORT * levels[-1], discretisation.least_patch)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     support = _support_loads(levels)

@@ -66,13 +66,13 @@ def _show(summary: dict[str, Any]) -> None:
 
 
 def _cost(receipt: dict[str, Any]) -> str:
-    """Return time by stage and memory in one line, and what the plane model leaves out in another."""
+    """Return time by stage and memory in one line, and what plane strain leaves out in another."""
     stages = ", ".join(f"{name} {spent['cpu_seconds']:.2g}" for name, spent in receipt["stages"].items())
     memory = receipt["peak_memory_bytes"] / 2**20
     text = f"\ncost {receipt['cpu_seconds']:.3g} CPU s ({stages}), {memory:.0f} MiB"
     left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
     if left_out:
-        text += f"\nplane model: this width deflects about {100 * left_out:.2g} % more (not in the errors)"
+        text += f"\nplane strain: this width deflects about {100 * left_out:.2g} % more (not in the errors)"
     return text
 
 

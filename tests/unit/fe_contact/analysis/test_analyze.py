@@ -45,7 +45,7 @@ def test_cached_compliance_changes_nothing(pair, cache):
 
 
 def test_lengths_and_forces_scale(cache, pair):
-    """Plane strain has no length of its own: sizes by s and forces by s^2 scale STE by s."""
+    """Elasticity has no length of its own: sizes by s and forces by s^2 scale STE by s."""
     s = 2.5
     large = gear(normal_module=4e-3 * s, face_width=25e-3 * s, bore_diameter=40e-3 * s)
     small, big = (
@@ -107,8 +107,8 @@ def test_the_ledger_names_every_effect_with_its_choice(pair, cache):
 
 def test_the_error_estimate_covers_the_true_error(pair, cache):
     """Against a mesh twice as fine; the draft's estimate must hold and not be idle."""
-    rough = draft(pair, cache, positions=None)
-    fine = draft(pair, cache, positions=None, level="fine")
+    rough = draft(pair, cache, positions=None, model="plane_strain")
+    fine = draft(pair, cache, positions=None, level="fine", model="plane_strain")
     truth = fine.ste(rough.position[:, None], rough.force[None, :])[..., None, None]
     error = np.abs(rough.static_transmission_error - truth)
     estimate = rough.error_estimate
