@@ -7,12 +7,23 @@ from contextlib import contextmanager
 from typing import Any
 
 from fe_contact.errors import FeContactError, InputError
-from fe_contact.geometry import BoreSeat, FlankGrid, FlankModification, Gear, GearBlank, GearPair, Shaft
+from fe_contact.geometry import (
+    BoreSeat,
+    FlankGrid,
+    FlankModification,
+    Gear,
+    GearBlank,
+    GearPair,
+    InternalGearPair,
+    ParallelAxes,
+    RingGear,
+    Shaft,
+)
 from fe_contact.material import Material
 from service.convert.errors import translated
 from service.convert.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, UM
 from service.problems import BadInput
-from service.schemas import Case, GearInput, MaterialInput, PairInput
+from service.schemas import Case, MaterialInput, PairInput, ToothingInput, WheelInput
 
 Json = dict[str, Any]
 
@@ -35,8 +46,8 @@ _COEFFICIENTS = (
 )
 
 
-def gear_pair(case: Case) -> GearPair:
-    """Return the gear pair of a case.
+def gear_pair(case: Case) -> ParallelAxes:
+    """Return the gear pair of a case, an `InternalGearPair` if its wheel is a ring gear.
 
     Raises
     ------
@@ -45,9 +56,11 @@ def gear_pair(case: Case) -> GearPair:
     """
     with boundary_errors():
         pinion = _gear("pinion", case.pair, case.material, +1.0)
-        wheel = _gear("wheel", case.pair, case.material, -1.0)
         shafts = (_shaft("pinion", case.pair.pinion), _shaft("wheel", case.pair.wheel))
-        return GearPair(pinion, wheel, case.pair.center_distance_mm * MM, shafts=shafts)
+        distance = case.pair.center_distance_mm * MM
+        if case.pair.wheel.internal:
+            return InternalGearPair(pinion, _ring_gear(case.pair, case.material), distance, shafts=shafts)
+        return GearPair(pinion, _gear("wheel", case.pair, case.material, -1.0), distance, shafts=shafts)
 
 
 @contextmanager
@@ -63,30 +76,49 @@ def boundary_errors(prefix: str = "") -> Iterator[None]:
 
 
 def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> Gear:
-    """One gear of the pair; mating external gears have opposite hands."""
-    given: GearInput = getattr(pair, name)
-    tip = given.tip_diameter_mm
+    """One external gear of the pair; mating ones have opposite hands."""
+    given = getattr(pair, name)
     try:
+        toothing = _toothing(given, pair, material, hand)
         return Gear(
-            teeth=given.teeth,
-            normal_module=pair.normal_module_mm * MM,
-            face_width=given.face_width_mm * MM,
-            bore_diameter=given.bore_diameter_mm * MM,
-            normal_pressure_angle=pair.normal_pressure_angle_deg * DEGREE,
-            helix_angle=hand * pair.helix_angle_deg * DEGREE if pair.helix_angle_deg else 0.0,
-            tip_diameter=None if tip is None else tip * MM,
-            thickness_allowance=given.thickness_allowance_um * UM,
-            modification=_modification(given),
-            material=_material(given.material or material),
-            blank=_blank(given),
-            seat=_seat(given),
-            **{coefficient: getattr(given, coefficient) for coefficient in _COEFFICIENTS},
+            bore_diameter=given.bore_diameter_mm * MM, blank=_blank(given), seat=_seat(given), **toothing
         )
     except InputError as error:
         raise error.within(name) from None
 
 
-def _blank(given: GearInput) -> GearBlank | None:
+def _ring_gear(pair: PairInput, material: MaterialInput) -> RingGear:
+    """Return the wheel as a ring gear, which has the hand of its pinion."""
+    given: WheelInput = pair.wheel
+    try:
+        return RingGear(
+            rim_diameter=(given.rim_diameter_mm or 0.0) * MM,
+            cutter_teeth=given.cutter_teeth or 0,
+            cutter_profile_shift_coefficient=given.cutter_profile_shift_coefficient or 0.0,
+            **_toothing(given, pair, material, +1.0),
+        )
+    except InputError as error:
+        raise error.within("wheel") from None
+
+
+def _toothing(given: ToothingInput, pair: PairInput, material: MaterialInput, hand: float) -> Json:
+    """Fields that external gears and ring gears share."""
+    tip = given.tip_diameter_mm
+    return {
+        "teeth": given.teeth,
+        "normal_module": pair.normal_module_mm * MM,
+        "face_width": given.face_width_mm * MM,
+        "normal_pressure_angle": pair.normal_pressure_angle_deg * DEGREE,
+        "helix_angle": hand * pair.helix_angle_deg * DEGREE if pair.helix_angle_deg else 0.0,
+        "tip_diameter": None if tip is None else tip * MM,
+        "thickness_allowance": given.thickness_allowance_um * UM,
+        "modification": _modification(given),
+        "material": _material(given.material or material),
+        **{coefficient: getattr(given, coefficient) for coefficient in _COEFFICIENTS},
+    }
+
+
+def _blank(given: ToothingInput) -> GearBlank | None:
     """Return rim, web and hub of a gear, None for a solid one."""
     blank = given.blank
     if blank is None:
@@ -102,7 +134,7 @@ def _blank(given: GearInput) -> GearBlank | None:
         raise error.within("blank") from None
 
 
-def _seat(given: GearInput) -> BoreSeat:
+def _seat(given: ToothingInput) -> BoreSeat:
     """Return the seat of the bore; without one it is fixed."""
     seat = given.seat
     if seat is None:
@@ -119,7 +151,7 @@ def _seat(given: GearInput) -> BoreSeat:
         raise error.within("seat") from None
 
 
-def _shaft(name: str, gear: GearInput) -> Shaft | None:
+def _shaft(name: str, gear: ToothingInput) -> Shaft | None:
     """Return the shaft of a gear, None for a rigid one."""
     given = gear.shaft
     if given is None:
@@ -136,7 +168,7 @@ def _shaft(name: str, gear: GearInput) -> Shaft | None:
         raise error.within(f"{name}.shaft") from None
 
 
-def _modification(given: GearInput) -> FlankModification:
+def _modification(given: ToothingInput) -> FlankModification:
     """Return the flank modification of a gear."""
     facts: Json = {name: getattr(given, f"{name}_um") * UM for name in _AMOUNTS}
     for name in _RELIEFS:
@@ -145,7 +177,7 @@ def _modification(given: GearInput) -> FlankModification:
     return FlankModification(**facts, flank_grid=_flank_grid(given))
 
 
-def _flank_grid(given: GearInput) -> FlankGrid | None:
+def _flank_grid(given: ToothingInput) -> FlankGrid | None:
     """Return the free-form flank of a gear, None if it has none."""
     grid = given.flank_grid
     if grid is None:

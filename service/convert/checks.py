@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from fe_contact.analysis import check_request
-from fe_contact.geometry import GearPair
+from fe_contact.geometry import ParallelAxes
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.schemas import Case
 
 
-def check_case(case: Case) -> GearPair:
+def check_case(case: Case) -> ParallelAxes:
     """Return the pair of a case that can be computed.
 
     Raises

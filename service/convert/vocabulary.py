@@ -25,6 +25,7 @@ _LAST = {
     # gear
     "face_width": "face_width_mm",
     "bore_diameter": "bore_diameter_mm",
+    "rim_diameter": "rim_diameter_mm",
     "tip_diameter": "tip_diameter_mm",
     "thickness_allowance": "thickness_allowance_um",
     "tip_relief": "tip_relief_um",

@@ -50,7 +50,7 @@ def _title(read: Inputs) -> str:
     if facts is None:
         return "Dynamics of geared shafts"
     one, other = facts.teeth
-    return f"Gear pair {one}/{other}"
+    return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
 
 
 def pair_facts(read: Inputs) -> PairFacts | None:

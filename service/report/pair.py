@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 
 from pydantic import ValidationError
 
-from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation
+from fe_contact.geometry import (
+    BoreSeat,
+    FlankModification,
+    Gear,
+    GearBlank,
+    GearPair,
+    InternalGearPair,
+    ParallelAxes,
+    PitchDeviation,
+    RingGear,
+)
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
 from fe_contact.material import Material
 from fe_contact.ste import SteDatabase
@@ -14,8 +25,16 @@ from fe_contact.types import Json
 from service.convert.case import gear_pair
 from service.schemas import Case
 
+_PARTS: dict[str, Callable[..., object]] = {
+    "modification": FlankModification,
+    "material": Material,
+    "pitch_deviation": PitchDeviation,
+    "blank": GearBlank,
+    "seat": BoreSeat,
+}
 
-def pair_of(database: SteDatabase) -> GearPair | None:
+
+def pair_of(database: SteDatabase) -> ParallelAxes | None:
     """Return the pair of the case that the database echoes: a case file, or a request in SI; else None."""
     case = database.metadata.case
     try:
@@ -26,25 +45,27 @@ def pair_of(database: SteDatabase) -> GearPair | None:
 
 
 def iso_mesh_stiffness(database: SteDatabase) -> float | None:
-    """Mean mesh stiffness of ISO 6336-1 in N/m per m of face width, above 100 N/mm; None without a pair."""
+    """Mean mesh stiffness of ISO 6336-1 in N/m per m of face width, above 100 N/mm; None without a pair.
+
+    None for a ring gear too: its approximation by a rack says nothing of the rim.
+    """
     pair = pair_of(database)
-    return None if pair is None else iso6336_stiffness(pair).mesh_stiffness
+    return iso6336_stiffness(pair).mesh_stiffness if isinstance(pair, GearPair) else None
 
 
-def _from_si(case: Json) -> GearPair | None:
+def _from_si(case: Json) -> ParallelAxes | None:
     """Rebuild the pair of a request that was made from Python."""
     try:
         pair = case["pair"]
-        return GearPair(_gear(pair["pinion"]), _gear(pair["wheel"]), pair["center_distance"])
+        pinion, wheel, distance = pair["pinion"], pair["wheel"], pair["center_distance"]
+        if "rim_diameter" in wheel:
+            return InternalGearPair(Gear(**_fields(pinion)), RingGear(**_fields(wheel)), distance)
+        return GearPair(Gear(**_fields(pinion)), Gear(**_fields(wheel)), distance)
     except (KeyError, TypeError):
         return None
 
 
-def _gear(content: Json) -> Gear:
-    """Rebuild one gear from its fields."""
-    parts = {
-        "modification": FlankModification(**content["modification"]),
-        "material": Material(**content["material"]),
-        "pitch_deviation": PitchDeviation(**content.get("pitch_deviation", {})),
-    }
-    return Gear(**(content | parts))
+def _fields(content: Json) -> Json:
+    """Fields of one gear, its parts rebuilt."""
+    parts = {name: kind(**content[name]) for name, kind in _PARTS.items() if content.get(name) is not None}
+    return content | parts

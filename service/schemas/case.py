@@ -9,6 +9,7 @@ from pydantic import Field, Strict, model_validator
 
 from service.schemas.gear import GearInput, MaterialInput
 from service.schemas.model import BoundaryModel, refuse
+from service.schemas.wheel import WheelInput
 
 Load = Annotated[float, Field(gt=0.0, le=1e9)]
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
@@ -30,7 +31,7 @@ def _increasing(field: str, values: tuple[float, ...] | None) -> None:
 
 
 class PairInput(BoundaryModel):
-    """Two external gears of one basic rack and their centre distance."""
+    """A pinion, an external wheel or a ring gear of the same basic rack, and their centre distance."""
 
     normal_module_mm: float = Field(gt=0.0, le=100.0, description="Normal module in mm", examples=[4.0])
     normal_pressure_angle_deg: float = Field(
@@ -47,7 +48,7 @@ class PairInput(BoundaryModel):
         gt=0.0, le=50_000.0, description="Centre distance in mm", examples=[80.0]
     )
     pinion: GearInput = Field(description="The driving gear")
-    wheel: GearInput = Field(description="The driven gear")
+    wheel: WheelInput = Field(description="The driven gear, external or a ring gear")
 
 
 class LoadInput(BoundaryModel):

@@ -136,12 +136,11 @@ class FlankGridInput(BoundaryModel):
     )
 
 
-class GearInput(BoundaryModel):
-    """One gear. Modifications: > 0 is material removed, normal to the involute in the transverse plane."""
+class ToothingInput(BoundaryModel):
+    """What all gears have. Modifications: > 0 is material removed, normal to the involute, transverse."""
 
     teeth: int = Field(ge=5, le=1000, description="Number of teeth", examples=[20])
     face_width_mm: float = Field(gt=0.0, le=5000.0, description="Face width in mm", examples=[25.0])
-    bore_diameter_mm: float = Field(gt=0.0, le=20_000.0, description="Bore diameter in mm", examples=[40.0])
     profile_shift_coefficient: float = Field(
         default=0.0, ge=-5.0, le=5.0, description="Profile shift in normal modules", examples=[0.2]
     )
@@ -276,3 +275,9 @@ class GearInput(BoundaryModel):
             if getattr(self, f"{name}_um") > 0.0 and getattr(self, length) == 0.0:
                 refuse(length, 0.0, f"above 0 when {name}_um is given", f"Give {length}, for example 1.5.")
         return self
+
+
+class GearInput(ToothingInput):
+    """One external gear."""
+
+    bore_diameter_mm: float = Field(gt=0.0, le=20_000.0, description="Bore diameter in mm", examples=[40.0])

@@ -1,0 +1,119 @@
+"""A ring gear as wheel of a case: its fields, what it refuses, and the way through to its report."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fe_contact.analysis import analyze
+from fe_contact.geometry import InternalGearPair, RingGear
+from service.convert.case import case_json, gear_pair
+from service.convert.checks import check_case
+from service.problems import BadInput
+from service.report.pair import iso_mesh_stiffness, pair_of
+from service.schemas import Case, read_model, validated
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "internal_gear.toml"
+TABLE = tomllib.loads(EXAMPLE.read_text(encoding="utf-8"))
+
+
+def case(pair: dict[str, Any] | None = None, **wheel: Any) -> Case:
+    """Return the example with changes; None leaves a field of the wheel out."""
+    table = copy.deepcopy(TABLE)
+    table["pair"] |= pair or {}
+    changed = table["pair"]["wheel"] | wheel
+    table["pair"]["wheel"] = {name: value for name, value in changed.items() if value is not None}
+    return validated(Case, table)
+
+
+def ring_of(given: Case) -> RingGear:
+    pair = gear_pair(given)
+    assert isinstance(pair, InternalGearPair)
+    return pair.wheel
+
+
+def test_the_example_is_a_planet_in_its_ring() -> None:
+    pair = check_case(read_model(Case, EXAMPLE))
+    assert isinstance(pair, InternalGearPair)
+    assert (pair.pinion.teeth, pair.wheel.teeth) == (36, 96)
+    assert pair.wheel.rim_diameter == pytest.approx(0.212, rel=1e-15)
+    assert pair.center_distance == pytest.approx(0.06, rel=1e-15)
+    assert (pair.wheel.cutter_teeth, pair.wheel.root_radius_coefficient) == (25, 0.2)
+
+
+def test_every_field_of_a_ring_gear_reaches_it() -> None:
+    plain = ring_of(case())
+    changes = {
+        "rim_diameter_mm": 215.0,
+        "cutter_teeth": 30,
+        "cutter_profile_shift_coefficient": 0.1,
+        "root_radius_coefficient": 0.15,
+        "profile_shift_coefficient": 0.02,
+        "thickness_allowance_um": 20.0,
+        "tip_relief_um": 10.0,
+        "tip_diameter_mm": 188.6,
+        "face_width_mm": 21.0,
+    }
+    for name, value in changes.items():
+        more = {"tip_relief_length_mm": 1.0} if name == "tip_relief_um" else {}
+        distance = {"center_distance_mm": 59.95}
+        assert ring_of(case(distance, **{name: value}, **more)) != plain, name
+    assert ring_of(case(cutter_profile_shift_coefficient=0.1)).cutter_profile_shift_coefficient == 0.1
+
+
+def test_a_ring_has_the_hand_of_its_pinion_and_its_shaft() -> None:
+    shaft = {"length_mm": 100.0, "diameter_mm": 60.0, "position_mm": 40.0}
+    width = {"helix_angle_deg": 10.0, "center_distance_mm": 60.925}
+    pair = gear_pair(case(width, rim_diameter_mm=216.0, shaft=shaft))
+    assert pair.wheel.helix_angle == pair.pinion.helix_angle > 0.0
+    assert pair.shafts[0] is None
+    assert pair.shafts[1] is not None
+
+
+def test_the_echo_says_how_the_ring_is_made_and_is_its_own_fixed_point() -> None:
+    echo = case_json(case())
+    wheel = echo["pair"]["wheel"]
+    assert (wheel["cutter_teeth"], wheel["root_radius_coefficient"]) == (25, 0.2)
+    assert case_json(validated(Case, echo)) == echo
+    assert case_json(case(cutter_teeth=None)) == echo
+
+
+@pytest.mark.parametrize(
+    ("pair", "wheel", "field", "said"),
+    [
+        ({}, {"rim_diameter_mm": None}, "rim_diameter_mm", "given with internal = true"),
+        ({}, {"bore_diameter_mm": 40.0}, "bore_diameter_mm", "left out with internal = true"),
+        ({}, {"blank": {"rim_thickness_mm": 5.0, "web_thickness_mm": 5.0}}, "blank", "left out"),
+        ({}, {"internal": None}, "bore_diameter_mm", "given"),
+        ({}, {"internal": None, "bore_diameter_mm": 40.0}, "rim_diameter_mm", "left out, or given"),
+        ({}, {"rim_diameter_mm": 190.0}, "rim_diameter_mm", "above the root diameter 197 mm"),
+        ({}, {"addendum_coefficient": 1.0}, "tip_diameter_mm", "at least 188.321 mm"),
+        ({}, {"cutter_teeth": 96}, "cutter_teeth", "from 6 to 95"),
+        ({}, {"teeth": 40}, "cutter_teeth", "trimming interference"),
+        ({"center_distance_mm": 60.5}, {}, "center_distance_mm", "at most 60 mm, where the teeth jam"),
+        ({}, {"teeth": 38, "cutter_teeth": 20, "rim_diameter_mm": 90.0}, "", "interference"),
+    ],
+)  # fmt: skip
+def test_rings_that_cannot_be_are_refused_by_field_in_the_users_units(
+    pair: dict[str, Any], wheel: dict[str, Any], field: str, said: str
+) -> None:
+    with pytest.raises(BadInput) as refusal:
+        check_case(case(pair, **wheel))
+    (fault, *_) = refusal.value.faults
+    assert fault.field.endswith(field)
+    assert said in fault.bound
+
+
+def test_a_table_of_a_ring_gear_is_known_again_by_its_report() -> None:
+    """From the case that a file gave, and from the request that Python made."""
+    given = case()
+    pair = gear_pair(given)
+    for echo in (case_json(given), None):
+        found = analyze(pair, torques=[60.0], level="draft", positions=8, model="plane_strain", case=echo)
+        assert found.facts.internal
+        assert pair_of(found) == pair
+        assert iso_mesh_stiffness(found) is None
