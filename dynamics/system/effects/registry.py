@@ -13,7 +13,7 @@ EFFECTS: tuple[Effect, ...] = (Lateral(), Axial(), Tilt())
 MESH_EFFECTS: tuple[MeshEffect, ...] = (Backlash(),)
 
 LEFT_OUT: dict[str, str] = {
-    "gyroscopic terms": "shafts tilt slowly against their rotation, or not at all",
+    "gyroscopic, Coriolis and centripetal terms": "time integration has none; whirl_modes shows their worth",
     "gravity": "weights are small against mesh forces",
     "friction": "the mesh force acts along the line of action",
     "moving point of application": "the mesh force acts at mid-face, at the operating pitch point",

@@ -1,0 +1,121 @@
+"""Natural modes of a turning system: gyroscopic moments, Coriolis and centripetal terms of turning frames."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.system.assemble import System
+from dynamics.system.observation import observe_laws
+from dynamics.types import FloatArray
+
+ComplexArray = NDArray[np.complex128]
+
+QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # z x
+LATERAL, TILT = (0, 1), (3, 4)
+OSCILLATING = 1e-6  # least imaginary part over the largest eigenvalue's size
+
+
+@dataclass(frozen=True)
+class WhirlModes:
+    """Modes that oscillate, by rising frequency, as seen in the frame of each shaft.
+
+    Attributes
+    ----------
+    frequency : (a,) array
+        Damped, Hz.
+    damping_ratio : (a,) array
+        -Re/|eigenvalue|; below 0: unstable.
+    shape : (a, n) complex array
+        One mode per row, per freedom in m and rad; the largest entry in metres is 1.
+    freedom : tuple of str
+        Names of the columns, "shaft.kind".
+    scale : (n,) array
+        Metres per unit of each freedom.
+    """
+
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    shape: ComplexArray
+    freedom: tuple[str, ...]
+    scale: FloatArray
+
+
+def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
+    """Return the modes about the static equilibrium at the speeds of the kinematic motion at `time`.
+
+    M x'' + (C + G) x' + (K + S) x = 0 with G and S of `speed_terms`, both zero at standstill.
+
+    Raises
+    ------
+    SolveError
+        If there is no static equilibrium.
+    """
+    linear = linearize(system, time)
+    turning, stiffening = speed_terms(system, time)
+    eigenvalue, vector = _eigen(linear, linear.damping + turning, linear.stiffness + stiffening)
+    kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue)))
+    kept = kept[np.argsort(eigenvalue[kept].imag)]
+    shape = vector[: linear.scale.size, kept].T
+    largest = np.take_along_axis(shape, np.argmax(np.abs(shape), axis=1)[:, None], axis=1)
+    return WhirlModes(
+        eigenvalue[kept].imag / (2.0 * math.pi),
+        -eigenvalue[kept].real / np.abs(eigenvalue[kept]),
+        shape / largest / linear.scale,
+        linear.freedom,
+        linear.scale,
+    )
+
+
+def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
+    """Return G and S (n, n), factors of the rates and of the displacements, at the speeds at `time`.
+
+    A shaft of spin w in a frame of speed W (0: fixed) feels, with J = z x,
+
+        lateral:  m (2 W J u' - W^2 u),     tilt:  (2 I_t W - I_p w) J a' + (I_p w W - I_t W^2) a,
+
+    and a ground damper c seen from the frame c W J u. Constant centripetal forces are left out: they move
+    the equilibrium, not the modes.
+    """
+    speed = system.kinematics.float_ratio @ observe_laws(system.arrays, np.array([time]))[2, :, 0]
+    size = 6 * len(system.rotors)
+    turning, stiffening = np.zeros((size, size)), np.zeros((size, size))
+    for index, rotor in enumerate(system.rotors):
+        frame = 0.0 if rotor.frame is None else float(speed[rotor.frame])
+        inertia, spin = rotor.inertia, float(speed[index])
+        for kinds, rate, rest in (
+            (LATERAL, 2.0 * inertia.mass * frame, -inertia.mass * frame**2),
+            (
+                TILT,
+                2.0 * inertia.transverse * frame - inertia.polar * spin,
+                (inertia.polar * spin - inertia.transverse * frame) * frame,
+            ),
+        ):
+            place = np.ix_([6 * index + k for k in kinds], [6 * index + k for k in kinds])
+            turning[place] += rate * QUARTER_TURN
+            stiffening[place] += rest * np.eye(2)
+    supports = system.supports
+    for bearing, carrier in enumerate(supports.frame):
+        if carrier is not None:
+            moves = supports.motion[bearing, :2]
+            damping = supports.damping[bearing, 0] * float(speed[carrier])
+            stiffening += damping * moves.T @ QUARTER_TURN @ moves
+    motion = system.freedoms.motion
+    return motion.T @ turning @ motion, motion.T @ stiffening @ motion
+
+
+def _eigen(
+    linear: LinearSystem, damping: FloatArray, stiffness: FloatArray
+) -> tuple[ComplexArray, ComplexArray]:
+    """Eigenvalues and vectors of the first-order system, freedoms in metres."""
+    per_metre, n = 1.0 / linear.scale, linear.scale.size
+    mass, damping, stiffness = (per_metre[:, None] * a * per_metre for a in (linear.mass, damping, stiffness))
+    state = np.zeros((2 * n, 2 * n))
+    state[:n, n:] = np.eye(n)
+    state[n:, :n], state[n:, n:] = -np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)
+    values, vectors = np.linalg.eig(state)
+    return values.astype(complex), vectors.astype(complex)
