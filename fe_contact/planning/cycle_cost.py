@@ -18,6 +18,8 @@ _SECONDS_PER_POINT, _SECONDS_PER_CANDIDATE = 3e-6, 0.55e-6
 _BYTES_PER_ROW = 7000
 # the search for the positions solves the judged pitches and their neighbours about four times
 _SEARCH = 12
+# where positions are placed adaptively, teeth out of their places ask for about three times the least number
+_ADAPTIVE = 3
 _JUDGED_ALIGNMENTS = 3
 
 
@@ -34,7 +36,7 @@ class CycleCost:
     alignments : int
         Misalignments x centre distances.
     cpu_seconds : float
-        Predicted for the contact at these positions, with its error estimate.
+        Predicted for the contact with its error estimate; right to a factor of two.
     """
 
     pitches: int
@@ -61,7 +63,16 @@ def cycle_cost(pair: ParallelAxes, plan: Plan, pitches: int, alignments: int) ->
     solves = pitches * alignments * (2 * plan.load.size + plan.support.size)  # the loads on both meshes
     solves += judged * (2 * pitches + _SEARCH * min(plan.nodes.judged_pitches, pitches))
     per_point = _SECONDS_PER_POINT + _SECONDS_PER_CANDIDATE * candidates
-    return CycleCost(pitches, positions, alignments, positions * solves * per_point)
+    return CycleCost(
+        pitches, positions, alignments, _expected(plan, pitches * alignments) * solves * per_point
+    )
+
+
+def _expected(plan: Plan, times: int) -> int:
+    """Positions in a pitch that a table of so many pitches and alignments will probably have."""
+    if plan.positions is not None:
+        return plan.positions
+    return max(min(_ADAPTIVE * plan.nodes.start, MOST_ROWS // times), plan.nodes.start)
 
 
 def refuse_long_cycle(cost: CycleCost) -> None:

@@ -49,6 +49,8 @@ class Curve:
     spectrum : Spectrum
         All orders up to the 20th mesh harmonic: with a period of many pitches also what lies between the
         mesh harmonics.
+    period : int
+        Of the table, base pitches.
     """
 
     point: OperatingPoint
@@ -63,6 +65,7 @@ class Curve:
     harmonics: tuple[Estimate, ...]
     harmonic_phases: FloatArray
     spectrum: Spectrum
+    period: int
 
 
 def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: ArrayLike | None) -> Curve:
@@ -99,6 +102,7 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
         harmonics=tuple(Estimate(float(size), orders.error, "m") for size in orders.amplitude[mesh]),
         harmonic_phases=orders.phase[mesh],
         spectrum=orders,
+        period=database.period,
     )
 
 

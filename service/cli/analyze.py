@@ -70,6 +70,10 @@ def _cost(receipt: dict[str, Any]) -> str:
     stages = ", ".join(f"{name} {spent['cpu_seconds']:.2g}" for name, spent in receipt["stages"].items())
     memory = receipt["peak_memory_bytes"] / 2**20
     text = f"\ncost {receipt['cpu_seconds']:.3g} CPU s ({stages}), {memory:.0f} MiB"
+    predicted = receipt.get("predicted")
+    if predicted:
+        pitches, seconds = predicted["pitches"], predicted["cpu_seconds"]
+        text += f"\nperiod {pitches} base pitches; contact predicted {seconds:.2g} CPU s"
     left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
     if left_out:
         text += f"\nplane strain: this width deflects about {100 * left_out:.2g} % more (not in the errors)"

@@ -14,7 +14,8 @@ from service.cli.output import console, print_json, table
 from service.convert.answers import curve_json
 from service.problems import BadInput
 
-_FARTHEST = 1000.0
+_FARTHEST = 1e6
+_SHOWN_ORDERS = 8
 
 
 @dataclass(frozen=True)
@@ -113,3 +114,9 @@ def _show(curve: dict[str, Any]) -> None:
         out.print(f"{name.replace('_', '-')} {value:.4f} ±{error:.1g} um", highlight=False)
     harmonics = ", ".join(f"{value:.4f}" for value in curve["harmonics_um"][:8])
     out.print(f"harmonics {harmonics} um", highlight=False)
+    if curve["period"] > 1:
+        lines = sorted(zip(curve["amplitude_um"], curve["order"], strict=True), reverse=True)[:_SHOWN_ORDERS]
+        orders = ", ".join(f"{order:.4g}: {amplitude:.4f}" for amplitude, order in lines)
+        out.print(
+            f"period {curve['period']} base pitches; largest orders of the mesh {orders} um", highlight=False
+        )

@@ -55,11 +55,13 @@ def _curve(curve: Curve) -> Json:
         "normal_force_n": curve.point.force,
         "misalignment_um": curve.point.misalignment / UM,
         "center_distance_change_mm": curve.point.center_distance_change / MM,
+        "period": curve.period,
         "position": curve.position.tolist(),
         "ste_um": (curve.ste / UM).tolist(),
         "pair": curve.pair.tolist(),
         "load_share": curve.load_share.tolist(),
         **_figures(curve),
+        **_orders(curve),
     }
     if not all(np.all(np.isfinite(answer[name])) for name in ("ste_um", "load_share")):
         raise JobFailed(
@@ -77,6 +79,16 @@ def _figures(curve: Curve) -> Json:
         "peak_to_peak_error_um": _um(curve.peak_to_peak)[1],
         "harmonics_um": [_um(item)[0] for item in curve.harmonics],
         "harmonics_error_um": [_um(item)[1] for item in curve.harmonics],
+    }
+
+
+def _orders(curve: Curve) -> Json:
+    """All orders over a period of several base pitches; nothing over one, whose orders are the harmonics."""
+    if curve.period == 1:
+        return {}
+    return {
+        "order": curve.spectrum.order.tolist(),
+        "amplitude_um": (curve.spectrum.amplitude / UM).tolist(),
     }
 
 
@@ -112,6 +124,7 @@ def metadata_json(database: SteDatabase) -> Json:
         "receipt": database.metadata.receipt,
         "software_versions": database.metadata.software_versions,
         "failed_points": database.n_failed,
+        "period": database.period,
         "position": database.position.tolist(),
         "torque_n_m": database.torque.tolist(),
         "normal_force_n": database.force.tolist(),

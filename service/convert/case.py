@@ -16,6 +16,7 @@ from fe_contact.geometry import (
     GearPair,
     InternalGearPair,
     ParallelAxes,
+    PitchDeviation,
     RingGear,
     Shaft,
 )
@@ -114,6 +115,7 @@ def _toothing(given: ToothingInput, pair: PairInput, material: MaterialInput, ha
         "thickness_allowance": given.thickness_allowance_um * UM,
         "modification": _modification(given),
         "material": _material(given.material or material),
+        "pitch_deviation": PitchDeviation(tuple(value * UM for value in given.pitch_deviation_um)),
         **{coefficient: getattr(given, coefficient) for coefficient in _COEFFICIENTS},
     }
 
@@ -210,6 +212,7 @@ def analysis_arguments(case: Case) -> Json:
         "level": accuracy.level,
         "model": accuracy.model,
         "positions": accuracy.positions,
+        "pitches": accuracy.pitches,
         "effects": dict(case.effects),
     }
 

@@ -19,6 +19,7 @@ _CASE = {
     "level": "accuracy.level",
     "model": "accuracy.model",
     "positions": "accuracy.positions",
+    "pitches": "accuracy.pitches",
 }
 
 _LAST = {
@@ -28,6 +29,7 @@ _LAST = {
     "rim_diameter": "rim_diameter_mm",
     "tip_diameter": "tip_diameter_mm",
     "thickness_allowance": "thickness_allowance_um",
+    "pitch_deviation": "pitch_deviation_um",
     "tip_relief": "tip_relief_um",
     "tip_relief_length": "tip_relief_length_mm",
     "root_relief": "root_relief_um",

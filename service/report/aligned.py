@@ -1,14 +1,18 @@
-"""The slice of a database that plots show: no misalignment, nominal centre distance, two base pitches."""
+"""The slice of a database that plots show: no misalignment, nominal centre distance, some base pitches."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fe_contact.ste import Curve, SteDatabase
 from service.report import palette
-from service.report.figure import FloatArray, Line, thousands
+from service.report.figure import Axis, FloatArray, Line, thousands
 
 POINTS_PER_PITCH = 240
+POSITION_LABEL = "position of the driving gear, base pitches (0 = reference pair at the pitch point)"
+MOST_PITCHES = 40  # of a long period
+_FEWEST_POINTS = 32
 _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 
 
@@ -24,27 +28,56 @@ def aligned(database: SteDatabase) -> tuple[float, float]:
     return float(database.misalignment[m]), float(database.center_distance_change[d])
 
 
-def two_pitches(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
-    """Return positions from 0 to 2 base pitches, (n,), and STE there at every load, (n, F) in m.
+def pitches_shown(database: SteDatabase) -> int:
+    """Return how many base pitches plots show: two, or a longer period up to its first 40."""
+    return 2 if database.period == 1 else min(database.period, MOST_PITCHES)
+
+
+def position_axis(database: SteDatabase) -> Axis:
+    """Return the axis of the positions shown."""
+    return Axis(POSITION_LABEL, limits=(0, pitches_shown(database)))
+
+
+def shown_rows(database: SteDatabase) -> tuple[FloatArray, NDArray[np.int64]]:
+    """Return the positions shown, (n,), and the row of the table that holds each; the last closes them."""
+    shown, rows = pitches_shown(database), np.arange(database.position.size)
+    if database.period == 1:
+        position = np.concatenate([database.position, database.position + 1.0, [2.0]])
+        return position, np.concatenate([rows, rows, [0]])
+    inside = database.position < shown
+    last = np.searchsorted(database.position, shown) % database.position.size
+    return np.append(database.position[inside], shown), np.append(rows[inside], last)
+
+
+def ste_shown(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
+    """Return the positions shown, (n,), and STE there at every load, (n, F) in m.
 
     A table with failed points cannot be interpolated: it shows its stored points with gaps.
     """
-    once, values = _stored(database) if database.n_failed else _interpolated(database)
+    if database.n_failed:
+        m, d = aligned_index(database)
+        position, rows = shown_rows(database)
+        return position, database.static_transmission_error[rows][:, :, m, d]
+    if database.period > 1:
+        return _over_long_period(database)
+    once, values = _interpolated(database, 1, POINTS_PER_PITCH)
     position = np.concatenate([once, once + 1.0, [2.0]])
     return position, np.concatenate([values, values, values[:1]])
 
 
-def _interpolated(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
-    """One pitch, densely, as the table's users see it."""
-    misalignment, change = aligned(database)
-    once = np.union1d(np.arange(POINTS_PER_PITCH) / POINTS_PER_PITCH, database.position)
-    return once, database.ste(once[:, None], database.force, misalignment, change)
+def _over_long_period(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
+    """Return the first pitches of a long period with their end."""
+    shown = pitches_shown(database)
+    once, values = _interpolated(database, shown, max(POINTS_PER_PITCH // shown, _FEWEST_POINTS))
+    end = database.ste(float(shown), database.force, *aligned(database))
+    return np.append(once, float(shown)), np.concatenate([values, end[None]])
 
 
-def _stored(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
-    """One pitch at the stored positions."""
-    m, d = aligned_index(database)
-    return database.position, database.static_transmission_error[:, :, m, d]
+def _interpolated(database: SteDatabase, pitches: int, per_pitch: int) -> tuple[FloatArray, FloatArray]:
+    """Return some pitches, densely, as the table's users see them."""
+    stored = database.position[database.position < pitches]
+    once = np.union1d(np.arange(pitches * per_pitch) / per_pitch, stored)
+    return once, database.ste(once[:, None], database.force, *aligned(database))
 
 
 def load_curve(database: SteDatabase, load: int) -> Curve:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.ste import SteDatabase
-from service.report.aligned import aligned, two_pitches
+from service.report.aligned import aligned, ste_shown
 from service.report.figure import Axis, Figure, FloatArray, Surface, number
 
 _COLUMNS, _ROWS = 160, 60
@@ -29,7 +29,7 @@ def database_surface(database: SteDatabase) -> Figure:
 
 def surface(database: SteDatabase) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return positions (n,), normal forces (m,) and STE (m, n) in m; with failed points, as stored."""
-    position, values = two_pitches(database)
+    position, values = ste_shown(database)
     step = max(len(position) // _COLUMNS, 1)
     if database.n_failed:
         return position[::step], database.force, values[::step].T

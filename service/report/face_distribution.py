@@ -6,8 +6,8 @@ import numpy as np
 
 from fe_contact.analysis import LoadDistribution
 from service.report import palette
+from service.report.aligned import POSITION_LABEL
 from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
-from service.report.ste_curves import POSITION_AXIS
 
 SHOWN = 4  # positions
 _FACE = "face position, mm (0 = mid-face of the pinion)"
@@ -80,8 +80,8 @@ def _over_position(found: LoadDistribution, y: Axis, values: FloatArray, mark: R
     whole = step.size > 0 and np.allclose(step, 1.0 / found.position.size)
     position = np.append(found.position, 1.0 + found.position[0]) if whole else found.position
     line = Line("", position, np.append(values, values[0]) if whole else values, palette.BLUE)
-    x = Axis(POSITION_AXIS.label, limits=(float(position[0]), float(position[-1]))) if step.size else None
-    return Panel(x or Axis(POSITION_AXIS.label), y, (line,), (mark,))
+    x = Axis(POSITION_LABEL, limits=(float(position[0]), float(position[-1]))) if step.size else None
+    return Panel(x or Axis(POSITION_LABEL), y, (line,), (mark,))
 
 
 def _gap(found: LoadDistribution, position: int) -> FloatArray:

@@ -6,9 +6,8 @@ import numpy as np
 
 from fe_contact.ste import SteDatabase
 from service.report import palette
-from service.report.aligned import aligned_index, load_labels, middle_load
+from service.report.aligned import aligned_index, load_labels, middle_load, position_axis, shown_rows
 from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, number
-from service.report.ste_curves import POSITION_AXIS
 
 
 def has_face_load(database: SteDatabase) -> bool:
@@ -20,7 +19,6 @@ def has_face_load(database: SteDatabase) -> bool:
 def face_load(database: SteDatabase) -> Figure:
     """Draw load centroid and peak pressure at the middle load, one line per misalignment."""
     load, (_, d) = middle_load(database), aligned_index(database)
-    position = np.concatenate([database.position, database.position + 1.0, [2.0]])
     centroid = 1e3 * database.face_centroid[:, load, :, d]
     pressure = 1e-6 * database.max_pressure[:, load, :, d]
     label = load_labels(database)[load]
@@ -34,26 +32,26 @@ def face_load(database: SteDatabase) -> Figure:
         f"{number(float(np.nanmax(pressure)), 3)} MPa.",
         content=(
             Panel(
-                POSITION_AXIS,
+                position_axis(database),
                 Axis("load centroid, mm"),
-                _lines(database, position, centroid),
+                _lines(database, centroid),
                 (Reference("mid-face", 0.0, "horizontal"),),
                 title=label,
             ),
-            Panel(POSITION_AXIS, Axis("largest pressure, MPa"), _lines(database, position, pressure)),
+            Panel(position_axis(database), Axis("largest pressure, MPa"), _lines(database, pressure)),
         ),
     )
 
 
-def _lines(database: SteDatabase, position: FloatArray, values: FloatArray) -> tuple[Line, ...]:
-    """Draw `values` (P, M) over two pitches, dark for the first misalignment."""
-    repeated = np.concatenate([values, values, values[:1]])
+def _lines(database: SteDatabase, values: FloatArray) -> tuple[Line, ...]:
+    """Draw `values` (P, M) over the pitches shown, dark for the first misalignment."""
+    position, rows = shown_rows(database)
     count = database.misalignment.size
     return tuple(
         Line(
             f"misalignment {number(1e6 * float(database.misalignment[m]), 3)} µm",
             position,
-            repeated[:, m],
+            values[rows, m],
             palette.ordered(m, count),
         )
         for m in range(count)

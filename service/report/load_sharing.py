@@ -6,9 +6,16 @@ import numpy as np
 
 from fe_contact.ste import SteDatabase
 from service.report import palette
-from service.report.aligned import aligned_index, load_labels, middle_load, shown_loads
+from service.report.aligned import (
+    aligned_index,
+    load_labels,
+    middle_load,
+    pitches_shown,
+    position_axis,
+    shown_loads,
+    shown_rows,
+)
 from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Table, number
-from service.report.ste_curves import POSITION_AXIS
 
 _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
 
@@ -29,20 +36,20 @@ def load_sharing(database: SteDatabase) -> Figure:
 
 
 def pair_shares(database: SteDatabase, load: int) -> tuple[FloatArray, dict[int, FloatArray]]:
-    """Follow each pair over two pitches.
+    """Follow each pair over the pitches shown.
 
-    The database counts pairs anew in every period: its pair j at x is the pair j + 1 seen one pitch earlier.
-    Returns the positions (2 P + 1,) and, per pair that carries load somewhere, its share there.
+    The database counts pairs anew at every whole pitch: its pair j is the pair j + 1 seen one pitch earlier.
+    Returns the positions (n,) and, per pair that carries load somewhere, its share there.
     """
     m, d = aligned_index(database)
-    share = database.load_share[:, load, m, d, :]
-    position = np.concatenate([database.position, database.position + 1.0, [2.0]])
-    column = {int(pair): share[:, k] for k, pair in enumerate(database.pair)}
-    none = np.zeros(len(share))
+    position, rows = shown_rows(database)
+    share = database.load_share[rows, load, m, d, :]
+    first, last = int(database.pair[0]), int(database.pair[-1])
     followed = {}
-    for pair in range(int(database.pair[0]) - 2, int(database.pair[-1]) + 1):
-        parts = [column.get(pair + turn, none) for turn in range(3)]
-        whole = np.concatenate([parts[0], parts[1], parts[2][:1]])
+    for pair in range(first - pitches_shown(database), last + 1):
+        column = pair + np.floor(position).astype(int) - first
+        stored = (column >= 0) & (column <= last - first)
+        whole = np.where(stored, share[np.arange(rows.size), np.clip(column, 0, last - first)], 0.0)
         if np.nanmax(whole) > _CARRIES:
             followed[pair] = whole
     return position, followed
@@ -56,7 +63,7 @@ def _panel(database: SteDatabase, load: int) -> Panel:
         for pair, share in sorted(followed.items(), reverse=True)
     )
     y = Axis("share of the load", limits=(0.0, 1.05))
-    return Panel(POSITION_AXIS, y, lines, title=load_labels(database)[load])
+    return Panel(position_axis(database), y, lines, title=load_labels(database)[load])
 
 
 def _in_mesh(share: FloatArray) -> FloatArray:

@@ -7,10 +7,9 @@ import math
 import numpy as np
 
 from fe_contact.ste import SteDatabase
-from service.report.aligned import load_labels, load_lines, middle_load, two_pitches
+from service.report.aligned import load_labels, load_lines, middle_load, position_axis, ste_shown
 from service.report.figure import Axis, Figure, FloatArray, Panel, Reference, Table, number
 from service.report.pair import iso_mesh_stiffness
-from service.report.ste_curves import POSITION_AXIS
 
 _N_PER_MM_UM = 1e-9  # N/m per m of face width to N/(mm µm)
 
@@ -29,14 +28,14 @@ def mesh_stiffness(database: SteDatabase) -> Figure:
         caption="Transverse mesh force over static transmission error and face width. The dashed line is "
         "the mean mesh stiffness of ISO 6336-1 method B, which includes a correction of 0.8 for real gears.",
         alternative=_words(database, values, iso),
-        content=(Panel(POSITION_AXIS, y, lines, references),),
+        content=(Panel(position_axis(database), y, lines, references),),
         table=_table(database, values, iso),
     )
 
 
 def secant_stiffness(database: SteDatabase) -> tuple[FloatArray, FloatArray]:
-    """Return positions (n,) over two pitches and F_bt / (STE b) there, (n, F), in N/m per m of face width."""
-    position, values = two_pitches(database)
+    """Return the positions shown (n,) and F_bt / (STE b) there, (n, F), in N/m per m of face width."""
+    position, values = ste_shown(database)
     facts = database.facts
     force = database.force * math.cos(facts.base_helix_angle)
     return position, force / (values * facts.face_width)

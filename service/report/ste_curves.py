@@ -5,29 +5,49 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.ste import SteDatabase
-from service.report.aligned import load_curve, load_labels, load_lines, shown_loads, two_pitches
+from service.report.aligned import (
+    load_curve,
+    load_labels,
+    load_lines,
+    pitches_shown,
+    position_axis,
+    shown_loads,
+    ste_shown,
+)
 from service.report.figure import Axis, Figure, Panel, Table, number
 
-POSITION_AXIS = Axis(
-    "position of the driving gear, base pitches (0 = reference pair at the pitch point)", limits=(0, 2)
-)
 _TONES = 3
 
 
 def ste_curves(database: SteDatabase) -> Figure:
     """Draw STE against position, one line per load."""
-    position, values = two_pitches(database)
-    y = Axis("static transmission error, µm", limits=(0.0, 1.05e6 * float(np.nanmax(values))))
-    panel = Panel(POSITION_AXIS, y, load_lines(database, position, values * 1e6))
+    position, values = ste_shown(database)
+    top, bottom = float(np.nanmax(values)), min(float(np.nanmin(values)), 0.0)
+    y = Axis("static transmission error, µm", limits=(1.05e6 * bottom, 1.05e6 * top))
+    panel = Panel(position_axis(database), y, load_lines(database, position, values * 1e6))
     return Figure(
         key="ste",
-        title="Static transmission error over two base pitches",
+        title=f"Static transmission error over {_pitches(database)}",
         caption="Displacement on the transverse line of action by which the driven gear lags, relative to "
-        "conjugate motion. Low plateaus: two pairs share the load; high plateaus: one pair carries it.",
+        "conjugate motion. Low plateaus: two pairs share the load; high plateaus: one pair carries it."
+        + _period(database),
         alternative=_words(database),
         content=(panel,),
         table=_table(database),
     )
+
+
+def _pitches(database: SteDatabase) -> str:
+    """Say how many pitches are shown."""
+    shown = pitches_shown(database)
+    return "two base pitches" if shown == 2 else f"{shown} base pitches"
+
+
+def _period(database: SteDatabase) -> str:
+    """Say after how many pitches a table with pitch errors repeats."""
+    if database.period == 1:
+        return ""
+    return f" The teeth have pitch errors: everything repeats after {database.period} base pitches."
 
 
 def _words(database: SteDatabase) -> str:

@@ -121,6 +121,14 @@ class AccuracyInput(BoundaryModel):
         description="Positions in one base pitch; left out: the planner's",
         examples=[64],
     )
+    pitches: int | None = Field(
+        default=None,
+        ge=1,
+        le=1_000_000,
+        description="Base pitches that the table covers where gears have pitch deviations; left out: until "
+        "all repeats, the teeth of one gear or the hunting cycle of both",
+        examples=[20],
+    )
 
     @model_validator(mode="before")
     @classmethod

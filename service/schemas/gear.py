@@ -23,6 +23,11 @@ GridRow = Annotated[
 ]
 
 
+PitchDeviations = Annotated[
+    tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...], Strict(False), Field(max_length=1000)
+]
+
+
 class MaterialInput(BoundaryModel):
     """Linear elastic, isotropic material."""
 
@@ -246,6 +251,12 @@ class ToothingInput(BoundaryModel):
             }
         ],
     )
+    pitch_deviation_um: PitchDeviations = Field(
+        default=(),
+        description="Cumulative pitch deviation F_pi (ISO 1328-1) of the loaded flank of every tooth in um, "
+        "in the order of meshing; > 0: towards the mate; left out: none",
+        examples=[[0.0, 3.0, 1.0, -4.0, -2.0]],
+    )
     shaft: GearShaftInput | None = Field(
         default=None,
         description="Steel shaft that bends under the tooth forces; left out: rigid",
@@ -266,6 +277,15 @@ class ToothingInput(BoundaryModel):
         description="Material of this gear; left out: the case's",
         examples=[{"youngs_modulus_gpa": 210.0}],
     )
+
+    @model_validator(mode="after")
+    def _a_deviation_per_tooth(self) -> Self:
+        """Refuse a list that leaves teeth out."""
+        count = len(self.pitch_deviation_um)
+        if count not in (0, self.teeth):
+            bound = f"a list of {self.teeth} values, one per tooth"
+            refuse("pitch_deviation_um", f"{count} values", bound, "In the order in which the teeth mesh.")
+        return self
 
     @model_validator(mode="after")
     def _relief_has_length(self) -> Self:

@@ -81,6 +81,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "root_radius_coefficient": 0.3,
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
+        "pitch_deviation_um": [1.0] * 20,
         "material": {"youngs_modulus_gpa": 100.0},
         "seat": {"tangential_foundation_n_per_mm3": 1e4},
         "blank": {"rim_thickness_mm": 8.0, "web_thickness_mm": 10.0},
@@ -291,3 +292,43 @@ def test_failures_are_failures(error: Exception) -> None:
 
 def test_what_the_libraries_do_not_raise_on_purpose_is_not_translated() -> None:
     assert translated(ZeroDivisionError("0")) is None
+
+
+def test_pitch_deviations_arrive_in_si_and_pitches_as_they_are() -> None:
+    deviations = [0.5 * tooth for tooth in range(20)]
+    found = case(pitch_deviation_um=deviations)
+    pair = gear_pair(found)
+    assert pair.pinion.pitch_deviation.cumulative == pytest.approx([1e-6 * d for d in deviations], rel=1e-15)
+    assert pair.wheel.pitch_deviation.neutral
+    table = copy.deepcopy(GOOD)
+    table["accuracy"] = {"pitches": 40}
+    assert analysis_arguments(validated(Case, table))["pitches"] == 40
+    assert analysis_arguments(case())["pitches"] is None
+
+
+@pytest.mark.parametrize(
+    ("pinion", "accuracy", "field", "words"),
+    [
+        ({"pitch_deviation_um": [1.0] * 19}, {}, "pair.pinion.pitch_deviation_um", "a list of 20 values"),
+        ({"pitch_deviation_um": [5000.0] * 20}, {}, "pair.pinion.pitch_deviation_um[0]", "1000"),
+        ({"teeth": 21}, {"pitches": 21}, "accuracy.pitches", "left out where all teeth are alike"),
+        (
+            {"teeth": 21, "pitch_deviation_um": [0.0, 1.0] + [0.0] * 19},
+            {"pitches": 3000},
+            "accuracy.pitches",
+            "at most 2343",
+        ),
+    ],
+)
+def test_bad_pitch_errors_are_refused_by_the_name_of_the_case(
+    pinion: dict[str, Any], accuracy: dict[str, Any], field: str, words: str
+) -> None:
+    table = copy.deepcopy(GOOD)
+    table["pair"]["pinion"] |= pinion
+    table["pair"]["center_distance_mm"] += 2.0 * (len(pinion) and pinion.get("teeth", 20) - 20)
+    table["accuracy"] = accuracy
+    with pytest.raises(BadInput) as caught:
+        check_case(validated(Case, table))
+    fault = caught.value.faults[0]
+    assert fault.field == field
+    assert words in fault.bound

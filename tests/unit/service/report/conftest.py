@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -15,6 +16,7 @@ from fe_contact.analysis import LoadDistribution
 from fe_contact.analysis.flank_scene import flank_scene
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
+from fe_contact.ste.fields import DIMENSIONS
 
 R_B, PITCH, WIDTH = 0.0375877, 0.0118085, 0.025
 CASE = {
@@ -67,6 +69,21 @@ def closed_form(**changes: Any) -> SteDatabase:
         ),
     }
     return SteDatabase(**(arrays | changes))
+
+
+def with_pitch_errors(period: int = 3, **changes: Any) -> SteDatabase:
+    """The table over several pitches, the teeth of each 4 um later than those of the last."""
+    one = closed_form()
+    late = 4e-6 * np.repeat(np.arange(period), 64)
+    arrays = {
+        name: np.concatenate([getattr(one, name)] * period)
+        for name, dimensions in DIMENSIONS.items()
+        if dimensions[0] == "position"
+    }
+    arrays["position"] = arrays["position"] + np.repeat(np.arange(period), 64)
+    arrays["static_transmission_error"] = arrays["static_transmission_error"] + late[:, None, None, None]
+    arrays["no_load_transmission_error"] = arrays["no_load_transmission_error"] + late[:, None, None]
+    return replace(one, **(arrays | {"period": period} | changes))
 
 
 def with_failures() -> SteDatabase:
@@ -184,3 +201,9 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
 @pytest.fixture
 def run() -> RunResult:
     return run_up()
+
+
+@pytest.fixture(scope="session", name="with_pitch_errors")
+def _with_pitch_errors() -> Callable[..., SteDatabase]:
+    """Tables over several base pitches."""
+    return with_pitch_errors

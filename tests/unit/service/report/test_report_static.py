@@ -8,7 +8,7 @@ import pytest
 
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
-from service.report.aligned import shown_loads, two_pitches
+from service.report.aligned import shown_loads, ste_shown
 from service.report.database_surface import database_surface
 from service.report.figure import Surface
 from service.report.load_sharing import load_sharing, pair_shares
@@ -18,7 +18,7 @@ from service.report.ste_curves import ste_curves
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
-    position, values = two_pitches(database)
+    position, values = ste_shown(database)
     first = position < 1.0
     second = (position >= 1.0) & (position < 2.0)
     assert position[0] == 0.0
@@ -29,7 +29,7 @@ def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
 
 
 def test_stored_points_are_on_the_curve(database: SteDatabase) -> None:
-    position, values = two_pitches(database)
+    position, values = ste_shown(database)
     at = np.searchsorted(position, database.position)
     stored = database.static_transmission_error[:, :, 0, 0]
     np.testing.assert_allclose(values[at], stored, rtol=1e-9)
@@ -103,7 +103,7 @@ def test_the_surface_stands_over_position_and_force(database: SteDatabase) -> No
 
 
 def test_failed_points_are_gaps_and_the_rest_is_drawn(damaged: SteDatabase) -> None:
-    position, values = two_pitches(damaged)
+    position, values = ste_shown(damaged)
     assert math.isnan(values[5, 2])
     assert np.count_nonzero(np.isnan(values)) == 2
     assert len(position) == 129
