@@ -47,13 +47,6 @@ class AngleLaw:
         s = moment - start[piece]
         return np.asarray(c[piece, 0] + s * (c[piece, 1] + s * c[piece, 2]), dtype=float)
 
-    def slope(self, time: float | FloatArray) -> FloatArray:
-        """Return the acceleration at `time` (s), rad/s^2, from the right where it jumps."""
-        start, c = self.polynomials()
-        moment = np.asarray(time, dtype=float)
-        piece = np.searchsorted(start[1:], moment, side="right")
-        return np.asarray(c[piece, 1] + 2.0 * (moment - start[piece]) * c[piece, 2], dtype=float)
-
     def polynomials(self) -> tuple[FloatArray, FloatArray]:
         """Return start times and ascending coefficients of the speed, as `TimeLaw.polynomials` does."""
         time = np.asarray(self.time)

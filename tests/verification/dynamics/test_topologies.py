@@ -83,12 +83,24 @@ def with_forces(scene, force):
 PLANETS = published_set(
     3, ring_phase=0.5, sun_table=TABLE, ring_table=TABLE, pin_errors=((0, 5e-6), (0, 0), (3e-6, 0))
 )
+
+
+def carrier_drives(gears):
+    """The carrier driven, the ring held, the sun loaded: a step-up gear."""
+    scene = driven_scene(gears, duration=0.05)
+    carrier = ImposedRotation("input", "carrier", TimeLaw.ramp(10.0, 20.0, 0.1))
+    load = LoadTorque("brake", "sun", TimeLaw.constant(300.0))
+    return replace(scene, drives=(carrier, scene.drives[1]), loads=(load,))
+
+
 SCENES = {
     "idler": idler_train(),
     "two stages": two_stages(),
     "power split": with_forces(power_split(), 1500.0),
     "planets, ring held": driven_scene(PLANETS, speed=SPEED, duration=0.05),
     "planets, ring held elastically": planetary_scene(PLANETS, ring_support=1e7, duration=0.05),
+    "planets, rigid pins, no drive": planetary_scene(replace(PLANETS, planet_stiffness=None), duration=0.05),
+    "planets, carrier drives": carrier_drives(replace(PLANETS, driver="ring", carrier_stiffness=5e6)),
     "planets, rigid pins": driven_scene(replace(PLANETS, planet_stiffness=None), speed=SPEED, duration=0.05),
 }
 
