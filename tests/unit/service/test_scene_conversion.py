@@ -300,3 +300,28 @@ def test_planetary_sets_that_cannot_be_are_one_fault_by_name(change: Change, fie
         planetary(change)
     (fault,) = caught.value.faults
     assert fault.field == field
+
+
+def test_the_planetary_example_is_a_system() -> None:
+    """On stand-in tables with the facts of its pairs: six meshes, all torques carried, planets that fit."""
+    from dataclasses import replace  # noqa: PLC0415
+
+    from dynamics.system.assemble import assemble  # noqa: PLC0415
+
+    table = small_table()
+    fields = {name: getattr(table, name) for name in table.__dataclass_fields__}
+
+    def of(teeth: tuple[int, int], internal: bool) -> Any:
+        base = math.cos(math.radians(20.0)) * 1e-3
+        radius = (base * teeth[0], base * teeth[1])
+        facts = replace(table.facts, teeth=teeth, base_radius=radius, center_distance=0.06, internal=internal)
+        facts = replace(facts, base_pitch=2.0 * math.pi * base)
+        return type(table)(**fields | {"facts": facts, "torque": table.force * radius[0]})
+
+    example = tomllib.loads((ROOT / "examples" / "planetary_scene.toml").read_text())
+    tables = {"sun mesh": of((24, 36), False), "ring mesh": of((36, 96), True)}
+    system = assemble(dynamic_scene(validated(SceneInput, example), tables))
+    assert len(system.scene.meshes) == 6
+    assert system.kinematics.ratio[0][0] * 5 == 1  # the carrier
+    base = math.cos(math.radians(20.0)) * 1e-3
+    assert system.flanks.nominal_force == pytest.approx([60.0 / 3.0 / (24 * base)] * 6)
