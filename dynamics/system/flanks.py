@@ -84,7 +84,7 @@ def with_coast_flanks(flanks: Flanks, meshes: Sequence[GearMesh], coast: Sequenc
         try:
             backs.append(_coast_table(meshes[index], flanks, index))
         except InputError as error:
-            raise error.within(f"meshes[{index}].coast") from None
+            raise error.within(f"meshes[{index}]") from None
     chosen = [*range(len(meshes)), *coast]
     law = FlankLaws(pack_tables([*flanks.used, *backs]), flanks.law.damping[chosen], flanks.law.reach[chosen])
     return replace(flanks, law=law, coast=tuple(coast))

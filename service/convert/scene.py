@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, SpeedCurve, TimeLaw, hollow_cylinder
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, LoadTorque, SpeedTorque
+from dynamics.forces import CoastFlank, GearMesh, LoadTorque, SpeedTorque
 from dynamics.joints import Bushing, Coupling, FreeRotation, ImposedRotation, PlanetBearing
 from dynamics.system import Integration, Outputs, Scene, with_planets
 from dynamics.system.kinematics import solve_kinematics
@@ -18,6 +18,7 @@ from service.convert.topology import Teeth, check_center_distances, teeth_of
 from service.convert.units import DEGREE, MM, NM, RPM, UM
 from service.schemas.scene import (
     BushingInput,
+    CoastFlankInput,
     CouplingInput,
     DriveInput,
     FreeRotationInput,
@@ -210,7 +211,18 @@ def _mesh(index: int, given: MeshInput, database: SteDatabase) -> GearMesh:
             position_offset=given.position_offset,
             misalignment=given.misalignment_um * UM,
             center_distance_change=given.center_distance_change_mm * MM,
+            coast=_coast_flank(given.coast_flank, database.facts.base_pitch),
         )
+
+
+def _coast_flank(given: CoastFlankInput | None, base_pitch: float) -> CoastFlank | None:
+    """Return the coast flank; teeth that are equally thick share the pitch less the backlash."""
+    if given is None:
+        return None
+    backlash = given.backlash_um * UM
+    thickness = given.tooth_thickness
+    with _named("coast_flank"):
+        return CoastFlank(backlash, 0.5 * (1.0 - backlash / base_pitch) if thickness is None else thickness)
 
 
 def _drive(index: int, given: DriveInput) -> ImposedRotation:

@@ -207,6 +207,22 @@ class PlanetsInput(BoundaryModel):
         return self
 
 
+class CoastFlankInput(BoundaryModel):
+    """The backs of a mesh's teeth, alike to their fronts, for the effect "backlash"."""
+
+    backlash_um: float = Field(
+        gt=0.0, le=1e5, description="Backlash along the transverse line of action in um", examples=[80.0]
+    )
+    tooth_thickness: float | None = Field(
+        default=None,
+        gt=0.0,
+        lt=1.0,
+        description="Thickness of the driver's teeth over the pitch, both on the operating pitch circle; "
+        "left out: both gears' teeth are equally thick",
+        examples=[0.49],
+    )
+
+
 class MeshInput(BoundaryModel):
     """Two gears in mesh and the source of their STE database."""
 
@@ -255,6 +271,11 @@ class MeshInput(BoundaryModel):
     )
     center_distance_change_mm: float = Field(
         default=0.0, ge=-100.0, le=100.0, description="Change of the centre distance in mm", examples=[0.0]
+    )
+    coast_flank: CoastFlankInput | None = Field(
+        default=None,
+        description="The backs of the teeth; left out: only the driving flank carries force",
+        examples=[{"backlash_um": 80.0}],
     )
 
     @model_validator(mode="after")

@@ -325,3 +325,27 @@ def test_the_planetary_example_is_a_system() -> None:
     assert system.kinematics.ratio[0][0] * 5 == 1  # the carrier
     base = math.cos(math.radians(20.0)) * 1e-3
     assert system.flanks.nominal_force == pytest.approx([60.0 / 3.0 / (24 * base)] * 6)
+
+
+def test_a_coast_flank_has_the_thickness_of_teeth_that_share_the_pitch() -> None:
+    """Against the drawn tooth: the angle between its flanks on the pitch circle, over the pitch."""
+    from fe_contact.geometry import Gear, GearPair, ToothProfile  # noqa: PLC0415
+    from fe_contact.geometry.backlash import base_circle_backlash  # noqa: PLC0415
+
+    gear = Gear(20, 4e-3, 25e-3, 40e-3, thickness_allowance=50e-6)
+    pair = GearPair(gear, gear, 80.3e-3)
+    backlash = base_circle_backlash(gear, gear, pair.working_pressure_angle)
+    x, y = ToothProfile(gear).involute(gear.base_radius * math.tan(pair.working_pressure_angle))
+    drawn = 2.0 * math.atan2(abs(x), y) * gear.teeth / (2.0 * math.pi)
+
+    given = {"backlash_um": 1e6 * backlash}
+    found = scene(lambda t: t["meshes"][0].update(coast_flank=given)).meshes[0].coast
+    assert found is not None
+    assert found.backlash == pytest.approx(backlash, rel=1e-12)
+    assert found.thickness == pytest.approx(drawn, rel=1e-9)
+
+    given = {"backlash_um": 80.0, "tooth_thickness": 0.4}
+    told = scene(lambda t: t["meshes"][0].update(coast_flank=given)).meshes[0].coast
+    assert told is not None
+    assert told.thickness == 0.4
+    assert scene().meshes[0].coast is None
