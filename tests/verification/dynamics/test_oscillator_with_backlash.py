@@ -1,6 +1,6 @@
 """One freedom with backlash: rms of the response against converged numbers, both branches.
 
-x'' + 2 z x' + f(x) = Fm + Fa W^2 cos W t, f = x - 1 above 1, else 0 (the other flank is not reached), z 0.05,
+x'' + 2 z x' + f(x) = Fm + Fa W^2 cos W t, f = x - 1 above 1, x + 1 below -1, else 0, z 0.05,
 Fm 0.1, Fa 0.05; the rms values were converged independently to the digits given. The driven gear on a mesh
 of stiffness k with a kinematic error e = A cos W t is this oscillator in x - 1 = (d - e) per unit, for
 damping to the ground: (d - e)'' + 2 z (d - e)' + f = Fm - e'' - 2 z e', and the right-hand side is a cosine
@@ -16,7 +16,7 @@ import pytest
 from geared_scenes import spring_table
 
 from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
-from dynamics.forces import GearMesh, LoadTorque
+from dynamics.forces import CoastFlank, GearMesh, LoadTorque
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.joints import ImposedRotation
 from dynamics.system import Integration, Outputs, Scene
@@ -41,6 +41,7 @@ def oscillator(frequency):
     """Unit mass and stiffness: base radius 1 m, inertia 1 kg m^2, one tooth's pitch per period."""
     excitation = AMPLITUDE * frequency / np.hypot(frequency, 2.0 * ZETA)
     table = spring_table(1.0, excitation, positions=256)
+    back = CoastFlank(2.0, 0.0, spring_table(1.0, -excitation, positions=256))
     teeth = 20
     gears = tuple(
         GearBody(f"g{k}", f"s{k}", 0.5, teeth, 1.0, 0.1, 0.0, Inertia(1.0, 1.0, 1.0)) for k in range(2)
@@ -51,7 +52,7 @@ def oscillator(frequency):
     scene = Scene(
         shafts,
         gears,
-        (GearMesh("m", "g0", "g1", table, damping=0.0),),
+        (GearMesh("m", "g0", "g1", table, damping=0.0, coast=back),),
         (ImposedRotation("d", "s0", TimeLaw.constant(speed)),),
         duration=PERIODS * 2.0 * np.pi / frequency,
         loads=(LoadTorque("l", "s1", TimeLaw.constant(MEAN)),),
@@ -94,3 +95,20 @@ def test_both_branches_of_the_response(branch, record_figure):
     name = f"oscillator with backlash, rms, {'up' if branch == 0 else 'down'}-sweep, worst"
     record_figure(name, 100.0 * worst, "at most 0.5 %", "%", "converged numbers")
     assert worst < 0.005, errors
+
+
+@pytest.mark.parametrize(
+    ("path", "jump", "falls"),
+    [((0.75, 0.8), 0.8285, False), ((0.85, 0.75), 0.7080, True)],
+    ids=["up", "down"],
+)
+def test_the_response_jumps_where_its_branch_ends(path, jump, falls):
+    """Just before the converged frequency it stays on its branch, 0.003 behind it is on the other."""
+    state = None
+    for frequency in path:
+        _, state = settled_rms(frequency, state)
+    step = -0.003 if falls else 0.003
+    before, state = settled_rms(jump - step, state)
+    behind, _ = settled_rms(jump + step, state)
+    assert (before > 0.15) is falls
+    assert (behind > 0.15) is not falls
