@@ -35,7 +35,7 @@ def analyze(
     Parameters
     ----------
     pair : GearPair or InternalGearPair
-        External gears on parallel axes, spur or helical.
+        On parallel axes, spur or helical; the wheel external or a ring gear.
     torques : sequence of float
         Torques on the driving gear in N m, increasing, > 0; or `normal_forces` in N.
     tolerance, level, time_budget

@@ -72,6 +72,15 @@ def test_three_dimensions_exceed_plane_strain_as_they_do_in_external_pairs(recor
     assert 0.02 < excess < 0.03
 
 
+def test_the_corrected_plane_stands_in_for_three_dimensions(record_figure: Any) -> None:
+    apart = max(
+        abs(table(PAIR, "auto").mean(torque=t).value / table(PAIR, "3d").mean(torque=t).value - 1.0)
+        for t in TORQUES
+    )
+    record_figure("internal pair, corrected plane over 3-D draft", apart, "at most 0.01", "", "two methods")
+    assert apart < 0.01
+
+
 def test_pressure_at_the_pitch_point_is_hertz_with_the_hollow_flank() -> None:
     found = flank_results(PAIR, torque=60.0, at=[0.0], level="draft", model="plane_strain")
     at = int(np.flatnonzero(found.pair == 0)[0])
