@@ -14,11 +14,13 @@ if TYPE_CHECKING:
         ContactPattern,
         DeformedPair,
         LoadDistribution,
+        RootStress,
         Sensitivity,
         analyze,
         contact_pattern,
         deformed_pairs,
         flank_results,
+        root_stress,
         study_sensitivity,
     )
     from fe_contact.geometry import (
@@ -53,6 +55,7 @@ __all__ = [
     "Material",
     "PitchDeviation",
     "RingGear",
+    "RootStress",
     "Sensitivity",
     "Shaft",
     "Status",
@@ -61,6 +64,7 @@ __all__ = [
     "contact_pattern",
     "deformed_pairs",
     "flank_results",
+    "root_stress",
     "study_sensitivity",
 ]
 
@@ -69,10 +73,12 @@ _HOME = {
     "contact_pattern": "fe_contact.analysis",
     "deformed_pairs": "fe_contact.analysis",
     "flank_results": "fe_contact.analysis",
+    "root_stress": "fe_contact.analysis",
     "study_sensitivity": "fe_contact.analysis",
     "ContactPattern": "fe_contact.analysis",
     "DeformedPair": "fe_contact.analysis",
     "LoadDistribution": "fe_contact.analysis",
+    "RootStress": "fe_contact.analysis",
     "Sensitivity": "fe_contact.analysis",
     "BoreSeat": "fe_contact.geometry",
     "FlankGrid": "fe_contact.geometry",

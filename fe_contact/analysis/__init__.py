@@ -6,6 +6,8 @@ from fe_contact.analysis.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.analysis.flank_results import flank_results
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.request import check_request
+from fe_contact.analysis.root_stress import RootStress, root_stress
+from fe_contact.analysis.root_stress_history import RootPassage, RootPeak, RootStressHistory
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 
 __all__ = [
@@ -13,6 +15,10 @@ __all__ = [
     "DeformedPair",
     "LoadDistribution",
     "RippleCurve",
+    "RootPassage",
+    "RootPeak",
+    "RootStress",
+    "RootStressHistory",
     "Sensitivity",
     "analyze",
     "check_request",
@@ -20,5 +26,6 @@ __all__ = [
     "deformed_pairs",
     "flank_results",
     "load_distribution",
+    "root_stress",
     "study_sensitivity",
 ]

@@ -8,13 +8,13 @@ from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
 from fe_contact.compliance.plane import PlaneHypothesis
-from fe_contact.compliance.root_stress import RootStress, RootStressChecks
+from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
 from fe_contact.compliance.solvers import Pardiso, Solver, SuperLuColamd, SuperLuMetis
 from fe_contact.compliance.unit_root_stress import (
-    root_stress,
-    root_stress_3d,
-    root_stresses,
-    root_stresses_3d,
+    unit_root_stress,
+    unit_root_stress_3d,
+    unit_root_stresses,
+    unit_root_stresses_3d,
 )
 
 __all__ = [
@@ -25,11 +25,11 @@ __all__ = [
     "Pardiso",
     "PlaneHypothesis",
     "PredictedCost",
-    "RootStress",
     "RootStressChecks",
     "Solver",
     "SuperLuColamd",
     "SuperLuMetis",
+    "UnitRootStress",
     "default_cache_directory",
     "finite_width_compliances",
     "flank_compliance",
@@ -37,8 +37,8 @@ __all__ = [
     "flank_compliances",
     "flank_compliances_3d",
     "predict_cost",
-    "root_stress",
-    "root_stress_3d",
-    "root_stresses",
-    "root_stresses_3d",
+    "unit_root_stress",
+    "unit_root_stress_3d",
+    "unit_root_stresses",
+    "unit_root_stresses_3d",
 ]

@@ -16,13 +16,13 @@ import numpy as np
 
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
-from fe_contact.compliance.root_stress import RootStress, RootStressChecks
+from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
 from fe_contact.types import Json
 
 ENVIRONMENT = "LINEOFACTION_CACHE"
 OFF = ("", "0", "off", "none")
 NOT_ARRAYS = ("facts", "checksum")
-Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, RootStress)
+Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, UnitRootStress)
 
 
 def default_cache_directory() -> Path | None:
@@ -62,7 +62,7 @@ def read_compliance(directory: Path, key: str, kind: type[Kept]) -> Kept | None:
 
 
 def write_compliance(
-    directory: Path, key: str, compliance: FlankCompliance | FlankCompliance3D | RootStress
+    directory: Path, key: str, compliance: FlankCompliance | FlankCompliance3D | UnitRootStress
 ) -> None:
     """Keep a result under `key`; a reader sees the whole file or none.
 
@@ -102,7 +102,7 @@ def _checksum(arrays: dict[str, np.ndarray[Any, Any]], facts: str) -> str:
 
 def _restored(kind: type[Kept], arrays: dict[str, np.ndarray[Any, Any]], facts: Json) -> Kept:
     """Build the compliance again."""
-    laws = RootStressChecks if issubclass(kind, RootStress) else ComplianceChecks
+    laws = RootStressChecks if issubclass(kind, UnitRootStress) else ComplianceChecks
     checks = laws(**facts.pop("checks"))
     content: dict[str, Any] = arrays | facts | {"checks": checks, "from_cache": True}
     return kind(**content)

@@ -31,7 +31,7 @@ class RootStressChecks:
 
 
 @dataclass(frozen=True)
-class RootStress:
+class UnitRootStress:
     """Unit-load stress on the surface of the tooth roots of one gear, in the plane or over the face.
 
     Attributes
@@ -87,7 +87,7 @@ class RootStress:
         """Whether the stress is known over the face, not in the plane alone."""
         return self.z.size > 0
 
-    def mirrored(self) -> RootStress:
+    def mirrored(self) -> UnitRootStress:
         """Return the root stress of the gear of opposite hand: the mirror image in the plane of mid-face."""
         planes = self.index[::-1]
         order = planes[planes >= 0]
@@ -96,7 +96,7 @@ class RootStress:
         return replace(self, stress=stress)
 
 
-def refuse_broken_stress(found: RootStress) -> RootStress:
+def refuse_broken_stress(found: UnitRootStress) -> UnitRootStress:
     """Return a root stress whose checks keep their limits.
 
     Raises

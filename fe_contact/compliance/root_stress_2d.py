@@ -17,8 +17,8 @@ from fe_contact.compliance.flank_compliance_2d import condensed_ring, tooth_indi
 from fe_contact.compliance.plane import PlaneHypothesis
 from fe_contact.compliance.ring_2d import Ring
 from fe_contact.compliance.root_stress import (
-    RootStress,
     RootStressChecks,
+    UnitRootStress,
     refuse_broken_stress,
     relative_difference,
 )
@@ -35,7 +35,7 @@ from fe_contact.types import FloatArray, IntArray
 
 def compute_root_stress(
     gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
-) -> RootStress:
+) -> UnitRootStress:
     """Mesh, condense, solve for the stresses and check; no cache.
 
     Parameters
@@ -68,7 +68,7 @@ def compute_root_stress(
     stations = between_nodes(root.s)
     count = mesh.sector.s.size
     return refuse_broken_stress(
-        RootStress(
+        UnitRootStress(
             distance=np.arange(teeth) - teeth // 2,
             stress=stress.reshape(teeth, 2, COMPONENTS, stations.size, 1, count),
             station_s=stations,

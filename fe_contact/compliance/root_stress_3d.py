@@ -20,8 +20,8 @@ from fe_contact.compliance.condensed_gear import CondensedTooth, condensed_tooth
 from fe_contact.compliance.cyclic_ring import LeftCuts, RingSolution, left_cuts, row_space
 from fe_contact.compliance.hexahedron import above, cylindrical_frames
 from fe_contact.compliance.root_stress import (
-    RootStress,
     RootStressChecks,
+    UnitRootStress,
     refuse_broken_stress,
     relative_difference,
 )
@@ -50,7 +50,7 @@ ROWS_AT_ONCE = 256  # stresses passed up the tree together: bounds the memory
 
 def compute_root_stress_3d(
     gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport, solver: str
-) -> RootStress:
+) -> UnitRootStress:
     """Mesh, condense, close the ring, solve for the stresses and check; no cache.
 
     Parameters
@@ -85,7 +85,7 @@ def compute_root_stress_3d(
     across = between_nodes(_with_middles(ends))
     shape = (2 * reach + 1, 2, COMPONENTS, across.size, stations.size, len(loads))
     return refuse_broken_stress(
-        RootStress(
+        UnitRootStress(
             distance=np.arange(2 * reach + 1) - reach,
             # flank freedoms are along the outward normal
             stress=-stress.reshape(shape).swapaxes(3, 4),

@@ -12,7 +12,7 @@ from fe_contact.compliance.cache import content_hash, read_compliance, write_com
 from fe_contact.compliance.cyclic_compliance import SOLVER, compliance_key_3d, usual_reach
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_teeth
 from fe_contact.compliance.plane import PlaneHypothesis
-from fe_contact.compliance.root_stress import RootStress
+from fe_contact.compliance.root_stress import UnitRootStress
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
@@ -21,7 +21,7 @@ from fe_contact.mesh.bore_support import BoreSupport, bore_support
 MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found
 
 
-def root_stress(
+def unit_root_stress(
     gear: Toothing,
     recipe: MeshRecipe | None = None,
     hypothesis: PlaneHypothesis = PlaneHypothesis.PLANE_STRAIN,
@@ -29,7 +29,7 @@ def root_stress(
     teeth: int | None = None,
     solver: Solver | None = None,
     cache: Path | None = None,
-) -> RootStress:
+) -> UnitRootStress:
     """Return the unit-load root stress of the transverse section; parameters are those of `flank_compliance`.
 
     Raises
@@ -44,7 +44,7 @@ def root_stress(
     recipe, solver = recipe or MeshRecipe.standard(gear), solver or SuperLuMetis()
     count = condensed_teeth(gear, recipe, teeth)
 
-    def compute() -> RootStress:
+    def compute() -> UnitRootStress:
         # A cached result needs no skfem.
         from fe_contact.compliance.root_stress_2d import compute_root_stress  # noqa: PLC0415
 
@@ -53,14 +53,14 @@ def root_stress(
     return _kept(compliance_key(gear, recipe, hypothesis, count, solver), compute, cache)
 
 
-def root_stress_3d(
+def unit_root_stress_3d(
     gear: Toothing,
     recipe: SectorRecipe | None = None,
     *,
     reach: int | None = None,
     support: BoreSupport | None = None,
     cache: Path | None = None,
-) -> RootStress:
+) -> UnitRootStress:
     """Return the unit-load root stress over the face; parameters are those of `flank_compliance_3d`.
 
     Gears of opposite hand are mirror images to the last bit: the left-hand one is made from the other.
@@ -75,7 +75,7 @@ def root_stress_3d(
     recipe, support = recipe or SectorRecipe.standard(gear), support or bore_support(gear.right_handed())
     distance = usual_reach(gear) if reach is None else reach
 
-    def compute() -> RootStress:
+    def compute() -> UnitRootStress:
         # A cached result needs neither skfem nor numba.
         from fe_contact.compliance.root_stress_3d import compute_root_stress_3d  # noqa: PLC0415
 
@@ -86,43 +86,44 @@ def root_stress_3d(
     return found.mirrored() if gear.helix_angle < 0.0 else found
 
 
-def root_stresses(
+def unit_root_stresses(
     gears: Sequence[Toothing],
     recipes: Sequence[MeshRecipe],
     hypothesis: PlaneHypothesis,
     *,
-    teeth: int,
+    teeth: int | None = None,
     cache: Path | None = None,
-) -> tuple[RootStress, ...]:
+) -> tuple[UnitRootStress, ...]:
     """Return the root stress of each gear; gears of one section, material and recipe are computed once."""
-    found: dict[str, RootStress] = {}
+    found: dict[str, UnitRootStress] = {}
     keys = []
     for gear, recipe in zip(gears, recipes, strict=True):
-        keys.append(compliance_key(gear, recipe, hypothesis, teeth, SuperLuMetis()))
+        count = condensed_teeth(gear, recipe, teeth)
+        keys.append(compliance_key(gear, recipe, hypothesis, count, SuperLuMetis()))
         if keys[-1] not in found:
-            found[keys[-1]] = root_stress(gear, recipe, hypothesis, teeth=teeth, cache=cache)
+            found[keys[-1]] = unit_root_stress(gear, recipe, hypothesis, teeth=count, cache=cache)
     return tuple(found[key] for key in keys)
 
 
-def root_stresses_3d(
+def unit_root_stresses_3d(
     gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], *, cache: Path | None = None
-) -> tuple[RootStress, ...]:
+) -> tuple[UnitRootStress, ...]:
     """Return the root stress of each gear; gears alike, or alike but for the hand, are computed once."""
-    found: dict[str, RootStress] = {}
+    found: dict[str, UnitRootStress] = {}
     results = []
     for gear, recipe in zip(gears, recipes, strict=True):
         key = compliance_key_3d(gear, recipe, usual_reach(gear), bore_support(gear.right_handed()))
         if key not in found:
             right_hand = gear.right_handed()
-            found[key] = root_stress_3d(right_hand, recipe, cache=cache)
+            found[key] = unit_root_stress_3d(right_hand, recipe, cache=cache)
         results.append(found[key].mirrored() if gear.helix_angle < 0.0 else found[key])
     return tuple(results)
 
 
-def _kept(compliance: str, compute: Callable[[], RootStress], cache: Path | None) -> RootStress:
+def _kept(compliance: str, compute: Callable[[], UnitRootStress], cache: Path | None) -> UnitRootStress:
     """Return the kept result that belongs to the `compliance` of a key, or compute and keep it."""
     key = content_hash({"root stress": MODEL_VERSION, "compliance": compliance})
-    found = read_compliance(cache, key, RootStress) if cache is not None else None
+    found = read_compliance(cache, key, UnitRootStress) if cache is not None else None
     if found is None:
         found = compute()
         if cache is not None:

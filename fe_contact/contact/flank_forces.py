@@ -2,25 +2,44 @@
 
 from __future__ import annotations
 
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from fe_contact.compliance import FlankCompliance, FlankCompliance3D
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import Patches, load_vector
 from fe_contact.contact.problem import Candidates
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 ByTooth = dict[int, FloatArray]
 Side: TypeAlias = tuple[Patches, FloatArray, int]
+
+
+class ProfileNodes(Protocol):
+    """Whatever knows the nodes of a flank in the plane: a compliance, a unit-load stress."""
+
+    @property
+    def s(self) -> FloatArray:
+        """Flank coordinates (k,), m."""
+
+
+class FaceNodes(ProfileNodes, Protocol):
+    """Whatever knows the nodes of a flank over the face width."""
+
+    @property
+    def z(self) -> FloatArray:
+        """Ends of the layers, m."""
+
+    @property
+    def index(self) -> IntArray:
+        """Freedom at plane and profile node, -1 at the centres."""
 
 
 def plane_flank_forces(
     candidates: Candidates,
     force: FloatArray,
     position: int,
-    flanks: tuple[FlankCompliance, FlankCompliance],
+    flanks: tuple[ProfileNodes, ProfileNodes],
 ) -> tuple[ByTooth, ByTooth]:
     """Return the forces on the loaded teeth of both gears of a plane model.
 
@@ -31,7 +50,7 @@ def plane_flank_forces(
         N.
     position : int
         Index of the position.
-    flanks : (FlankCompliance, FlankCompliance)
+    flanks : (ProfileNodes, ProfileNodes)
         Driving and driven gear: their flank nodes.
 
     Returns
@@ -57,7 +76,7 @@ def face_flank_forces(
     candidates: Candidates,
     force: FloatArray,
     position: int,
-    flanks: tuple[FlankCompliance3D, FlankCompliance3D],
+    flanks: tuple[FaceNodes, FaceNodes],
     axial_offset: float = 0.0,
 ) -> tuple[ByTooth, ByTooth]:
     """Return the forces on the loaded teeth of both gears over their face width.
@@ -86,7 +105,7 @@ def face_flank_forces(
         by_tooth: ByTooth = {}
         for row, i in enumerate(carrying):
             used = loads.used[row]
-            nodal = np.zeros(flank.blocks.shape[1])
+            nodal = np.zeros(int(flank.index.max()) + 1)
             nodal[loads.nodes[row, :used]] = loads.forces[row, :used]
             share = force[position, i] * lever[position, i]
             _add(by_tooth, int(direction * candidates.pair[i]), -share * nodal)

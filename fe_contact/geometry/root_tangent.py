@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike
 from fe_contact.geometry.flank_profile import FlankProfile
 from fe_contact.types import FloatArray
 
-CRITICAL_ANGLE = math.radians(30.0)
-"""Tangent to the fillet that ISO 6336-3 takes for the critical section of an external gear."""
+CRITICAL_ANGLE = {1: math.radians(30.0), -1: math.radians(60.0)}
+"""Tangent to the fillet that ISO 6336-3 takes for the critical section, external (+1) and internal gears."""
 SAMPLES = 1001
 
 
@@ -25,10 +25,11 @@ def tangent_angle(profile: FlankProfile, s: ArrayLike) -> FloatArray:
     return np.asarray(np.arctan2(profile.gear.sign * normal[..., 1], normal[..., 0]))
 
 
-def critical_section(profile: FlankProfile, angle: float = CRITICAL_ANGLE) -> float:
-    """Flank coordinate in m where the fillet's tangent has `angle` with the tooth's centre line.
+def critical_section(profile: FlankProfile) -> float:
+    """Flank coordinate in m where the fillet's tangent has `CRITICAL_ANGLE` with the tooth's centre line.
 
     At an end of the fillet if it leans less or more everywhere.
     """
+    angle = CRITICAL_ANGLE[profile.gear.sign]
     s = np.linspace(profile.s_form, profile.s_root, SAMPLES)
     return float(np.interp(angle, np.maximum.accumulate(tangent_angle(profile, s)), s))

@@ -155,6 +155,38 @@ def export(
     run_export(case, output, point, at, beside, as_json=json)
 
 
+@app.command(
+    name="root-stress", epilog="Example: loa root-stress examples/palermo_spur_20_20.toml --torque 100"
+)
+@guarded
+def root_stress(
+    case: Annotated[Path, typer.Argument(help="Case file.")],
+    torque: Annotated[
+        float | None,
+        typer.Option(help="Torque on the driving gear in N m; default: the highest load."),
+    ] = None,
+    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
+    misalignment_um: Annotated[
+        float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
+    ] = None,
+    center_distance_change_mm: Annotated[
+        float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
+    ] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Print the passage of one tooth as CSV.")] = False,
+    json: AsJson = False,
+) -> None:
+    """Compute the stress of the tooth roots at one load: peaks, where they are, and their history."""
+    from service.cli.root_stress import run_root_stress  # noqa: PLC0415 (start-up time)
+
+    point = {
+        "torque_n_m": torque,
+        "normal_force_n": force,
+        "misalignment_um": misalignment_um,
+        "center_distance_change_mm": center_distance_change_mm,
+    }
+    run_root_stress(case, point, as_csv=csv, as_json=json)
+
+
 @app.command(epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
 @guarded
 def simulate(

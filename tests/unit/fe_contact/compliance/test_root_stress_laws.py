@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import fields, replace
 from pathlib import Path
@@ -17,16 +18,16 @@ import fe_contact.compliance.sector_stiffness as stiffness_module
 from fe_contact.compliance import PlaneHypothesis, SuperLuMetis
 from fe_contact.compliance.checks_3d import pressure_forces
 from fe_contact.compliance.elasticity_2d import stiffness_matrix
-from fe_contact.compliance.root_stress import RootStress, refuse_broken_stress
+from fe_contact.compliance.root_stress import UnitRootStress, refuse_broken_stress
 from fe_contact.compliance.root_stress_3d import compute_root_stress_3d, root_functionals
 from fe_contact.compliance.sector_2d import freedoms, inward_loads
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.compliance.surface_stress import edge_stress
 from fe_contact.compliance.unit_root_stress import (
-    root_stress,
-    root_stress_3d,
-    root_stresses,
-    root_stresses_3d,
+    unit_root_stress,
+    unit_root_stress_3d,
+    unit_root_stresses,
+    unit_root_stresses_3d,
 )
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
@@ -79,11 +80,15 @@ def coarse_plane(gear: Toothing, **changes: object) -> MeshRecipe:
     return replace(MeshRecipe.standard(gear), **changes)  # type: ignore[arg-type]
 
 
+in_plane = functools.cache(unit_root_stress)
+over_face = functools.cache(unit_root_stress_3d)
+
+
 def relative(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
-def on_flank(found: RootStress) -> np.ndarray:
+def on_flank(found: UnitRootStress) -> np.ndarray:
     """Forces of a pressure on the upper part of the flank, all of the face."""
     upper = found.s[:-2:2] > 0.4 * found.s[0] + 0.6 * found.s[-1]
     if found.across_face:
@@ -112,7 +117,7 @@ def test_equals_the_uncondensed_solution_of_a_ring_gear() -> None:
 
 
 def agrees_with_the_whole_mesh(gear: Toothing, recipe: MeshRecipe) -> None:
-    found = root_stress(gear, recipe, teeth=5)
+    found = in_plane(gear, recipe, teeth=5)
     mesh = mesh_gear(gear, recipe)
     matrix = stiffness_matrix(mesh.points, mesh.triangles, STRAIN.lame_parameters(gear.material))
     free = np.setdiff1d(np.arange(2 * len(mesh.points)), freedoms(mesh.bore_nodes))
@@ -157,7 +162,7 @@ def whole_gear_stress(gear: Gear, recipe: SectorRecipe) -> np.ndarray:
 def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
     """To 1e-6 of the stress: what the cuts cannot tell apart by more is dropped (`RANK_TOLERANCE`)."""
     recipe = coarse_face(gear)
-    found = root_stress_3d(gear, recipe, reach=4)
+    found = over_face(gear, recipe, reach=4)
     direct = whole_gear_stress(gear, recipe)
     stress = (found.stress @ some_forces(found.stress.shape[-1])).swapaxes(3, 4).reshape(9, -1, 3)
     for n, ahead in enumerate(found.distance):
@@ -167,10 +172,10 @@ def test_equals_the_uncondensed_solution_over_the_face(gear: Gear) -> None:
 
 @GEARS
 def test_checks_hold(gear: Gear) -> None:
-    face = root_stress_3d(gear, coarse_face(gear))
+    face = over_face(gear, coarse_face(gear))
     assert face.checks.residual < 1e-11
     assert face.checks.recovery < 2e-6
-    plane = root_stress(SPUR, coarse_plane(SPUR))
+    plane = in_plane(SPUR, coarse_plane(SPUR))
     assert plane.checks.residual < 1e-10
     assert plane.checks.recovery < 1e-11
 
@@ -178,10 +183,10 @@ def test_checks_hold(gear: Gear) -> None:
 def test_the_load_pulls_its_own_side_and_pushes_the_other() -> None:
     ring = replace(SectorRecipe.draft(RING), layers=2, merge_rows=())
     for found in (
-        root_stress(PLANE),
-        root_stress_3d(PLANE, SectorRecipe.draft(PLANE)),
-        root_stress(RING),
-        root_stress_3d(RING, ring),
+        in_plane(PLANE),
+        over_face(PLANE, SectorRecipe.draft(PLANE)),
+        in_plane(RING),
+        over_face(RING, ring),
     ):
         stress = found.stress @ on_flank(found)
         own = len(found.distance) // 2
@@ -191,7 +196,7 @@ def test_the_load_pulls_its_own_side_and_pushes_the_other() -> None:
         assert np.abs(stress[own + 1 :]).max() < np.abs(profile).max()
 
 
-def patch(found: RootStress, gear: Gear) -> np.ndarray:
+def patch(found: UnitRootStress, gear: Gear) -> np.ndarray:
     """Forces of a unit patch high on the flank, across the whole face, the same on every mesh."""
     center, half = 0.7 * found.s[-1], 0.3 * gear.normal_module
     forces = np.zeros(found.stress.shape[-1])
@@ -208,7 +213,7 @@ def patch(found: RootStress, gear: Gear) -> np.ndarray:
 def test_one_layer_without_axial_displacement_is_the_plane() -> None:
     """Two meshes and two ways to condense: eight-node quadrilaterals and triangles."""
     recipe = replace(SectorRecipe.fine(PLANE), layers=1, merge_rows=(), layer_growth=1.0, land_elements=8)
-    face, plane = root_stress_3d(PLANE, recipe, support=PlaneStrain()), root_stress(PLANE)
+    face, plane = over_face(PLANE, recipe, support=PlaneStrain()), in_plane(PLANE)
     fillet = np.linspace(-0.9, -0.35, 30) * (plane.station_s[-1] - plane.station_s[0])
     for distance in (-1, 0, 1):
         sums = []
@@ -222,7 +227,7 @@ def test_one_layer_without_axial_displacement_is_the_plane() -> None:
 
 def test_opposite_hands_are_mirror_images() -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    right, found = (root_stress_3d(gear, coarse_face(gear), reach=1) for gear in (HELICAL, left))
+    right, found = (over_face(gear, coarse_face(gear), reach=1) for gear in (HELICAL, left))
     assert np.array_equal(found.stress, right.mirrored().stress)
     assert np.array_equal(found.mirrored().stress, right.stress)
     assert relative(found.stress, right.stress) > 0.1
@@ -230,7 +235,7 @@ def test_opposite_hands_are_mirror_images() -> None:
 
 def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.MonkeyPatch) -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    mirrored = root_stress_3d(left, coarse_face(left), reach=1)
+    mirrored = over_face(left, coarse_face(left), reach=1)
     for module in (stiffness_module, gear_module, face_module):
         monkeypatch.setattr(module, "twist", lambda gear: math.tan(gear.helix_angle) / gear.reference_radius)
     swept = compute_root_stress_3d(left, coarse_face(left), 1, ClampedBore(), "")
@@ -239,7 +244,7 @@ def test_a_gear_swept_the_other_way_is_the_mirror_image(monkeypatch: pytest.Monk
 
 
 def test_a_spur_gear_is_its_own_mirror_image() -> None:
-    found = root_stress_3d(SPUR, coarse_face(SPUR))
+    found = over_face(SPUR, coarse_face(SPUR))
     assert relative(found.mirrored().stress, found.stress) < 2e-6
     shear = found.stress[:, :, 2] @ on_flank(found)
     assert np.abs(shear + shear[..., ::-1]).max() < 1e-6 * np.abs(found.stress @ on_flank(found)).max()
@@ -249,18 +254,18 @@ def test_stress_per_force_goes_with_one_over_length_and_not_with_stiffness() -> 
     """Lengths by s and forces by s^2: the same stress; per unit of width, forces by s."""
     large = replace(SPUR, normal_module=32e-3, face_width=160e-3, bore_diameter=96e-3)
     soft = replace(SPUR, material=Material(youngs_modulus=21e9))
-    found, scaled, softer = (root_stress_3d(g, coarse_face(g)) for g in (SPUR, large, soft))
+    found, scaled, softer = (over_face(g, coarse_face(g)) for g in (SPUR, large, soft))
     assert relative(64.0 * scaled.stress, found.stress) < 2e-6
     assert relative(softer.stress, found.stress) < 2e-6
     assert scaled.tangent_angle == pytest.approx(found.tangent_angle, rel=1e-9)
-    found, scaled, softer = (root_stress(g, coarse_plane(g)) for g in (SPUR, large, soft))
+    found, scaled, softer = (in_plane(g, coarse_plane(g)) for g in (SPUR, large, soft))
     assert relative(8.0 * scaled.stress, found.stress) < 1e-6
     assert relative(softer.stress, found.stress) < 1e-9
 
 
 def test_stations_lie_on_the_fillet() -> None:
     profile = tooth_profile(PLANE)
-    for found in (root_stress(PLANE), root_stress_3d(PLANE, SectorRecipe.draft(PLANE))):
+    for found in (in_plane(PLANE), over_face(PLANE, SectorRecipe.draft(PLANE))):
         assert profile.s_space < found.station_s[0] < found.station_s[-1] < profile.s_form
         assert np.all(np.diff(found.station_s) > 0.0)
         assert np.all(np.diff(found.tangent_angle[found.station_s > profile.s_root]) < 0.0)
@@ -302,35 +307,35 @@ def test_the_tangent_of_the_critical_section_has_30_degrees() -> None:
 def test_the_cache_returns_the_same_bits(tmp_path: Path) -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
     recipe = coarse_face(HELICAL)
-    first, second = (root_stress_3d(HELICAL, recipe, reach=1, cache=tmp_path) for _ in range(2))
+    first, second = (unit_root_stress_3d(HELICAL, recipe, reach=1, cache=tmp_path) for _ in range(2))
     assert (first.from_cache, second.from_cache) == (False, True)
-    for field in fields(RootStress):
+    for field in fields(UnitRootStress):
         if field.name != "from_cache":
             one, other = getattr(first, field.name), getattr(second, field.name)
             assert np.array_equal(one, other) if isinstance(one, np.ndarray) else one == other
-    found = root_stress_3d(left, recipe, reach=1, cache=tmp_path)
+    found = unit_root_stress_3d(left, recipe, reach=1, cache=tmp_path)
     assert found.from_cache
     assert np.array_equal(found.stress, first.mirrored().stress)
-    plane = [root_stress(SPUR, coarse_plane(SPUR), cache=tmp_path) for _ in range(2)]
+    plane = [unit_root_stress(SPUR, coarse_plane(SPUR), cache=tmp_path) for _ in range(2)]
     assert plane[1].from_cache
     assert np.array_equal(plane[0].stress, plane[1].stress)
     for file in tmp_path.iterdir():
         file.write_bytes(file.read_bytes()[:-1000])
-    assert not root_stress(SPUR, coarse_plane(SPUR), cache=tmp_path).from_cache
+    assert not unit_root_stress(SPUR, coarse_plane(SPUR), cache=tmp_path).from_cache
 
 
 def test_gears_alike_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     left = replace(HELICAL, helix_angle=-HELICAL.helix_angle)
-    found = root_stresses_3d([HELICAL, left], [coarse_face(HELICAL)] * 2)
+    found = unit_root_stresses_3d([HELICAL, left], [coarse_face(HELICAL)] * 2)
     assert np.array_equal(found[1].mirrored().stress, found[0].stress)
     assert found[1].seconds is found[0].seconds
-    twins = root_stresses([SPUR, SPUR], [coarse_plane(SPUR)] * 2, STRAIN, teeth=3)
+    twins = unit_root_stresses([SPUR, SPUR], [coarse_plane(SPUR)] * 2, STRAIN, teeth=3)
     assert twins[0] is twins[1]
 
 
 @pytest.mark.parametrize("name", ["residual", "recovery"])
 def test_a_broken_law_is_refused_by_name(name: str) -> None:
-    found = root_stress(SPUR, coarse_plane(SPUR))
+    found = unit_root_stress(SPUR, coarse_plane(SPUR))
     broken = replace(found, checks=replace(found.checks, **{name: 1e-3}))
     with pytest.raises(SolveError, match=name) as refusal:
         refuse_broken_stress(broken)
@@ -346,4 +351,4 @@ def test_checks_see_a_wrong_ring(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr(face_module, "left_cuts", spoiled)
     with pytest.raises(SolveError, match="recovery"):
-        root_stress_3d(HELICAL, coarse_face(HELICAL), reach=1)
+        unit_root_stress_3d(HELICAL, coarse_face(HELICAL), reach=1)

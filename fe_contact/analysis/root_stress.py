@@ -1,0 +1,222 @@
+"""Tooth-root stress of a gear pair: unit-load stress of both gears times the forces of the solved contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fe_contact.analysis.compute_database import Progress
+from fe_contact.analysis.flank_results import POSITIONS
+from fe_contact.analysis.request import check_request
+from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
+from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
+from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
+from fe_contact.contact import face_flank_forces, plane_flank_forces
+from fe_contact.geometry import ParallelAxes, tooth_profile
+from fe_contact.geometry.root_tangent import critical_section
+from fe_contact.planning import FaceRootMeshes, PlaneRootMeshes, root_meshes
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray, IntArray, Json
+
+UnitStresses = tuple[UnitRootStress, UnitRootStress]
+
+
+@dataclass(frozen=True)
+class RootStress:
+    """Tooth-root stress of both gears at one load and one alignment.
+
+    Attributes
+    ----------
+    pinion, wheel : RootStressHistory
+    torque, normal_force : float
+        On the driving gear, N m; F_bn, N.
+    misalignment, center_distance_change : float
+        m.
+    receipt : dict
+        CPU seconds by stage, memory, and the plan: plain JSON.
+    """
+
+    pinion: RootStressHistory
+    wheel: RootStressHistory
+    torque: float
+    normal_force: float
+    misalignment: float
+    center_distance_change: float
+    receipt: Json
+
+
+def root_stress(
+    pair: ParallelAxes,
+    *,
+    torque: float | None = None,
+    normal_force: float | None = None,
+    misalignment: float = 0.0,
+    center_distance_change: float = 0.0,
+    at: ArrayLike | None = None,
+    tolerance: float | None = None,
+    level: str | None = None,
+    model: str = "auto",
+    effects: Mapping[str, str] | None = None,
+    time_budget: float | None = None,
+    progress: Progress | None = None,
+    cache: Path | None = None,
+) -> RootStress:
+    """Solve the contact of one load and alignment, and return the stress of the tooth roots.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    torque, normal_force : float
+        Torque on the driving gear in N m, or normal force in N; exactly one.
+    misalignment, center_distance_change : float
+        See `analyze`, m.
+    at : array_like, optional
+        Positions in base pitches; default: 64 over one mesh cycle.
+    tolerance, level, time_budget, model, effects, progress, cache
+        See `analyze`.
+
+    Returns
+    -------
+    RootStress
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    MeshError, SolveError
+        No acceptable mesh, or positions without a solution.
+    """
+    checked = check_request(
+        pair,
+        torques=None if torque is None else [torque],
+        normal_forces=None if normal_force is None else [normal_force],
+        tolerance=tolerance,
+        level=level,
+        time_budget=time_budget,
+        model=model,
+        misalignments=[misalignment],
+        center_distance_changes=[center_distance_change],
+        effects=effects,
+        whole_table=False,
+    )
+    clock, report = StageClock(), progress or _silent
+    position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
+    found = solve_place(checked, position, clock, report, cache)
+    with clock.stage("root stress"):
+        meshes = root_meshes(found.contact.plan.discretisation)
+        pinion, wheel = _histories(found, meshes, cache)
+    report("root stress", 1.0)
+    return RootStress(
+        pinion=pinion,
+        wheel=wheel,
+        torque=float(checked.request.torque[0]),
+        normal_force=float(checked.request.load[0]),
+        misalignment=misalignment,
+        center_distance_change=center_distance_change,
+        receipt=clock.to_json() | {"plan": found.contact.plan.to_json()},
+    )
+
+
+def _silent(_stage: str, _fraction: float) -> None:
+    """Report no progress."""
+
+
+def _histories(
+    found: SolvedPlace, meshes: PlaneRootMeshes | FaceRootMeshes, cache: Path | None
+) -> list[RootStressHistory]:
+    """Return the histories of both gears, with the error that coarser meshes tell."""
+    fine, rough = (
+        pair_histories(found, _unit_stresses(found, meshes, coarse, cache)) for coarse in (False, True)
+    )
+    histories = []
+    for history, other in zip(fine, rough, strict=True):
+        peaks = [[h.peak(root).stress.value for h in (history, other)] for root in ROOTS]
+        # the greater of both roots: one difference of two meshes may vanish by chance
+        difference = max(abs(rougher / value - 1.0) for value, rougher in peaks)
+        histories.append(replace(history, relative_error=meshes.remaining * difference))
+    return histories
+
+
+def _unit_stresses(
+    found: SolvedPlace, meshes: PlaneRootMeshes | FaceRootMeshes, coarse: bool, cache: Path | None
+) -> UnitStresses:
+    """Compute or fetch the unit-load stress of both gears; identical gears are computed once."""
+    pair = found.contact.pair
+    gears = found.contact.plan.bodies(pair)
+    if isinstance(meshes, FaceRootMeshes):
+        sectors = meshes.coarse_recipes if coarse else meshes.recipes
+        first, second = unit_root_stresses_3d(gears, sectors, cache=cache)
+        # a ring's right flank is the loaded one as seen from the other side: its z runs against the pinion's
+        return first, second.mirrored() if pair.internal else second
+    sections = meshes.coarse_recipes if coarse else meshes.recipes
+    first, second = unit_root_stresses(gears, sections, meshes.hypothesis, cache=cache)
+    return first, second
+
+
+def pair_histories(found: SolvedPlace, units: UnitStresses) -> tuple[RootStressHistory, RootStressHistory]:
+    """Return the stress of both gears under the solved contact.
+
+    Parameters
+    ----------
+    found : SolvedPlace
+    units : (UnitRootStress, UnitRootStress)
+        Of the driving and the driven gear, on any mesh.
+    """
+    pair, candidates = found.contact.pair, found.problem.candidates
+    carrying = np.unique(candidates.pair)
+    stressed = np.arange(carrying[0] - 1, carrying[-1] + 2)
+    forces = _forces(found, units, carrying)
+    first, second = (
+        RootStressHistory(
+            position=candidates.position,
+            pair=stressed,
+            flank_coordinate=unit.station_s,
+            tangent_angle=unit.tangent_angle,
+            face_position=unit.station_z + offset,
+            # pair j is on tooth -j of the driving gear and on tooth j of the driven one
+            stress=_superposed(unit, loads, direction * (stressed[:, None] - carrying)),
+            relative_error=np.nan,
+            critical_coordinate=critical_section(tooth_profile(gear)),
+        )
+        for unit, loads, direction, gear, offset in zip(
+            units, forces, (-1, 1), (pair.pinion, pair.wheel), (0.0, pair.axial_offset), strict=True
+        )
+    )
+    return first, second
+
+
+def _forces(found: SolvedPlace, units: UnitStresses, pairs: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Return the inward nodal forces on the teeth of `pairs` (K,) of both gears, (P, K, n)."""
+    candidates, force = found.problem.candidates, found.solution.force[:, 0]
+    out = [np.zeros((len(force), pairs.size, unit.stress.shape[-1])) for unit in units]
+    for p in range(len(force)):
+        if units[0].across_face:
+            offset = found.contact.pair.axial_offset
+            both, inward = face_flank_forces(candidates, force, p, units, offset), -1.0
+        else:
+            both, inward = plane_flank_forces(candidates, force, p, units), 1.0
+        for loads, by_tooth, direction in zip(out, both, (-1, 1), strict=True):
+            for tooth, forces in by_tooth.items():
+                loads[p, np.searchsorted(pairs, direction * tooth)] = inward * forces
+    return out[0], out[1]
+
+
+def _superposed(unit: UnitRootStress, forces: FloatArray, ahead: IntArray) -> FloatArray:
+    """Add up what the loads of all pairs do to each tooth, (P, N, 2, 3, p, q).
+
+    `ahead` (N, K) says how many teeth the stressed one is ahead of the loaded one; further than `unit` knows
+    nothing arrives.
+    """
+    by_distance = unit.stress.reshape(len(unit.distance), -1, forces.shape[2])
+    stress = np.zeros((len(forces), len(ahead), by_distance.shape[1]))
+    for k in range(forces.shape[1]):
+        loaded = np.flatnonzero(forces[:, k].any(axis=1))
+        for j in range(len(ahead)):
+            row = int(ahead[j, k] - unit.distance[0])
+            if 0 <= row < len(by_distance):
+                stress[loaded, j] += forces[loaded, k] @ by_distance[row].T
+    return stress.reshape(*stress.shape[:2], *unit.stress.shape[1:-1])

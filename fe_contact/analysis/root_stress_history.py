@@ -1,0 +1,164 @@
+"""Stress of the tooth roots of one gear over the mesh cycle: history, peaks, where they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from fe_contact.types import Estimate, FloatArray, IntArray
+
+Root = Literal["tension", "compression"]
+ROOTS: tuple[Root, Root] = ("tension", "compression")
+
+
+class RootPeak(NamedTuple):
+    """The largest stress of a cycle, and where it is.
+
+    Attributes
+    ----------
+    stress : Estimate
+        Largest principal stress of the tension root, smallest one of the compression root (< 0), Pa. The
+        error is that of the finite elements of the root.
+    position : float
+        Base pitches.
+    pair : int
+        Whose tooth; position (modulo 1) + pair counts along the passage of one tooth.
+    flank_coordinate : float
+        m; between stations by a parabola.
+    tangent_angle : float
+        Of the surface there with the tooth's centre line, rad.
+    face_position : float
+        Distance from the pinion's mid-face, m.
+    """
+
+    stress: Estimate
+    position: float
+    pair: int
+    flank_coordinate: float
+    tangent_angle: float
+    face_position: float
+
+
+class RootPassage(NamedTuple):
+    """What the roots of one tooth meet on its way through the mesh.
+
+    Attributes
+    ----------
+    position : ndarray, shape (M,)
+        Position of the tooth's own pair in base pitches, increasing: 0 = its pitch point.
+    tension, compression : ndarray, shape (M,)
+        Largest principal stress anywhere in the tension root; smallest one in the compression root, Pa.
+    at_tension_peak, at_compression_peak : ndarray, shape (M,)
+        Stress along the profile at the station nearest to the peak: what fatigue counts, Pa.
+    """
+
+    position: FloatArray
+    tension: FloatArray
+    compression: FloatArray
+    at_tension_peak: FloatArray
+    at_compression_peak: FloatArray
+
+
+@dataclass(frozen=True)
+class RootStressHistory:
+    """Surface stress of the tooth roots of one gear.
+
+    Attributes
+    ----------
+    position : ndarray, shape (P,)
+        Base pitches, by the driving gear's angle.
+    pair : ndarray of int, shape (N,)
+        Pair index of each tooth: those that touch, and one beyond at either end, which only neighbours load.
+    flank_coordinate : ndarray, shape (p,)
+        Of the stations along the profile, m, from the middle of the tooth space to the form point.
+    tangent_angle : ndarray, shape (p,)
+        Of the surface there with the tooth's centre line, rad.
+    face_position : ndarray, shape (q,)
+        Of the stations across, as distance from the pinion's mid-face, m; a single one in the plane.
+    stress : ndarray, shape (P, N, 2, 3, p, q)
+        Pa. Third axis: tension root (beside the loaded flank), compression root. Fourth: along the profile,
+        across it in the surface, shear between the two.
+    relative_error : float
+        Of the peaks, by the finite elements of the root: from a coarser mesh.
+    critical_coordinate : float
+        Where ISO 6336-3 takes the critical section: the tangent has 30 degrees (internal gears: 60) with the
+        tooth's centre line, m.
+    """
+
+    position: FloatArray
+    pair: IntArray
+    flank_coordinate: FloatArray
+    tangent_angle: FloatArray
+    face_position: FloatArray
+    stress: FloatArray
+    relative_error: float
+    critical_coordinate: float
+
+    def principal(self, root: Root) -> FloatArray:
+        """Largest principal stress of the tension root or smallest of the compression root, (P, N, p, q)."""
+        along, across, shear = np.moveaxis(self.stress[:, :, ROOTS.index(root)], 2, 0)
+        mean, radius = 0.5 * (along + across), np.hypot(0.5 * (along - across), shear)
+        return np.asarray(mean + radius if root == "tension" else mean - radius)
+
+    def peak(self, root: Root) -> RootPeak:
+        """Return the peak of one root over all positions, teeth and stations."""
+        sign = 1.0 if root == "tension" else -1.0
+        values, at = crests(self.flank_coordinate, np.moveaxis(sign * self.principal(root), 2, -1))
+        i, j, q = np.unravel_index(int(np.argmax(values)), values.shape)
+        value, s = sign * float(values[i, j, q]), float(at[i, j, q])
+        error = abs(value) * self.relative_error
+        return RootPeak(
+            stress=Estimate(value, error, "Pa"),
+            position=float(self.position[i]),
+            pair=int(self.pair[j]),
+            flank_coordinate=s,
+            tangent_angle=float(np.interp(s, self.flank_coordinate, self.tangent_angle)),
+            face_position=float(self.face_position[q]),
+        )
+
+    def passage(self) -> RootPassage:
+        """Return what one tooth meets, all its pairs' positions in a row.
+
+        Positions in several base pitches are of several teeth, which then stand beside each other.
+        """
+        # In a later base pitch pair j stands where pair j stood before: other teeth, the same way.
+        place = (self.position[:, None] % 1.0 + self.pair).ravel()
+        order = np.argsort(place, kind="stable")
+        extremes, fixed = [], []
+        for root, sign in zip(ROOTS, (1.0, -1.0), strict=True):
+            values, _ = crests(self.flank_coordinate, np.moveaxis(sign * self.principal(root), 2, -1))
+            extremes.append(sign * values.max(axis=-1).ravel()[order])
+            peak = self.peak(root)
+            station = np.argmin(np.abs(self.flank_coordinate - peak.flank_coordinate))
+            across = np.argmin(np.abs(self.face_position - peak.face_position))
+            along = self.stress[:, :, ROOTS.index(root), 0, station, across]
+            fixed.append(along.ravel()[order])
+        return RootPassage(place[order], extremes[0], extremes[1], fixed[0], fixed[1])
+
+
+def crests(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the largest value along the last axis and its place, by a parabola through its neighbours.
+
+    Parameters
+    ----------
+    s : ndarray, shape (p,)
+        Increasing, p >= 3.
+    values : ndarray, shape (..., p)
+
+    Returns
+    -------
+    value, place : ndarray, shape (...)
+    """
+    middle = np.clip(np.argmax(values, axis=-1), 1, s.size - 2)
+    low, here, high = (s[middle + step] for step in (-1, 0, 1))
+    y = [np.take_along_axis(values, (middle + step)[..., None], axis=-1)[..., 0] for step in (-1, 0, 1)]
+    first, second = (y[1] - y[0]) / (here - low), (y[2] - y[1]) / (high - here)
+    bend = (second - first) / (high - low)
+    slope = first + bend * (here - low)  # at the middle
+    flat = bend >= 0.0  # no crest inside: a rising end, or all alike
+    way = np.clip(-slope / np.where(flat, -1.0, 2.0 * bend), low - here, high - here)
+    value = np.where(flat, np.max(y, axis=0), y[1] + way * (slope + bend * way))
+    place = np.where(flat, np.choose(np.argmax(y, axis=0), [low, here, high]), here + way)
+    return value, place

@@ -1,0 +1,69 @@
+"""``loa root-stress``."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from pathlib import Path
+from typing import Any
+
+from service.cli.output import console, print_json, progress_bar, table
+from service.convert.checks import check_case
+from service.convert.flanks import case_at
+from service.convert.root_stress import GEARS, root_stress_json, root_stress_of
+from service.schemas import Case, read_model, validated
+from service.schemas.flank import FlankPoint
+from service.settings import cache_home
+
+_SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
+
+
+def run_root_stress(file: Path, point: dict[str, float | None], *, as_csv: bool, as_json: bool) -> None:
+    """Compute and print; `point` holds the fields of `FlankPoint` that were given."""
+    chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
+    case = case_at(read_model(Case, file), chosen)
+    check_case(case)
+    with progress_bar() as report:
+        found = root_stress_json(root_stress_of(case, cache_home() / "compliance", report))
+    if as_json:
+        print_json(found)
+    elif as_csv:
+        _write_csv(found)
+    else:
+        _show(found)
+
+
+def _show(found: dict[str, Any]) -> None:
+    """Print the peaks for people."""
+    out = console()
+    heads = ["gear", "root", "stress MPa", "position", "tangent deg", "face mm"]
+    rows = [_row(gear, root, found[gear][root]) for gear in GEARS for root in ("tension", "compression")]
+    out.print(table(heads, rows, "Tooth-root stress"))
+    out.print(
+        f"\ntorque {found['torque_n_m']:.6g} N m, normal force {found['normal_force_n']:.6g} N, "
+        f"misalignment {found['misalignment_um']:.4g} um",
+        highlight=False,
+    )
+    out.print(f"cost {found['receipt']['cpu_seconds']:.3g} CPU s", highlight=False)
+
+
+def _row(gear: str, root: str, peak: dict[str, float]) -> list[str]:
+    """One peak: the stress with its error, and where it is."""
+    return [
+        gear,
+        root,
+        f"{peak['stress_mpa']:.4g} ±{peak['error_mpa']:.1g}",
+        f"{peak['position']:.3f}",
+        f"{peak['tangent_angle_deg']:.1f}",
+        f"{peak['face_position_mm']:.2f}",
+    ]
+
+
+def _write_csv(found: dict[str, Any]) -> None:
+    """Print what one tooth of each gear meets, as CSV."""
+    writer = csv.writer(sys.stdout, lineterminator="\n")
+    writer.writerow(["gear", "position", *_SERIES])
+    for gear in GEARS:
+        passage = found[gear]["passage"]
+        lines = zip(passage["position"], *(passage[name] for name in _SERIES), strict=True)
+        writer.writerows([gear, repr(place), *(f"{v:.6g}" for v in values)] for place, *values in lines)
