@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
 from fe_contact.analysis.error_estimate import ErrorSources, estimate_errors, worst_residual
+from fe_contact.analysis.held_out_axes import AxisError, held_out_axes
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked, Request
@@ -59,19 +61,21 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
         found = [solution for _, solution in solved]
         plane = _in_plane_strain(fine, nodes, plan) if plan.discretisation.corrected else found
         errors = estimate_errors(fine, found, plane, rough, nodes, plan)
-    return SteDatabase(
-        position=(pitches[:, None] + nodes.position).ravel(),
-        force=plan.load,
-        torque=request.torque,
-        misalignment=request.misalignment,
-        center_distance_change=request.center_distance_change,
-        facts=pair_facts(request.pair),
-        period=fine.period,
-        error_estimate=errors.total,
-        metadata=_metadata(case, plan, checked, clock, errors, solved),
-        **table_fields(fine, solved),
-        **table_support(fine, support),
-    )
+        table = SteDatabase(
+            position=(pitches[:, None] + nodes.position).ravel(),
+            force=plan.load,
+            torque=request.torque,
+            misalignment=request.misalignment,
+            center_distance_change=request.center_distance_change,
+            facts=pair_facts(request.pair),
+            period=fine.period,
+            error_estimate=errors.total,
+            metadata=Metadata(),
+            **table_fields(fine, solved),
+            **table_support(fine, support),
+        )
+        held_out = held_out_axes(table, fine, request.scene, checked.decided)
+    return replace(table, metadata=_metadata(case, plan, checked, clock, errors, solved, held_out))
 
 
 def _places(
@@ -100,10 +104,12 @@ def _metadata(
     clock: StageClock,
     errors: ErrorSources,
     solved: list[tuple[ContactProblem, ContactSolution]],
+    held_out: dict[str, AxisError],
 ) -> Metadata:
     """Everything about the making of the table."""
     receipt = clock.to_json() | {
         "error_by_source": errors.to_json(),
+        "held_out": {name: error.to_json() for name, error in held_out.items()},
         "plan": plan.to_json(),
         "newton_iterations_max": max(int(solution.iterations.max()) for _, solution in solved),
         "residuals_max": max(worst_residual(solution) for _, solution in solved),

@@ -92,6 +92,11 @@ class Checked:
     ledger: tuple[LedgerEntry, ...]
     cycle: CycleCost | None = None
 
+    @property
+    def decided(self) -> dict[str, str]:
+        """Every effect "on" or "off", as the whole request decides it."""
+        return {entry.name: "on" if entry.on else "off" for entry in self.ledger}
+
 
 def check_request(
     pair: ParallelAxes,

@@ -52,10 +52,13 @@ class Places:
         Numbers of misalignments and centre distances.
     places : tuple of Place
         Those of one centre distance share their compliance.
+    nominal : PairContact
+        The pair at its nominal centre distance, which may be no place of the table.
     """
 
     shape: tuple[int, int]
     places: tuple[Place, ...]
+    nominal: PairContact
 
     @property
     def period(self) -> int:
@@ -94,7 +97,7 @@ def table_places(scene: ContactScene, choices: Mapping[str, str], nominal: PairC
         for contact in contacts:
             here = ContactScene(contact.pair, scene.torque, np.array([misalignment]), pitches=scene.pitches)
             places.append(Place(contact, compose(here, decided, EFFECTS)[0]))
-    return Places((scene.misalignment.size, len(contacts)), tuple(places))
+    return Places((scene.misalignment.size, len(contacts)), tuple(places), nominal)
 
 
 def _contacts(nominal: PairContact, changes: FloatArray) -> Iterator[PairContact]:

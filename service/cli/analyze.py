@@ -11,6 +11,7 @@ from service.cli.output import Report, check_writable, console, print_json, prog
 from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
+from service.convert.units import UM
 from service.problems import JobFailed
 from service.schemas import Case, read_model
 from service.settings import cache_home
@@ -74,10 +75,23 @@ def _cost(receipt: dict[str, Any]) -> str:
     if predicted:
         pitches, seconds = predicted["pitches"], predicted["cpu_seconds"]
         text += f"\nperiod {pitches} base pitches; contact predicted {seconds:.2g} CPU s"
+    held_out = _held_out(receipt.get("held_out", {}))
+    if held_out:
+        text += f"\nlargest error at held-out points between the nodes: {held_out} (not in the errors)"
     left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
     if left_out:
         text += f"\nplane strain: this width deflects about {100 * left_out:.2g} % more (not in the errors)"
     return text
+
+
+def _held_out(axes: dict[str, Any]) -> str:
+    """Return the largest error between the nodes of each axis."""
+    words = []
+    for name, measured in axes.items():
+        errors = [error for row in measured["error_m"] for error in row]
+        worst = "unknown" if None in errors else f"{max(errors) / UM:.2g} um"
+        words.append(f"{name.replace('_', ' ')} {worst}")
+    return ", ".join(words)
 
 
 def _row(load: dict[str, Any]) -> list[str]:

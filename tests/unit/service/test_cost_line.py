@@ -19,5 +19,14 @@ def test_time_by_stage_and_memory() -> None:
     assert _cost(receipt(0.0)) == "\ncost 1.75 CPU s (compliance 0.25, contact 1.5), 300 MiB"
 
 
+def test_held_out_errors_are_named_by_axis() -> None:
+    measured = {
+        "force": {"at": [1.0], "error_m": [[2e-8]]},
+        "center_distance_change": {"at": [1e-4, 3e-4], "error_m": [[1e-7, 3.4e-7], [None, 1e-9]]},
+    }
+    text = _cost(receipt(0.0) | {"held_out": measured})
+    assert "between the nodes: force 0.02 um, center distance change unknown" in text
+
+
 def test_the_plane_model_says_what_it_leaves_out() -> None:
     assert "3.3 % more" in _cost(receipt(0.0333))

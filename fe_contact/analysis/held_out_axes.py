@@ -1,0 +1,148 @@
+"""Interpolation error of a table between the nodes of its axes, measured at points it does not hold."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.analysis.table_places import Place, Places, table_places
+from fe_contact.effects import ContactScene
+from fe_contact.errors import DatabaseError
+from fe_contact.ste import SteDatabase
+from fe_contact.types import FloatArray, IntArray, Json
+
+LOAD_PROBES = np.array([0.25, 0.5, 0.75])
+"""Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it."""
+POSITIONS = 16
+"""Positions at which an interval of centre distances is judged: each needs a compliance of its own."""
+
+
+@dataclass(frozen=True)
+class AxisError:
+    """Error of STE between the nodes of one axis.
+
+    Attributes
+    ----------
+    at : ndarray, shape (I,)
+        The middle of every interval: of loads the geometric mean in N, beside which the quarters are held
+        out, too; of misalignments or changes of the centre distance in m.
+    error : ndarray, shape (I, L) or (I, 1)
+        Largest difference between interpolant and solution over the positions in m, at each load of the
+        table; of the held-out loads themselves for the axis of loads. NaN where a solution did not converge.
+    """
+
+    at: FloatArray
+    error: FloatArray
+
+    def to_json(self) -> Json:
+        """Return plain JSON; intervals without a solution hold null."""
+        rows = [[float(e) if np.isfinite(e) else None for e in row] for row in self.error]
+        return {"at": self.at.tolist(), "error_m": rows}
+
+
+def held_out_axes(
+    table: SteDatabase, places: Places, scene: ContactScene, choices: Mapping[str, str]
+) -> dict[str, AxisError]:
+    """Solve one held-out point in every interval of every axis that has one.
+
+    Positions are those of the table, so that the axis alone is interpolated; what is missed between positions
+    `table_nodes` measures. Loads and misalignments are judged at all of them, whose compliance is at hand;
+    centre distances at those where the curves of the neighbouring nodes differ most. On the other axes the
+    point stands at the node nearest to zero; a longer period is judged in its first pitch.
+
+    Parameters
+    ----------
+    table : SteDatabase
+        As computed.
+    places : Places
+        That it was computed at.
+    scene : ContactScene
+        With the axes of the table.
+    choices : mapping
+        Effect name to "on" or "off", as decided for the whole table.
+
+    Returns
+    -------
+    dict of str to AxisError
+        By the name of the axis; empty for a table with failed points, or whose transmission error does not
+        rise with load everywhere: neither can be interpolated.
+    """
+    if table.n_failed:
+        return {}
+    try:
+        table.force_table()
+    except DatabaseError:
+        return {}
+    return _measured(table, places, scene, choices)
+
+
+def _measured(
+    table: SteDatabase, places: Places, scene: ContactScene, choices: Mapping[str, str]
+) -> dict[str, AxisError]:
+    """Measure every axis of two nodes or more."""
+
+    def differences(place: Place, rows: IntArray, load: FloatArray, *alignment: float) -> FloatArray:
+        """Differences between interpolant and solutions (positions, L), m; NaN where one did not converge."""
+        position = table.position[rows]
+        solved = place.solve(position, load)[1].deflection
+        return np.asarray(np.abs(table.ste(position[:, None], load, *alignment) - solved))
+
+    found = {}
+    everywhere = np.arange(int(np.searchsorted(table.position, 1.0)))
+    m, d = _nearest(table.misalignment), _nearest(table.center_distance_change)
+    if table.force.size > 1:
+        loads = table.force[:-1, None] ** (1.0 - LOAD_PROBES) * table.force[1:, None] ** LOAD_PROBES
+        (place,) = _places(places, scene, choices, m, d)
+        error = differences(place, everywhere, loads.ravel(), m[0], d[0]).max(axis=0)
+        found["force"] = AxisError(loads[:, 1], error.reshape(loads.shape).max(axis=1)[:, None])
+    if table.misalignment.size > 1:
+        middles = _middles(table.misalignment)
+        held_out = zip(_places(places, scene, choices, middles, d), middles, strict=True)
+        errors = [differences(place, everywhere, table.force, x, d[0]).max(axis=0) for place, x in held_out]
+        found["misalignment"] = AxisError(middles, np.array(errors))
+    if table.center_distance_change.size > 1:
+        middles = _middles(table.center_distance_change)
+        held_out = zip(_places(places, scene, choices, m, middles), middles, strict=True)
+        errors = [
+            differences(place, rows, table.force, m[0], x).max(axis=0)
+            for (place, x), rows in zip(held_out, _telling(table), strict=True)
+        ]
+        found["center_distance_change"] = AxisError(middles, np.array(errors))
+    return found
+
+
+def _telling(table: SteDatabase) -> list[IntArray]:
+    """Return the rows of the first pitch that tell most of the error of every interval of centre distances.
+
+    Those in which the transmission errors at its two ends differ most, in parts of their largest difference
+    at each load: there handovers move.
+    """
+    count = int(np.searchsorted(table.position, 1.0))
+    m = int(np.argmin(np.abs(table.misalignment)))
+    step = np.abs(np.diff(table.static_transmission_error[:count, :, m, :], axis=2))
+    telling = (step / np.maximum(step.max(axis=0), 1e-300)).max(axis=1)
+    return [np.sort(np.argsort(column, kind="stable")[-POSITIONS:]) for column in telling.T]
+
+
+def _middles(nodes: FloatArray) -> FloatArray:
+    """Return the middles of the intervals."""
+    return np.asarray(0.5 * (nodes[:-1] + nodes[1:]))
+
+
+def _nearest(nodes: FloatArray) -> FloatArray:
+    """Return the node nearest to zero, as an axis of one."""
+    return nodes[[int(np.argmin(np.abs(nodes)))]]
+
+
+def _places(
+    places: Places,
+    scene: ContactScene,
+    choices: Mapping[str, str],
+    misalignment: FloatArray,
+    change: FloatArray,
+) -> tuple[Place, ...]:
+    """Lay out held-out places like those of the table."""
+    here = replace(scene, misalignment=misalignment, center_distance_change=change)
+    return table_places(here, choices, places.nominal).places
