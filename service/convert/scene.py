@@ -16,21 +16,16 @@ from service.convert.case import boundary_errors
 from service.convert.errors import translated
 from service.convert.topology import Teeth, check_center_distances, teeth_of
 from service.convert.units import DEGREE, MM, NM, RPM, UM
-from service.schemas.scene import (
+from service.schemas.scene import CoastFlankInput, MeshInput, SceneInput
+from service.schemas.scene_bodies import (
     BushingInput,
-    CoastFlankInput,
     CouplingInput,
-    DriveInput,
-    FreeRotationInput,
     GearBodyInput,
     InertiaInput,
-    LoadTorqueInput,
-    MeshInput,
     PlanetBearingInput,
-    SceneInput,
     ShaftInput,
-    SpeedTorqueInput,
 )
+from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 
 _SMALLEST_STEP_S = 1e-12
 

@@ -12,7 +12,7 @@ from pydantic import BaseModel
 from service import problems
 from service.app import create_app
 from service.cli.commands import app as loa
-from service.schemas import case, gear, scene
+from service.schemas import case, gear, scene, scene_bodies, scene_motion
 from service.settings import Settings, load_settings
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -25,7 +25,7 @@ def page(name: str) -> str:
 
 def models() -> list[type[BaseModel]]:
     """Return the tables of case and scene files."""
-    found = [vars(module).values() for module in (case, gear, scene)]
+    found = [vars(module).values() for module in (case, gear, scene, scene_bodies, scene_motion)]
     return [m for group in found for m in group if inspect.isclass(m) and issubclass(m, BaseModel)]
 
 

@@ -1,0 +1,182 @@
+"""The bodies of a scene and what joins them: shafts, gears, bearings, couplings, planets."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import Field, Strict, model_validator
+
+from service.schemas.model import BoundaryModel, refuse
+from service.schemas.scene_types import Coordinate, Name, Rows
+
+
+class InertiaInput(BoundaryModel):
+    """Inertia of a body of revolution about its own centre of mass."""
+
+    mass_kg: float = Field(ge=0.0, le=1e9, description="Mass in kg", examples=[2.0])
+    polar_kg_m2: float = Field(
+        ge=0.0, le=1e12, description="Moment of inertia about the axis of rotation in kg m^2", examples=[4e-4]
+    )
+    transverse_kg_m2: float = Field(
+        ge=0.0, le=1e12, description="Moment of inertia across the axis in kg m^2", examples=[7e-3]
+    )
+
+
+class ShaftInput(BoundaryModel):
+    """A rigid shaft parallel to the z axis."""
+
+    name: Name = Field(description="Name of the shaft", examples=["input"])
+    length_mm: float = Field(gt=0.0, le=1e6, description="Length in mm", examples=[200.0])
+    origin_mm: Annotated[tuple[Coordinate, ...], Strict(False)] = Field(
+        default=(0.0, 0.0, 0.0),
+        min_length=3,
+        max_length=3,
+        description="Left end of the axis, x, y, z in mm",
+        examples=[[0.0, 0.0, 0.0]],
+    )
+    diameter_mm: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e5,
+        description="Diameter in mm of a solid steel shaft, for its inertia",
+        examples=[40.0],
+    )
+    inertia: InertiaInput | None = Field(
+        default=None,
+        description="Inertia of the bare shaft, instead of a diameter",
+        examples=[{"mass_kg": 2.0}],
+    )
+    frame: Name | None = Field(
+        default=None,
+        description="The carrier of the planetary set it belongs to; a carrier names itself",
+        examples=["carrier"],
+    )
+
+    @model_validator(mode="after")
+    def _one_inertia(self) -> Self:
+        """Exactly one source of inertia."""
+        if (self.diameter_mm is None) == (self.inertia is None):
+            refuse(
+                "diameter_mm",
+                self.diameter_mm,
+                "given, or inertia instead, but not both",
+                "For example 40.0.",
+            )
+        return self
+
+
+class GearBodyInput(BoundaryModel):
+    """A gear on a shaft; its teeth, base radius, helix and face width come from the mesh it takes part in."""
+
+    name: Name = Field(description="Name of the gear", examples=["pinion"])
+    shaft: Name = Field(description="The shaft that carries it", examples=["input"])
+    position_mm: Coordinate = Field(description="Mid-face along the shaft in mm", examples=[100.0])
+    bore_diameter_mm: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1e5,
+        description="Bore in mm of the steel cylinder that stands for its inertia",
+        examples=[40.0],
+    )
+    inertia: InertiaInput | None = Field(
+        default=None,
+        description="Inertia; left out: a steel cylinder of pitch diameter and face width",
+        examples=[{"mass_kg": 0.7, "polar_kg_m2": 7e-4, "transverse_kg_m2": 4e-4}],
+    )
+
+
+class BushingInput(BoundaryModel):
+    """A linear bearing between a shaft and the ground."""
+
+    name: Name = Field(description="Name of the bushing", examples=["input left"])
+    shaft: Name = Field(description="The shaft it carries", examples=["input"])
+    position_mm: Coordinate = Field(description="Place along the shaft in mm", examples=[0.0])
+    radial_stiffness_n_per_m: float = Field(
+        ge=0.0, le=1e15, description="Radial stiffness in N/m", examples=[1e8]
+    )
+    axial_stiffness_n_per_m: float = Field(
+        default=0.0, ge=0.0, le=1e15, description="Axial stiffness in N/m", examples=[1e8]
+    )
+    radial_damping_n_s_per_m: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=1e12,
+        description="Radial damping in N s/m; left out: from damping_ratio",
+        examples=[1e3],
+    )
+    axial_damping_n_s_per_m: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=1e12,
+        description="Axial damping in N s/m; left out: from damping_ratio",
+        examples=[1e3],
+    )
+    damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
+
+
+class PlanetBearingInput(BushingInput):
+    """A linear bearing between a planet and its pin in the carrier."""
+
+    shaft: Name = Field(description="The planet's shaft", examples=["planet"])
+    carrier: Name = Field(description="The carrier's shaft", examples=["carrier"])
+    radial_error_um: float = Field(
+        default=0.0, ge=-1e4, le=1e4, description="Pin off its place, outwards, in um", examples=[0.0]
+    )
+    tangential_error_um: float = Field(
+        default=0.0, ge=-1e4, le=1e4, description="Pin off its place, about +z, in um", examples=[20.0]
+    )
+
+
+class CouplingInput(BoundaryModel):
+    """A flexible coupling between two shafts of the same speed."""
+
+    name: Name = Field(description="Name of the coupling", examples=["joint"])
+    first: Name = Field(description="One shaft", examples=["output"])
+    second: Name = Field(description="The other shaft", examples=["machine"])
+    torsional_stiffness_n_m_per_rad: float = Field(
+        ge=0.0, le=1e15, description="Torsional stiffness in N m/rad", examples=[5e4]
+    )
+    torsional_damping_n_m_s_per_rad: float = Field(
+        default=0.0, ge=0.0, le=1e12, description="Torsional damping in N m s/rad", examples=[5.0]
+    )
+    position_mm: Coordinate = Field(
+        default=0.0, description="Place along the first shaft in mm, for the matrices", examples=[200.0]
+    )
+    stiffness_matrix: Rows | None = Field(
+        default=None,
+        min_length=6,
+        max_length=6,
+        description="Added: 6 by 6 in x, y, z, tilt_x, tilt_y, rotation; N, m, rad",
+    )
+    damping_matrix: Rows | None = Field(
+        default=None, min_length=6, max_length=6, description="Added: the same for rates; N, m, rad, s"
+    )
+
+
+class PlanetsInput(BoundaryModel):
+    """Several planets from one, whose shaft, gears, bearings and meshes are in the scene."""
+
+    planet: Name = Field(description="The shaft of the first planet", examples=["planet"])
+    number: int = Field(ge=1, le=100, description="Number of planets in all", examples=[3])
+    angles_deg: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None,
+        description="Angles from the first planet about +z in degrees; left out: equally spaced",
+        examples=[[0.0, 120.0, 240.0]],
+    )
+    radial_errors_um: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None, description="Of all pins, outwards, in um", examples=[[0.0, 0.0, 0.0]]
+    )
+    tangential_errors_um: Annotated[tuple[Coordinate, ...], Strict(False)] | None = Field(
+        default=None, description="Of all pins, about +z, in um", examples=[[20.0, 0.0, 0.0]]
+    )
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Self:
+        """As many values as planets."""
+        for field in ("angles_deg", "radial_errors_um", "tangential_errors_um"):
+            given = getattr(self, field)
+            if given is not None and len(given) != self.number:
+                refuse(
+                    field, list(given), f"a list of {self.number}, one for each planet", "Or leave it out."
+                )
+        return self

@@ -1,0 +1,137 @@
+"""What moves and loads a scene: drives, free rotations, torques by time and by speed."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from service.schemas.model import BoundaryModel, refuse
+from service.schemas.scene_types import Course, Name, Numbers, Times
+
+
+class DriveInput(BoundaryModel):
+    """A shaft whose speed or angle is imposed over time."""
+
+    name: Name = Field(description="Name of the drive", examples=["motor"])
+    shaft: Name = Field(description="The driven shaft", examples=["input"])
+    time_s: Times = Field(
+        default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0, 5.0]]
+    )
+    speed_rpm: Numbers | None = Field(
+        default=None,
+        min_length=1,
+        max_length=100_000,
+        description="Speeds in rpm at these times",
+        examples=[[0.0, 955.0]],
+    )
+    angle_deg: Numbers | None = Field(
+        default=None,
+        min_length=4,
+        max_length=100_000,
+        description="Angles in degrees at these times instead of speeds, joined by a cubic spline",
+        examples=[[0.0, 1.0, 2.1, 3.0]],
+    )
+    course: Course = Field(default="linear", description="Course between the times", examples=["linear"])
+    stiffness_n_m_per_rad: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e15,
+        description="Torsional spring to the imposed rotation in N m/rad; left out: rigid",
+        examples=[1e7],
+    )
+    damping_n_m_s_per_rad: float = Field(
+        default=0.0, ge=0.0, le=1e12, description="Damping beside that spring in N m s/rad", examples=[0.0]
+    )
+
+    @model_validator(mode="after")
+    def _law(self) -> Self:
+        if (self.speed_rpm is None) == (self.angle_deg is None):
+            bound = "given, or angle_deg instead, but not both"
+            refuse("speed_rpm", self.speed_rpm and list(self.speed_rpm), bound, "For example [1000.0].")
+        if self.speed_rpm is not None:
+            _check_law("speed_rpm", self.time_s, self.speed_rpm)
+        if self.angle_deg is not None:
+            _check_law("angle_deg", self.time_s, self.angle_deg)
+        return self
+
+
+class FreeRotationInput(BoundaryModel):
+    """A train that no drive moves: it starts at a speed and turns as torques make it."""
+
+    name: Name = Field(description="Name of the free rotation", examples=["train"])
+    shaft: Name = Field(description="Any one shaft of the train", examples=["input"])
+    initial_speed_rpm: float = Field(
+        default=0.0, ge=-1e7, le=1e7, description="Speed at the start in rpm", examples=[1000.0]
+    )
+    sense: Literal["+z", "-z"] = Field(
+        default="+z", description="Where it turns if it starts from rest", examples=["+z"]
+    )
+
+
+class LoadTorqueInput(BoundaryModel):
+    """A torque that resists a shaft's rotation, or drives it where it is negative."""
+
+    name: Name = Field(description="Name of the load", examples=["brake"])
+    shaft: Name = Field(description="The loaded shaft", examples=["output"])
+    time_s: Times = Field(
+        default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0]]
+    )
+    torque_n_m: Numbers = Field(
+        min_length=1,
+        max_length=100_000,
+        description="Resisting torques in N m at these times",
+        examples=[[100.0]],
+    )
+    course: Course = Field(default="linear", description="Course between the times", examples=["linear"])
+
+    @model_validator(mode="after")
+    def _law(self) -> Self:
+        _check_law("torque_n_m", self.time_s, self.torque_n_m)
+        return self
+
+
+class SpeedTorqueInput(BoundaryModel):
+    """A torque that depends on the shaft's speed."""
+
+    name: Name = Field(description="Name of the torque", examples=["fan"])
+    shaft: Name = Field(description="The shaft it acts on", examples=["output"])
+    kind: Literal["table", "quadratic", "constant"] = Field(
+        description="Through a table; as the square of the speed; constant against either sense of rotation",
+        examples=["table"],
+    )
+    speed_rpm: Numbers = Field(
+        min_length=1,
+        max_length=100_000,
+        description="Speeds of a table; the speed of the torque of a square; where a constant has set in",
+        examples=[[0.0, 1500.0]],
+    )
+    torque_n_m: Numbers = Field(
+        min_length=1,
+        max_length=100_000,
+        description="Torques in N m against the rotation at these speeds; negative: driving",
+        examples=[[-50.0, -40.0]],
+    )
+
+    @model_validator(mode="after")
+    def _as_many(self) -> Self:
+        """Refuse a table of fewer than two points, and more than one for the others."""
+        least, most = (2, 100_000) if self.kind == "table" else (1, 1)
+        if not least <= len(self.speed_rpm) <= most:
+            bound = "a list of at least 2" if self.kind == "table" else "a list of one"
+            refuse("speed_rpm", list(self.speed_rpm), bound)
+        if len(self.torque_n_m) != len(self.speed_rpm):
+            bound = f"a list of {len(self.speed_rpm)}, one for each of speed_rpm"
+            refuse("torque_n_m", list(self.torque_n_m), bound, "Give one value per speed.")
+        return self
+
+
+def _check_law(field: str, times: tuple[float, ...], values: tuple[float, ...]) -> None:
+    """As many values as times, and times that increase."""
+    if any(later <= earlier for earlier, later in pairwise(times)):
+        refuse("time_s", list(times), "strictly increasing", "Sort the list and drop repeats.")
+    if len(times) != len(values):
+        refuse(
+            field, list(values), f"a list of {len(times)}, one for each of time_s", "Give one value per time."
+        )
