@@ -37,7 +37,8 @@ def test_the_python_example_runs_and_writes_a_database(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     assert done.stdout.count("Estimate(value=") == 2
     database = SteDatabase.from_netcdf(tmp_path / "spur_20_20.nc")
-    assert database.peak_to_peak(torque=100).value == pytest.approx(2.8e-6, rel=0.02)
+    # full finite-element contact in plane strain gives 2.799 um; the finite width adds 3.2 %
+    assert database.peak_to_peak(torque=100).value == pytest.approx(2.89e-6, rel=0.01)
 
 
 def test_the_http_example_is_a_case() -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze
-from fe_contact.analysis import check_request
+from fe_contact.analysis import check_request, error_estimate
 from fe_contact.analysis.error_estimate import CORRECTION_ERROR
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.compliance import FlankCompliance3D, flank_compliances_3d
@@ -106,13 +106,15 @@ def test_the_correction_is_right_within_its_stated_error(name, record_figure):
     space, held = in_space(pair, force)
     corrected, plain = in_plane(pair, force)
     expected, found = space - held, corrected - plain
-    part = np.quantile(np.abs(found - expected) / np.abs(found).max(), 0.9)
+    part = np.abs(found - expected) / np.abs(found).max()
+    worst = float(np.quantile(part, 0.9))
     record_figure(
-        f"correction for a finite width, {name}: error at nine of ten positions", 100.0 * part,
+        f"correction for a finite width, {name}: error at nine of ten positions", 100.0 * worst,
         f"at most {100 * CORRECTION_ERROR:g} % of the correction", "%", SOURCE,
     )  # fmt: skip
     assert np.abs(found).max() > 5e-3 * plain.mean()
-    assert part <= CORRECTION_ERROR
+    assert worst <= CORRECTION_ERROR
+    assert np.median(part) <= 0.7 * CORRECTION_ERROR
 
 
 def test_pair_of_six_modules_is_corrected_to_three_dimensions(cache, record_figure):
@@ -153,13 +155,17 @@ def test_switched_off_it_is_plane_strain_to_the_last_bit(cache):
     assert stress.metadata.receipt["error_by_source"]["plane_for_finite_width_relative"] == 0.0
 
 
-def test_its_error_is_stated_by_source_and_in_the_band(cache):
-    """Three parts in a hundred of what it changed, added to the others at every point."""
+def test_its_error_is_stated_by_source_and_in_the_band(cache, monkeypatch):
+    """Three parts in a hundred of what it changed, added to the other sources at every point."""
     options = {"level": "draft", "positions": 16}
     corrected, plain = (table(SIX, cache, model=model, **options) for model in ("auto", "plane_strain"))
     change = corrected.static_transmission_error - plain.static_transmission_error
+    assert change.min() > 0.0
     stated = corrected.metadata.receipt["error_by_source"]
     assert stated["finite_width_m"][0] == pytest.approx(CORRECTION_ERROR * change.max(), rel=1e-9, abs=0.0)
     assert stated["plane_for_finite_width_relative"] == 0.0
     assert stated["discretisation_m"] == plain.metadata.receipt["error_by_source"]["discretisation_m"]
-    assert np.all(corrected.error_estimate > CORRECTION_ERROR * change)
+    monkeypatch.setattr(error_estimate, "CORRECTION_ERROR", 0.0)
+    exact = table(SIX, cache, **options)
+    part = corrected.error_estimate - exact.error_estimate
+    assert part == pytest.approx(CORRECTION_ERROR * change, rel=1e-9, abs=0.0)
