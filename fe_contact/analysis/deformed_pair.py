@@ -132,6 +132,7 @@ def deformed_pairs(
         misalignments=[misalignment],
         center_distance_changes=[center_distance_change],
         effects=effects,
+        whole_table=False,
     )
     integer("beside", beside, 0, 100)
     report = progress or _silent

@@ -208,7 +208,7 @@ def simulate(
 @guarded
 def report(
     files: Annotated[
-        list[Path], typer.Argument(help="An STE database, flank results, a run; one of each (netCDF).")
+        list[Path], typer.Argument(help="STE database, flank results, sensitivity study, run; one of each.")
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
@@ -229,7 +229,8 @@ def report(
 def sensitivity(
     cases: Annotated[list[Path], typer.Argument(help="Case files; each becomes a line in the picture.")],
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="Folder, or a file ending in .png, .csv or .json.")
+        Path,
+        typer.Option("-o", "--output", help="Folder, or a file ending in .png, .csv, .json, .nc, .html."),
     ],
     misalignment_um: Annotated[str, typer.Option(help="Misalignments in um.")] = "0,15,30,45,60",
     center_distance_change_percent: Annotated[
@@ -268,12 +269,18 @@ def submit(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="Wait, and write the result here.")
     ] = None,
+    process: Annotated[
+        str | None, typer.Option(help="What to run on a case: analyze (default), flank or sensitivity.")
+    ] = None,
+    inputs: Annotated[
+        str | None, typer.Option(help="Further inputs of that process, as a JSON object.")
+    ] = None,
     json: AsJson = False,
 ) -> None:
     """Submit a case or a scene to a service."""
-    from service.cli.remote import run_submit  # noqa: PLC0415 (start-up time)
+    from service.cli.remote import Wish, run_submit  # noqa: PLC0415 (start-up time)
 
-    run_submit(file, service, wait=wait, output=output, as_json=json)
+    run_submit(file, service, Wish(process, inputs), wait=wait, output=output, as_json=json)
 
 
 @app.command(epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc")

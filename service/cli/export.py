@@ -32,7 +32,7 @@ def run_export(
     if len(where) > _MOST_POSITIONS:
         raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MOST_POSITIONS} positions")
     _refuse_output(output)
-    pair = check_case(case)
+    pair = check_case(case, whole_table=False)
     with progress_bar() as report, boundary_errors():
         found = deformed_pairs(
             pair,

@@ -2,25 +2,40 @@
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
 from service.client import JobState, LineOfActionClient, Result
 from service.problems import BadInput, NotFound, ResultNotReady
 from service.schemas import Case, read_table, validated
 
-_KINDS = ("database", "run")
+_KINDS = ("database", "flanks", "run", "sensitivity")
+_OF_CASES = ("analyze", "flank", "sensitivity")
 
 
-def run_submit(file: Path, service: str, *, wait: bool, output: Path | None, as_json: bool) -> None:
+@dataclass(frozen=True)
+class Wish:
+    """What is to be run on a file: a process, None for the file's own, and further inputs as JSON."""
+
+    process: str | None = None
+    inputs: str | None = None
+
+
+def run_submit(
+    file: Path, service: str, wish: Wish, *, wait: bool, output: Path | None, as_json: bool
+) -> None:
     """Submit; wait and write if asked."""
     if output is not None:
         check_writable(output)
+    further = _further(wish)
     with LineOfActionClient(service) as client:
-        state = _submitted(client, file)
+        state = _submitted(client, file, wish.process, further)
         facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
         if wait or output is not None:
             result = _waited(client, state)
@@ -31,13 +46,34 @@ def run_submit(file: Path, service: str, *, wait: bool, output: Path | None, as_
     _show(facts, as_json)
 
 
-def _submitted(client: LineOfActionClient, file: Path) -> JobState:
+def _further(wish: Wish) -> dict[str, Any]:
+    """Return the further inputs of a process of cases."""
+    if wish.process not in (None, *_OF_CASES):
+        raise BadInput.of("--process", wish.process, f"one of {', '.join(_OF_CASES)}", "Or leave it out.")
+    if wish.inputs is None:
+        return {}
+    example = """For example --inputs '{"misalignment_um": 30}'."""
+    if wish.process is None:
+        raise BadInput.of("--inputs", wish.inputs, "given with --process", example)
+    try:
+        found = json.loads(wish.inputs)
+    except json.JSONDecodeError:
+        found = None
+    if not isinstance(found, dict) or "case" in found:
+        raise BadInput.of("--inputs", wish.inputs, "a JSON object without case", example)
+    return found
+
+
+def _submitted(
+    client: LineOfActionClient, file: Path, process: str | None, further: dict[str, Any]
+) -> JobState:
     """Submit a file as what it holds."""
     content = read_table(file)
-    if "shafts" in content:
+    if "shafts" in content and process is None:
         return client.submit_scene(file)
     if "pair" in content:
-        return client.submit_case(validated(Case, content))
+        case = validated(Case, content).model_dump(mode="json")
+        return client.submit(process or "analyze", {"case": case, **further})
     raise BadInput.of(
         "file", str(file), "a case (with [pair]) or a scene (with [[shafts]])", "See docs/case-file.md."
     )

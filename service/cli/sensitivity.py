@@ -11,9 +11,12 @@ from pathlib import Path
 
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
+from service.convert.sensitivity_file import write_studies
 from service.problems import BadInput
 from service.report.image import png
+from service.report.inputs import Inputs
 from service.report.sensitivity import sensitivity_figure, sensitivity_table
+from service.report.write import write_page
 from service.schemas import Case, read_model
 from service.settings import cache_home
 
@@ -43,7 +46,7 @@ def run_sensitivity(
         ]
     for target in targets:
         target.parent.mkdir(exist_ok=True)
-        target.write_bytes(_CONTENT[target.suffix](studies))
+        _WRITERS[target.suffix](studies, target)
     if as_json:
         print_json({"written": [str(target) for target in targets], **studies_json(studies)})
     else:
@@ -77,39 +80,51 @@ def _targets(output: Path) -> list[Path]:
     BadInput
         Neither, or not writable.
     """
+    endings = ", ".join(_WRITERS)
     if output.is_dir() or not output.suffix:
         check_writable(output / "x" if output.is_dir() else output)
         if output.is_file():
-            raise BadInput.of("output", str(output), "a folder, or a file ending in .png, .csv or .json")
-        return [output / f"sensitivity{ending}" for ending in _CONTENT]
-    if output.suffix not in _CONTENT:
-        endings = ", ".join(_CONTENT)
+            raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
+        return [output / f"sensitivity{ending}" for ending in _WRITERS]
+    if output.suffix not in _WRITERS:
         raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
     check_writable(output)
     return [output]
 
 
-def _picture(studies: Sequence[PairStudy]) -> bytes:
+def _picture(studies: Sequence[PairStudy], target: Path) -> None:
     """PNG."""
-    return png(sensitivity_figure(studies))
+    target.write_bytes(png(sensitivity_figure(studies)))
 
 
-def _csv(studies: Sequence[PairStudy]) -> bytes:
+def _page(studies: Sequence[PairStudy], target: Path) -> None:
+    """Write the report page."""
+    write_page(Inputs(studies=tuple(studies)), target)
+
+
+def _csv(studies: Sequence[PairStudy], target: Path) -> None:
     """One line per pair, model and deviation."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     found = sensitivity_table(studies)
     writer.writerow(found.head)
     writer.writerows(found.rows)
-    return text.getvalue().encode("utf-8")
+    target.write_text(text.getvalue(), encoding="utf-8")
 
 
-def _json(studies: Sequence[PairStudy]) -> bytes:
+def _json(studies: Sequence[PairStudy], target: Path) -> None:
     """JSON."""
-    return (json.dumps(studies_json(studies), allow_nan=False, indent=1) + "\n").encode("utf-8")
+    text = json.dumps(studies_json(studies), allow_nan=False, indent=1)
+    target.write_text(f"{text}\n", encoding="utf-8")
 
 
-_CONTENT: dict[str, Callable[[Sequence[PairStudy]], bytes]] = {".png": _picture, ".csv": _csv, ".json": _json}
+_WRITERS: dict[str, Callable[[Sequence[PairStudy], Path], None]] = {
+    ".png": _picture,
+    ".csv": _csv,
+    ".json": _json,
+    ".nc": write_studies,
+    ".html": _page,
+}
 
 
 def _show(studies: Sequence[PairStudy], targets: Sequence[Path]) -> None:

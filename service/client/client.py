@@ -26,7 +26,12 @@ if TYPE_CHECKING:
 
 Watch = Callable[[JobState], None]
 
-_PATHS = {"database": "/v1/databases", "run": "/v1/runs"}
+_PATHS = {
+    "database": "/v1/databases",
+    "flanks": "/v1/flanks",
+    "run": "/v1/runs",
+    "sensitivity": "/v1/sensitivities",
+}
 _NETCDF = "application/x-netcdf"
 
 
@@ -197,6 +202,41 @@ class LineOfActionClient:
 
         result = self.wait(self.submit_scene(scene).id, progress)
         return RunResult.from_netcdf(self.fetch_file(result.key, "run"))
+
+    def flank_file(self, case: CaseLike, progress: Watch | None = None, **point: float) -> Path:
+        """Return the file of a case's flank results: submit, wait, fetch.
+
+        Parameters
+        ----------
+        case : Case, mapping or Path
+        progress : callable, optional
+        **point : float
+            ``torque_n_m`` or ``normal_force_n``, ``misalignment_um``, ``center_distance_change_mm``; what is
+            left out is taken from the case. Read the file with `fe_contact.LoadDistribution.from_netcdf`.
+        """
+        return self._study("flank", case, progress, point)
+
+    def sensitivity_file(
+        self, case: CaseLike, progress: Watch | None = None, **deviations: Sequence[float]
+    ) -> Path:
+        """Return the file of a case's sensitivity study: submit, wait, fetch.
+
+        Parameters
+        ----------
+        case : Case, mapping or Path
+        progress : callable, optional
+        **deviations : sequence of float
+            ``misalignment_um``, ``center_distance_change_percent``. ``loa report`` draws the file.
+        """
+        return self._study(
+            "sensitivity", case, progress, {name: list(values) for name, values in deviations.items()}
+        )
+
+    def _study(self, process: str, case: CaseLike, progress: Watch | None, further: dict[str, Any]) -> Path:
+        """Submit a case with further inputs, wait, fetch the file."""
+        inputs = {"case": case_of(case).model_dump(mode="json"), **further}
+        result = self.wait(self.submit(process, inputs).id, progress)
+        return self.fetch_file(result.key, result.kind)
 
     def query(
         self,

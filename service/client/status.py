@@ -42,7 +42,7 @@ class JobState:
 
 @dataclass(frozen=True)
 class Result:
-    """Where a result is: its content hash, its kind ("database" or "run") and its path on the service."""
+    """Where a result is: its content hash, its kind (the name of the output) and its path on the service."""
 
     key: str
     kind: str

@@ -8,8 +8,8 @@ from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.schemas import Case
 
 
-def check_case(case: Case) -> ParallelAxes:
-    """Return the pair of a case that can be computed.
+def check_case(case: Case, *, whole_table: bool = True) -> ParallelAxes:
+    """Return the pair of a case that can be computed; `whole_table` as for `check_request`.
 
     Raises
     ------
@@ -18,5 +18,5 @@ def check_case(case: Case) -> ParallelAxes:
     """
     pair = gear_pair(case)
     with boundary_errors():
-        check_request(pair, **analysis_arguments(case))
+        check_request(pair, **analysis_arguments(case), whole_table=whole_table)
     return pair

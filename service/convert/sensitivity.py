@@ -7,7 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from fe_contact.analysis import check_request
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
+from fe_contact.geometry import ParallelAxes
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.convert.units import MM, UM
 from service.schemas import Case
@@ -61,21 +63,53 @@ def study_case(
     """
     pair = gear_pair(case)
     arguments = analysis_arguments(case)
-    torques, forces = case.load.torque_n_m, case.load.normal_force_n
-    force = float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])
+    force = _highest_force(case, pair)
     with boundary_errors():
         curves = study_sensitivity(
             pair,
             normal_force=force,
-            misalignments=[value * UM for value in deviations.misalignment_um],
-            center_distance_changes=[
-                0.01 * value * pair.center_distance for value in deviations.center_distance_change_percent
-            ],
+            **_axes(pair, deviations),
             progress=progress,
             cache=cache,
             **{name: arguments[name] for name in _PASSED_ON},
         )
     return PairStudy(name, force, pair.center_distance, curves)
+
+
+def check_study(case: Case, deviations: Deviations) -> None:
+    """Refuse what a study cannot compute, without computing anything.
+
+    Raises
+    ------
+    BadInput
+        No such pair, or a deviation at which it cannot run.
+    """
+    pair = gear_pair(case)
+    arguments = analysis_arguments(case)
+    axes = _axes(pair, deviations)
+    with boundary_errors():
+        check_request(
+            pair,
+            normal_forces=[_highest_force(case, pair)],
+            **axes,
+            **{name: arguments[name] for name in _PASSED_ON}
+            | {"model": "3d" if case.accuracy.model == "auto" else case.accuracy.model},
+        )
+
+
+def _highest_force(case: Case, pair: ParallelAxes) -> float:
+    """Return the highest load of the case as a normal force in N."""
+    torques, forces = case.load.torque_n_m, case.load.normal_force_n
+    return float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])
+
+
+def _axes(pair: ParallelAxes, deviations: Deviations) -> Json:
+    """Return both axes in m."""
+    percent = deviations.center_distance_change_percent
+    return {
+        "misalignments": [value * UM for value in deviations.misalignment_um],
+        "center_distance_changes": [0.01 * value * pair.center_distance for value in percent],
+    }
 
 
 def studies_json(studies: Sequence[PairStudy]) -> Json:

@@ -1,4 +1,4 @@
-"""The processes of the service: analyze and simulate."""
+"""The processes of the service: analyze, flank, sensitivity and simulate."""
 
 from __future__ import annotations
 
@@ -10,14 +10,19 @@ from fe_contact.analysis.compute_database import SOLVER_VERSION
 from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
+from service.convert.case import case_json
 from service.convert.checks import check_case
+from service.convert.flanks import case_at
 from service.convert.scene import check_scene
+from service.convert.sensitivity import Deviations, check_study
 from service.convert.topology import facts_of
 from service.jobs.process import Process, Registry, Stage
 from service.problems import BadInput
 from service.schemas import Case
+from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
 from service.schemas.scene import MeshInput, SceneInput
+from service.schemas.sensitivity import DeviationsInput
 from service.store import ResultStore
 
 Json = dict[str, Any]
@@ -33,6 +38,33 @@ class SimulateInputs(BoundaryModel):
     """Inputs of the process simulate."""
 
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
+
+
+class FlankInputs(FlankPoint):
+    """Inputs of the process flank."""
+
+    case: Case = Field(description="The case, as in a case file")
+
+
+class SensitivityInputs(DeviationsInput):
+    """Inputs of the process sensitivity."""
+
+    case: Case = Field(description="The case, as in a case file; its highest load counts")
+
+
+def _prepare_flank(inputs: BoundaryModel, _store: ResultStore) -> Json:
+    """Check that the pair exists; return the case of this one load and alignment, with all defaults."""
+    assert isinstance(inputs, FlankInputs)
+    case = case_at(inputs.case, inputs)
+    check_case(case, whole_table=False)
+    return {"case": case_json(case)}
+
+
+def _prepare_sensitivity(inputs: BoundaryModel, _store: ResultStore) -> Json:
+    """Check that the pair exists at every deviation; return the inputs with all defaults."""
+    assert isinstance(inputs, SensitivityInputs)
+    check_study(inputs.case, Deviations(inputs.misalignment_um, inputs.center_distance_change_percent))
+    return inputs.model_dump(mode="json")
 
 
 def _prepare_analyze(inputs: BoundaryModel, _store: ResultStore) -> Json:
@@ -92,6 +124,31 @@ ANALYZE = Process(
     stages=(Stage("compliance", 0.6), Stage("contact", 0.15), Stage("error estimate", 0.25)),
     name_result=_name_database,
 )
+FLANK = Process(
+    id="flank",
+    title="Flank results of a gear pair",
+    description="Pressure, line load and gap on the flanks over one mesh cycle, at one load and alignment.",
+    version="1",
+    inputs=FlankInputs,
+    output="flanks",
+    kind="flanks",
+    prepare=_prepare_flank,
+    entry="service.jobs.study_work:study_flanks",
+    stages=(Stage("compliance", 0.9), Stage("contact", 0.1)),
+)
+SENSITIVITY = Process(
+    id="sensitivity",
+    title="Sensitivity to misalignment and centre distance",
+    description="Peak-to-peak transmission error over misalignment and centre distance, varied one at a "
+    "time, without and with corner contact.",
+    version="1",
+    inputs=SensitivityInputs,
+    output="sensitivity",
+    kind="sensitivity",
+    prepare=_prepare_sensitivity,
+    entry="service.jobs.study_work:study_sensitivity_of",
+    stages=(Stage("tables", 1.0),),
+)
 SIMULATE = Process(
     id="simulate",
     title="Dynamics of a geared system",
@@ -108,4 +165,4 @@ SIMULATE = Process(
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
-    return Registry(ANALYZE, SIMULATE)
+    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE)

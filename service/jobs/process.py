@@ -38,7 +38,7 @@ class Process:
     output : str
         Name of the one output.
     kind : str
-        Kind of the result in the store, "database" or "run".
+        Kind of the result in the store; the client takes the output's name for it, so both are the same.
     prepare : callable
         ``prepare(inputs, store)`` checks what a schema cannot (raises `BadInput`) and returns the normalised
         inputs: what is hashed, stored and handed to the worker. Cheap: it runs in the request.

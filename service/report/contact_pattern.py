@@ -79,8 +79,9 @@ def _curve(found: LoadDistribution, gear: Gear, pattern: ContactPattern, largest
 def _extent(found: LoadDistribution, gear: Gear, pattern: ContactPattern) -> tuple[float, float]:
     """Return the range in mm from what is touched, or the start of the active profile, to the tip."""
     scene, index = found.scene, GEARS.index(gear)
-    low = min(scene.start_of_active_profile[index], float(pattern.roll_length[0]))
-    high = max(scene.tip[index], float(pattern.roll_length[-1]))
+    marks = (scene.start_of_active_profile[index], scene.tip[index])  # the tip of a ring is the lower one
+    low = min(*marks, float(pattern.roll_length[0]))
+    high = max(*marks, float(pattern.roll_length[-1]))
     room = 1e3 * 0.06 * (high - low)
     return 1e3 * low - room, 1e3 * high + room * (1.5 if found.face_position.size > 1 else 3.0)
 

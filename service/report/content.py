@@ -9,6 +9,7 @@ from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynam
 from service.report.flank_part import flank_alarms, flank_headlines, flank_making, flank_results_section
 from service.report.inputs import Inputs
 from service.report.page import Headline, Page, Section
+from service.report.sensitivity import sensitivity_figure
 from service.report.static_part import static_alarms, static_headlines, static_making, static_results
 
 
@@ -29,6 +30,8 @@ def page_of(read: Inputs) -> Page:
         results += flank_results_section(flanks)
         making += flank_making(flanks, alone=database is None)
         alarms += flank_alarms(flanks, database)
+    if read.studies:
+        results.append(Section("Sensitivity", figures=(sensitivity_figure(read.studies),)))
     if run is not None:
         headlines += dynamic_headlines(run)
         results += dynamic_results(run)
@@ -48,7 +51,7 @@ def _title(read: Inputs) -> str:
     """Name the pair, or the run."""
     facts = pair_facts(read)
     if facts is None:
-        return "Dynamics of geared shafts"
+        return "Sensitivity of gear pairs" if read.run is None else "Dynamics of geared shafts"
     one, other = facts.teeth
     return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
 

@@ -1,4 +1,4 @@
-"""What a report is made from: an STE database, flank results, a run; the files say which they are."""
+"""What a report is made from: a database, flank results, a study, a run; the files say which they are."""
 
 from __future__ import annotations
 
@@ -14,20 +14,24 @@ from dynamics.results import RunResult
 from fe_contact.analysis import LoadDistribution
 from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
+from service.convert.sensitivity import PairStudy
+from service.convert.sensitivity_file import read_studies
 from service.problems import BadInput
 
 _KINDS = {
     ("format", "lineofaction STE database"): "database",
     ("format", "lineofaction flank results"): "flank results",
+    ("format", "lineofaction sensitivity study"): "sensitivity study",
     ("schema", "lineofaction dynamics run"): "run",
 }
-_BOUND = "an STE database, flank results or a run"
+_BOUND = "an STE database, flank results, a sensitivity study or a run"
 _READERS: dict[str, Callable[[Path], Any]] = {
     "database": SteDatabase.from_netcdf,
     "flank results": LoadDistribution.from_netcdf,
+    "sensitivity study": read_studies,
     "run": RunResult.from_netcdf,
 }
-_FIELDS = {"database": "database", "flank results": "flanks", "run": "run"}
+_FIELDS = {"database": "database", "flank results": "flanks", "sensitivity study": "studies", "run": "run"}
 
 
 @dataclass(frozen=True)
@@ -36,6 +40,7 @@ class Inputs:
 
     database: SteDatabase | None = None
     flanks: LoadDistribution | None = None
+    studies: tuple[PairStudy, ...] = ()
     run: RunResult | None = None
 
 
@@ -53,14 +58,14 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
     for file in files:
         kind = file_kind(file)
         if kind in read:
-            advice = "One page shows one database, one set of flank results and one run."
+            advice = "One page shows one file of each kind."
             raise BadInput.of("file", str(file), f"the only {kind}", advice)
         read[kind] = _read(file, kind)
     return Inputs(**{_FIELDS[kind]: content for kind, content in read.items()})
 
 
 def file_kind(file: Path) -> str:
-    """Return "database", "flank results" or "run", by the attribute in which a file names its format.
+    """Return which kind a file is, one of `_READERS`, by the attribute in which it names its format.
 
     Raises
     ------

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,8 @@ Json = dict[str, Any]
 
 _PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 520, 60, 62  # pixels
 _LABEL = 26  # pixels of an axis label between panels
-_LEGEND_ROW, _NAMES_IN_ROW = 22, 8
+_LEGEND_ROW = 22  # pixels
+_ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
 
@@ -41,7 +43,7 @@ def plotly_figure(figure: Figure) -> Json:
 def _panels(panels: tuple[Panel, ...]) -> Json:
     """Stack panels, each with its own axes, the first on top."""
     names = dict.fromkeys(line.name for panel in panels for line in panel.lines)
-    above = (62 if panels[0].title else 44) + _LEGEND_ROW * (len(names) // (_NAMES_IN_ROW + 1))
+    above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(list(names)) - 1)
     gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
     inner = _PANEL_HEIGHT * len(panels) + sum(gaps)
     layout: Json = _layout(inner + above + _BELOW)
@@ -66,6 +68,11 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
         for reference in panel.references:
             _add_reference(layout, reference, panel, suffix)
     return {"data": data, "layout": layout}
+
+
+def _legend_rows(names: list[str]) -> int:
+    """Rows that the legend takes on a page of full width."""
+    return max(math.ceil(sum(len(name) + _HANDLE_CHARACTERS for name in names) / _ROW_CHARACTERS), 1)
 
 
 def _domain(above: int, inner: int) -> list[float]:

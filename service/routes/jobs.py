@@ -14,7 +14,12 @@ from service.routes.errors import documented
 from service.schemas.ogc import JobList, JobStatus, Link, ResultReference, StatusInfo
 
 NETCDF = "application/x-netcdf"
-RESULT_PATHS = {"database": "/v1/databases", "run": "/v1/runs"}
+RESULT_PATHS = {
+    "database": "/v1/databases",
+    "flanks": "/v1/flanks",
+    "run": "/v1/runs",
+    "sensitivity": "/v1/sensitivities",
+}
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 

@@ -1,4 +1,4 @@
-"""Stored results: databases and runs, as metadata or netCDF, and batches of forces."""
+"""Stored results as metadata or netCDF, and batches of forces."""
 
 from __future__ import annotations
 
@@ -8,8 +8,12 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
+from fe_contact.analysis import LoadDistribution
 from service.convert.answers import force_answer, metadata_json
+from service.convert.flanks import flank_json
 from service.convert.runs import run_json
+from service.convert.sensitivity import studies_json
+from service.convert.sensitivity_file import read_studies
 from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.schemas.query import QueryInput, QueryOutput
@@ -50,6 +54,26 @@ def run(key: Key, request: Request, context: Ctx, accept: Accept = "application/
     return (
         _file(stored, request) if _wants_file(accept) else _metadata(stored, request, run_json(stored.path))
     )
+
+
+@router.get("/flanks/{key}", summary="Flank results", response_class=Response, responses=_answers())
+def flanks(key: Key, request: Request, context: Ctx, accept: Accept = "application/json") -> Response:
+    """Figures or the file, by Accept."""
+    stored = context.store.verified(key, "flanks")
+    if _wants_file(accept):
+        return _file(stored, request)
+    return _metadata(stored, request, flank_json(LoadDistribution.from_netcdf(stored.path)))
+
+
+@router.get(
+    "/sensitivities/{key}", summary="A sensitivity study", response_class=Response, responses=_answers()
+)
+def sensitivity(key: Key, request: Request, context: Ctx, accept: Accept = "application/json") -> Response:
+    """All curves or the file, by Accept."""
+    stored = context.store.verified(key, "sensitivity")
+    if _wants_file(accept):
+        return _file(stored, request)
+    return _metadata(stored, request, studies_json(read_studies(stored.path)))
 
 
 @router.post("/databases/{key}/query", summary="Mesh forces", responses=documented(400, 404, 413, 422, 500))

@@ -36,7 +36,7 @@ class StoredResult:
     key : str
         Hash of the input: the resource's name.
     kind : str
-        "database" or "run".
+        "database", "flanks", "run" or "sensitivity".
     sha256 : str
         Digest of the file's bytes, hexadecimal.
     size : int

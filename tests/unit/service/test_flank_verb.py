@@ -10,6 +10,7 @@ from typer.testing import CliRunner, Result
 
 from fe_contact import LoadDistribution
 from service.cli.commands import app
+from service.client import JobState, LineOfActionClient
 from service.convert.flanks import case_at
 from service.schemas import Case, validated
 from service.schemas.flank import FlankPoint
@@ -134,3 +135,35 @@ def test_equal_questions_are_one_case() -> None:
     one = case_at(case(), FlankPoint())
     other = case(load={"normal_force_n": [5.0, 20.0]}, accuracy={"tolerance": 0.01, "positions": 32})
     assert case_at(other, FlankPoint()) == one
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--process", "nonsense"], "--process = 'nonsense': must be one of analyze, flank, sensitivity"),
+        (["--inputs", "{}"], "--inputs = '{}': must be given with --process"),
+        (["--process", "flank", "--inputs", "[1]"], "--inputs = '[1]': must be a JSON object without case"),
+        (["--process", "flank", "--inputs", '{"case": {}}'], "must be a JSON object without case"),
+    ],
+)
+def test_a_submission_that_cannot_be_is_one_line(small: Path, arguments: list[str], said: str) -> None:
+    result = loa("submit", small, *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert said in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_submission_names_its_process_and_inputs(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[str, dict[str, object]]] = []
+
+    def submit(_client: LineOfActionClient, process: str, inputs: dict[str, object]) -> JobState:
+        asked.append((process, inputs))
+        return JobState("1", process, "accepted", "", "", 0, 0)
+
+    monkeypatch.setattr(LineOfActionClient, "submit", submit)
+    options = ["--process", "flank", "--inputs", '{"torque_n_m": 70.0}', "--json"]
+    result = loa("submit", small, *options)
+    assert json.loads(result.stdout)["process"] == "flank"
+    ((process, inputs),) = asked
+    assert (process, inputs["torque_n_m"]) == ("flank", 70.0)
+    assert validated(Case, inputs["case"]).load.torque_n_m == (50.0, 100.0, 200.0)

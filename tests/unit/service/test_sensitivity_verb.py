@@ -5,15 +5,21 @@ from __future__ import annotations
 import csv
 import json
 import struct
+from dataclasses import replace
 from pathlib import Path
 
+import h5netcdf
 import numpy as np
 import pytest
 from typer.testing import CliRunner, Result
 
 from fe_contact.analysis import RippleCurve, Sensitivity, check_request
+from fe_contact.errors import DatabaseError
 from service.cli.commands import app
 from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
+from service.convert.sensitivity_file import read_studies, write_studies
+from service.problems import BadInput
+from service.report import write_report
 from service.report.figure import Panel
 from service.report.sensitivity import sensitivity_figure, sensitivity_table
 from service.schemas import Case, read_model
@@ -73,7 +79,9 @@ def test_a_study_in_a_folder(small: Path, tmp_path: Path) -> None:
     assert (result.exit_code, result.stderr) == (0, "")
     answer = json.loads(result.stdout)
     written = [Path(file).name for file in answer.pop("written")]
-    assert written == ["sensitivity.png", "sensitivity.csv", "sensitivity.json"]
+    assert written == [f"sensitivity.{ending}" for ending in ("png", "csv", "json", "nc", "html")]
+    (stored,) = read_studies(tmp_path / "out" / "sensitivity.nc")
+    assert studies_json([stored])["pairs"] == answer["pairs"]
     assert json.loads((tmp_path / "out" / "sensitivity.json").read_text()) == answer
     (found,) = answer["pairs"]
     assert (found["name"], found["normal_force_n"]) == ("small", 1000.0)
@@ -207,6 +215,52 @@ def test_the_highest_torque_is_the_load(small: Path, monkeypatch: pytest.MonkeyP
     small.write_text(SMALL.replace("normal_force_n = [500, 1000]", "torque_n_m = [10, 100]"))
     found = study_case("x", read_model(Case, small), Deviations((0.0,), (0.0,)), None)
     assert found.normal_force == pytest.approx(100.0 / 37.5877e-3, rel=1e-5)
+
+
+def test_studies_come_back_from_their_file(tmp_path: Path) -> None:
+    wide = study("pair b", 2.0)
+    curves = tuple(
+        replace(one, center_distance_change=replace(change, deviation=1.5 * change.deviation))
+        for one in wide.curves
+        for change in [one.center_distance_change]
+    )
+    written = [study(), replace(wide, curves=curves, center_distance=0.15)]
+    write_studies(written, tmp_path / "s.nc")
+    back = read_studies(tmp_path / "s.nc")
+    assert sensitivity_table(back) == sensitivity_table(written)
+    for one, other in zip(written, back, strict=True):
+        assert (one.name, one.normal_force, one.center_distance) == (
+            other.name,
+            other.normal_force,
+            other.center_distance,
+        )
+        for mine, theirs in zip(one.curves, other.curves, strict=True):
+            assert mine.corner_contact is theirs.corner_contact
+            assert np.array_equal(mine.misalignment.error, theirs.misalignment.error)
+            assert np.array_equal(
+                mine.center_distance_change.deviation, theirs.center_distance_change.deviation
+            )
+
+
+def test_a_damaged_or_foreign_study_is_refused(tmp_path: Path) -> None:
+    write_studies([study()], tmp_path / "s.nc")
+    with h5netcdf.File(tmp_path / "s.nc", "a") as file:
+        file.variables["normal_force"][0] = 7.0
+    with pytest.raises(DatabaseError, match="checksum"):
+        read_studies(tmp_path / "s.nc")
+    with h5netcdf.File(tmp_path / "s.nc", "a") as file:
+        file.attrs["format"] = "else"
+    with pytest.raises(DatabaseError, match="no sensitivity study"):
+        read_studies(tmp_path / "s.nc")
+
+
+def test_a_study_is_on_the_report_page(tmp_path: Path) -> None:
+    write_studies([study()], tmp_path / "s.nc")
+    page = write_report(tmp_path / "s.nc", tmp_path / "s.html")[0].read_text(encoding="utf-8")
+    assert '<figure id="sensitivity">' in page
+    assert "<h1>Sensitivity of gear pairs</h1>" in page
+    with pytest.raises(BadInput, match="the only sensitivity study"):
+        write_report([tmp_path / "s.nc", tmp_path / "s.nc"], tmp_path / "t.html")
 
 
 def test_there_are_examples_of_both_pairs() -> None:

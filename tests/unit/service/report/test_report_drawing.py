@@ -47,6 +47,14 @@ def test_panels_share_the_height_without_overlap(count: int) -> None:
         assert upper[0] > lower[1]
 
 
+@pytest.mark.parametrize(("length", "rows"), [(5, 1), (40, 2), (80, 3)])
+def test_long_names_get_the_rows_of_the_legend_they_need(length: int, rows: int) -> None:
+    lines = tuple(Line(f"{i}".ljust(length, "n"), X, X, palette.BLUE) for i in range(4))
+    panel = Panel(Axis("x"), Axis("y"), lines, title="a")
+    above = plotly_figure(replace(stacked(), content=(panel,)))["layout"]["margin"]["t"]
+    assert above == 62 + 22 * (rows - 1)
+
+
 def test_references_stand_in_their_own_panel() -> None:
     shapes = plotly_figure(stacked())["layout"]["shapes"]
     assert [(s["xref"], s["yref"]) for s in shapes] == [

@@ -1,0 +1,116 @@
+"""Sensitivity studies as netCDF-4 files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity
+from fe_contact.errors import DatabaseError
+from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
+from service.convert.sensitivity import PairStudy
+
+FORMAT = "lineofaction sensitivity study"
+SCHEMA_VERSION = 1
+_AXES = ("misalignment", "center_distance_change")
+
+# dimensions, units and long name; the models are without and with corner contact
+STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "normal_force": (("pair",), "N", "normal tooth force F_bn"),
+    "center_distance": (("pair",), "m", "nominal centre distance"),
+    "corner_contact": (("model",), "1", "1 with corner contact"),
+    "misalignment": (("pair", "misaligned"), "m", "gap growth over the common face width"),
+    "center_distance_change": (("pair", "changed"), "m", "deviation from the nominal centre distance"),
+    **{
+        f"{name}_over_{axis}": (("pair", "model", along), "m", f"{text} over the {axis.replace('_', ' ')}")
+        for axis, along in zip(_AXES, ("misaligned", "changed"), strict=True)
+        for name, text in (
+            ("peak_to_peak", "peak-to-peak static transmission error"),
+            ("error", "half-width of the error band"),
+        )
+    },
+}
+
+
+def write_studies(studies: Sequence[PairStudy], path: Path) -> None:
+    """Write studies of the same numbers of deviations: into a temporary file beside `path`, then renamed."""
+    import xarray  # noqa: PLC0415 - half a second, and needed for files only
+
+    arrays = _arrays(studies)
+    variables = {
+        name: (dimensions, arrays[name], {"units": units, "long_name": text})
+        for name, (dimensions, units, text) in STORED.items()
+    }
+    attributes = {
+        "Conventions": "CF-1.11",
+        "title": "Sensitivity of the transmission error to misalignment and centre distance",
+        "format": FORMAT,
+        "schema_version": np.int64(SCHEMA_VERSION),
+        "names": json.dumps([study.name for study in studies]),
+        "data_sha256": digest(arrays),
+    }
+    write_dataset(xarray.Dataset(variables, attrs=attributes), path)
+
+
+def read_studies(path: Path) -> tuple[PairStudy, ...]:
+    """Read back what `write_studies` wrote.
+
+    Raises
+    ------
+    DatabaseError
+        The file is missing, no netCDF-4, of another kind, of a newer schema, or damaged.
+    """
+    arrays, attributes = read_variables(path)
+    if attributes.get("format") != FORMAT:
+        raise DatabaseError(f"{path}: a netCDF file, but no sensitivity study")
+    version = attributes.get("schema_version")
+    if not isinstance(version, int | np.integer) or not 1 <= version <= SCHEMA_VERSION:
+        raise DatabaseError(f"{path}: schema version {version}, but this release reads 1: update it")
+    missing = sorted(set(STORED) - set(arrays))
+    if missing:
+        raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
+    content = {name: arrays[name] for name in STORED}
+    if attributes.get("data_sha256") != digest(content):
+        raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
+    try:
+        names = json.loads(attributes["names"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise DatabaseError(f"{path}: damaged, its names are no JSON ({error})") from error
+    return tuple(_study(str(name), content, index) for index, name in enumerate(names))
+
+
+def _arrays(studies: Sequence[PairStudy]) -> dict[str, Any]:
+    """Stack the curves of all pairs."""
+    models = studies[0].curves
+    arrays: dict[str, Any] = {
+        "normal_force": np.array([study.normal_force for study in studies]),
+        "center_distance": np.array([study.center_distance for study in studies]),
+        "corner_contact": np.array([curves.corner_contact for curves in models], dtype=np.int8),
+    }
+    for axis in _AXES:
+        curves = [[getattr(one, axis) for one in study.curves] for study in studies]
+        arrays[axis] = np.stack([row[0].deviation for row in curves])
+        for name in ("peak_to_peak", "error"):
+            stacked = [np.stack([getattr(curve, name) for curve in row]) for row in curves]
+            arrays[f"{name}_over_{axis}"] = np.stack(stacked)
+    return {name: arrays[name] for name in STORED}
+
+
+def _study(name: str, content: dict[str, Any], pair: int) -> PairStudy:
+    """Build one study again."""
+    curves = tuple(
+        Sensitivity(bool(corners), *(_curve(content, axis, pair, model) for axis in _AXES))
+        for model, corners in enumerate(content["corner_contact"])
+    )
+    force, distance = (float(content[fact][pair]) for fact in ("normal_force", "center_distance"))
+    return PairStudy(name, force, distance, curves)
+
+
+def _curve(content: dict[str, Any], axis: str, pair: int, model: int) -> RippleCurve:
+    """Build one curve again."""
+    found = (content[f"{name}_over_{axis}"][pair, model] for name in ("peak_to_peak", "error"))
+    return RippleCurve(content[axis][pair], *found)
