@@ -53,7 +53,8 @@ def test_every_path_is_documented(tmp_path: Path) -> None:
 def test_every_verb_and_exit_code_is_documented() -> None:
     text = page("cli.md")
     for command in loa.registered_commands:
-        assert f"`loa {command.callback.__name__}" in text  # type: ignore[union-attr]
+        name = command.name or command.callback.__name__  # type: ignore[union-attr]
+        assert f"`loa {name}" in text
     for name, code in vars(problems).items():
         if name.startswith("EXIT_"):
             assert f"\n| {code} |" in text, name
