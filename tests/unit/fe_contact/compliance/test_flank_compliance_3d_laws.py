@@ -298,6 +298,7 @@ def test_reach_is_bounded_by_the_ring_and_sufficient() -> None:
             flank_compliance_3d(SPUR, coarse(SPUR), reach=wrong)
         assert refusal.value.field == "reach"
     assert flow.usual_reach(SPUR) == 2
+    assert flow.usual_reach(RingGear(96, 4e-3, 20e-3, rim_diameter=0.424, addendum_coefficient=0.9)) == 2
     assert flow.usual_reach(replace(HELICAL, face_width=60e-3)) == 4
     assert flank_compliance_3d(SPUR, coarse(SPUR), reach=0).blocks.shape[0] == 1
 
