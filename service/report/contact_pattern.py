@@ -25,9 +25,9 @@ def contact_pattern_figure(found: LoadDistribution) -> Figure:
         key="contact_pattern",
         title="Contact pattern",
         caption="The largest Hertz pressure that each place of the unrolled flank meets over the positions "
-        "computed, root below and tip above. White: nothing touches. At a tip edge the true pressure is "
-        "singular, and this a measure only. Roll length: distance to the base circle along the involute's "
-        "normal.",
+        "computed, root below and tip above (a ring gear's the other way). White: nothing touches. At a tip "
+        "edge the true pressure is singular, and this a measure only. Roll length: distance to the base "
+        "circle along the involute's normal.",
         alternative=_words(found, patterns["pinion"]),
         content=tuple(drawn(found, gear, patterns[gear], largest) for gear in GEARS),
         table=_table(found, patterns),
