@@ -100,6 +100,8 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     moved = [
         float(np.sum(gear.cuts(j)[:, 0] * gear.cut_forces(j)[:, 0])) for j in range(1, len(gear.ring.left))
     ]
+    restraining = gear.ring.restraining
+    moved.append(float(np.sum(gear.ring.left[:, :, 0] @ restraining[:, 0])))
     inside = float(np.sum(field[gear.sector.element_freedoms] * forces * (gear.sector.element_freedoms >= 0)))
     works = [inside + sum(moved), float(load[:, 0] @ values[: len(load), 0])]
     works.append(float(load[:, 0] @ gear.ring.blocks[0] @ load[:, 0]))
@@ -133,10 +135,12 @@ def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray) -> float
     free = sector.element_freedoms >= 0
     inside = np.bincount(sector.element_freedoms[free], forces[free], minlength=sector.size)
     out: FloatArray = -inside.astype(float)
-    out[sector.flank] += load
+    out[sector.loaded] += load
     size = gear.held.cut_size
     out[sector.left] -= gear.cut_forces(1)[size:, 0]
     out[sector.right] -= gear.cut_forces(-1)[:size, 0]
+    for cut in (sector.left, sector.right):
+        out[cut] -= gear.ring.restraining[:, 0]
     return float(np.linalg.norm(out) / np.linalg.norm(load))
 
 
@@ -144,8 +148,11 @@ def bore_moment(gear: CondensedGear, loads: FloatArray, bore_radius: float) -> f
     """Return the moment about the axis that the bore takes up under the first probe load, N m.
 
     The load is along the outward normal of the right flank, which turns the gear clockwise; so the reactions
-    turn it counter-clockwise, positive. The sum over all sectors is the field of harmonic 0.
+    turn it counter-clockwise, positive. The sum over all sectors is the field of harmonic 0. What a key will
+    take up is here taken by the restraint of the ring.
     """
+    if gear.ring.restraint:
+        return -len(gear.ring.left) * float(gear.ring.turn @ gear.ring.restraining[:, 0])
     cuts = np.tile(gear.ring.left.sum(axis=0), (2, 1))[:, :1]
     flank = gear.held.flank @ loads[:, :1] + gear.held.transmitted.T @ cuts
     field = gear.condensation.expand(np.concatenate([flank, cuts]))[:, 0]

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from fe_contact.compliance.checks_3d import CondensedGear, probe_loads
-from fe_contact.compliance.cyclic_ring import HeldSector, close_ring, hold_sector
+from fe_contact.compliance.cyclic_ring import FreeTurn, HeldSector, close_ring, hold_sector
 from fe_contact.compliance.sector_stiffness import ElementStiffness, flank_frames, sector_stiffness, twist
 from fe_contact.compliance.sector_tree import sector_tree
 from fe_contact.compliance.substructure import Condensation, condense
@@ -53,7 +55,8 @@ def condensed_gear(
     """
     tooth, loads = condensed_tooth(gear, section, recipe, support, clock)
     loads = loads if probes is None else probes
-    ring = close_ring(tooth.held, gear.teeth, reach, loads)
+    free = free_turn(section, tooth.sector)
+    ring = close_ring(tooth.held, gear.teeth, reach, loads, free)
     clock.finish("ring")
     return CondensedGear(tooth.sector, tooth.stiffness, tooth.condensation, tooth.held, ring), loads
 
@@ -82,7 +85,20 @@ def condensed_tooth(
     clock.finish("assembly")
     condensation = condense(sector_tree(sector), sector.element_freedoms, stiffness)
     clock.finish("condensation")
-    held = hold_sector(condensation.matrix, len(sector.flank))
+    held = hold_sector(condensation.matrix, len(sector.loaded))
     s_form = tooth_profile(gear).s_form
-    loads = probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
+    loads = np.zeros((len(sector.loaded), 2))
+    loads[: len(sector.flank)] = probe_loads(section.s, sector.layers.ends, sector.flank_index, s_form)
     return CondensedTooth(sector, stiffness, condensation, held), loads
+
+
+def free_turn(section: QuadSector, sector: SweptSector) -> FreeTurn | None:
+    """Return how a gear moves that nothing but a key keeps from turning; None for one that cannot turn."""
+    if sector.seat.key is None:
+        return None
+    radius = np.zeros((len(sector.freedoms), 3))
+    planes, columns = np.nonzero(sector.nodes >= 0)
+    radius[sector.nodes[planes, columns], 1] = np.linalg.norm(section.points, axis=1)[columns]
+    turn = np.zeros(sector.size)
+    turn[sector.freedoms[sector.freedoms >= 0]] = radius[sector.freedoms >= 0]
+    return FreeTurn(turn[sector.left], len(sector.flank), sector.key_cut)

@@ -85,13 +85,17 @@ def predict_cost(
         + RING_LOSS * ring_operations(sizes)
         + tree.factor_entries * GATHERING / 10.0  # the checks pass twice over the factors
     )
-    return PredictedCost(MESH_SECONDS + operations / dense_rate(), working_bytes(tree, sizes))
+    key = len(sector.key_bore) + len(sector.key_cut)
+    answers = float(gear.teeth * sizes.cut * key)  # of all cuts to forces on the bore
+    operations += sizes.harmonics * 4.0 * sizes.cut**2 * key + 2.0 * answers * sizes.flank
+    keyed = int(NUMBER * (5.0 * answers + gear.teeth * sizes.flank * key))
+    return PredictedCost(MESH_SECONDS + operations / dense_rate(), working_bytes(tree, sizes) + keyed)
 
 
 def sector_sizes(sector: SweptSector, teeth: int, reach: int) -> SectorSizes:
     """Count what the cost follows from."""
     matrices = sum(len(batch.quads) for batch in sector.batches)
-    return SectorSizes(len(sector.flank), len(sector.left), teeth // 2 + 1, reach, matrices)
+    return SectorSizes(len(sector.loaded), len(sector.left), teeth // 2 + 1, reach, matrices)
 
 
 def ring_operations(sizes: SectorSizes) -> float:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
+
 from fe_contact.checks import integer
 from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
 from fe_contact.compliance.flank import refuse_broken_laws
@@ -122,6 +124,8 @@ def compute_flank_compliance_3d(
     # A cached result needs neither skfem nor numba.
     from fe_contact.compliance.checks_3d import gear_checks  # noqa: PLC0415
     from fe_contact.compliance.condensed_gear import condensed_gear  # noqa: PLC0415
+    from fe_contact.compliance.keyed_bore import key_update  # noqa: PLC0415
+    from fe_contact.compliance.sector_stiffness import twist  # noqa: PLC0415
 
     clock = StageClock()
     section = quad_sector(gear, recipe)
@@ -131,8 +135,14 @@ def compute_flank_compliance_3d(
     lever = gear.base_radius * math.cos(gear.base_helix_angle)
     checks = gear_checks(solved, loads, lever, gear.held_radius)
     clock.finish("checks")
-    blocks = solved.ring.blocks
+    flank = len(solved.sector.flank)
+    blocks = np.ascontiguousarray(solved.ring.blocks[:, :flank, :flank])
     blocks[0] = 0.5 * (blocks[0] + blocks[0].T)
+    keyed: Json = {}
+    if gear.seat.key is not None:
+        key = key_update(gear, solved, twist(gear), 2 * reach)
+        keyed = {"key_rows": key.rows, "key_core": key.core}
+        clock.finish("key")
     result = FlankCompliance3D(
         s=section.s,
         z=solved.sector.layers.ends,
@@ -147,5 +157,6 @@ def compute_flank_compliance_3d(
         unknowns=gear.teeth * (solved.sector.size - solved.held.cut_size),
         seconds=clock.seconds,
         solver=SOLVER,
+        **keyed,
     )
     return refuse_broken_laws(result)

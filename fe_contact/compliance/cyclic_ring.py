@@ -23,7 +23,7 @@ Thomas, D. L. (1979). Dynamics of rotationally periodic structures. Int. J. Nume
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeVar
 
 import numpy as np
@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from scipy.linalg import blas, lapack
 
 from fe_contact.errors import SolveError
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 ComplexArray = NDArray[np.complex128]
 Scalar = TypeVar("Scalar", np.float64, np.complex128)
@@ -75,16 +75,54 @@ class RingSolution:
         Displacement of the left cut of every sector under the probe loads on tooth 0, m.
     rank : int
         Numerical rank of what flank loads pass to the cuts.
+    bore : (z, nc, p) array
+        Displacement of the left cut of every sector under unit forces on the bore of sector 0, where it is
+        free to turn, m/N.
+    turn : (nc,) array
+        Displacement of a cut under a unit turn of the gear, where it is free to turn, m.
+    restraint : float
+        Stiffness against the mean turn of the cuts, N/m per m: force on each left cut is ``turn`` times
+        ``restraint`` times ``turn`` times its mean displacement.
     """
 
     blocks: FloatArray
     left: FloatArray
     rank: int
+    bore: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    turn: FloatArray = field(default_factory=lambda: np.zeros(0))
+    restraint: float = 0.0
+
+    @property
+    def restraining(self) -> FloatArray:
+        """Forces that restrain the mean turn on each left cut under the probe loads, (nc, p), N."""
+        if not self.restraint:
+            return np.zeros(self.left.shape[1:])
+        mean = self.left.mean(axis=0)
+        return np.outer(self.restraint * self.turn, self.turn @ mean)
 
     @property
     def right(self) -> FloatArray:
         """Displacement of the right cuts: the left ones of the sectors before."""
         return np.roll(self.left, 1, axis=0)
+
+
+@dataclass(frozen=True)
+class FreeTurn:
+    """A gear that nothing in its sectors keeps from turning.
+
+    Attributes
+    ----------
+    turn : (nc,) array
+        Displacement of a cut under a unit turn, m.
+    flank : int
+        Number of flank freedoms; the other loaded ones are on the bore.
+    key_cut : int array
+        Freedoms of a cut that are on the bore and may be loaded.
+    """
+
+    turn: FloatArray
+    flank: int
+    key_cut: IntArray
 
 
 def hold_sector(matrix: FloatArray, flank: int) -> HeldSector:
@@ -108,7 +146,9 @@ def hold_sector(matrix: FloatArray, flank: int) -> HeldSector:
     return HeldSector(_full(inverse), transmitted, _full(cuts))
 
 
-def close_ring(held: HeldSector, teeth: int, reach: int, probes: FloatArray) -> RingSolution:
+def close_ring(
+    held: HeldSector, teeth: int, reach: int, probes: FloatArray, free: FreeTurn | None = None
+) -> RingSolution:
     """Join `teeth` copies of a sector.
 
     Parameters
@@ -121,6 +161,8 @@ def close_ring(held: HeldSector, teeth: int, reach: int, probes: FloatArray) -> 
         Largest distance m in teeth for which S_m is wanted.
     probes : (nf, p) array
         Flank loads on tooth 0 for which all cuts are wanted, N.
+    free : FreeTurn, optional
+        The ring may turn: its mean turn is restrained, and unit forces on the bore are answered too.
 
     Raises
     ------
@@ -129,7 +171,14 @@ def close_ring(held: HeldSector, teeth: int, reach: int, probes: FloatArray) -> 
     """
     modes = row_space(held.transmitted)
     size, rank = held.cut_size, modes.shape[1]
-    cuts = left_cuts(held, held.transmitted @ np.concatenate([modes, probes], axis=1), teeth, reach, rank)
+    loads, count = held.transmitted @ np.concatenate([modes, probes], axis=1), probes.shape[1]
+    restraint = 0.0
+    if free is not None:
+        on_cut = np.eye(2 * size)[:, free.key_cut]
+        loads = np.concatenate([loads, held.transmitted[:, free.flank :], on_cut], axis=1)
+        restraint = float(np.trace(held.cuts) / (free.turn @ free.turn))
+    spring = None if free is None else np.sqrt(restraint) * free.turn
+    cuts = left_cuts(held, loads, teeth, reach, rank, spring)
     blocks = np.empty((reach + 1, len(modes), len(modes)))
     moved = {
         m: held.transmitted[:size].T @ cuts.near[m] + held.transmitted[size:].T @ cuts.near[m - 1]
@@ -139,7 +188,10 @@ def close_ring(held: HeldSector, teeth: int, reach: int, probes: FloatArray) -> 
         ahead = moved[m] - modes @ (modes.T @ moved[m])
         blocks[m] = ahead @ modes.T + modes @ moved[-m].T
     blocks[0] += held.flank
-    return RingSolution(blocks, cuts.everywhere, rank)
+    if free is None:
+        return RingSolution(blocks, cuts.everywhere, rank)
+    left, bore = cuts.everywhere[..., :count], cuts.everywhere[..., count:]
+    return RingSolution(blocks, left, rank, bore, free.turn, restraint)
 
 
 @dataclass(frozen=True)
@@ -150,7 +202,14 @@ class LeftCuts:
     everywhere: FloatArray
 
 
-def left_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int, first: int) -> LeftCuts:
+def left_cuts(
+    held: HeldSector,
+    loads: FloatArray,
+    teeth: int,
+    reach: int,
+    first: int,
+    spring: FloatArray | None = None,
+) -> LeftCuts:
     """Sum up the harmonics of the left cuts.
 
     Parameters
@@ -163,6 +222,8 @@ def left_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int, first
         See `close_ring`.
     first : int
         Number of loads that only the sectors -reach - 1 .. reach are wanted for.
+    spring : (nc,) array, optional
+        q of the stiffness q q' that restrains what all cuts have in common.
 
     Raises
     ------
@@ -176,7 +237,7 @@ def left_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int, first
     for n, angle in enumerate(angles):
         # Harmonics n and z - n are complex conjugate.
         weight = (1.0 if n == 0 or 2 * n == teeth else 2.0) / teeth
-        factor = _harmonic_factor(held.cuts, float(angle), n)
+        factor = _harmonic_factor(held.cuts, float(angle), n, spring)
         x = np.asfortranarray(weight * (loads[:size] + np.exp(1j * angle) * loads[size:]))
         x = blas.ztrsm(1.0, factor, x, lower=1, overwrite_b=1)
         x = blas.ztrsm(1.0, factor, x, lower=1, trans_a=2, overwrite_b=1)
@@ -188,13 +249,15 @@ def left_cuts(held: HeldSector, loads: FloatArray, teeth: int, reach: int, first
     return LeftCuts(near, np.tensordot(turns, waves, axes=1).real)
 
 
-def _harmonic_factor(cuts: FloatArray, angle: float, number: int) -> ComplexArray:
+def _harmonic_factor(cuts: FloatArray, angle: float, number: int, spring: FloatArray | None) -> ComplexArray:
     """Return the Cholesky factor of one sector closed on itself with the phase `angle`."""
     size = len(cuts) // 2
     across = cuts[:size, size:]
     matrix = np.empty((size, size), dtype=complex, order="F")
     matrix.real = cuts[:size, :size] + cuts[size:, size:] + np.cos(angle) * (across + across.T)
     matrix.imag = np.sin(angle) * (across.T - across)
+    if number == 0 and spring is not None:
+        matrix.real += np.outer(spring, spring)
     factor, info = lapack.zpotrf(matrix, lower=1, clean=0, overwrite_a=1)
     if info:
         raise SolveError(f"ring of teeth: harmonic {number} is not positive definite (pivot {info})")

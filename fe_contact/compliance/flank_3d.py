@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -47,6 +47,10 @@ class FlankCompliance3D:
         CPU seconds by stage, children included.
     solver : str
         How the equations were solved.
+    key_rows : (2 s + 1, r, nf) array
+        Of a keyed bore, by tooth from -s to s around tooth 0; else empty.
+    key_core : (r, r) array
+        ``block(t, o)`` is that of `blocks` plus ``key_rows[t].T @ key_core @ key_rows[o]``, m/N.
     from_cache : bool
         Whether it was read from disk; `seconds` are then those of the computation.
     """
@@ -65,6 +69,8 @@ class FlankCompliance3D:
     seconds: dict[str, float]
     solver: str
     from_cache: bool = False
+    key_rows: FloatArray = field(default_factory=lambda: np.zeros((0, 0, 0)))
+    key_core: FloatArray = field(default_factory=lambda: np.zeros((0, 0)))
 
     @property
     def reach(self) -> int:
@@ -77,8 +83,18 @@ class FlankCompliance3D:
         Raises
         ------
         KeyError
-            The teeth are further apart than `reach`.
+            The teeth are further apart than `reach`, or beside a key further than s from tooth 0.
         """
+        if len(self.key_rows) == 0:
+            return self._apart(tooth, other)
+        span = len(self.key_rows) // 2
+        if max(abs(tooth), abs(other)) > span:
+            raise KeyError((tooth, other))
+        first, second = (self.key_rows[j + span] for j in (tooth, other))
+        return np.asarray(self._apart(tooth, other) + first.T @ self.key_core @ second)
+
+    def _apart(self, tooth: int, other: int) -> FloatArray:
+        """Return the part of `block` that depends on the distance of the teeth alone."""
         ahead = (tooth - other) % self.teeth
         behind = self.teeth - ahead
         if ahead <= self.reach:
@@ -95,4 +111,7 @@ class FlankCompliance3D:
         planes = self.index[::-1]
         order = planes[planes >= 0]
         blocks = np.ascontiguousarray(self.blocks[:, order[:, None], order])
-        return replace(self, z=0.0 - self.z[::-1], blocks=blocks, base_helix_angle=-self.base_helix_angle)
+        rows = self.key_rows[:, :, order] if len(self.key_rows) else self.key_rows
+        return replace(
+            self, key_rows=rows, z=0.0 - self.z[::-1], blocks=blocks, base_helix_angle=-self.base_helix_angle
+        )

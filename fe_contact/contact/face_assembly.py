@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from fe_contact.compliance import FlankCompliance3D
-from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads, responses
+from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads, responses
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.types import FloatArray, IntArray
@@ -43,7 +44,8 @@ def face_contact_problem(
         grid = FaceGrid(flank.s, flank.z, flank.index)
         low, high = along - 0.5 * candidates.slice_width, along + 0.5 * candidates.slice_width
         bounds = (np.maximum(low, flank.z[0]), np.minimum(high, flank.z[-1]))
-        _add_gear(grid, responses(reach), patches, lever, teeth, bounds, candidates.gap, compliance)
+        key = KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
+        _add_gear(grid, responses(reach), key, patches, lever, teeth, bounds, candidates.gap, compliance)
     first, second = (flank.contact_modulus for flank in compliances)
     contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
     return ContactProblem(
@@ -51,9 +53,29 @@ def face_contact_problem(
     )
 
 
+class KeyedFlanks(NamedTuple):
+    """What a keyed bore adds between the flanks: rows (2 s + 1, q, f) by tooth from -s to s, core (q, q)."""
+
+    rows: FloatArray
+    core: FloatArray
+    couple_teeth: bool
+
+    def compliance(self, tooth: IntArray, loads: FaceLoads) -> FloatArray:
+        """Return what is added between patches (n, n) on the teeth (n,)."""
+        rows = self.rows[tooth + len(self.rows) // 2]
+        moved = np.empty((len(tooth), rows.shape[1]))
+        for i, (row, nodes, forces, used) in enumerate(
+            zip(rows, loads.nodes, loads.forces, loads.used, strict=True)
+        ):
+            moved[i] = row[:, nodes[:used]] @ forces[:used]
+        added = moved @ self.core @ moved.T
+        return added if self.couple_teeth else np.where(tooth[:, None] == tooth, added, 0.0)
+
+
 def _add_gear(
     grid: FaceGrid,
     response: FloatArray,
+    key: KeyedFlanks,
     patches: Patches,
     lever: FloatArray,
     teeth: IntArray,
@@ -75,4 +97,6 @@ def _add_gear(
         )
         local = np.zeros((present.size, present.size))
         add_compliance(response, teeth[present], loads, lever[p, present], local)
+        if len(key.rows):
+            local += key.compliance(teeth[present], loads) * np.outer(lever[p, present], lever[p, present])
         out[p][np.ix_(present, present)] += local

@@ -1,7 +1,7 @@
 """Involute gear geometry: one gear, its exact tooth profile, and the pair (ISO 21771-1 vocabulary)."""
 
 from fe_contact.geometry.basic_rack import BasicRack
-from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat, seat_compliance
+from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat, Key, seat_compliance
 from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap
 from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.geometry.gear import Gear
@@ -31,6 +31,7 @@ __all__ = [
     "GearPair",
     "InternalGearPair",
     "Iso6336Stiffness",
+    "Key",
     "ParallelAxes",
     "PathOfContact",
     "PitchDeviation",

@@ -6,8 +6,8 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import finite, positive
-from fe_contact.errors import InfeasibleGeometry
+from fe_contact.checks import finite, positive, within
+from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.types import Json
 
 if TYPE_CHECKING:
@@ -16,6 +16,31 @@ if TYPE_CHECKING:
 
 NARROWEST = 0.02  # seat in face widths
 FOUNDATIONS = ("radial_foundation", "tangential_foundation", "axial_foundation")
+
+
+@dataclass(frozen=True)
+class Key:
+    """One parallel key along the axis.
+
+    Attributes
+    ----------
+    width : float
+        Along the circumference of the bore, m.
+    angle : float
+        Of its middle, counter-clockwise from the centre line of tooth 0 at mid-face, rad.
+
+    Raises
+    ------
+    InputError
+        A value out of its bounds.
+    """
+
+    width: float
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        positive("width", self.width, "In m: 12 mm is 0.012.")
+        within("angle", self.angle, -math.pi, math.pi, "In rad: 0 is below tooth 0, pi is opposite.")
 
 
 @dataclass(frozen=True)
@@ -31,6 +56,9 @@ class BoreSeat:
         Axial length of the seat, m; default: the face width.
     offset : float
         Axial distance of its middle from mid-face, m.
+    key : Key, optional
+        Then the tangential foundation is that of the key and acts over its width only; elsewhere the bore
+        slides around the shaft. It has to be given: about G / h for a key of height h.
 
     Raises
     ------
@@ -43,6 +71,7 @@ class BoreSeat:
     axial_foundation: float | None = None
     width: float | None = None
     offset: float = 0.0
+    key: Key | None = None
 
     def __post_init__(self) -> None:
         for field in FOUNDATIONS:
@@ -51,11 +80,21 @@ class BoreSeat:
         if self.width is not None:
             positive("width", self.width, "In m: 20 mm is 0.02. Left out: the face width.")
         finite("offset", self.offset, "In m, from mid-face.")
+        if self.key is not None and self.tangential_foundation is None:
+            advice = "About G / h for a key of height h: 1e13 N/m^3 for 8 mm of steel."
+            raise InputError("tangential_foundation", None, "given with a key", advice)
+
+    @property
+    def key_modulus(self) -> float:
+        """Tangential foundation modulus of the key, N/m^3; 0 without a key."""
+        return 0.0 if self.key is None or self.tangential_foundation is None else self.tangential_foundation
 
     @property
     def stiffness(self) -> tuple[float, float, float]:
-        """Radial, tangential and axial foundation modulus, N/m^3; inf is rigid."""
+        """Radial, tangential and axial foundation modulus all round, N/m^3; inf is rigid."""
         first, second, third = (getattr(self, field) for field in FOUNDATIONS)
+        if self.key is not None:
+            second = 0.0
         return tuple(math.inf if k is None else float(k) for k in (first, second, third))  # type: ignore[return-value]
 
     @property
@@ -84,13 +123,15 @@ CLAMPED = BoreSeat()
 def seat_compliance(gear: Toothing) -> float:
     """Displacement along the line of action per normal force that rotation on an elastic seat adds, m/N.
 
-    r_b^2 / k_torsion with k_torsion = 2 pi r^3 w k_t: the gear turns as a rigid body.
+    r_b^2 / k_torsion with k_torsion = r^2 w a k_t, a = 2 pi r or the width of a key: the gear turns as a
+    rigid body.
     """
-    stiffness = gear.seat.stiffness[1]
-    if math.isinf(stiffness):
+    key, modulus = gear.seat.key, gear.seat.tangential_foundation
+    if modulus is None:
         return 0.0
     low, high = gear.seat.ends(gear.face_width)
-    torsion = 2.0 * math.pi * gear.held_radius**3 * (high - low) * stiffness
+    around = 2.0 * math.pi * gear.held_radius if key is None else key.width
+    torsion = gear.held_radius**2 * around * (high - low) * modulus
     return gear.base_radius**2 / torsion
 
 
@@ -105,3 +146,7 @@ def refuse_misfit_seat(gear: Gear) -> None:
     if abs(seat.offset) > room + 1e-9 * face:
         bound = f"from {-room:.6g} to {room:.6g} m, so that the seat stays within the face"
         raise InfeasibleGeometry("seat", "seat.offset", seat.offset, bound, "Lower the offset or the width.")
+    around = 2.0 * math.pi * gear.held_radius
+    if seat.key is not None and seat.key.width > (1.0 + 1e-9) * around:
+        bound = f"at most the circumference of the bore {around:.6g} m"
+        raise InfeasibleGeometry("key", "seat.key.width", seat.key.width, bound, "Lower the width.")

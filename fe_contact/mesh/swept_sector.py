@@ -114,6 +114,27 @@ class SweptSector:
         return np.asarray(self.freedoms[nodes[nodes >= 0], 0])
 
     @property
+    def loaded(self) -> IntArray:
+        """Freedoms that forces from outside may act on: the flank, and what a key may hold."""
+        return np.concatenate([self.flank, self.key_bore])
+
+    @cached_property
+    def key_bore(self) -> IntArray:
+        """Tangential freedoms on the bore between the cuts if the seat has a key, else none."""
+        return self._tangential(self.grid.bore[1:-1])
+
+    @cached_property
+    def key_cut(self) -> IntArray:
+        """Where on a cut its tangential freedoms on the bore are if the seat has a key, else none."""
+        return np.flatnonzero(np.isin(self.left, self._tangential(self.grid.left[:1])))
+
+    def _tangential(self, column: IntArray) -> IntArray:
+        """Return the tangential freedoms above section nodes, none without a key."""
+        nodes = self.nodes[:, column]
+        freedoms = self.freedoms[nodes[nodes >= 0], 1]
+        return np.asarray(freedoms[freedoms >= 0] if self.seat.key is not None else freedoms[:0])
+
+    @property
     def left(self) -> IntArray:
         """Freedoms on the left cut: the right ones of the next sector counter-clockwise."""
         return self._cut(self.grid.left)

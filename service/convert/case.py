@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -15,6 +16,7 @@ from fe_contact.geometry import (
     GearBlank,
     GearPair,
     InternalGearPair,
+    Key,
     ParallelAxes,
     PitchDeviation,
     RingGear,
@@ -24,7 +26,7 @@ from fe_contact.material import Material
 from service.convert.errors import translated
 from service.convert.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, UM
 from service.problems import BadInput
-from service.schemas import Case, MaterialInput, PairInput, ToothingInput, WheelInput
+from service.schemas import BoreSeatInput, Case, MaterialInput, PairInput, ToothingInput, WheelInput
 
 Json = dict[str, Any]
 
@@ -148,9 +150,20 @@ def _seat(given: ToothingInput) -> BoreSeat:
     }
     width = None if seat.width_mm is None else seat.width_mm * MM
     try:
-        return BoreSeat(**foundation, width=width, offset=seat.offset_mm * MM)
+        return BoreSeat(**foundation, width=width, offset=seat.offset_mm * MM, key=_key(seat))
     except InputError as error:
         raise error.within("seat") from None
+
+
+def _key(seat: BoreSeatInput) -> Key | None:
+    """Return the key of a seat."""
+    if seat.key is None:
+        return None
+    try:
+        # 180 deg is pi to the last bit
+        return Key(seat.key.width_mm * MM, math.radians(seat.key.angle_deg))
+    except InputError as error:
+        raise error.within("key") from None
 
 
 def _shaft(name: str, gear: ToothingInput) -> Shaft | None:

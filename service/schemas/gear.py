@@ -92,6 +92,21 @@ class GearBlankInput(BoundaryModel):
     )
 
 
+class KeyInput(BoundaryModel):
+    """One parallel key: the bore slides around the shaft but for its width."""
+
+    width_mm: float = Field(
+        gt=0.0, le=5000.0, description="Width along the circumference in mm", examples=[12.0]
+    )
+    angle_deg: float = Field(
+        default=0.0,
+        ge=-180.0,
+        le=180.0,
+        description="Counter-clockwise from the centre line of the reference tooth at mid-face in degrees",
+        examples=[180.0],
+    )
+
+
 class BoreSeatInput(BoundaryModel):
     """The seat of the bore on its shaft; stiffnesses are traction per displacement."""
 
@@ -121,6 +136,11 @@ class BoreSeatInput(BoundaryModel):
         le=5000.0,
         description="Middle of the seat in mm towards +z from mid-face",
         examples=[2.0],
+    )
+    key: KeyInput | None = Field(
+        default=None,
+        description="A key; the tangential foundation is then its own",
+        examples=[{"width_mm": 12.0, "angle_deg": 0.0}],
     )
 
 

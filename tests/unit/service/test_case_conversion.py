@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -125,7 +126,12 @@ def test_a_seat_arrives_in_si_and_its_errors_in_mm() -> None:
     given = {
         f"{name}_foundation_n_per_mm3": 1e3 * i for i, name in enumerate(("radial", "tangential", "axial"), 1)
     }
-    seat = gear_pair(case(seat=given | {"width_mm": 20.0, "offset_mm": -2.0})).pinion.seat
+    key = {"width_mm": 12.0, "angle_deg": 180.0}
+    seat = gear_pair(case(seat=given | {"width_mm": 20.0, "offset_mm": -2.0, "key": key})).pinion.seat
+    assert seat.key is not None
+    assert (seat.key.width, seat.key.angle) == (pytest.approx(12e-3, rel=1e-15), math.pi)
+    assert seat.key_modulus == pytest.approx(2e12, rel=1e-15)
+    seat = replace(seat, key=None)
     assert seat.stiffness == pytest.approx((1e12, 2e12, 3e12), rel=1e-15)
     assert (seat.width, seat.offset) == pytest.approx((20e-3, -2e-3), rel=1e-15)
     with pytest.raises(BadInput) as refusal:
@@ -133,6 +139,12 @@ def test_a_seat_arrives_in_si_and_its_errors_in_mm() -> None:
     (fault,) = refusal.value.faults
     assert (fault.field, fault.value) == ("pair.pinion.seat.width_mm", pytest.approx(30.0))
     assert "25 mm" in fault.bound
+    with pytest.raises(BadInput) as refusal:
+        gear_pair(case(seat={"key": key}))
+    assert refusal.value.faults[0].field == "pair.pinion.seat.tangential_foundation_n_per_mm3"
+    with pytest.raises(BadInput) as refusal:
+        gear_pair(case(seat=given | {"key": key | {"width_mm": 200.0}}))
+    assert refusal.value.faults[0].field == "pair.pinion.seat.key.width_mm"
 
 
 def test_mating_gears_have_opposite_hands() -> None:
