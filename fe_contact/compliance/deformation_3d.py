@@ -16,8 +16,9 @@ from fe_contact.compliance.checks_3d import CondensedGear, element_forces
 from fe_contact.compliance.condensed_gear import condensed_gear
 from fe_contact.compliance.deformed_gear import DeformedGear, nodal_mean, turn_about_axis
 from fe_contact.compliance.sector_elements import SectorElements, sector_elements
+from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing
-from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
+from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from fe_contact.mesh.quad_sector import quad_sector
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.mesh.swept_sector import SweptSector, swept_sector
@@ -53,10 +54,18 @@ def deformed_solids(
     seen_from_behind : bool
         The loads, and the flank displacements returned, are in the freedoms of the mirrored compliance, as
         the contact of a ring gear has them.
+
+    Raises
+    ------
+    InputError
+        A bore with a key: its sectors do not bend alike.
     """
+    if gear.seat.key is not None:
+        advice = "Leave the key out: under it every tooth bends in another way."
+        raise InputError("seat.key", "given", "left out for deformed gears", advice)
     right = gear.right_handed()
     section = quad_sector(right, recipe)
-    support = support or ClampedBore()
+    support = support or bore_support(right)
     left, mirror = gear.helix_angle < 0.0, None
     if left != seen_from_behind:
         planes = swept_sector(section.grid, gear.face_width, recipe, support, right.web).flank_index[::-1]

@@ -16,7 +16,8 @@ from fe_contact.compliance.deformed_gear import DeformedGear, stress_of
 from fe_contact.compliance.hexahedron import REFERENCE, gradients_at
 from fe_contact.compliance.sector_elements import SectorElements, sector_elements
 from fe_contact.compliance.sector_stiffness import lame_parameters
-from fe_contact.geometry import Gear, GearBlank, RingGear, Toothing, tooth_profile
+from fe_contact.errors import InputError
+from fe_contact.geometry import BoreSeat, Gear, GearBlank, Key, RingGear, Toothing, tooth_profile
 from fe_contact.mesh import MeshRecipe, SectorRecipe, mesh_gear, quad_sector, swept_sector
 
 SPUR = Gear(teeth=9, normal_module=4e-3, face_width=20e-3, bore_diameter=12e-3, profile_shift_coefficient=0.4)
@@ -189,6 +190,20 @@ def test_a_whole_ring_closes() -> None:
     cut = elements.sector.nodes[:, elements.sector.grid.left]
     assert len(found.points) == SPUR.teeth * (elements.points - np.count_nonzero(cut >= 0))
     assert found.residual < 1e-10
+
+
+def test_a_gear_on_an_elastic_seat_moves_as_its_compliance_and_a_key_is_refused() -> None:
+    seat = BoreSeat(5e13, 3e13, 5e13, width=12e-3)
+    gear, recipe = replace(LEFT, seat=seat), coarse_sector(LEFT)
+    flank = flank_compliance_3d(gear, recipe, reach=1)
+    load = {0: -random_load(flank.blocks.shape[1], 1)}
+    (found,) = deformed_solids(gear, recipe, [load])
+    for tooth, moved in found.flank_displacement.items():
+        expected = flank.block(tooth, 0) @ load[0]
+        assert moved == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.abs(expected).max())
+    assert found.residual < 1e-9
+    with pytest.raises(InputError, match=r"seat\.key"):
+        deformed_solids(replace(gear, seat=replace(seat, key=Key(1e-3))), recipe, [load])
 
 
 def test_invariants_of_known_stresses() -> None:
