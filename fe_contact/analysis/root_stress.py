@@ -16,11 +16,12 @@ from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
 from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
+from fe_contact.contact.patch import Patches
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.geometry.root_tangent import critical_section
 from fe_contact.planning import FaceRootMeshes, PlaneRootMeshes, root_meshes
 from fe_contact.stage_clock import StageClock
-from fe_contact.types import FloatArray, IntArray, Json
+from fe_contact.types import BoolArray, FloatArray, IntArray, Json
 
 UnitStresses = tuple[UnitRootStress, UnitRootStress]
 
@@ -179,11 +180,18 @@ def pair_histories(found: SolvedPlace, units: UnitStresses) -> tuple[RootStressH
             face_position=unit.station_z + offset,
             # pair j is on tooth -j of the driving gear and on tooth j of the driven one
             stress=_superposed(unit, loads, direction * (stressed[:, None] - carrying)),
+            near_load=_near_load(found, unit, patches, stressed, unit.station_z + offset),
             relative_error=np.nan,
             critical_coordinate=critical_section(tooth_profile(gear)),
         )
-        for unit, loads, direction, gear, offset in zip(
-            units, forces, (-1, 1), (pair.pinion, pair.wheel), (0.0, pair.axial_offset), strict=True
+        for unit, loads, direction, gear, offset, patches in zip(
+            units,
+            forces,
+            (-1, 1),
+            (pair.pinion, pair.wheel),
+            (0.0, pair.axial_offset),
+            (candidates.patch_1, candidates.patch_2),
+            strict=True,
         )
     )
     return first, second
@@ -203,6 +211,22 @@ def _forces(found: SolvedPlace, units: UnitStresses, pairs: IntArray) -> tuple[F
             for tooth, forces in by_tooth.items():
                 loads[p, np.searchsorted(pairs, direction * tooth)] = inward * forces
     return out[0], out[1]
+
+
+def _near_load(
+    found: SolvedPlace, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
+) -> BoolArray:
+    """Return which stations, at `face` (q,), are within half a patch of a loaded patch, (P, N, p, q)."""
+    candidates, force = found.problem.candidates, found.solution.force[:, 0]
+    near = np.zeros((len(force), stressed.size, unit.station_s.size, face.size), dtype=bool)
+    tooth = np.searchsorted(stressed, candidates.pair)
+    for p, i in np.argwhere(force > 0.0):
+        half = patches.half_width[p, i]
+        along = np.abs(unit.station_s - patches.center[p, i]) < 2.0 * half
+        if along.any():
+            across = np.abs(face - candidates.face_position[i]) < 0.5 * candidates.slice_width + half
+            near[p, tooth[i]] |= along[:, None] & (across | (not unit.across_face))
+    return near
 
 
 def _superposed(unit: UnitRootStress, forces: FloatArray, ahead: IntArray) -> FloatArray:

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from fe_contact.types import Estimate, FloatArray, IntArray
+from fe_contact.types import BoolArray, Estimate, FloatArray, IntArray
 
 Root = Literal["tension", "compression"]
 ROOTS: tuple[Root, Root] = ("tension", "compression")
@@ -80,6 +80,9 @@ class RootStressHistory:
     stress : ndarray, shape (P, N, 2, 3, p, q)
         Pa. Third axis: tension root (beside the loaded flank), compression root. Fourth: along the profile,
         across it in the surface, shear between the two.
+    near_load : ndarray of bool, shape (P, N, p, q)
+        Stations of the tension root under a load patch of their tooth or within half a patch of it. The
+        surface there is not free, and the patch is wider than the contact: they count for no peak.
     relative_error : float
         Of the peaks, by the finite elements of the root: from a coarser mesh.
     critical_coordinate : float
@@ -93,6 +96,7 @@ class RootStressHistory:
     tangent_angle: FloatArray
     face_position: FloatArray
     stress: FloatArray
+    near_load: BoolArray
     relative_error: float
     critical_coordinate: float
 
@@ -105,7 +109,7 @@ class RootStressHistory:
     def peak(self, root: Root) -> RootPeak:
         """Return the peak of one root over all positions, teeth and stations."""
         sign = 1.0 if root == "tension" else -1.0
-        values, at = crests(self.flank_coordinate, np.moveaxis(sign * self.principal(root), 2, -1))
+        values, at = self._crests(root)
         i, j, q = np.unravel_index(int(np.argmax(values)), values.shape)
         value, s = sign * float(values[i, j, q]), float(at[i, j, q])
         error = abs(value) * self.relative_error
@@ -118,6 +122,14 @@ class RootStressHistory:
             face_position=float(self.face_position[q]),
         )
 
+    def _crests(self, root: Root) -> tuple[FloatArray, FloatArray]:
+        """Return the extreme along the profile, > 0 as it should be, and its place, (P, N, q)."""
+        if root == "compression":
+            values = -self.principal(root)
+        else:
+            values = np.where(self.near_load, -np.inf, self.principal(root))
+        return crests(self.flank_coordinate, np.moveaxis(values, 2, -1))
+
     def passage(self) -> RootPassage:
         """Return what one tooth meets, all its pairs' positions in a row.
 
@@ -128,7 +140,7 @@ class RootStressHistory:
         order = np.argsort(place, kind="stable")
         extremes, fixed = [], []
         for root, sign in zip(ROOTS, (1.0, -1.0), strict=True):
-            values, _ = crests(self.flank_coordinate, np.moveaxis(sign * self.principal(root), 2, -1))
+            values, _ = self._crests(root)
             extremes.append(sign * values.max(axis=-1).ravel()[order])
             peak = self.peak(root)
             station = np.argmin(np.abs(self.flank_coordinate - peak.flank_coordinate))
@@ -146,6 +158,7 @@ def crests(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     s : ndarray, shape (p,)
         Increasing, p >= 3.
     values : ndarray, shape (..., p)
+        Minus infinity does not count; beside it there is no parabola.
 
     Returns
     -------
@@ -154,10 +167,14 @@ def crests(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     middle = np.clip(np.argmax(values, axis=-1), 1, s.size - 2)
     low, here, high = (s[middle + step] for step in (-1, 0, 1))
     y = [np.take_along_axis(values, (middle + step)[..., None], axis=-1)[..., 0] for step in (-1, 0, 1)]
-    first, second = (y[1] - y[0]) / (here - low), (y[2] - y[1]) / (high - here)
+    whole = np.all(np.isfinite(y), axis=0)
+    first, second = (
+        np.subtract(b, a, out=np.zeros_like(a), where=whole) / way
+        for a, b, way in ((y[0], y[1], here - low), (y[1], y[2], high - here))
+    )
     bend = (second - first) / (high - low)
     slope = first + bend * (here - low)  # at the middle
-    flat = bend >= 0.0  # no crest inside: a rising end, or all alike
+    flat = bend >= 0.0  # no crest inside: a rising end, all alike, or no three values
     way = np.clip(-slope / np.where(flat, -1.0, 2.0 * bend), low - here, high - here)
     value = np.where(flat, np.max(y, axis=0), y[1] + way * (slope + bend * way))
     place = np.where(flat, np.choose(np.argmax(y, axis=0), [low, here, high]), here + way)

@@ -172,6 +172,9 @@ def root_stress(
     center_distance_change_mm: Annotated[
         float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
     ] = None,
+    image: Annotated[
+        Path | None, typer.Option(help="PNG file to draw the passage of one tooth of each gear to.")
+    ] = None,
     csv: Annotated[bool, typer.Option("--csv", help="Print the passage of one tooth as CSV.")] = False,
     json: AsJson = False,
 ) -> None:
@@ -184,7 +187,7 @@ def root_stress(
         "misalignment_um": misalignment_um,
         "center_distance_change_mm": center_distance_change_mm,
     }
-    run_root_stress(case, point, as_csv=csv, as_json=json)
+    run_root_stress(case, point, image, as_csv=csv, as_json=json)
 
 
 @app.command(epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")

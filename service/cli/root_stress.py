@@ -7,10 +7,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from service.cli.output import console, print_json, progress_bar, table
+from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.convert.checks import check_case
 from service.convert.flanks import case_at
 from service.convert.root_stress import GEARS, root_stress_json, root_stress_of
+from service.report.image import png
+from service.report.root_stress import root_stress_figure
 from service.schemas import Case, read_model, validated
 from service.schemas.flank import FlankPoint
 from service.settings import cache_home
@@ -18,13 +20,20 @@ from service.settings import cache_home
 _SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
 
 
-def run_root_stress(file: Path, point: dict[str, float | None], *, as_csv: bool, as_json: bool) -> None:
-    """Compute and print; `point` holds the fields of `FlankPoint` that were given."""
+def run_root_stress(
+    file: Path, point: dict[str, float | None], image: Path | None, *, as_csv: bool, as_json: bool
+) -> None:
+    """Compute, draw and print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
     case = case_at(read_model(Case, file), chosen)
+    if image is not None:
+        check_writable(image)
     check_case(case)
     with progress_bar() as report:
-        found = root_stress_json(root_stress_of(case, cache_home() / "compliance", report))
+        stress = root_stress_of(case, cache_home() / "compliance", report)
+    if image is not None:
+        image.write_bytes(png(root_stress_figure(stress)))
+    found = root_stress_json(stress)
     if as_json:
         print_json(found)
     elif as_csv:

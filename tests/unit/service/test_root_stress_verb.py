@@ -11,6 +11,11 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from service.cli.commands import app
+from service.convert.flanks import case_at
+from service.convert.root_stress import root_stress_of
+from service.report.root_stress import root_stress_figure
+from service.schemas import Case, read_model
+from service.schemas.flank import FlankPoint
 
 CASE = """
 [pair]
@@ -43,7 +48,7 @@ def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return file
 
 
-def test_table_csv_and_json_say_the_same(case: Path) -> None:
+def test_table_csv_json_and_picture_say_the_same(case: Path, tmp_path: Path) -> None:
     as_json, as_csv, shown = loa(case, "--json"), loa(case, "--csv"), loa(case)
     assert [(r.exit_code, r.stderr) for r in (as_json, as_csv, shown)] == [(0, "")] * 3
     found = json.loads(as_json.stdout)
@@ -62,10 +67,19 @@ def test_table_csv_and_json_say_the_same(case: Path) -> None:
         assert written == pytest.approx(passage["tension_mpa"], rel=1e-5, abs=1e-9)
         (row,) = [r for r in shown.stdout.splitlines() if r.split()[:2] == [gear, "tension"]]
         assert f"{tension['stress_mpa']:.4g} ±" in row
-    half = json.loads(loa(case, "--torque", "50", "--json").stdout)
+    picture = case.parent / "root.png"
+    half = json.loads(loa(case, "--torque", "50", "--image", picture, "--json").stdout)
     assert half["pinion"]["tension"]["stress_mpa"] == pytest.approx(
         0.5 * found["pinion"]["tension"]["stress_mpa"], rel=0.02
     )
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    figure = root_stress_figure(
+        root_stress_of(case_at(read_model(Case, case), FlankPoint()), tmp_path / "cache")
+    )
+    for gear, panel in zip(("pinion", "wheel"), figure.content, strict=True):
+        assert max(panel.lines[0].y) == pytest.approx(found[gear]["tension"]["stress_mpa"], rel=1e-9)
+        assert min(panel.lines[2].y) == pytest.approx(found[gear]["compression"]["stress_mpa"], rel=1e-9)
+        assert panel.references[0].value == found[gear]["tension"]["position"]
 
 
 def test_refusals(case: Path) -> None:
@@ -74,3 +88,5 @@ def test_refusals(case: Path) -> None:
         assert refused.exit_code == 2
         assert field in refused.stderr
         assert refused.stdout == ""
+    refused = loa(case, "--image", case.parent / "nowhere" / "root.png")
+    assert (refused.exit_code, "output" in refused.stderr) == (2, True)

@@ -160,6 +160,29 @@ def test_crests_of_parabolas_and_of_slopes() -> None:
     assert at[:2] == pytest.approx([3.5, 0.0])
 
 
+def test_crests_do_not_lean_on_what_does_not_count() -> None:
+    s = np.arange(5.0)
+    value, at = crests(s, np.array([[1.0, 4.0, 5.0, -np.inf, -np.inf], [-np.inf, 3.0, 4.0, 3.0, -np.inf]]))
+    assert value == pytest.approx([5.0, 4.0])
+    assert at == pytest.approx([2.0, 2.0])
+
+
+def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
+    """Contact next to the form point: the patch, wider than the contact, lies on the fillet."""
+    gear = replace(GEAR, profile_shift_coefficient=-0.05)
+    deep = GearPair(gear, replace(GEAR, profile_shift_coefficient=0.05), 80e-3)
+    history = solved(deep, cache, at=np.arange(8) / 8).pinion
+    near = history.near_load[..., 0]
+    assert near.any()
+    assert not near[:, [0, -1]].any()  # teeth that carry nothing
+    lowest = history.flank_coordinate[near.any(axis=(0, 1))].min()
+    unchanged = history.peak("tension")
+    spoiled = history.stress.copy()
+    spoiled[:, :, 0, 0, :, 0] += 1e12 * near
+    assert replace(history, stress=spoiled).peak("tension") == unchanged
+    assert unchanged.flank_coordinate < lowest
+
+
 def test_what_cannot_be_asked(cache: Path) -> None:
     with pytest.raises(InputError) as refusal:
         root_stress(SPUR, cache=cache)
