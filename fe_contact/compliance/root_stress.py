@@ -93,7 +93,8 @@ class UnitRootStress:
         order = planes[planes >= 0]
         stress = self.stress[..., ::-1, :][..., order]
         stress[:, :, 2] *= -1.0
-        return replace(self, stress=stress)
+        z, stations = 0.0 - self.z[::-1], 0.0 - self.station_z[::-1]
+        return replace(self, stress=stress, z=z, station_z=stations)
 
 
 def refuse_broken_stress(found: UnitRootStress) -> UnitRootStress:

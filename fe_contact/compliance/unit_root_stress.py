@@ -14,8 +14,8 @@ from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_
 from fe_contact.compliance.plane import PlaneHypothesis
 from fe_contact.compliance.root_stress import UnitRootStress
 from fe_contact.compliance.solvers import Solver, SuperLuMetis
-from fe_contact.errors import InputError
 from fe_contact.geometry import Toothing
+from fe_contact.geometry.bore_seat import refuse_key
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.mesh.bore_support import BoreSupport, bore_support
 
@@ -75,7 +75,7 @@ def unit_root_stress_3d(
     """
     recipe, support = recipe or SectorRecipe.standard(gear), support or bore_support(gear.right_handed())
     distance = usual_reach(gear) if reach is None else reach
-    refuse_key(gear)
+    refuse_key(gear, "root stress")
 
     def compute() -> UnitRootStress:
         # A cached result needs neither skfem nor numba.
@@ -105,13 +105,6 @@ def unit_root_stresses(
         if keys[-1] not in found:
             found[keys[-1]] = unit_root_stress(gear, recipe, hypothesis, teeth=count, cache=cache)
     return tuple(found[key] for key in keys)
-
-
-def refuse_key(gear: Toothing) -> None:
-    """Refuse a key: the root stress under it would be another at every tooth."""
-    if gear.seat.key is not None:
-        advice = "Leave the key out for it."
-        raise InputError("seat.key", "given", "left out for root stress", advice)
 
 
 def unit_root_stresses_3d(

@@ -150,3 +150,9 @@ def refuse_misfit_seat(gear: Gear) -> None:
     if seat.key is not None and seat.key.width > (1.0 + 1e-9) * around:
         bound = f"at most the circumference of the bore {around:.6g} m"
         raise InfeasibleGeometry("key", "seat.key.width", seat.key.width, bound, "Lower the width.")
+
+
+def refuse_key(gear: Toothing, purpose: str) -> None:
+    """Refuse a key where only what is the same at every tooth can be computed."""
+    if gear.seat.key is not None:
+        raise InputError("seat.key", "given", f"left out for {purpose}", "Leave the key out for it.")

@@ -22,6 +22,7 @@ from fe_contact.compliance.checks_3d import probe_loads
 from fe_contact.compliance.condensed_gear import condensed_gear
 from fe_contact.compliance.flank_compliance_2d import compliance_key, condensed_ring
 from fe_contact.compliance.sector_2d import freedoms
+from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
 from fe_contact.geometry import Gear, GearBlank
 from fe_contact.geometry.web_compliance import torsion_compliance
 from fe_contact.material import STEEL
@@ -165,6 +166,11 @@ def test_a_left_hand_gear_keeps_its_web_on_its_side() -> None:
     assert np.array_equal(together[1].blocks, alone.blocks)
     assert np.array_equal(together[1].z, alone.z)
     assert np.array_equal(together[0].z, -alone.z[::-1])
+    stress = unit_root_stress_3d(left, coarse_3d(left), reach=0)
+    assert np.array_equal(stress.z, alone.z)
+    other = unit_root_stress_3d(left.right_handed(), coarse_3d(left), reach=0)
+    assert np.array_equal(stress.station_z, -other.station_z[::-1])
+    assert not np.allclose(stress.station_z, other.station_z)
 
 
 def test_the_key_knows_the_web() -> None:

@@ -12,6 +12,7 @@ import scipy.sparse as sp
 
 from fe_contact.compliance import FlankCompliance3D, SuperLuMetis, flank_compliance_3d
 from fe_contact.compliance.checks_3d import probe_loads
+from fe_contact.compliance.deformation_3d import deformed_solids
 from fe_contact.compliance.keyed_bore import key_points
 from fe_contact.compliance.sector_stiffness import flank_frames, sector_stiffness, twist
 from fe_contact.compliance.unit_root_stress import unit_root_stress_3d
@@ -202,3 +203,6 @@ def test_impossible_keys_are_refused_by_name() -> None:
     with pytest.raises(InputError) as stress:
         unit_root_stress_3d(keyed(SPUR), coarse(SPUR))
     assert stress.value.field == "seat.key"
+    with pytest.raises(InputError) as shape:
+        deformed_solids(keyed(SPUR), coarse(SPUR), [{0: np.zeros(1)}])
+    assert shape.value.field == "seat.key"
