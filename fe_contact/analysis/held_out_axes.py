@@ -11,6 +11,7 @@ from fe_contact.analysis.table_places import Place, Places, table_places
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
 from fe_contact.ste import SteDatabase
+from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import FloatArray, IntArray, Json
 
 LOAD_PROBES = np.array([0.25, 0.5, 0.75])
@@ -71,11 +72,25 @@ def held_out_axes(
     """
     if table.n_failed:
         return {}
+    table = _first_pitch(table)
     try:
         table.force_table()
     except DatabaseError:
         return {}
     return _measured(table, places, scene, choices)
+
+
+def _first_pitch(table: SteDatabase) -> SteDatabase:
+    """Return the first base pitch of a longer period: at its own positions the rest does not matter."""
+    if table.period == 1:
+        return table
+    rows = int(np.searchsorted(table.position, 1.0))
+    arrays = {
+        name: getattr(table, name)[:rows]
+        for name, dimensions in DIMENSIONS.items()
+        if dimensions[0] == "position"
+    }
+    return replace(table, **arrays, period=1)
 
 
 def _measured(

@@ -50,7 +50,7 @@ class NodeRule:
     judged_pitches: int = 3
 
 
-PLANE_NODES = NodeRule(64, 0.0015, 768, 12)
+PLANE_NODES = NodeRule(64, 0.0015, 768, 64)
 FACE_NODES = NodeRule(64, 0.005, 192, 3)
 """Positions cost a hundred times as much over the face, and its curves are smoother."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from fe_contact.contact import ContactProblem, PatchRule, Slices, contact_candid
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.pitch_error import PitchError, PitchGap
-from fe_contact.geometry import Gear, GearPair, PitchDeviation
+from fe_contact.geometry import Gear, GearPair, InternalGearPair, PitchDeviation, RingGear
 from fe_contact.planning import make_plan
 
 Z1, Z2 = 20, 23
@@ -124,6 +125,22 @@ def test_an_early_tooth_lowers_the_error_by_itself_while_it_is_in_mesh(solved, p
     assert change[in_mesh] == pytest.approx(-error * COSINE, rel=2e-3)
     far = np.abs(phase) > 1.2 * pair.base_pitch
     assert np.all(change[far] == 0.0)
+
+
+def test_an_early_tooth_of_a_ring_gear_lowers_the_error_by_itself(solved):
+    """Its teeth turn the same way as the pinion's, and come into mesh in the order of the list."""
+    error, tooth = 5e-6, 7
+    plain = {"normal_module": 4e-3, "face_width": 25e-3, "rim_diameter": 300e-3, "cutter_teeth": 25}
+    ring = RingGear(teeth=60, tip_diameter=0.2345, **plain)
+    early = replace(ring, pitch_deviation=PitchDeviation(tuple(one_tooth(60, tooth, error))))
+    perfect, pair = (InternalGearPair(gear(Z1), wheel) for wheel in (ring, early))
+    pitches = range(5, 10)
+    change = solved(pair, pitches)[..., 0] - solved(perfect, [0])[..., 0]
+    phase = (np.arange(5, 10)[:, None] + POSITIONS - tooth) * pair.base_pitch
+    path = pair.path_of_contact
+    in_mesh = (phase >= path.start - path.pitch_point) & (phase <= path.end - path.pitch_point)
+    assert change[in_mesh] == pytest.approx(-error * COSINE, rel=2e-3)
+    assert np.all(change[np.abs(phase) > 1.2 * pair.base_pitch] == 0.0)
 
 
 def test_a_late_tooth_raises_the_error_by_itself_where_it_must_carry_alone(solved, perfect):
