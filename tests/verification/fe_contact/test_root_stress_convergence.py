@@ -12,8 +12,7 @@ import pytest
 from fe_contact import GearPair, root_stress
 from fe_contact.analysis.root_stress_history import crests
 from fe_contact.compliance import UnitRootStress, unit_root_stress, unit_root_stress_3d
-from fe_contact.contact import FaceGrid
-from fe_contact.contact.face_patch import face_loads
+from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.geometry import Gear
 from fe_contact.mesh import MeshRecipe, PlaneStrain, SectorRecipe
