@@ -3,7 +3,16 @@
 from dynamics.joints.bushing import Bushing
 from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
+from dynamics.joints.housing import Housing, read_housing
 from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
 
-__all__ = ["Bushing", "Coupling", "FreeRotation", "ImposedRotation", "PlanetBearing"]
+__all__ = [
+    "Bushing",
+    "Coupling",
+    "FreeRotation",
+    "Housing",
+    "ImposedRotation",
+    "PlanetBearing",
+    "read_housing",
+]

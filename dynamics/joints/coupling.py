@@ -8,11 +8,7 @@ import numpy as np
 
 from dynamics.checks import finite, not_negative
 from dynamics.errors import InputError
-
-Matrix = tuple[tuple[float, ...], ...]
-
-SYMMETRY = 1e-9  # relative
-LEAST_EIGENVALUE = -1e-9  # over the largest
+from dynamics.joints.matrix import Matrix, check_matrix
 
 
 @dataclass(frozen=True)
@@ -53,21 +49,9 @@ class Coupling:
         finite("position", self.position)
         for name in ("stiffness", "damping"):
             if getattr(self, name) is not None:
-                _check_matrix(name, np.asarray(getattr(self, name), dtype=float))
+                check_matrix(name, np.asarray(getattr(self, name), dtype=float), (6,))
         if self.first == self.second:
             raise InputError("second", self.second, "another shaft than the first")
         if self.torsional_stiffness == 0.0 and (self.stiffness is None or self.stiffness[5][5] <= 0.0):
             suggestion = "Without it the shafts would not turn together."
             raise InputError("torsional_stiffness", 0.0, "above 0", suggestion)
-
-
-def _check_matrix(name: str, matrix: np.ndarray) -> None:
-    """Refuse what is no symmetric, positive semidefinite 6 by 6 matrix."""
-    if matrix.shape != (6, 6) or not np.all(np.isfinite(matrix)):
-        raise InputError(name, f"shape {matrix.shape}", "6 by 6 finite numbers")
-    largest = float(np.max(np.abs(matrix)))
-    if np.any(np.abs(matrix - matrix.T) > SYMMETRY * largest):
-        raise InputError(name, "not symmetric", "symmetric", "Use half the sum with its transpose.")
-    per = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    if np.linalg.eigvalsh(matrix / np.outer(per, per))[0] < LEAST_EIGENVALUE:
-        raise InputError(name, "with a negative eigenvalue", "positive semidefinite")

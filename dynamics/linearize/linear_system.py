@@ -30,8 +30,8 @@ class LinearSystem:
     rigid : (k, n) array
         Motions that nothing resists: those of trains without a drive.
     spring : tuple of str
-        Names of all springs: meshes, bearings with direction, couplings (once per principal stiffness),
-        elastic drives.
+        Names of all springs: meshes, bearings with direction, bearings with matrices, housings and couplings
+        (once per principal stiffness), elastic drives.
     strain : (p, n) array
         Strain of each spring per freedom, m or rad.
     spring_stiffness : (p,) array
@@ -81,18 +81,24 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     )
 
 
+def _matrices(system: System) -> list[tuple[str, FloatArray, FloatArray]]:
+    """Names, strains per freedom of the rotors, and stiffness matrices of bearings and couplings."""
+    seats, couplings = system.seats, system.couplings
+    bearings = [(name, seats.motion[at], seats.stiffness[at, at]) for name, at in seats.group]
+    return [*bearings, *zip(couplings.name, couplings.motion, couplings.stiffness, strict=True)]
+
+
 def _springs(system: System, tangent: FloatArray) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
     """Names, strains per freedom and stiffnesses of all springs."""
     names = [mesh.name for mesh in system.scene.meshes]
     rows, stiffness = [system.arrays.direction[: len(names)]], [tangent]
     supports = system.supports
     moves = system.freedoms.keep(supports.motion)
-    names += [f"{name}.{axis}" for name in supports.name for axis in "xyz"]
-    rows.append(moves.reshape(-1, moves.shape[-1]))
-    stiffness.append(supports.stiffness.ravel())
-    for name, motion, matrix in zip(
-        system.couplings.name, system.couplings.motion, system.couplings.stiffness, strict=True
-    ):
+    plain = [index for index in range(len(supports.name)) if index not in system.seats.place]
+    names += [f"{supports.name[index]}.{axis}" for index in plain for axis in "xyz"]
+    rows.append(moves[plain].reshape(-1, moves.shape[-1]))
+    stiffness.append(supports.stiffness[plain].ravel())
+    for name, motion, matrix in _matrices(system):
         values, vectors = np.linalg.eigh(matrix)
         for value, vector in zip(values, vectors.T, strict=True):
             if value > 0.0:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.joints.bushing import SEAT
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.system.assemble import System
 from dynamics.system.observation import observe_laws
@@ -104,6 +105,10 @@ def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
             moves = supports.motion[bearing, :2]
             damping = supports.damping[bearing, 0] * float(speed[carrier])
             stiffening += damping * moves.T @ QUARTER_TURN @ moves
+    seats = system.seats
+    if any(carrier is not None for carrier in seats.frame):
+        of_frame = [0.0 if carrier is None else float(speed[carrier]) for carrier in seats.frame]
+        stiffening += seats.motion.T @ (seats.turned_damping * np.repeat(of_frame, SEAT)) @ seats.motion
     motion = system.freedoms.motion
     return motion.T @ turning @ motion, motion.T @ stiffening @ motion
 

@@ -23,6 +23,7 @@ def resolved_case(system: System) -> Json:
         "meshes": [_mesh(system, index) for index in range(len(scene.meshes))],
         "drives": [asdict(drive) for drive in scene.drives],
         "speed_torques": [asdict(torque) for torque in scene.speed_torques],
+        "housings": [asdict(housing) for housing in scene.housings],
         "couplings": [asdict(coupling) for coupling in scene.couplings],
         "free_rotations": [asdict(rotation) for rotation in scene.free_rotations],
         "speed_ratios": {

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.joints.bushing import SEAT
 from dynamics.system.assemble import System
 from dynamics.system.freedoms import ROTATION
 from dynamics.system.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
@@ -22,6 +23,7 @@ def histories(
     laws = observe_laws(arrays, time)
     seen = observe(arrays, time, q, v, moved)
     meshes, wanted = len(scene.meshes), scene.outputs
+    force, moment = _on_the_ground(system, laws, q, v, moved)
     return {
         "time": time,
         "mesh": tuple(mesh.name for mesh in scene.meshes),
@@ -39,27 +41,56 @@ def histories(
         "speed": _speed(system, laws[SPEED], v),
         "drive_torque": _drive_torque(system, time, laws[ACCELERATION], seen.force, q, v),
         "coupling_torque": _coupling_torque(system, q, v),
-        "bearing_force": _seen_from_the_ground(system, bearing_force(system, q, v), laws, moved)
-        if wanted.bearing_forces
-        else np.empty((0, 3, time.size)),
+        "bearing_force": force,
+        "bearing_moment": moment,
         "displacement": np.ascontiguousarray(q.T) if wanted.displacements else np.empty((0, time.size)),
         "velocity": np.ascontiguousarray(v.T) if wanted.displacements else np.empty((0, time.size)),
         "nominal_force": system.flanks.nominal_force,
     }
 
 
+def _on_the_ground(
+    system: System, laws: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return forces and moments on the ground, (b, 3, T) each; none of them if not asked for.
+
+    Moments are none at all where no bearing holds tilt.
+    """
+    none = np.empty((0, 3, q.shape[0]))
+    if not system.scene.outputs.bearing_forces:
+        return none, none
+    found = bearing_force(system, q, v)
+    force, moment = found[:, :3], found[:, 3:]
+    turned = _seen_from_the_ground(system, np.ascontiguousarray(force), laws, moved)
+    if not _holds_tilt(system):
+        return turned, none
+    return turned, _seen_from_the_ground(system, np.ascontiguousarray(moment), laws, moved)
+
+
+def _holds_tilt(system: System) -> bool:
+    """Whether any bearing exerts a moment."""
+    matrices = (system.bearing_stiffness[:, 3:], system.bearing_damping[:, 3:])
+    return any(bool(np.any(matrix)) for matrix in (*matrices, system.seats.preload.reshape(-1, SEAT)[:, 3:]))
+
+
 def bearing_force(system: System, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Return the force on the ground or the pin at each support in its own frame, (b, 3, T) in N."""
-    bearings, _, freedoms = system.bearing_stiffness.shape
-    force = system.bearing_stiffness.reshape(3 * bearings, freedoms) @ q.T
-    force += system.bearing_damping.reshape(3 * bearings, freedoms) @ v.T
-    supports = system.supports
-    force -= (supports.stiffness * supports.error).reshape(3 * bearings, 1)
-    return np.asarray(force.reshape(bearings, 3, q.shape[0]))
+    """Return the force (N) on the ground or the pin at each support in its own frame, (b, 3, T).
+
+    With seats (b, 6, T): force and moment (N m), the one about the axis 0.
+    """
+    bearings, rows, freedoms = system.bearing_stiffness.shape
+    force = system.bearing_stiffness.reshape(rows * bearings, freedoms) @ q.T
+    force += system.bearing_damping.reshape(rows * bearings, freedoms) @ v.T
+    supports, seats = system.supports, system.seats
+    found = force.reshape(bearings, rows, q.shape[0])
+    found[:, :3] -= (supports.stiffness * supports.error)[:, :, None]
+    if seats.name:
+        found[seats.place, :SEAT] -= seats.preload.reshape(-1, SEAT)[:, :, None]
+    return np.asarray(found)
 
 
 def _seen_from_the_ground(system: System, force: FloatArray, laws: FloatArray, moved: IntArray) -> FloatArray:
-    """Turn forces on the ground from the carrier's frame into the fixed one, (b, 3, T)."""
+    """Turn vectors on the ground from the carrier's frame into the fixed one, (b, 3, T)."""
     ratio = system.kinematics.float_ratio
     turned = laws[WHOLE] + laws[FRACTION] + moved.T / QUANTA_PER_TURN
     for bearing, frame in enumerate(system.supports.frame):

@@ -49,6 +49,9 @@ class RunResult:
     bearing_force : (b, 3, T) array
         Force of the shaft on the ground in the fixed frame x, y, z, N; of a planet on its pin in the
         carrier's turning frame; b = 0 if not asked for.
+    bearing_moment : (b, 3, T) array
+        Moment of the shaft on the ground about each bearing's centre, N m, in the same frames; the one about
+        the axis is 0, since the shaft turns. b = 0 if not asked for or if no bearing holds tilt.
     displacement, velocity : (n, T) arrays
         Deviations from the kinematic motion, m and rad (and per s); n = 0 if not asked for.
     nominal_force : (m,) array
@@ -79,6 +82,7 @@ class RunResult:
     drive_torque: FloatArray
     coupling_torque: FloatArray
     bearing_force: FloatArray
+    bearing_moment: FloatArray
     displacement: FloatArray
     velocity: FloatArray
     nominal_force: FloatArray

@@ -51,6 +51,7 @@ SERIES = (
     Series("drive_torque", ("drive", "time"), "N m", "drive torque about +z"),
     Series("coupling_torque", ("coupling", "time"), "N m", "torque from the first to the second shaft"),
     Series("bearing_force", ("bearing", "direction", "time"), "N", "force of the shaft on the ground"),
+    Series("bearing_moment", ("bearing", "direction", "time"), "N m", "moment of the shaft on the ground"),
     Series("displacement", ("freedom", "time"), "m or rad", "deviation from the kinematic motion"),
     Series("velocity", ("freedom", "time"), "m s-1 or rad s-1", "rate of the deviation"),
     Series("nominal_force", ("mesh",), "N", "nominal transverse mesh force"),

@@ -124,7 +124,7 @@ class SystemArrays(NamedTuple):
     turn : (m, n) array
         Derivative of the meshes' positions in q, base pitches.
     constant : (n,) array
-        External force that never changes: of pins off their place.
+        External force that never changes: of pins off their place, of preloaded bearings.
     inertial : (k, n) array
         External force per angular acceleration of each law: minus inertia times kinematic vector.
     total_inertia : (k, k) array

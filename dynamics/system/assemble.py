@@ -10,6 +10,7 @@ import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.forces.element_laws import ElementLaws
+from dynamics.joints.bushing import SEAT
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.coupling_rows import CouplingRows, gather_couplings
 from dynamics.system.effects import FREEDOMS, MeshOnRotor, SupportedRotor
@@ -32,6 +33,7 @@ from dynamics.system.planets import kinematic_vectors, turning_inertia
 from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.system.rotor import Rotor, build_rotor
 from dynamics.system.scene import Scene
+from dynamics.system.seats import Seats, gather_seats, seated
 from dynamics.system.speed_elements import speed_elements
 from dynamics.system.supports import Supports, gather_supports
 from dynamics.types import FloatArray
@@ -60,9 +62,12 @@ class System:
         One per shaft.
     supports : Supports
         Bushings, then planet bearings.
+    seats : Seats
+        The bushings that are more than three springs to rigid ground.
     couplings : CouplingRows
-    bearing_stiffness, bearing_damping : (b, 3, n) arrays
-        Force on the ground, or on the pin, at each support per freedom and its rate.
+    bearing_stiffness, bearing_damping : (b, 3 or 6, n) arrays
+        Force on the ground, or on the pin, at each support per freedom and its rate; with seats, the moment
+        too.
     ledger : EffectLedger
     """
 
@@ -75,6 +80,7 @@ class System:
     elements: tuple[Element, ...]
     rotors: tuple[Rotor, ...]
     supports: Supports
+    seats: Seats
     couplings: CouplingRows
     bearing_stiffness: FloatArray
     bearing_damping: FloatArray
@@ -94,7 +100,8 @@ def assemble(scene: Scene) -> System:
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
     inertia = turning_inertia(rotors)
     forces = nominal_forces(scene, kinematics, inertia)
-    supports, couplings = gather_supports(rotors), gather_couplings(scene, rotors)
+    supports, couplings = gather_supports(rotors, seated(scene)), gather_couplings(scene, rotors)
+    seats = gather_seats(scene, rotors, supports.name)
     _check_rotation(rotors, kinematics)
     polar = [rotor.inertia.polar for rotor in rotors]
     flanks = flank_laws(scene, kinematics, forces, polar)
@@ -107,8 +114,7 @@ def assemble(scene: Scene) -> System:
     by_speed, speed_laws = speed_elements(scene, kinematics)
     elements = (*flank_elements(scene, rotors, kinematics.mesh_sense, lines, flanks), *by_speed)
     laws = ElementLaws(flanks.law, speed_laws)
-    arrays = _arrays(scene, rotors, kinematics, freedoms, flanks, elements, laws, supports, couplings)
-    moves = freedoms.keep(supports.motion)
+    arrays = _arrays(scene, rotors, kinematics, freedoms, flanks, elements, laws, supports, seats, couplings)
     return System(
         scene,
         arrays,
@@ -119,11 +125,24 @@ def assemble(scene: Scene) -> System:
         elements,
         rotors,
         supports,
+        seats,
         couplings,
-        supports.stiffness[:, :, None] * moves,
-        supports.damping[:, :, None] * moves,
+        _on_ground(freedoms, supports, supports.stiffness, seats, seats.stiffness),
+        _on_ground(freedoms, supports, supports.damping, seats, seats.damping),
         ledger,
     )
+
+
+def _on_ground(
+    freedoms: Freedoms, supports: Supports, springs: FloatArray, seats: Seats, matrix: FloatArray
+) -> FloatArray:
+    """Force on the ground per freedom (b, 3, n), with seats force and moment (b, 6, n)."""
+    plain = springs[:, :, None] * freedoms.keep(supports.motion)
+    if not seats.name:
+        return plain
+    full = np.concatenate([plain, np.zeros_like(plain)], axis=1)
+    full[seats.place, :SEAT] += (matrix @ freedoms.keep(seats.motion)).reshape(-1, SEAT, plain.shape[2])
+    return full
 
 
 def _supported(
@@ -167,6 +186,7 @@ def _arrays(
     elements: Sequence[Element],
     laws: ElementLaws,
     supports: Supports,
+    seats: Seats,
     couplings: CouplingRows,
 ) -> SystemArrays:
     """Reduce every six-freedom array to the free directions."""
@@ -177,6 +197,12 @@ def _arrays(
         strains = freedoms.keep(couplings.motion)
         stiffness += couplings.matrix(couplings.stiffness, strains, strains)
         damping += couplings.matrix(couplings.damping, strains, strains)
+    constant = np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error)
+    if seats.name:
+        strains = freedoms.keep(seats.motion)
+        stiffness += strains.T @ seats.stiffness @ strains
+        damping += strains.T @ seats.damping @ strains
+        constant += seats.preload @ strains
     _add_drive_springs(scene, kinematics, freedoms, stiffness, damping)
     full_mass = mass_diagonal(rotors)
     mass = freedoms.motion.T @ (full_mass[:, None] * freedoms.motion)
@@ -190,7 +216,7 @@ def _arrays(
         shared_blocks([mass, damping, stiffness]),
         direction,
         freedoms.keep(_turns(scene, rotors, kinematics)),
-        np.einsum("bki,bk,bk->i", moves, supports.stiffness, supports.error),
+        constant,
         freedoms.keep(-full_mass * vectors),
         np.ascontiguousarray((vectors * full_mass) @ vectors.T),
         lay_out_drives(scene, rotors, kinematics, freedoms, supports, couplings, gradient, vectors),

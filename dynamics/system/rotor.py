@@ -56,24 +56,38 @@ class Rotor:
     @property
     def radial_stiffness(self) -> float:
         """Sum over the supports, N/m."""
-        return sum(support.radial_stiffness for support in self.supports)
+        plain = sum(support.radial_stiffness for support in self.supports)
+        return plain + sum(0.5 * float(k[0, 0] + k[1, 1]) for k, _ in self._matrices)
 
     @property
     def axial_stiffness(self) -> float:
         """Sum over the supports, N/m."""
-        return sum(support.axial_stiffness for support in self.supports)
+        plain = sum(support.axial_stiffness for support in self.supports)
+        return plain + sum(float(k[2, 2]) for k, _ in self._matrices)
 
     @property
     def elastic_lever(self) -> float:
         """Axial distance from the centre of mass to where a radial force does not tilt the shaft, m."""
         moment = sum(support.radial_stiffness * self.lever(support) for support in self.supports)
+        for k, lever in self._matrices:
+            moment += 0.5 * float((k[0, 0] + k[1, 1]) * lever + k[0, 4] - k[1, 3])
         return moment / self.radial_stiffness if self.radial_stiffness > 0.0 else 0.0
 
     @property
     def tilt_stiffness(self) -> float:
         """Moment per tilt about the elastic centre, N m/rad."""
         arms = [(b.radial_stiffness, self.lever(b) - self.elastic_lever) for b in self.supports]
-        return sum(stiffness * arm**2 for stiffness, arm in arms)
+        plain = sum(stiffness * arm**2 for stiffness, arm in arms)
+        added = [(k, lever - self.elastic_lever) for k, lever in self._matrices]
+        return plain + sum(
+            0.5 * float((k[0, 0] + k[1, 1]) * a**2 + 2.0 * a * (k[0, 4] - k[1, 3]) + k[3, 3] + k[4, 4])
+            for k, a in added
+        )
+
+    @property
+    def _matrices(self) -> list[tuple[FloatArray, float]]:
+        """Stiffness matrices that bushings have on top, with their levers; means of x and y are used."""
+        return [(b.added_stiffness, self.lever(b)) for b in self.bushings if b.stiffness is not None]
 
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
@@ -94,7 +108,7 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
         shaft,
         inertia,
         center,
-        tuple(_damped(bushing, share) for bushing in bushings),
+        tuple(_damped_matrix(_damped(bushing, share), share) for bushing in bushings),
         tuple(_damped(bearing, share) for bearing in bearings),
         frame,
         frame if planet else None,
@@ -112,3 +126,13 @@ def _damped(support: Support, share: float) -> Support:
         radial_damping=damping(support.radial_damping, support.radial_stiffness),
         axial_damping=damping(support.axial_damping, support.axial_stiffness),
     )
+
+
+def _damped_matrix(bushing: Bushing, share: float) -> Bushing:
+    """Fill in the damping of a stiffness matrix, in proportion to it."""
+    if bushing.stiffness is None or bushing.damping is not None:
+        return bushing
+    matrix = bushing.added_stiffness
+    largest = float(np.max(np.diag(matrix)[:3]))
+    time = 2.0 * bushing.damping_ratio * float(np.sqrt(share / largest)) if largest > 0.0 else 0.0
+    return replace(bushing, damping=tuple(tuple(float(time * k) for k in row) for row in matrix))

@@ -11,7 +11,8 @@ from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, integer, not_negative, one_of, positive
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque, SpeedTorque
-from dynamics.joints import Bushing, Coupling, FreeRotation, ImposedRotation, PlanetBearing
+from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
+from dynamics.system.housing_check import check_housings
 
 METHODS = ("implicit", "explicit")
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
@@ -27,7 +28,7 @@ class Outputs:
     sample_rate : float
         Hz of the uniform output grid.
     bearing_forces : bool
-        Store the three force components of every bushing.
+        Store the force of every bearing, and its moment where a bearing holds tilt.
     displacements : bool
         Store displacement and velocity of every freedom.
     energy_audit : bool
@@ -110,6 +111,7 @@ KINDS = (
     "free_rotations",
     "loads",
     "speed_torques",
+    "housings",
 )
 
 
@@ -120,7 +122,7 @@ class Scene:
     Attributes
     ----------
     shafts, gears, bushings, planet_bearings, couplings, meshes, drives, free_rotations, loads : tuples
-    speed_torques : tuple
+    speed_torques, housings : tuples
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: as many of them as the gearing leaves independent speeds.
     duration : float
@@ -142,6 +144,7 @@ class Scene:
     free_rotations: tuple[FreeRotation, ...] = ()
     couplings: tuple[Coupling, ...] = ()
     speed_torques: tuple[SpeedTorque, ...] = ()
+    housings: tuple[Housing, ...] = ()
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = Outputs()
     integration: Integration = Integration()
@@ -175,6 +178,7 @@ class Scene:
         self._check_references()
         check_frames(self.shafts, self.bushings, self.planet_bearings)
         check_couplings(self.shafts, self.couplings)
+        check_housings(self.shafts, self.bushings, self.housings)
 
     def _check_references(self) -> None:
         """Something turns."""

@@ -43,8 +43,8 @@ class Supports:
         return np.asarray(np.einsum("bki,bk,bkj->ij", left, coefficient, right))
 
 
-def gather_supports(rotors: Sequence[Rotor]) -> Supports:
-    """Lay out the supports of all rotors."""
+def gather_supports(rotors: Sequence[Rotor], seated: frozenset[str]) -> Supports:
+    """Lay out the supports of all rotors; those `seated` have their springs elsewhere (`Seats`)."""
     on_ground: list[tuple[int, Bushing]] = [
         (i, bushing) for i, rotor in enumerate(rotors) for bushing in rotor.bushings
     ]
@@ -55,6 +55,9 @@ def gather_supports(rotors: Sequence[Rotor]) -> Supports:
     errors = [np.zeros(3)] * len(on_ground) + [_pin_error(rotors, i, bearing) for i, bearing in on_pins]
     stiffness = [[p.radial_stiffness, p.radial_stiffness, p.axial_stiffness] for p in parts]
     damping = [[p.radial_damping or 0.0, p.radial_damping or 0.0, p.axial_damping or 0.0] for p in parts]
+    for row, part in enumerate(parts):
+        if part.name in seated:
+            stiffness[row], damping[row] = [0.0] * 3, [0.0] * 3
     return Supports(
         tuple(part.name for part in parts),
         (*(rotors[index].frame for index, _ in on_ground), *(None for _ in on_pins)),

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, SpeedCurve, TimeLaw, hollow_cylinder
 from dynamics.errors import InputError
 from dynamics.forces import CoastFlank, GearMesh, LoadTorque, SpeedTorque
-from dynamics.joints import Bushing, Coupling, FreeRotation, ImposedRotation, PlanetBearing
+from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
 from dynamics.system import Integration, Outputs, Scene, with_planets
 from dynamics.system.kinematics import solve_kinematics
 from fe_contact.ste import PairFacts, SteDatabase
@@ -21,6 +21,7 @@ from service.schemas.scene_bodies import (
     BushingInput,
     CouplingInput,
     GearBodyInput,
+    HousingInput,
     InertiaInput,
     PlanetBearingInput,
     ShaftInput,
@@ -76,6 +77,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             couplings=tuple(_coupling(i, part) for i, part in enumerate(scene.couplings)),
             speed_torques=tuple(_speed_torque(i, part) for i, part in enumerate(scene.speed_torques)),
             free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
+            housings=tuple(_housing(i, part) for i, part in enumerate(scene.housings)),
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
             duration=scene.run.duration_s,
             effects=dict(scene.effects),
@@ -141,7 +143,23 @@ def _bushing(index: int, given: BushingInput) -> Bushing:
             radial_damping=given.radial_damping_n_s_per_m,
             axial_damping=given.axial_damping_n_s_per_m,
             damping_ratio=given.damping_ratio,
+            stiffness=given.stiffness_matrix,
+            damping=given.damping_matrix,
+            preload=_preload(given),
         )
+
+
+def _preload(given: BushingInput) -> tuple[float, ...] | None:
+    """Force and moment on the shaft; None where neither is given."""
+    if given.preload_force_n is None and given.preload_moment_n_m is None:
+        return None
+    return (*(given.preload_force_n or (0.0,) * 3), *(given.preload_moment_n_m or (0.0,) * 2))
+
+
+def _housing(index: int, given: HousingInput) -> Housing:
+    """Return a housing."""
+    with _named(f"housings[{index}]"):
+        return Housing(given.name, given.bushings, given.stiffness_matrix, given.damping_matrix)
 
 
 def _planet_bearing(index: int, given: PlanetBearingInput) -> PlanetBearing:

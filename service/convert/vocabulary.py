@@ -106,7 +106,12 @@ def scene_field(name: str) -> str:
     head, index = _split_index(parts[-1])
     if len(parts) == 1 and head == "duration":
         return "run.duration_s"
-    parts[-1] = _LAST.get(head, head) + index
+    if head in ("stiffness", "damping") and parts[0].startswith(("bushings", "housings", "couplings")):
+        parts[-1] = f"{head}_matrix"
+    elif head == "preload":
+        parts[-1] = "preload_force_n"
+    else:
+        parts[-1] = _LAST.get(head, head) + index
     return ".".join(parts)
 
 

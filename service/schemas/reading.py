@@ -12,6 +12,7 @@ from pydantic import BaseModel, ValidationError
 from service.problems import BadInput
 from service.schemas.faults import faults_of
 from service.schemas.flank_grid_csv import with_flank_grids
+from service.schemas.housing_file import with_housing_files
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -70,6 +71,7 @@ def read_model(model: type[M], path: Path) -> M:
     Raises
     ------
     BadInput
-        The file or a flank grid that it names cannot be read, or with every fault of its contents.
+        The file, or a flank grid or housing it names, cannot be read, or with every fault of its contents.
     """
-    return validated(model, with_flank_grids(read_table(path), path.parent, read_text))
+    table = with_flank_grids(read_table(path), path.parent, read_text)
+    return validated(model, with_housing_files(table, path.parent))

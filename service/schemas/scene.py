@@ -12,6 +12,7 @@ from service.schemas.scene_bodies import (
     BushingInput,
     CouplingInput,
     GearBodyInput,
+    HousingInput,
     PlanetBearingInput,
     PlanetsInput,
     ShaftInput,
@@ -30,6 +31,7 @@ _NAMED = (
     "free_rotations",
     "loads",
     "speed_torques",
+    "housings",
 )
 _SOURCES = ("case", "case_file", "database_file", "database_hash")
 
@@ -127,7 +129,7 @@ class OutputsInput(BoundaryModel):
         default=20e3, gt=0.0, le=1e7, description="Samples per second", examples=[20000.0]
     )
     bearing_forces: bool = Field(
-        default=True, description="Store the forces of every bushing", examples=[True]
+        default=True, description="Store forces and moments of every bearing", examples=[True]
     )
     displacements: bool = Field(default=False, description="Store every freedom", examples=[False])
 
@@ -170,6 +172,7 @@ class SceneInput(BoundaryModel):
     )
     couplings: Annotated[tuple[CouplingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     speed_torques: Annotated[tuple[SpeedTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    housings: Annotated[tuple[HousingInput, ...], Strict(False)] = Field(default=(), max_length=100)
     planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
     loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     outputs: OutputsInput = Field(default=OutputsInput(), description="What to store", examples=[{}])
@@ -208,6 +211,10 @@ class SceneInput(BoundaryModel):
             _refuse_unknown(f"couplings[{index}].second", coupling.second, shafts)
         for index, planets in enumerate(self.planets):
             _refuse_unknown(f"planets[{index}].planet", planets.planet, shafts)
+        bushings = [bushing.name for bushing in self.bushings]
+        for index, housing in enumerate(self.housings):
+            for place, name in enumerate(housing.bushings):
+                _refuse_unknown(f"housings[{index}].bushings[{place}]", name, bushings)
         gears = [gear.name for gear in self.gears]
         for index, mesh in enumerate(self.meshes):
             _refuse_unknown(f"meshes[{index}].driver", mesh.driver, gears)

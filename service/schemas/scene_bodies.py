@@ -7,7 +7,7 @@ from typing import Annotated, Self
 from pydantic import Field, Strict, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
-from service.schemas.scene_types import Coordinate, Name, Rows
+from service.schemas.scene_types import Coordinate, MatrixRows, Name, Number, Rows
 
 
 class InertiaInput(BoundaryModel):
@@ -85,8 +85,8 @@ class GearBodyInput(BoundaryModel):
     )
 
 
-class BushingInput(BoundaryModel):
-    """A linear bearing between a shaft and the ground."""
+class LinearBearingInput(BoundaryModel):
+    """Springs and dampers of a linear bearing."""
 
     name: Name = Field(description="Name of the bushing", examples=["input left"])
     shaft: Name = Field(description="The shaft it carries", examples=["input"])
@@ -114,7 +114,73 @@ class BushingInput(BoundaryModel):
     damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
 
 
-class PlanetBearingInput(BushingInput):
+class BushingInput(LinearBearingInput):
+    """A linear bearing between a shaft and the ground."""
+
+    radial_stiffness_n_per_m: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1e15,
+        description="Radial stiffness in N/m, beside a stiffness_matrix if there is one",
+        examples=[1e8],
+    )
+    stiffness_matrix: MatrixRows | None = Field(
+        default=None,
+        min_length=5,
+        max_length=6,
+        description="Added: 5 by 5 in x, y, z, tilt_x, tilt_y, or 6 by 6 with 0 for the rotation; N, m, rad",
+    )
+    damping_matrix: MatrixRows | None = Field(
+        default=None,
+        min_length=5,
+        max_length=6,
+        description="Added: the same for rates; N, m, rad, s; left out: in proportion, from damping_ratio",
+    )
+    preload_force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=3,
+        max_length=3,
+        description="Force x, y, z on the shaft in N where it is not displaced",
+        examples=[[0.0, 0.0, 500.0]],
+    )
+    preload_moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=2,
+        description="Moment about x, y on the shaft in N m where it is not displaced",
+        examples=[[0.0, 0.0]],
+    )
+
+    @model_validator(mode="after")
+    def _holds(self) -> Self:
+        """Something holds the shaft."""
+        if "radial_stiffness_n_per_m" not in self.model_fields_set and self.stiffness_matrix is None:
+            refuse("radial_stiffness_n_per_m", None, "given, or stiffness_matrix instead", "For example 1e8.")
+        return self
+
+
+class HousingInput(BoundaryModel):
+    """An elastic, massless housing that several bushings share."""
+
+    name: Name = Field(description="Name of the housing", examples=["gearbox"])
+    bushings: Annotated[tuple[Name, ...], Strict(False)] = Field(
+        min_length=1,
+        max_length=1000,
+        description="Bushings in the order of the matrix",
+        examples=[["a", "b"]],
+    )
+    stiffness_matrix: MatrixRows = Field(
+        min_length=3,
+        max_length=6000,
+        description="Over all seats: per bushing 3 rows x, y, z, or 5 with tilt_x, tilt_y, or 6 with the "
+        "rotation; N, m, rad. In a file on disk stiffness_file may name a CSV or NPZ file instead",
+    )
+    damping_matrix: MatrixRows | None = Field(
+        default=None, min_length=3, max_length=6000, description="The same for rates; left out: none"
+    )
+
+
+class PlanetBearingInput(LinearBearingInput):
     """A linear bearing between a planet and its pin in the carrier."""
 
     shaft: Name = Field(description="The planet's shaft", examples=["planet"])

@@ -13,4 +13,7 @@ Times = Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e9)], ...], Strict(Fa
 Numbers = Annotated[tuple[Number, ...], Strict(False)]
 Course = Literal["linear", "smooth"]
 Row = Annotated[tuple[Number, ...], Strict(False)]
+Stiffness = Annotated[float, Field(ge=-1e15, le=1e15)]
+MatrixRow = Annotated[tuple[Stiffness, ...], Strict(False)]
+MatrixRows = Annotated[tuple[MatrixRow, ...], Strict(False)]
 Rows = Annotated[tuple[Row, ...], Strict(False)]

@@ -181,6 +181,7 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
         coupling_torque=np.empty((0, time.size)),
         drive_torque=np.full((1, time.size), 100.0),
         bearing_force=force,
+        bearing_moment=np.empty((0, 3, time.size)),
         displacement=np.empty((0, time.size)),
         velocity=np.empty((0, time.size)),
         nominal_force=np.array([2660.44]),

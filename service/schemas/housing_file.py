@@ -1,0 +1,47 @@
+"""Housing matrices as files beside a scene file: read and written out in the scene.
+
+Only files on the caller's own disk name other files; what goes over HTTP holds the matrix itself.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from dynamics.errors import InputError
+from dynamics.joints.housing import read_housing_matrices
+from service.problems import BadInput
+
+FIELD, ROWS = "stiffness_file", "stiffness_matrix"
+Table = dict[str, Any]
+
+
+def with_housing_files(table: Table, folder: Path) -> Table:
+    """Return the table of a scene with `stiffness_matrix` in place of the housings' `stiffness_file`.
+
+    Raises
+    ------
+    BadInput
+        A file that cannot be read or holds no matrix.
+    """
+    housings = table.get("housings")
+    if not isinstance(housings, list):
+        return table
+    return table | {"housings": [_written_out(given, folder, i) for i, given in enumerate(housings)]}
+
+
+def _written_out(given: object, folder: Path, index: int) -> object:
+    """One housing with its file's matrices."""
+    if not isinstance(given, dict) or FIELD not in given:
+        return given
+    field, name = f"housings[{index}].{FIELD}", given[FIELD]
+    if not isinstance(name, str):
+        raise BadInput.of(field, name, "the name of a CSV or NPZ file in quotes", "See docs/case-file.md.")
+    if ROWS in given:
+        raise BadInput.of(field, name, f"left out when {ROWS} is given", "Give one of the two.")
+    try:
+        stiffness, damping = read_housing_matrices(folder / name)
+    except InputError as error:
+        raise BadInput.of(field, name, error.bound, error.suggestion or "See docs/case-file.md.") from None
+    found = {key: value for key, value in given.items() if key != FIELD} | {ROWS: stiffness.tolist()}
+    return found if damping is None else found | {"damping_matrix": damping.tolist()}

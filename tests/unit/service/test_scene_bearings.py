@@ -1,0 +1,116 @@
+"""Bearings of a scene file: matrices, preload and housings, from the file or beside it."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from small_table import small_table
+
+from dynamics.system import Scene
+from service.convert.scene import dynamic_scene
+from service.problems import BadInput
+from service.schemas import read_model, validated
+from service.schemas.scene import SceneInput
+
+ROOT = Path(__file__).parents[3]
+EXAMPLE = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
+MATRIX = (1e8 * np.diag([1.0, 1.0, 0.5, 0.01, 0.01])).tolist()
+HOUSING = (1e9 * (np.eye(6) + 0.1)).tolist()
+Change = Callable[[dict[str, Any]], object]
+
+
+def scene(change: Change) -> Scene:
+    """Return the paper's scene with a change, on the small table."""
+    table = copy.deepcopy(EXAMPLE)
+    change(table)
+    return dynamic_scene(validated(SceneInput, table), {"mesh": small_table()})
+
+
+def test_matrices_and_preload_reach_the_bushing_as_they_are() -> None:
+    def change(table: dict[str, Any]) -> None:
+        del table["bushings"][0]["radial_stiffness_n_per_m"]
+        table["bushings"][0].update(
+            stiffness_matrix=MATRIX, damping_matrix=MATRIX, preload_force_n=[0.0, 0.0, 500.0]
+        )
+
+    bushing = scene(change).bushings[0]
+    assert (bushing.radial_stiffness, bushing.preload) == (0.0, (0.0, 0.0, 500.0, 0.0, 0.0))
+    np.testing.assert_array_equal(bushing.stiffness, MATRIX)
+    np.testing.assert_array_equal(bushing.damping, MATRIX)
+    assert scene(lambda _table: None).bushings[0].stiffness is None
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".npz"])
+def test_a_housing_file_is_written_out_in_the_scene(tmp_path: Path, suffix: str) -> None:
+    file, name = tmp_path / "scene.toml", f"case{suffix}"
+    if suffix == ".csv":
+        np.savetxt(tmp_path / name, HOUSING, delimiter=",")
+    else:
+        np.savez(tmp_path / name, stiffness=HOUSING)
+    text = (ROOT / "examples" / "palermo_scene.toml").read_text()
+    names = ", ".join(f'"{bushing["name"]}"' for bushing in EXAMPLE["bushings"][:2])
+    part = f'\n[[housings]]\nname = "case"\nbushings = [{names}]\nstiffness_file = "{name}"\n'
+    file.write_text(text + part)
+    given = read_model(SceneInput, file)
+    np.testing.assert_array_equal(given.housings[0].stiffness_matrix, HOUSING)
+    found = dynamic_scene(given, {"mesh": small_table()})
+    np.testing.assert_array_equal(found.housings[0].stiffness, HOUSING)
+
+
+def housing(**fields: Any) -> Change:
+    """Return a change that adds a housing under the first two bushings."""
+
+    def change(table: dict[str, Any]) -> None:
+        names = [bushing["name"] for bushing in table["bushings"][:2]]
+        table["housings"] = [{"name": "case", "bushings": names, "stiffness_matrix": HOUSING} | fields]
+
+    return change
+
+
+WRONG: dict[str, tuple[Change, str]] = {
+    "no stiffness": (
+        lambda t: t["bushings"][0].pop("radial_stiffness_n_per_m"),
+        "bushings[0].radial_stiffness_n_per_m",
+    ),
+    "not symmetric": (
+        lambda t: t["bushings"][0].update(stiffness_matrix=(np.eye(5) + np.eye(5, k=1)).tolist()),
+        "bushings[0].stiffness_matrix",
+    ),
+    "holds the rotation": (
+        lambda t: t["bushings"][0].update(stiffness_matrix=np.eye(6).tolist()),
+        "bushings[0].stiffness_matrix",
+    ),
+    "negative damping": (
+        lambda t: t["bushings"][0].update(damping_matrix=(-np.eye(5)).tolist()),
+        "bushings[0].damping_matrix",
+    ),
+    "unknown bushing": (housing(bushings=["input left", "x"]), "housings[0].bushings[1]"),
+    "wrong size": (housing(stiffness_matrix=np.eye(7).tolist()), "housings[0].stiffness_matrix"),
+    "damping of another size": (housing(damping_matrix=np.eye(10).tolist()), "housings[0].damping_matrix"),
+    "a file over HTTP": (housing(stiffness_file="case.csv"), "housings[0].stiffness_file"),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_bearings_that_cannot_be_are_one_fault_by_name(name: str) -> None:
+    change, field = WRONG[name]
+    with pytest.raises(BadInput) as caught:
+        scene(change)
+    assert field in [fault.field for fault in caught.value.faults]
+
+
+@pytest.mark.parametrize(("name", "text"), [("none.csv", None), ("x.csv", "1,2\n3"), ("x.txt", "1")])
+def test_a_housing_file_that_cannot_be_read_is_named(tmp_path: Path, name: str, text: str | None) -> None:
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    part = f'\n[[housings]]\nname = "case"\nbushings = ["a"]\nstiffness_file = "{name}"\n'
+    (tmp_path / "scene.toml").write_text((ROOT / "examples" / "palermo_scene.toml").read_text() + part)
+    with pytest.raises(BadInput) as caught:
+        read_model(SceneInput, tmp_path / "scene.toml")
+    assert caught.value.faults[0].field == "housings[0].stiffness_file"
