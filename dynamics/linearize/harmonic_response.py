@@ -1,0 +1,250 @@
+"""Harmonic forced response to the transmission error, about the static equilibrium, over speeds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.checks import integer, one_of, positive
+from dynamics.forces.table_lookup import table_force
+from dynamics.linearize.common_period import CommonPeriod, common_period
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.system.assemble import System
+from dynamics.system.flanks import mean_stiffness
+from dynamics.system.observation import static_deflections
+from dynamics.types import BoolArray, FloatArray, IntArray
+
+ComplexArray = NDArray[np.complex128]
+
+EXCITATIONS = ("static_error", "blocked_force")
+SAMPLES = 512  # positions per base pitch in the Fourier sums of the tables
+NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
+
+
+@dataclass(frozen=True)
+class HarmonicResponse:
+    """Steady vibration at S speeds in H harmonics of the common period; m meshes, b bearings, n freedoms.
+
+    Complex peak amplitudes A: the quantity is its mean and the sum over h of Re(A exp(2 pi i frequency t)),
+    with all meshes at their position offsets at t = 0.
+
+    Attributes
+    ----------
+    mesh, bearing, freedom : tuples of str
+    speed : (S,) array
+        Of the drive that stands for all, rad/s.
+    order : (H,) array
+        Multiples of the frequency of the first mesh that turns, those that are excited; fractions where
+        tables or trains repeat after several pitches.
+    frequency : (S, H) array
+        Hz.
+    static_transmission_error : (m, H) complex array
+        What excites, at the static mesh forces, m.
+    dynamic_transmission_error : (m, S, H) complex array
+        m.
+    mesh_force : (m, S, H) complex array
+        Transverse, N.
+    bearing_force : (b, 3, S, H) complex array
+        On the ground or the pin, in the bearing's own frame, N.
+    displacement : (n, S, H) complex array
+        m and rad.
+    mean_force, mean_stiffness : (m,) arrays
+        Static mesh force, N, and its tangent stiffness, mean over the positions, N/m.
+    least_mesh_force : (m, S) array
+        Of mean and all harmonics together, N: where it is negative flanks part, and no linear answer holds.
+    """
+
+    mesh: tuple[str, ...]
+    bearing: tuple[str, ...]
+    freedom: tuple[str, ...]
+    speed: FloatArray
+    order: FloatArray
+    frequency: FloatArray
+    static_transmission_error: ComplexArray
+    dynamic_transmission_error: ComplexArray
+    mesh_force: ComplexArray
+    bearing_force: ComplexArray
+    displacement: ComplexArray
+    mean_force: FloatArray
+    mean_stiffness: FloatArray
+    least_mesh_force: FloatArray
+
+    @property
+    def in_contact(self) -> BoolArray:
+        """Whether all driving flanks stay in contact at each speed, (S,) bool."""
+        return np.asarray(np.all(self.least_mesh_force > 0.0, axis=0))
+
+
+def harmonic_response(
+    system: System, speed: FloatArray, orders: int = 10, time: float = 0.0, excitation: str = "static_error"
+) -> HarmonicResponse:
+    """Return the linear response of `system` to its transmission errors at the speeds given.
+
+    M u'' + C u' + (K + sum k g^T g) u = sum k g STE(t), with k the mean over the positions of the tangent
+    stiffness at the static mesh force; how stiffness varies with position
+    (parametric excitation) is left out.
+
+    Parameters
+    ----------
+    system : System
+    speed : (S,) array
+        Of the first drive that turns, rad/s, either sign.
+    orders : int
+        Harmonics of the mesh frequency of the first mesh that turns.
+    time : float
+        When loads are taken, s.
+    excitation : str
+        ``"static_error"``: k times the STE's harmonics. ``"blocked_force"``: the force's harmonics while the
+        transmission error is held at the mean of the STE; the same to first order in the STE's variation.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the meshes have no common period.
+    SolveError
+        If there is no static equilibrium.
+    """
+    one_of("excitation", excitation, EXCITATIONS)
+    integer("orders", orders, 1, SAMPLES // 4)
+    speed = np.atleast_1d(np.asarray(speed, dtype=float))
+    for index, value in enumerate(np.abs(speed)):
+        positive(f"speed[{index}]", float(value))
+    period, linear = common_period(system), linearize(system, time)
+    counted = next(pitches for pitches in period.pitches if pitches)
+    harmonics: IntArray = np.arange(1, orders * abs(counted) + 1, dtype=np.int64)
+    stiffness = _mean_stiffness(system, linear)
+    static, force = _excitation(system, linear, period, harmonics, stiffness, excitation)
+    heard = np.max(np.abs(force), axis=0)
+    kept = np.flatnonzero(heard > NOTHING * np.max(heard, initial=0.0))
+    harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
+    omega = 2.0 * math.pi * harmonics / np.array([[period.duration(w)] for w in speed])
+    u = _solve(system, linear, stiffness, force, omega)
+    return _result(system, linear, stiffness, speed, harmonics / abs(counted), omega, static, force, u)
+
+
+def _mean_stiffness(system: System, linear: LinearSystem) -> FloatArray:
+    """Tangent stiffness of each driving flank's table at its static force, mean over the positions, (m,)."""
+    table = system.arrays.elements.laws.flank.table
+    return np.array(
+        [
+            mean_stiffness(table, f, max(float(force), 0.0), _positions(mesh.table.period))
+            for f, (mesh, force) in enumerate(
+                zip(system.scene.meshes, linear.equilibrium.mesh_force, strict=True)
+            )
+        ]
+    )
+
+
+def _positions(period: int) -> FloatArray:
+    """Uniform positions over one period of a table."""
+    return np.arange(SAMPLES * period) / SAMPLES
+
+
+def _excitation(
+    system: System,
+    linear: LinearSystem,
+    period: CommonPeriod,
+    harmonics: IntArray,
+    stiffness: FloatArray,
+    kind: str,
+) -> tuple[ComplexArray, ComplexArray]:
+    """STE and exciting force on the line of action, (m, H) complex: what pushes d up where STE is high."""
+    table = system.arrays.elements.laws.flank.table
+    static = np.zeros((len(system.scene.meshes), harmonics.size), dtype=complex)
+    force = np.zeros_like(static)
+    for f, mesh in enumerate(system.scene.meshes):
+        position = _positions(mesh.table.period)
+        error = np.empty_like(position)
+        mean = max(float(linear.equilibrium.mesh_force[f]), 0.0)
+        static_deflections(table, f, position, mean, error)
+        level = float(np.mean(error))
+        static[f] = _harmonics(error, period.pitches[f], mesh.table.period, mesh.position_offset, harmonics)
+        if kind == "static_error":
+            force[f] = stiffness[f] * static[f]
+            continue
+        held = np.array([table_force(table, f, x, level, 0)[0] for x in position])
+        force[f] = -_harmonics(held, period.pitches[f], mesh.table.period, mesh.position_offset, harmonics)
+    return static, force
+
+
+def _harmonics(
+    values: FloatArray, pitches: int, period: int, offset: float, harmonics: IntArray
+) -> ComplexArray:
+    """Amplitudes (H,) in multiples of the common period of a function of position, known over its table."""
+    lines = 2.0 * np.fft.rfft(values) / values.size
+    found = np.zeros(harmonics.size, dtype=complex)
+    cycles = abs(pitches) // period
+    if cycles == 0:
+        return found
+    which, rest = np.divmod(harmonics, cycles)
+    there = (rest == 0) & (which < lines.size - 1)
+    turned = lines[which[there]] * np.exp(2j * math.pi * which[there] * offset / period)
+    found[there] = turned if pitches > 0 else turned.conj()
+    return found
+
+
+def _solve(
+    system: System, linear: LinearSystem, stiffness: FloatArray, force: ComplexArray, omega: FloatArray
+) -> ComplexArray:
+    """Displacements, (S, H, n): one solve per speed and harmonic, freedoms in metres."""
+    g = system.arrays.direction[: stiffness.size]
+    tangent = linear.spring_stiffness[: stiffness.size]
+    total = linear.stiffness + np.einsum("fi,f,fj->ij", g, stiffness - tangent, g)
+    per_metre = 1.0 / linear.scale
+    mass, damping, total = (per_metre[:, None] * a * per_metre for a in (linear.mass, linear.damping, total))
+    w = omega[:, :, None, None]
+    matrix = total - w * w * mass + 1j * w * damping
+    pushed = (force.T @ g * per_metre)[None, :, :, None]
+    solved = np.linalg.solve(matrix, np.broadcast_to(pushed, (*omega.shape, g.shape[1], 1)))[..., 0]
+    return np.asarray(solved * per_metre)
+
+
+def _result(
+    system: System,
+    linear: LinearSystem,
+    stiffness: FloatArray,
+    speed: FloatArray,
+    order: FloatArray,
+    omega: FloatArray,
+    static: ComplexArray,
+    force: ComplexArray,
+    u: ComplexArray,
+) -> HarmonicResponse:
+    """Put the result together from displacements (S, H, n)."""
+    scene, meshes = system.scene, stiffness.size
+    dte = np.moveaxis(u @ system.arrays.direction[:meshes].T, 2, 0)
+    viscous = system.flanks.law.damping[:meshes, None, None]
+    mesh_force = stiffness[:, None, None] * dte - force[:, None, :] + 1j * omega * viscous * dte
+    mean = linear.equilibrium.mesh_force
+    rate = 1j * omega[:, :, None] * u
+    on_ground = np.einsum("bkn,shn->bksh", system.bearing_stiffness, u)
+    on_ground = on_ground + np.einsum("bkn,shn->bksh", system.bearing_damping, rate)
+    return HarmonicResponse(
+        tuple(mesh.name for mesh in scene.meshes),
+        system.supports.name,
+        linear.freedom,
+        speed,
+        order,
+        omega / (2.0 * math.pi),
+        static,
+        np.ascontiguousarray(dte),
+        mesh_force,
+        on_ground,
+        np.ascontiguousarray(np.moveaxis(u, 2, 0)),
+        mean,
+        stiffness,
+        mean[:, None] + _least(mesh_force, order),
+    )
+
+
+def _least(amplitude: ComplexArray, order: FloatArray) -> FloatArray:
+    """Return the least sum of all harmonics over the period, (m, S)."""
+    base = float(np.min(np.diff(order, prepend=0.0))) if order.size else 1.0
+    harmonic = np.rint(order / base).astype(int)
+    samples = 8 * int(harmonic[-1] + 1) if order.size else 1
+    lines = np.zeros((*amplitude.shape[:2], samples // 2 + 1), dtype=complex)
+    lines[..., harmonic] = amplitude * (samples / 2.0)
+    return np.asarray(np.min(np.fft.irfft(lines, samples, axis=-1), axis=-1))
