@@ -1,9 +1,19 @@
-"""Forces between bodies and on them: gear mesh, torques by time and by speed."""
+"""Forces between bodies and on them: gear mesh, torques by time and by speed, nonlinear bearings."""
 
 from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.gear_mesh import GearMesh
 from dynamics.forces.load_torque import LoadTorque
 from dynamics.forces.mesh_table import MeshTable
+from dynamics.forces.rolling_contact import RollingContact
 from dynamics.forces.speed_torque import SpeedTorque
+from dynamics.forces.spring_curve import SpringCurve
 
-__all__ = ["CoastFlank", "GearMesh", "LoadTorque", "MeshTable", "SpeedTorque"]
+__all__ = [
+    "CoastFlank",
+    "GearMesh",
+    "LoadTorque",
+    "MeshTable",
+    "RollingContact",
+    "SpeedTorque",
+    "SpringCurve",
+]

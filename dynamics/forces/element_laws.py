@@ -14,7 +14,13 @@ import numpy as np
 
 from dynamics.forces.compiled import inner
 from dynamics.forces.flank_force import FlankLaws, flank_force
+from dynamics.forces.rolling_contact import (
+    RollingContactLaws,
+    rolling_contact,
+    rolling_contact_energy,
+)
 from dynamics.forces.speed_torque import SpeedTorqueLaws, speed_torque
+from dynamics.forces.spring_curve import SpringCurveLaws, spring_curve, spring_curve_energy
 from dynamics.forces.table_energy import table_energy
 from dynamics.types import FloatArray, IntArray
 
@@ -24,9 +30,12 @@ class Law(IntEnum):
 
     FLANK = 0  # p = 1: a flank in contact, from its table
     SPEED_TORQUE = 1  # p = 1: a torque that depends on a shaft's speed
+    ROLLING_CONTACT = 2  # p = 2: a rolling bearing's radial force
+    SPRING_CURVE = 3  # p = 1: a bearing's force by displacement in one direction
 
 
 FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
+ROLLING_CONTACT, SPRING_CURVE = int(Law.ROLLING_CONTACT), int(Law.SPRING_CURVE)
 
 
 class ElementLaws(NamedTuple):
@@ -34,6 +43,8 @@ class ElementLaws(NamedTuple):
 
     flank: FlankLaws
     speed_torque: SpeedTorqueLaws
+    rolling_contact: RollingContactLaws
+    spring_curve: SpringCurveLaws
 
 
 class Elements(NamedTuple):
@@ -54,6 +65,8 @@ class Elements(NamedTuple):
     drift : (R, k) array
         Rates of the local coordinates in the kinematic motion per unit speed of each law, m/rad; 0 for
         flanks, whose coordinates that motion does not change.
+    stiffness : (R,) array
+        Typical stiffness of bearings, N/m, for error norms and first guesses; 0 for all others.
     laws : ElementLaws
     """
 
@@ -63,6 +76,7 @@ class Elements(NamedTuple):
     mesh: IntArray
     offset: FloatArray
     drift: FloatArray
+    stiffness: FloatArray
     laws: ElementLaws
 
 
@@ -135,6 +149,21 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
     elif elements.law[e] == SPEED_TORQUE:
         rate = local.rate[row] + local.drift[row]
         local.force[row], local.viscous[row, 0] = speed_torque(elements.laws.speed_torque, place, rate)
+    elif elements.law[e] == ROLLING_CONTACT:
+        rolling_contact(
+            elements.laws.rolling_contact,
+            place,
+            row,
+            local.coordinate,
+            local.rate,
+            local.force,
+            local.elastic,
+            local.tangent,
+            local.viscous,
+        )
+    elif elements.law[e] == SPRING_CURVE:
+        force, tangent = spring_curve(elements.laws.spring_curve, place, local.coordinate[row])
+        local.force[row], local.elastic[row], local.tangent[row, 0] = force, force, tangent
 
 
 @inner
@@ -149,4 +178,9 @@ def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, flo
             local.coordinate[row],
             local.hint[e],
         )
+    if elements.law[e] == ROLLING_CONTACT:
+        x, y = local.coordinate[row], local.coordinate[row + 1]
+        return rolling_contact_energy(elements.laws.rolling_contact, place, x, y), 0.0
+    if elements.law[e] == SPRING_CURVE:
+        return spring_curve_energy(elements.laws.spring_curve, place, local.coordinate[row]), 0.0
     return 0.0, 0.0

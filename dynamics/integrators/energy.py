@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import Elements, LocalState, potential
+from dynamics.forces.element_laws import FLANK, Elements, LocalState, potential
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray
@@ -24,14 +24,18 @@ def stored_energy(
     kinetic = (
         0.5 * v @ system.mass @ v - speed @ system.inertial @ v + 0.5 * speed @ system.total_inertia @ speed
     )
-    mesh = _in_elements(system.elements, local_state(system, time, q, v, moved))
-    return np.array([kinetic, 0.5 * q @ system.stiffness @ q - system.constant @ q, mesh])
+    mesh, bearing = _in_elements(system.elements, local_state(system, time, q, v, moved))
+    linear = 0.5 * q @ system.stiffness @ q - system.constant @ q
+    return np.array([kinetic, linear + bearing, mesh])
 
 
 @compiled
-def _in_elements(elements: Elements, local: LocalState) -> float:
-    """Sum of the energies that the elements store."""
-    total = 0.0
+def _in_elements(elements: Elements, local: LocalState) -> tuple[float, float]:
+    """Energies that flanks and that bearings store."""
+    mesh, bearing = 0.0, 0.0
     for e in range(elements.law.size):
-        total += potential(elements, local, e)[0]
-    return total
+        if elements.law[e] == FLANK:
+            mesh += potential(elements, local, e)[0]
+        else:
+            bearing += potential(elements, local, e)[0]
+    return mesh, bearing

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dynamics.forces.compiled import inner
-from dynamics.forces.element_laws import SPEED_TORQUE, potential
+from dynamics.forces.element_laws import FLANK, SPEED_TORQUE, potential
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.system.arrays import SystemArrays
@@ -31,15 +31,11 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
         for i in range(velocity.size):
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
-    bushing, mesh, position = 0.0, 0.0, 0.0
+    lost_in_bearings, mesh, supplied = _in_elements(system, work)
+    bushing, position = lost_in_bearings, 0.0
+    loads += supplied
     for i in range(velocity.size):
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
-    for e in range(system.elements.law.size):
-        for r in range(system.elements.first[e], system.elements.first[e + 1]):
-            if system.elements.law[e] == SPEED_TORQUE:
-                loads -= work.force[r] * (work.local.rate[r] + work.local.drift[r])
-            else:
-                mesh += (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
     for e in range(system.elements.law.size):
         m = system.elements.mesh[e]
         if m >= 0:
@@ -52,6 +48,22 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     work.power[stage, Power.POSITION] = position
     work.power[stage, Power.BUSHING] = bushing
     work.power[stage, Power.MESH] = mesh
+
+
+@inner
+def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float]:
+    """Return the powers that bearings and flanks dissipate, and the one that torques by speed supply."""
+    bearing, mesh, supplied = 0.0, 0.0, 0.0
+    for e in range(system.elements.law.size):
+        for r in range(system.elements.first[e], system.elements.first[e + 1]):
+            lost = (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
+            if system.elements.law[e] == SPEED_TORQUE:
+                supplied -= work.force[r] * (work.local.rate[r] + work.local.drift[r])
+            elif system.elements.law[e] == FLANK:
+                mesh += lost
+            else:
+                bearing += lost
+    return bearing, mesh, supplied
 
 
 @inner

@@ -10,6 +10,7 @@ from dynamics.forces.element_laws import Law
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
+from dynamics.system.bearing_rest import rest_on_bearings
 from dynamics.system.force_balance import ForceBalance, force_balance
 from dynamics.system.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray, StaticStatus
@@ -126,6 +127,8 @@ def _on_springs(
     matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", rows, secant, rows)
     pushed = external + (secant * (touching - offset)) @ rows
     q = _solve(arrays, matrix, pushed, np.zeros(n))
+    if np.any(arrays.elements.stiffness > 0.0):
+        q = rest_on_bearings(arrays, matrix, pushed)
     return q, secant * (rows @ q + offset - touching)
 
 

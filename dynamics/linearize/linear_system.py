@@ -66,7 +66,7 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     rest = np.zeros(start.displacement.size)
     balance = force_balance(arrays, time, start.displacement, rest, rest)
     free = arrays.reference.freedom >= 0
-    names, strain, coefficient = _springs(system, balance.local.tangent[: len(system.scene.meshes), 0])
+    names, strain, coefficient = _springs(system, balance.local.tangent)
     return LinearSystem(
         system.freedoms.name,
         arrays.scale,
@@ -82,28 +82,40 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
 
 
 def _matrices(system: System) -> list[tuple[str, FloatArray, FloatArray]]:
-    """Names, strains per freedom of the rotors, and stiffness matrices of bearings and couplings."""
-    seats, couplings = system.seats, system.couplings
-    bearings = [(name, seats.motion[at], seats.stiffness[at, at]) for name, at in seats.group]
-    return [*bearings, *zip(couplings.name, couplings.motion, couplings.stiffness, strict=True)]
+    """Names, strains per freedom, and stiffness matrices of bearings and couplings."""
+    seats, couplings, keep = system.seats, system.couplings, system.freedoms.keep
+    bearings = [(name, keep(seats.motion[at]), seats.stiffness[at, at]) for name, at in seats.group]
+    joints = zip(couplings.name, couplings.motion, couplings.stiffness, strict=True)
+    return [*bearings, *((name, keep(motion), matrix) for name, motion, matrix in joints)]
+
+
+def _tangents(system: System, tangent: FloatArray) -> list[tuple[str, FloatArray, FloatArray]]:
+    """Return the same of bearings that are not linear, by their `tangent` (R, P) at the equilibrium."""
+    first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
+    found = []
+    for start, at in zip(first, system.bearings, strict=False):
+        rows, size = slice(start, start + len(at.direction)), len(at.direction)
+        matrix = 0.5 * (tangent[rows, :size] + tangent[rows, :size].T)
+        found.append((system.supports.name[at.support], system.arrays.direction[rows], matrix))
+    return found
 
 
 def _springs(system: System, tangent: FloatArray) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
     """Names, strains per freedom and stiffnesses of all springs."""
     names = [mesh.name for mesh in system.scene.meshes]
-    rows, stiffness = [system.arrays.direction[: len(names)]], [tangent]
+    rows, stiffness = [system.arrays.direction[: len(names)]], [tangent[: len(names), 0]]
     supports = system.supports
     moves = system.freedoms.keep(supports.motion)
     plain = [index for index in range(len(supports.name)) if index not in system.seats.place]
     names += [f"{supports.name[index]}.{axis}" for index in plain for axis in "xyz"]
     rows.append(moves[plain].reshape(-1, moves.shape[-1]))
     stiffness.append(supports.stiffness[plain].ravel())
-    for name, motion, matrix in _matrices(system):
+    for name, motion, matrix in [*_matrices(system), *_tangents(system, tangent)]:
         values, vectors = np.linalg.eigh(matrix)
         for value, vector in zip(values, vectors.T, strict=True):
             if value > 0.0:
                 names.append(name)
-                rows.append(system.freedoms.keep(vector @ motion)[None, :])
+                rows.append(np.asarray(vector @ motion)[None, :])
                 stiffness.append(np.array([value]))
     for shaft, drive in zip(system.kinematics.law_shaft, system.scene.drives, strict=False):
         if drive.stiffness is not None:

@@ -24,6 +24,8 @@ def resolved_case(system: System) -> Json:
         "drives": [asdict(drive) for drive in scene.drives],
         "speed_torques": [asdict(torque) for torque in scene.speed_torques],
         "housings": [asdict(housing) for housing in scene.housings],
+        "rolling_contacts": [asdict(part) for part in scene.rolling_contacts],
+        "spring_curves": [asdict(part) for part in scene.spring_curves],
         "couplings": [asdict(coupling) for coupling in scene.couplings],
         "free_rotations": [asdict(rotation) for rotation in scene.free_rotations],
         "speed_ratios": {

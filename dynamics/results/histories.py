@@ -23,7 +23,7 @@ def histories(
     laws = observe_laws(arrays, time)
     seen = observe(arrays, time, q, v, moved)
     meshes, wanted = len(scene.meshes), scene.outputs
-    force, moment = _on_the_ground(system, laws, q, v, moved)
+    force, moment = _on_the_ground(system, laws, seen.force, q, v, moved)
     return {
         "time": time,
         "mesh": tuple(mesh.name for mesh in scene.meshes),
@@ -50,7 +50,7 @@ def histories(
 
 
 def _on_the_ground(
-    system: System, laws: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray
+    system: System, laws: FloatArray, local: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray
 ) -> tuple[FloatArray, FloatArray]:
     """Return forces and moments on the ground, (b, 3, T) each; none of them if not asked for.
 
@@ -59,7 +59,7 @@ def _on_the_ground(
     none = np.empty((0, 3, q.shape[0]))
     if not system.scene.outputs.bearing_forces:
         return none, none
-    found = bearing_force(system, q, v)
+    found = bearing_force(system, local, q, v)
     force, moment = found[:, :3], found[:, 3:]
     turned = _seen_from_the_ground(system, np.ascontiguousarray(force), laws, moved)
     if not _holds_tilt(system):
@@ -69,14 +69,17 @@ def _on_the_ground(
 
 def _holds_tilt(system: System) -> bool:
     """Whether any bearing exerts a moment."""
+    if any(kind >= 3 for at in system.bearings for kind in at.direction):
+        return True
     matrices = (system.bearing_stiffness[:, 3:], system.bearing_damping[:, 3:])
     return any(bool(np.any(matrix)) for matrix in (*matrices, system.seats.preload.reshape(-1, SEAT)[:, 3:]))
 
 
-def bearing_force(system: System, q: FloatArray, v: FloatArray) -> FloatArray:
+def bearing_force(system: System, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
     """Return the force (N) on the ground or the pin at each support in its own frame, (b, 3, T).
 
-    With seats (b, 6, T): force and moment (N m), the one about the axis 0.
+    With seats (b, 6, T): force and moment (N m), the one about the axis 0. `local` (R, T) in N are the forces
+    of the elements.
     """
     bearings, rows, freedoms = system.bearing_stiffness.shape
     force = system.bearing_stiffness.reshape(rows * bearings, freedoms) @ q.T
@@ -86,6 +89,10 @@ def bearing_force(system: System, q: FloatArray, v: FloatArray) -> FloatArray:
     found[:, :3] -= (supports.stiffness * supports.error)[:, :, None]
     if seats.name:
         found[seats.place, :SEAT] -= seats.preload.reshape(-1, SEAT)[:, :, None]
+    first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
+    for start, at in zip(first, system.bearings, strict=False):
+        for row, kind in enumerate(at.direction):
+            found[at.support, kind] += at.lever * local[start + row]
     return np.asarray(found)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,8 +12,17 @@ from dynamics.errors import InputError
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.joints.bushing import SEAT
 from dynamics.system.arrays import SystemArrays
+from dynamics.system.bearing_elements import (
+    BearingElement,
+    bearing_elements,
+    bearing_loads,
+    bearing_places,
+    nonlinear_worths,
+)
+from dynamics.system.bearing_rest import rest_on_bearings, with_tangent
 from dynamics.system.coupling_rows import CouplingRows, gather_couplings
 from dynamics.system.effects import FREEDOMS, MeshOnRotor, SupportedRotor
+from dynamics.system.effects.bearing_clearance import BearingClearance
 from dynamics.system.effects.ledger import EffectLedger, keep_ledger
 from dynamics.system.elements import Element, gradients, pack_elements
 from dynamics.system.flank_elements import flank_elements
@@ -29,6 +38,7 @@ from dynamics.system.kinematics import Kinematics, mesh_shafts, solve_kinematics
 from dynamics.system.line_of_action import LineOfAction, line_of_action
 from dynamics.system.loaded_meshes import loaded_meshes
 from dynamics.system.nominal_forces import nominal_forces
+from dynamics.system.observation import local_state
 from dynamics.system.planets import kinematic_vectors, turning_inertia
 from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.system.rotor import Rotor, build_rotor
@@ -64,10 +74,12 @@ class System:
         Bushings, then planet bearings.
     seats : Seats
         The bushings that are more than three springs to rigid ground.
+    bearings : tuple of BearingElement
+        Where the last elements act, those of bearings that are not linear.
     couplings : CouplingRows
     bearing_stiffness, bearing_damping : (b, 3 or 6, n) arrays
-        Force on the ground, or on the pin, at each support per freedom and its rate; with seats, the moment
-        too.
+        Force on the ground, or on the pin, at each support per freedom and its rate; where bearings may
+        exert moments, these too.
     ledger : EffectLedger
     """
 
@@ -81,6 +93,7 @@ class System:
     rotors: tuple[Rotor, ...]
     supports: Supports
     seats: Seats
+    bearings: tuple[BearingElement, ...]
     couplings: CouplingRows
     bearing_stiffness: FloatArray
     bearing_damping: FloatArray
@@ -88,33 +101,75 @@ class System:
 
 
 def assemble(scene: Scene) -> System:
-    """Assemble `scene`.
+    """Assemble `scene`; without the effect `bearing_clearance`, bearings by their tangents at the load.
 
     Raises
     ------
     InputError
         If parts do not fit each other, or a free direction has no inertia.
     """
+    system = _assemble(scene)
+    if not system.bearings or scene.effects.get(BearingClearance().name) != "off":
+        return system
+    return replace(_assemble(with_linear_bearings(system)), ledger=system.ledger)
+
+
+def with_linear_bearings(system: System) -> Scene:
+    """Return the scene with linear bushings in place of bearings that are not.
+
+    They have the tangent stiffness and damping, and by their preload the force, of where the bodies rest on
+    the bearings under the nominal mesh forces and the loads at t = 0.
+    """
+    arrays, scene, first = system.arrays, system.scene, len(system.elements) - len(system.bearings)
+    torque = np.array([float(load.torque(0.0)) for load in scene.loads])
+    mesh_force = system.flanks.nominal_force @ arrays.direction[: len(scene.meshes)]
+    force = arrays.constant + torque @ arrays.load.direction - mesh_force
+    q = rest_on_bearings(arrays, arrays.stiffness, force)
+    local = local_state(arrays, 0.0, q, np.zeros(q.size))
+    bushings = {part.name: part for rotor in system.rotors for part in rotor.bushings}
+    for number, at in enumerate(system.bearings):
+        start = int(arrays.elements.first[first + number])
+        rows, size = slice(start, start + len(at.direction)), len(at.direction)
+        name = system.supports.name[at.support]
+        bushings[name] = with_tangent(
+            bushings[name],
+            at,
+            local.force[rows],
+            local.tangent[rows, :size],
+            local.viscous[rows, :size],
+            local.coordinate[rows],
+        )
+    linear = tuple(bushings[part.name] for part in scene.bushings)
+    return replace(scene, bushings=linear, rolling_contacts=(), spring_curves=())
+
+
+def _assemble(scene: Scene) -> System:
+    """Assemble `scene` as it is."""
     kinematics = solve_kinematics(scene)
     rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
     inertia = turning_inertia(rotors)
     forces = nominal_forces(scene, kinematics, inertia)
+    loads = bearing_loads(scene, rotors, forces)
+    bearings, rotors = _with_bearings(scene, rotors, loads)
     supports, couplings = gather_supports(rotors, seated(scene)), gather_couplings(scene, rotors)
     seats = gather_seats(scene, rotors, supports.name)
     _check_rotation(rotors, kinematics)
     polar = [rotor.inertia.polar for rotor in rotors]
     flanks = flank_laws(scene, kinematics, forces, polar)
     meshes = loaded_meshes(scene, kinematics, flanks, polar, inertia)
-    ledger = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces), meshes)
+    ledger = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces, loads), meshes)
     freedoms = find_freedoms(rotors, kinematics, ledger)
     _check_mass(freedoms, rotors)
     coast = [index for index, mesh in enumerate(scene.meshes) if ledger.on("backlash", mesh.name)]
     flanks = with_coast_flanks(flanks, scene.meshes, coast)
     by_speed, speed_laws = speed_elements(scene, kinematics)
-    elements = (*flank_elements(scene, rotors, kinematics.mesh_sense, lines, flanks), *by_speed)
-    laws = ElementLaws(flanks.law, speed_laws)
+    on_bearings, contact_laws, curve_laws = bearing_elements(scene, rotors, bearings, loads)
+    pressed = flank_elements(scene, rotors, kinematics.mesh_sense, lines, flanks)
+    elements = (*pressed, *by_speed, *on_bearings)
+    laws = ElementLaws(flanks.law, speed_laws, contact_laws, curve_laws)
     arrays = _arrays(scene, rotors, kinematics, freedoms, flanks, elements, laws, supports, seats, couplings)
+    tilted = bool(seats.name) or any(kind >= 3 for at in bearings for kind in at.direction)
     return System(
         scene,
         arrays,
@@ -126,19 +181,41 @@ def assemble(scene: Scene) -> System:
         rotors,
         supports,
         seats,
+        bearings,
         couplings,
-        _on_ground(freedoms, supports, supports.stiffness, seats, seats.stiffness),
-        _on_ground(freedoms, supports, supports.damping, seats, seats.damping),
+        _on_ground(freedoms, supports, supports.stiffness, seats, seats.stiffness, tilted),
+        _on_ground(freedoms, supports, supports.damping, seats, seats.damping, tilted),
         ledger,
     )
 
 
+def _with_bearings(
+    scene: Scene, rotors: tuple[Rotor, ...], loads: dict[str, float]
+) -> tuple[tuple[BearingElement, ...], tuple[Rotor, ...]]:
+    """Return where laws of bearings act, and the rotors with their typical stiffness."""
+    names = [bushing.name for rotor in rotors for bushing in rotor.bushings]
+    radius = max((gear.base_radius for gear in scene.gears), default=1.0)
+    places = bearing_places(scene, names, loads, radius)
+    known = {bushing.name: (i, bushing) for i, rotor in enumerate(rotors) for bushing in rotor.bushings}
+    found = list(rotors)
+    for at in places:
+        index, bushing = known[names[at.support]]
+        rotor = found[index]
+        found[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(bushing))))
+    return places, tuple(found)
+
+
 def _on_ground(
-    freedoms: Freedoms, supports: Supports, springs: FloatArray, seats: Seats, matrix: FloatArray
+    freedoms: Freedoms,
+    supports: Supports,
+    springs: FloatArray,
+    seats: Seats,
+    matrix: FloatArray,
+    tilted: bool,
 ) -> FloatArray:
-    """Force on the ground per freedom (b, 3, n), with seats force and moment (b, 6, n)."""
+    """Force on the ground per freedom (b, 3, n); with moments (`tilted`) both, (b, 6, n)."""
     plain = springs[:, :, None] * freedoms.keep(supports.motion)
-    if not seats.name:
+    if not tilted:
         return plain
     full = np.concatenate([plain, np.zeros_like(plain)], axis=1)
     full[seats.place, :SEAT] += (matrix @ freedoms.keep(seats.motion)).reshape(-1, SEAT, plain.shape[2])
@@ -146,7 +223,11 @@ def _on_ground(
 
 
 def _supported(
-    scene: Scene, rotors: Sequence[Rotor], lines: Sequence[LineOfAction], forces: FloatArray
+    scene: Scene,
+    rotors: Sequence[Rotor],
+    lines: Sequence[LineOfAction],
+    forces: FloatArray,
+    loads: dict[str, float],
 ) -> list[SupportedRotor]:
     """Gather what the effects decide on; a carrier feels the meshes of its planets at their pins."""
     meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
@@ -163,6 +244,7 @@ def _supported(
                 arm = rotors[index].center - rotors[carrier].center
                 on_carrier = MeshOnRotor(float(force), float(arm[2]), axial, float(np.hypot(arm[0], arm[1])))
                 meshes[carrier].append(on_carrier)
+    clearances = nonlinear_worths(scene, loads)
     return [
         SupportedRotor(
             rotor.shaft.name,
@@ -172,6 +254,7 @@ def _supported(
             rotor.tilt_stiffness,
             rotor.elastic_lever,
             tuple(on_rotor),
+            tuple(worth for name, worth in clearances if name == rotor.shaft.name),
         )
         for rotor, on_rotor in zip(rotors, meshes, strict=True)
     ]
@@ -208,7 +291,9 @@ def _arrays(
     mass = freedoms.motion.T @ (full_mass[:, None] * freedoms.motion)
     gradient = gradients(elements, 6 * len(rotors))
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
+    packed = pack_elements(elements, laws, len(scene.references))
     held = np.diag(stiffness) + flanks.mean_stiffness @ direction[: len(scene.meshes)] ** 2
+    held += packed.stiffness @ direction**2
     return SystemArrays(
         np.ascontiguousarray(mass),
         damping,
@@ -222,7 +307,7 @@ def _arrays(
         lay_out_drives(scene, rotors, kinematics, freedoms, supports, couplings, gradient, vectors),
         scale,
         scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
-        pack_elements(elements, laws, len(scene.references)),
+        packed,
         lay_out_reference(scene, kinematics, freedoms, vectors),
         lay_out_loads(scene, kinematics, freedoms),
     )

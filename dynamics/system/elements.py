@@ -28,6 +28,8 @@ class Element:
         m.
     drift : (p, k) array or None
         Rate of the coordinates per unit speed of each law of the kinematic motion, m/rad; None: 0.
+    stiffness : (p,) array or None
+        Typical stiffness of a bearing, N/m; None: 0.
     """
 
     law: Law
@@ -36,12 +38,17 @@ class Element:
     gradient: FloatArray
     offset: FloatArray
     drift: FloatArray | None = None
+    stiffness: FloatArray | None = None
 
 
 def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) -> Elements:
     """Lay out `elements`, their rows one after the other, in a kinematic motion of that many laws."""
     drift = [
         np.zeros((element.offset.size, motions)) if element.drift is None else element.drift
+        for element in elements
+    ]
+    stiffness = [
+        np.zeros(element.offset.size) if element.stiffness is None else element.stiffness
         for element in elements
     ]
     sizes = [element.offset.size for element in elements]
@@ -52,6 +59,7 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
         np.array([element.mesh for element in elements], dtype=np.int64),
         np.concatenate([np.empty(0), *(element.offset for element in elements)]),
         np.concatenate([np.empty((0, motions)), *drift]),
+        np.concatenate([np.empty(0), *stiffness]),
         laws,
     )
 

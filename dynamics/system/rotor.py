@@ -34,6 +34,8 @@ class Rotor:
         Rotor of the carrier in whose turning frame it is described.
     carrier : int or None
         The same for a planet: a rotor off the carrier's axis, which the carrier takes along.
+    curved : tuple of ((5, 5) array, float)
+        Typical stiffness of what bushings do that is not linear, and their levers.
     """
 
     shaft: Shaft
@@ -43,6 +45,7 @@ class Rotor:
     planet_bearings: tuple[PlanetBearing, ...]
     frame: int | None
     carrier: int | None
+    curved: tuple[tuple[FloatArray, float], ...] = ()
 
     @property
     def supports(self) -> tuple[Bushing | PlanetBearing, ...]:
@@ -86,8 +89,9 @@ class Rotor:
 
     @property
     def _matrices(self) -> list[tuple[FloatArray, float]]:
-        """Stiffness matrices that bushings have on top, with their levers; means of x and y are used."""
-        return [(b.added_stiffness, self.lever(b)) for b in self.bushings if b.stiffness is not None]
+        """Stiffness on top of the isotropic one, with levers; means of x and y are used."""
+        given = [(b.added_stiffness, self.lever(b)) for b in self.bushings if b.stiffness is not None]
+        return [*given, *self.curved]
 
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:

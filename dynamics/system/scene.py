@@ -10,8 +10,9 @@ from typing import Protocol
 from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, integer, not_negative, one_of, positive
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh, LoadTorque, SpeedTorque
+from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
 from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
+from dynamics.system.bearing_check import check_bearing_laws
 from dynamics.system.housing_check import check_housings
 
 METHODS = ("implicit", "explicit")
@@ -125,6 +126,8 @@ class Scene:
     speed_torques, housings : tuples
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: as many of them as the gearing leaves independent speeds.
+    rolling_contacts, spring_curves : tuples
+        What bushings do that is not linear: they name their bushing.
     duration : float
         s.
     effects : mapping of str to str
@@ -145,6 +148,8 @@ class Scene:
     couplings: tuple[Coupling, ...] = ()
     speed_torques: tuple[SpeedTorque, ...] = ()
     housings: tuple[Housing, ...] = ()
+    rolling_contacts: tuple[RollingContact, ...] = ()
+    spring_curves: tuple[SpringCurve, ...] = ()
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = Outputs()
     integration: Integration = Integration()
@@ -179,6 +184,14 @@ class Scene:
         check_frames(self.shafts, self.bushings, self.planet_bearings)
         check_couplings(self.shafts, self.couplings)
         check_housings(self.shafts, self.bushings, self.housings)
+        turning = {shaft.name for shaft in self.shafts if shaft.frame is not None}
+        check_bearing_laws(
+            self.bushings,
+            self.rolling_contacts,
+            self.spring_curves,
+            frozenset(name for housing in self.housings for name in housing.bushings),
+            frozenset(bushing.name for bushing in self.bushings if bushing.shaft in turning),
+        )
 
     def _check_references(self) -> None:
         """Something turns."""

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, SpeedCurve, TimeLaw, hollow_cylinder
 from dynamics.errors import InputError
-from dynamics.forces import CoastFlank, GearMesh, LoadTorque, SpeedTorque
+from dynamics.forces import CoastFlank, GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
 from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
 from dynamics.system import Integration, Outputs, Scene, with_planets
 from dynamics.system.kinematics import solve_kinematics
@@ -15,7 +15,7 @@ from fe_contact.ste import PairFacts, SteDatabase
 from service.convert.case import boundary_errors
 from service.convert.errors import translated
 from service.convert.topology import Teeth, check_center_distances, teeth_of
-from service.convert.units import DEGREE, MM, NM, RPM, UM
+from service.convert.units import DEGREE, MM, MRAD, NM, RPM, UM
 from service.schemas.scene import CoastFlankInput, MeshInput, SceneInput
 from service.schemas.scene_bodies import (
     BushingInput,
@@ -78,6 +78,8 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             speed_torques=tuple(_speed_torque(i, part) for i, part in enumerate(scene.speed_torques)),
             free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
             housings=tuple(_housing(i, part) for i, part in enumerate(scene.housings)),
+            rolling_contacts=tuple(_rolling_contacts(scene)),
+            spring_curves=tuple(_spring_curves(scene)),
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
             duration=scene.run.duration_s,
             effects=dict(scene.effects),
@@ -154,6 +156,34 @@ def _preload(given: BushingInput) -> tuple[float, ...] | None:
     if given.preload_force_n is None and given.preload_moment_n_m is None:
         return None
     return (*(given.preload_force_n or (0.0,) * 3), *(given.preload_moment_n_m or (0.0,) * 2))
+
+
+def _rolling_contacts(scene: SceneInput) -> Iterator[RollingContact]:
+    """Yield the rolling contacts of all bushings."""
+    for index, bushing in enumerate(scene.bushings):
+        given = bushing.rolling_contact
+        if given is not None:
+            with _named(f"bushings[{index}].rolling_contact"):
+                yield RollingContact(
+                    bushing.name,
+                    given.stiffness_n_per_m_n,
+                    given.exponent,
+                    given.radial_clearance_um * UM,
+                    given.damping_n_s_per_m,
+                    given.damping_ratio,
+                )
+
+
+def _spring_curves(scene: SceneInput) -> Iterator[SpringCurve]:
+    """Yield the curves of all bushings."""
+    for index, bushing in enumerate(scene.bushings):
+        for place, given in enumerate(bushing.spring_curves):
+            ways = tuple(value * UM for value in given.displacement_um or ())
+            ways = ways or tuple(value * MRAD for value in given.tilt_mrad or ())
+            with _named(f"bushings[{index}].spring_curves[{place}]"):
+                yield SpringCurve(
+                    bushing.name, given.direction, ways, tuple(given.force_n or given.moment_n_m or ())
+                )
 
 
 def _housing(index: int, given: HousingInput) -> Housing:

@@ -6,6 +6,7 @@ import math
 
 MM = 1e-3
 UM = 1e-6
+MRAD = 1e-3
 NM = 1e-9
 GPA = 1e9
 DEGREE = math.pi / 180.0
@@ -18,6 +19,7 @@ BY_SUFFIX: dict[str, float] = {
     "_n_per_um": N_PER_UM,
     "_n_per_mm3": N_PER_MM3,
     "_um": UM,
+    "_mrad": MRAD,
     "_nm": NM,
     "_gpa": GPA,
     "_deg": DEGREE,

@@ -106,7 +106,11 @@ def scene_field(name: str) -> str:
     head, index = _split_index(parts[-1])
     if len(parts) == 1 and head == "duration":
         return "run.duration_s"
-    if head in ("stiffness", "damping") and parts[0].startswith(("bushings", "housings", "couplings")):
+    if (
+        len(parts) == 2
+        and head in ("stiffness", "damping")
+        and parts[0].startswith(("bushings", "housings", "couplings"))
+    ):
         parts[-1] = f"{head}_matrix"
     elif head == "preload":
         parts[-1] = "preload_force_n"

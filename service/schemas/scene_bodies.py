@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from itertools import pairwise
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, Strict, model_validator
 
@@ -114,6 +115,89 @@ class LinearBearingInput(BoundaryModel):
     damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
 
 
+class RollingContactInput(BoundaryModel):
+    """The radial force of a rolling bearing with clearance."""
+
+    stiffness_n_per_m_n: float = Field(
+        gt=0.0,
+        le=1e20,
+        description="k of the force k (r - clearance)^exponent of the whole bearing, N and m",
+        examples=[5e8],
+    )
+    exponent: float = Field(
+        default=10.0 / 9.0,
+        ge=1.0,
+        le=3.0,
+        description="10/9 for rollers, 1.5 for balls",
+        examples=[1.5],
+    )
+    radial_clearance_um: float = Field(
+        default=0.0, ge=0.0, le=1e4, description="From the middle to contact in um", examples=[20.0]
+    )
+    damping_n_s_per_m: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=1e12,
+        description="In full contact in N s/m; left out: from damping_ratio",
+        examples=[500.0],
+    )
+    damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
+
+
+class SpringCurveInput(BoundaryModel):
+    """A bearing's force by displacement in one direction."""
+
+    direction: Literal["x", "y", "z", "tilt_x", "tilt_y"] = Field(
+        description="Direction of displacement and force", examples=["x"]
+    )
+    displacement_um: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=1000,
+        description="Displacements in um, increasing; for x, y, z",
+        examples=[[-40.0, 0.0, 40.0]],
+    )
+    force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=1000,
+        description="Forces in N at these displacements, increasing",
+        examples=[[-6000.0, 0.0, 6000.0]],
+    )
+    tilt_mrad: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=1000,
+        description="Tilts in mrad, increasing; for tilt_x, tilt_y",
+        examples=[[-1.0, 0.0, 1.0]],
+    )
+    moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=1000,
+        description="Moments in N m at these tilts, increasing",
+        examples=[[-50.0, 0.0, 50.0]],
+    )
+
+    @model_validator(mode="after")
+    def _of_its_direction(self) -> Self:
+        """Displacement and force, or tilt and moment, as many of each."""
+        tilts = self.direction.startswith("tilt")
+        wanted = ("tilt_mrad", "moment_n_m") if tilts else ("displacement_um", "force_n")
+        for field in ("displacement_um", "force_n", "tilt_mrad", "moment_n_m"):
+            given = getattr(self, field)
+            if (given is None) == (field in wanted):
+                bound = "given" if field in wanted else "left out"
+                refuse(field, given, f'{bound} for direction "{self.direction}"')
+        first, second = (getattr(self, field) for field in wanted)
+        if len(first) != len(second):
+            refuse(wanted[1], list(second), f"a list of {len(first)}, one for each of {wanted[0]}")
+        for field, values in zip(wanted, (first, second), strict=True):
+            if any(b <= a for a, b in pairwise(values)):
+                refuse(field, list(values), "strictly increasing")
+        return self
+
+
 class BushingInput(LinearBearingInput):
     """A linear bearing between a shaft and the ground."""
 
@@ -151,11 +235,28 @@ class BushingInput(LinearBearingInput):
         examples=[[0.0, 0.0]],
     )
 
+    rolling_contact: RollingContactInput | None = Field(
+        default=None,
+        description="Radial force of a rolling bearing with clearance, beside the linear stiffness",
+        examples=[{"stiffness_n_per_m_n": 5e8, "radial_clearance_um": 20.0}],
+    )
+    spring_curves: Annotated[tuple[SpringCurveInput, ...], Strict(False)] = Field(
+        default=(),
+        max_length=5,
+        description="Forces by displacement, one per direction, beside the linear ones",
+    )
+
     @model_validator(mode="after")
     def _holds(self) -> Self:
         """Something holds the shaft."""
-        if "radial_stiffness_n_per_m" not in self.model_fields_set and self.stiffness_matrix is None:
-            refuse("radial_stiffness_n_per_m", None, "given, or stiffness_matrix instead", "For example 1e8.")
+        others = (self.stiffness_matrix, self.rolling_contact, self.spring_curves or None)
+        if "radial_stiffness_n_per_m" not in self.model_fields_set and all(part is None for part in others):
+            bound = "given, or stiffness_matrix, rolling_contact or spring_curves instead"
+            refuse("radial_stiffness_n_per_m", None, bound, "For example 1e8.")
+        directions = [curve.direction for curve in self.spring_curves]
+        for index, direction in enumerate(directions):
+            if direction in directions[:index]:
+                refuse(f"spring_curves[{index}].direction", direction, "a direction that no other curve has")
         return self
 
 

@@ -45,6 +45,8 @@ class SupportedRotor:
     elastic_lever : float
         Axial distance from the centre of mass to the bushings' elastic centre, m.
     meshes : tuple of MeshOnRotor
+    nonlinear : tuple of float
+        For each law of its bearings that is not linear, what its tangent misses of the displacement, m.
     """
 
     name: str
@@ -54,6 +56,7 @@ class SupportedRotor:
     tilt_stiffness: float
     elastic_lever: float
     meshes: tuple[MeshOnRotor, ...]
+    nonlinear: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dynamics.system.effects.axial import Axial
 from dynamics.system.effects.backlash import Backlash
+from dynamics.system.effects.bearing_clearance import BearingClearance
 from dynamics.system.effects.effect import Effect, MeshEffect
 from dynamics.system.effects.lateral import Lateral
 from dynamics.system.effects.tilt import Tilt
 
-EFFECTS: tuple[Effect, ...] = (Lateral(), Axial(), Tilt())
+EFFECTS: tuple[Effect, ...] = (Lateral(), Axial(), Tilt(), BearingClearance())
 
 MESH_EFFECTS: tuple[MeshEffect, ...] = (Backlash(),)
 

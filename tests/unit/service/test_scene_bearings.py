@@ -46,6 +46,25 @@ def test_matrices_and_preload_reach_the_bushing_as_they_are() -> None:
     assert scene(lambda _table: None).bushings[0].stiffness is None
 
 
+def test_rolling_contacts_and_curves_are_in_si() -> None:
+    def change(table: dict[str, Any]) -> None:
+        for bushing in table["bushings"][:2]:
+            del bushing["radial_stiffness_n_per_m"]
+        table["bushings"][0]["rolling_contact"] = {"stiffness_n_per_m_n": 5e8, "radial_clearance_um": 20.0}
+        table["bushings"][1]["spring_curves"] = [
+            {"direction": "x", "displacement_um": [-40.0, 0.0, 40.0], "force_n": [-6e3, 0.0, 5e3]},
+            {"direction": "tilt_y", "tilt_mrad": [-1.0, 1.0], "moment_n_m": [-50.0, 50.0]},
+        ]
+
+    found = scene(change)
+    (contact,), (line, tilt) = found.rolling_contacts, found.spring_curves
+    assert (contact.bushing, contact.stiffness, contact.exponent) == ("input left", 5e8, 10.0 / 9.0)
+    assert contact.clearance == pytest.approx(20e-6, rel=1e-12, abs=0.0)
+    assert (line.bushing, line.direction, line.force) == ("input right", "x", (-6e3, 0.0, 5e3))
+    np.testing.assert_allclose(line.displacement, [-40e-6, 0.0, 40e-6], rtol=1e-12, atol=0.0)
+    np.testing.assert_allclose(tilt.displacement, [-1e-3, 1e-3], rtol=1e-12)
+
+
 @pytest.mark.parametrize("suffix", [".csv", ".npz"])
 def test_a_housing_file_is_written_out_in_the_scene(tmp_path: Path, suffix: str) -> None:
     file, name = tmp_path / "scene.toml", f"case{suffix}"
@@ -89,6 +108,24 @@ WRONG: dict[str, tuple[Change, str]] = {
     "negative damping": (
         lambda t: t["bushings"][0].update(damping_matrix=(-np.eye(5)).tolist()),
         "bushings[0].damping_matrix",
+    ),
+    "negative clearance": (
+        lambda t: t["bushings"][0].update(
+            rolling_contact={"stiffness_n_per_m_n": 5e8, "radial_clearance_um": -1.0}
+        ),
+        "bushings[0].rolling_contact.radial_clearance_um",
+    ),
+    "falling curve": (
+        lambda t: t["bushings"][0].update(
+            spring_curves=[{"direction": "x", "displacement_um": [0.0, 1.0], "force_n": [1.0, 0.0]}]
+        ),
+        "bushings[0].spring_curves[0].force_n",
+    ),
+    "curve of another direction": (
+        lambda t: t["bushings"][0].update(
+            spring_curves=[{"direction": "tilt_x", "displacement_um": [0.0, 1.0], "force_n": [0.0, 1.0]}]
+        ),
+        "bushings[0].spring_curves[0].displacement_um",
     ),
     "unknown bushing": (housing(bushings=["input left", "x"]), "housings[0].bushings[1]"),
     "wrong size": (housing(stiffness_matrix=np.eye(7).tolist()), "housings[0].stiffness_matrix"),

@@ -96,9 +96,8 @@ def test_forces_and_moments_of_bearings_balance_the_mesh():
     )
     found = static_equilibrium(system)
     assert found.status.usable
-    on_ground = bearing_force(system, found.displacement[None], np.zeros((1, found.displacement.size)))[
-        0, :, 0
-    ]
+    rest = np.zeros((1, found.displacement.size))
+    on_ground = bearing_force(system, found.mesh_force[:, None], found.displacement[None], rest)[0, :, 0]
     line = system.lines[0]
     push = -found.mesh_force[0] * line.force  # on the driver
     arm = line.point - np.array([0.0, 0.0, 0.16])

@@ -1,0 +1,152 @@
+"""A bearing's force against displacement in one direction, from a table; and its compiled law."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from dynamics.checks import finite, increasing, one_of
+from dynamics.errors import InputError
+from dynamics.forces.compiled import inner
+from dynamics.types import FloatArray, IntArray
+
+DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
+
+
+@dataclass(frozen=True)
+class SpringCurve:
+    """A force on the ground by the displacement of the shaft in one direction of a bushing.
+
+    Acts beside what the bushing does linearly, its damping included. Through the points without overshoot
+    (Fritsch and Carlson); beyond the ends on with the slope there.
+
+    Attributes
+    ----------
+    bushing : str
+        The bushing in whose place it acts.
+    direction : str
+        One of x, y, z, tilt_x, tilt_y; one curve each.
+    displacement : tuple of floats
+        m, rad for a tilt; strictly increasing, at least 2.
+    force : tuple of floats
+        N, N m for a tilt; strictly increasing.
+    """
+
+    bushing: str
+    direction: str
+    displacement: tuple[float, ...]
+    force: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        one_of("direction", self.direction, DIRECTIONS)
+        size = increasing("displacement", self.displacement).size
+        if size < 2:
+            raise InputError("displacement", self.displacement, "at least 2 values")
+        if len(self.force) != size:
+            raise InputError("force", len(self.force), f"as many values as displacements ({size})")
+        for index, value in enumerate(self.force):
+            finite(f"force[{index}]", value)
+        increasing("force", self.force, "A bearing that pushes less the further it is pushed holds nothing.")
+
+    @property
+    def slope(self) -> float:
+        """Mean stiffness over the table, N/m or N m/rad."""
+        return (self.force[-1] - self.force[0]) / (self.displacement[-1] - self.displacement[0])
+
+    def pieces(self) -> tuple[FloatArray, FloatArray]:
+        """Return the starts of the cubics (S,) and their ascending coefficients (S, 4).
+
+        The first piece is the straight line below the table and counts from its first point; the last is the
+        one beyond it.
+        """
+        x, f = np.asarray(self.displacement, dtype=float), np.asarray(self.force, dtype=float)
+        inside = PchipInterpolator(x, f)
+        slope = inside.derivative()
+        first, last = [[f[0], float(slope(x[0])), 0.0, 0.0]], [[f[-1], float(slope(x[-1])), 0.0, 0.0]]
+        return np.array([x[0], *x]), np.concatenate([first, inside.c[::-1].T, last])
+
+
+class SpringCurveLaws(NamedTuple):
+    """Curves one after the other in flat arrays.
+
+    Attributes
+    ----------
+    first : (l + 1,) int array
+        First piece of each curve.
+    start : (S,) array
+        Start of the pieces, m or rad.
+    coefficient : (S, 4) array
+        Ascending, in N, N m.
+    energy : (S,) array
+        Energy at the start of each piece less that at no displacement, J.
+    lever : (l,) array
+        Coordinate over displacement: 1, or a radius in m for tilts.
+    """
+
+    first: IntArray
+    start: FloatArray
+    coefficient: FloatArray
+    energy: FloatArray
+    lever: FloatArray
+
+
+def pack_spring_curves(parts: Sequence[SpringCurve], lever: float) -> SpringCurveLaws:
+    """Lay out `parts`; `lever` (m) makes lengths of tilts."""
+    pieces = [part.pieces() for part in parts]
+    energies = [_energies(start, coefficient) for start, coefficient in pieces]
+    levers = [lever if part.direction.startswith("tilt") else 1.0 for part in parts]
+    return SpringCurveLaws(
+        np.cumsum([0, *(start.size for start, _ in pieces)], dtype=np.int64),
+        np.concatenate([np.empty(0), *(start for start, _ in pieces)]),
+        np.ascontiguousarray(np.concatenate([np.empty((0, 4)), *(c for _, c in pieces)])),
+        np.concatenate([np.empty(0), *energies]),
+        np.array(levers, dtype=float),
+    )
+
+
+def _energies(start: FloatArray, c: FloatArray) -> FloatArray:
+    """Energy at the start of each piece, 0 at no displacement."""
+    inside = np.array([_area(c[k], start[k + 1] - start[k]) for k in range(1, start.size - 1)])
+    from_first = np.concatenate([[0.0, 0.0], np.cumsum(inside)])
+    piece = max(int(np.searchsorted(start[1:], 0.0, side="right")), 0)
+    return np.asarray(from_first - from_first[piece] - _area(c[piece], -start[piece]))
+
+
+def _area(c: FloatArray, s: float) -> float:
+    """Integral of a cubic from 0 to s."""
+    return float(s * (c[0] + s * (c[1] / 2.0 + s * (c[2] / 3.0 + s * c[3] / 4.0))))
+
+
+@inner
+def _piece(laws: SpringCurveLaws, place: int, displacement: float) -> int:
+    """Return the piece that holds `displacement`."""
+    piece = laws.first[place]
+    while piece + 1 < laws.first[place + 1] and displacement >= laws.start[piece + 1]:
+        piece += 1
+    return int(piece)
+
+
+@inner
+def spring_curve(laws: SpringCurveLaws, place: int, coordinate: float) -> tuple[float, float]:
+    """Return the force (N) at the coordinate (m) and its derivative (N/m)."""
+    lever = laws.lever[place]
+    displacement = coordinate / lever
+    piece = _piece(laws, place, displacement)
+    s, c = displacement - laws.start[piece], laws.coefficient
+    force = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
+    slope = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
+    return force / lever, slope / (lever * lever)
+
+
+@inner
+def spring_curve_energy(laws: SpringCurveLaws, place: int, coordinate: float) -> float:
+    """Return the energy at the coordinate (m) less that at 0, J."""
+    displacement = coordinate / laws.lever[place]
+    piece = _piece(laws, place, displacement)
+    s, c = displacement - laws.start[piece], laws.coefficient
+    area = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))
+    return float(laws.energy[piece] + area)

@@ -1,0 +1,90 @@
+"""Where bodies rest on nonlinear bearings under forces that are known; the bearings' tangents there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.forces.element_laws import Law
+from dynamics.joints import Bushing
+from dynamics.joints.bushing import SEAT, seat_matrix
+from dynamics.joints.matrix import Matrix
+from dynamics.system.arrays import SystemArrays
+from dynamics.system.bearing_elements import BearingElement
+from dynamics.system.observation import local_state
+from dynamics.types import FloatArray, IntArray
+
+ITERATIONS = 200
+SETTLED = 1e-13  # of the largest displacement
+
+
+def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray) -> FloatArray:
+    """Return q (n,) with matrix q + bearing forces = force, `matrix` (n, n) that of all but the bearings.
+
+    Rolling contacts count as springs of the secant that their force so far has, which is right at once where
+    statics alone fixes the forces; curves as their tangents. Motions that nothing resists stay zero.
+    """
+    rows = np.flatnonzero(arrays.elements.stiffness > 0.0)
+    gradient = arrays.direction[rows]
+    stiffness, offset = arrays.elements.stiffness[rows], np.zeros(rows.size)
+    q = np.zeros(force.size)
+    for _ in range(ITERATIONS):
+        left = matrix + gradient.T @ (stiffness[:, None] * gradient)
+        found = np.asarray(np.linalg.lstsq(left, force - offset @ gradient, rcond=1e-13)[0])
+        if np.max(np.abs(found - q), initial=0.0) <= SETTLED * np.max(np.abs(found), initial=0.0):
+            return found
+        q = found
+        stiffness, offset = _springs(arrays, q, rows, stiffness * (gradient @ q) + offset)
+    return q
+
+
+def _springs(
+    arrays: SystemArrays, q: FloatArray, rows: IntArray, force: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Stiffnesses and forces at no displacement of the bearings' rows, which now carry `force`."""
+    elements, laws = arrays.elements, arrays.elements.laws
+    local = local_state(arrays, 0.0, q, np.zeros(q.size))
+    on_row = np.zeros(elements.offset.size)
+    on_row[rows] = force
+    stiffness, offset = np.zeros(elements.offset.size), np.zeros(elements.offset.size)
+    for e, law in enumerate(elements.law):
+        first, end = elements.first[e], elements.first[e + 1]
+        if law == Law.ROLLING_CONTACT:
+            place = elements.place[e]
+            carried = float(np.linalg.norm(on_row[first:end]))
+            press = (carried / laws.rolling_contact.stiffness[place]) ** (
+                1.0 / laws.rolling_contact.exponent[place]
+            )
+            way = laws.rolling_contact.clearance[place] + press
+            stiffness[first:end] = carried / way if way > 0.0 else 0.0
+        elif law == Law.SPRING_CURVE:
+            stiffness[first] = local.tangent[first, 0]
+            offset[first] = local.force[first] - local.tangent[first, 0] * local.coordinate[first]
+    return stiffness[rows], offset[rows]
+
+
+def with_tangent(
+    bushing: Bushing,
+    at: BearingElement,
+    force: FloatArray,
+    stiffness: FloatArray,
+    damping: FloatArray,
+    coordinate: FloatArray,
+) -> Bushing:
+    """Return `bushing` with an element's tangents (p, p) and its `force` (p,) at the `coordinate` (p,)."""
+    spread = np.zeros((len(at.direction), SEAT))
+    spread[np.arange(len(at.direction)), list(at.direction)] = at.lever
+    added = np.zeros(SEAT) if bushing.preload is None else np.array(bushing.preload)
+    symmetric = 0.5 * (stiffness + stiffness.T)
+    return replace(
+        bushing,
+        stiffness=_rows(bushing.added_stiffness + spread.T @ symmetric @ spread),
+        damping=_rows(seat_matrix(bushing.damping) + spread.T @ damping @ spread),
+        preload=tuple(float(value) for value in added + (symmetric @ coordinate - force) @ spread),
+    )
+
+
+def _rows(matrix: FloatArray) -> Matrix:
+    """Return a matrix as tuples."""
+    return tuple(tuple(float(value) for value in row) for row in matrix)
