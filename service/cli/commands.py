@@ -123,9 +123,12 @@ def flank(
 @app.command(epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed")
 @guarded
 def export(
-    case: Annotated[Path, typer.Argument(help="Case file.")],
+    case: Annotated[Path, typer.Argument(help="Case file; for an FMU an STE database.")],
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="Folder for pinion.vtu and wheel.vtu; made if missing.")
+        Path,
+        typer.Option(
+            "-o", "--output", help="Folder for pinion.vtu and wheel.vtu, made if missing; or MESH.fmu."
+        ),
     ],
     torque: Annotated[
         float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
@@ -141,10 +144,14 @@ def export(
     beside: Annotated[
         int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
     ] = 1,
+    damping_n_s_per_m: Annotated[
+        float, typer.Option(help="Mesh damping an FMU starts with in N s/m along the line of action.")
+    ] = 0.0,
     json: AsJson = False,
 ) -> None:
-    """Write the finite elements of both gears as they bend in mesh, for ParaView and the like."""
+    """Write both gears as they bend in mesh, for ParaView and the like; or the mesh force as an FMU."""
     from service.cli.export import run_export  # noqa: PLC0415 (start-up time)
+    from service.cli.export_fmu import run_export_fmu  # noqa: PLC0415
 
     point = {
         "torque_n_m": torque,
@@ -152,7 +159,10 @@ def export(
         "misalignment_um": misalignment_um,
         "center_distance_change_mm": center_distance_change_mm,
     }
-    run_export(case, output, point, at, beside, as_json=json)
+    if output.suffix == ".fmu":
+        run_export_fmu(case, output, point, damping_n_s_per_m, as_json=json)
+    else:
+        run_export(case, output, point, at, beside, as_json=json)
 
 
 @app.command(

@@ -1,0 +1,104 @@
+"""A gear mesh by itself: the table and the few facts that turn angles into force and torques."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from dynamics.checks import finite, integer, not_negative, positive, within
+from dynamics.errors import InputError
+from dynamics.forces.mesh_table import MeshTable, check_table
+from dynamics.system.assemble import assemble
+from dynamics.system.flanks import DAMPING_REACH
+from dynamics.system.scene import Scene
+
+MOST_TEETH = 100_000
+BASE_PITCH_AGREEMENT = 1e-9
+
+
+@dataclass(frozen=True)
+class MeshElement:
+    """The force between the driving flanks of two gears.
+
+    Angles count in each gear's own sense: the driver's in the sense in which it drives, the driven gear's in
+    the sense in which it is driven.
+
+    Attributes
+    ----------
+    table : MeshTable
+        May have axes of misalignment and centre-distance change.
+    teeth : (int, int)
+        Of the driver and the driven gear.
+    base_radius : (float, float)
+        m, in the same order, both positive.
+    base_helix_angle : float
+        rad, of the driver; > 0 is right-handed.
+    damping : float
+        N s/m in full contact.
+    damping_reach : float or None
+        Elastic force in N from which the damping acts in full. None: 5 % of the table's last level.
+    position_offset : float
+        Position in base pitches where the driver's angle is zero.
+    """
+
+    table: MeshTable
+    teeth: tuple[int, int]
+    base_radius: tuple[float, float]
+    base_helix_angle: float = 0.0
+    damping: float = 0.0
+    damping_reach: float | None = None
+    position_offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_table("table", self.table)
+        for index in range(2):
+            integer(f"teeth[{index}]", self.teeth[index], 1, MOST_TEETH)
+            positive(f"base_radius[{index}]", self.base_radius[index])
+        driven = self.base_radius[1] / self.teeth[1]
+        if abs(driven * self.teeth[0] / self.base_radius[0] - 1.0) > BASE_PITCH_AGREEMENT:
+            bound = f"{self.base_radius[0] * self.teeth[1] / self.teeth[0]:.12g}, of the driver's base pitch"
+            raise InputError("base_radius[1]", self.base_radius[1], bound, "Base pitches must agree to 1e-9.")
+        within("base_helix_angle", self.base_helix_angle, -1.2, 1.2, "Angles are in radians.")
+        not_negative("damping", self.damping)
+        positive("damping_reach", self.reach)
+        finite("position_offset", self.position_offset)
+
+    @property
+    def reach(self) -> float:
+        """Elastic force in N from which the damping acts in full."""
+        if self.damping_reach is not None:
+            return self.damping_reach
+        return DAMPING_REACH * float(self.table.level[-1])
+
+    @property
+    def base_pitch(self) -> float:
+        """Transverse, m."""
+        return 2.0 * math.pi * self.base_radius[0] / self.teeth[0]
+
+
+def mesh_element(scene: Scene, mesh: str) -> MeshElement:
+    """Return a mesh of a scene with the damping and the table that a run of the scene uses.
+
+    A table with axes keeps them with the variable-torque technique. The constant-torque technique has one
+    place on them. The coast flank is left out.
+
+    Raises
+    ------
+    InputError
+        If the scene has no such mesh, or its parts do not fit each other.
+    """
+    names = [part.name for part in scene.meshes]
+    if mesh not in names:
+        raise InputError("mesh", mesh, f"one of {', '.join(names)}")
+    index = names.index(mesh)
+    flanks, given = assemble(scene).flanks, scene.meshes[index]
+    driver, driven = scene.gear(given.driver), scene.gear(given.driven)
+    return MeshElement(
+        given.table if given.technique == "variable_torque" else flanks.used[index],
+        (driver.teeth, driven.teeth),
+        (driver.base_radius, driven.base_radius),
+        driver.base_helix_angle,
+        float(flanks.law.damping[index]),
+        float(flanks.law.reach[index]),
+        given.position_offset,
+    )

@@ -1,0 +1,63 @@
+"""``loa export`` of an FMU: what it writes and prints, and how it refuses."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+from pathlib import Path
+
+import pytest
+from small_table import BASE_RADIUS, small_table
+from typer.testing import CliRunner, Result
+
+from service.cli.commands import app
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["export", *(str(argument) for argument in arguments)])
+
+
+@pytest.fixture
+def database(tmp_path: Path) -> Path:
+    file = tmp_path / "ste.nc"
+    small_table().to_netcdf(file)
+    return file
+
+
+def test_it_holds_the_whole_table_and_says_so(database: Path, tmp_path: Path) -> None:
+    result = loa(database, "-o", tmp_path / "m.fmu", "--torque", 100, "--damping-n-s-per-m", 1500, "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    table = small_table().force_table()
+    assert (answer["positions"], answer["levels"]) == (table.position.size, table.level.size)
+    assert answer["damping_reach_n"] == pytest.approx(0.05 * 100.0 / BASE_RADIUS)
+    with zipfile.ZipFile(answer["file"]) as archive:
+        assert 'start="1500.0"' in archive.read("modelDescription.xml").decode()
+    again = loa(database, "-o", tmp_path / "m.fmu")
+    assert again.exit_code == 0
+    assert "1 misalignments x 1 centre distances" in again.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["--misalignment-um", 10], "left out for an FMU"),
+        (["--damping-n-s-per-m", -1], "--damping-n-s-per-m = -1.0: must be 0 or above"),
+        (["--torque", 0], "--torque = 0.0: must be above 0"),
+        (["--torque", 1, "--force", 1], "not both"),
+    ],
+)
+def test_arguments_it_cannot_use(database: Path, tmp_path: Path, arguments: list[object], text: str) -> None:
+    result = loa(database, "-o", tmp_path / "m.fmu", *arguments)
+    assert result.exit_code == 2
+    assert text in result.stderr
+    assert not (tmp_path / "m.fmu").exists()
+
+
+def test_no_database_and_no_compiler(database: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "an STE database" in loa(tmp_path / "no.nc", "-o", tmp_path / "m.fmu").stderr
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    result = loa(database, "-o", tmp_path / "m.fmu")
+    assert result.exit_code == 2
+    assert "a C compiler on the path" in result.stderr
