@@ -22,6 +22,7 @@ class RunStatus(IntEnum):
     STEP_LIMIT = 2  # the number of steps allowed was used up
     NOT_FINITE = 3  # the motion diverged: NaN, or a step error of a metre
     NO_EQUILIBRIUM = 4  # the run could not start: no static equilibrium under the load at t = 0
+    CANCELLED = 5  # on request; the result holds what was computed, and a streamed run can be resumed
 
     @property
     def usable(self) -> bool:

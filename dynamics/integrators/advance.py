@@ -32,8 +32,8 @@ def advance(
 ) -> int:
     """Step until the time passes `stop` and return a `RunStatus`.
 
-    The output samples at k / sample_rate go into the rows k of `q_out`, `v_out` and `moved_out`. Steps never
-    end at `stop` on purpose: cutting a run into chunks changes no bit of it.
+    The output samples at k / sample_rate go into the rows k - count[FIRST_ROW] of `q_out`, `v_out` and
+    `moved_out`. Steps never end at `stop` on purpose: cutting a run into chunks changes no bit of it.
     """
     if work.counts[Count.ACCEPTED] == 0:
         _start(system, work, control, q_out, v_out, moved_out)
@@ -101,11 +101,12 @@ def _accept(
     """Store the samples inside the step, add its works, and make its end the new state."""
     step = work.ladder[rung]
     end = work.time[0] + step
-    sample = work.counts[Count.OUTPUT]
-    while sample < q_out.shape[0] and sample / sample_rate <= end:
-        _interpolate(work, step, sample / sample_rate - work.time[0], q_out[sample], v_out[sample])
+    sample, first = work.counts[Count.OUTPUT], work.counts[Count.FIRST_ROW]
+    while sample - first < q_out.shape[0] and sample / sample_rate <= end:
+        row = sample - first
+        _interpolate(work, step, sample / sample_rate - work.time[0], q_out[row], v_out[row])
         for k in range(work.moved.size):
-            moved_out[sample, k] = work.moved[k]
+            moved_out[row, k] = work.moved[k]
         sample += 1
     work.counts[Count.OUTPUT] = sample
     if control.audit:

@@ -38,6 +38,7 @@ class Count(IntEnum):
     NEWTON_FAILED = 6  # steps repeated because Newton failed
     SMALLEST_RUNG = 7  # of an accepted step: the largest step
     LARGEST_RUNG = 8
+    FIRST_ROW = 9  # output sample that the first row of the output arrays is for
 
 
 class Workspace(NamedTuple):

@@ -9,35 +9,49 @@ from dynamics.system.observation import static_deflections
 from dynamics.types import FloatArray, Json
 
 
-def contact_checks(
-    system: System, position: FloatArray, deflection: FloatArray, force: FloatArray
-) -> list[Json]:
-    """Return one entry per mesh that ran without backlash, from series (m, T) of its driving flank.
+class ContactChecks:
+    """Gathers, block by block, how far the driving flanks of meshes without backlash parted."""
 
-    ``parted`` is the share of the samples out of contact, ``widest_gap`` in m how far flanks were apart along
-    the line of action, ``holds`` whether leaving the coast flank out changed nothing: none parted, or the gap
-    stayed below a backlash that is given.
-    """
-    found: list[Json] = []
-    for index, mesh in enumerate(system.scene.meshes):
-        if system.ledger.on("backlash", mesh.name):
-            continue
-        apart = force[index] <= 0.0
-        touch = np.empty(position.shape[1])
-        static_deflections(system.arrays.elements.laws.flank.table, index, position[index], 0.0, touch)
-        gap = float(np.max((touch - deflection[index])[apart], initial=0.0))
+    def __init__(self, system: System) -> None:
+        meshes = system.scene.meshes
+        self._system, self._samples = system, 0
+        self._watched = [i for i, mesh in enumerate(meshes) if not system.ledger.on("backlash", mesh.name)]
+        self._parted = np.zeros(len(meshes), dtype=np.int64)
+        self._gap = np.zeros(len(meshes))
+
+    def see(self, position: FloatArray, deflection: FloatArray, force: FloatArray) -> None:
+        """Take series (m, T) of the driving flanks."""
+        self._samples += position.shape[1]
+        for index in self._watched:
+            apart = force[index] <= 0.0
+            touch = np.empty(position.shape[1])
+            table = self._system.arrays.elements.laws.flank.table
+            static_deflections(table, index, position[index], 0.0, touch)
+            self._parted[index] += np.count_nonzero(apart)
+            gap = float(np.max((touch - deflection[index])[apart], initial=0.0))
+            self._gap[index] = max(self._gap[index], gap)
+
+    def found(self) -> list[Json]:
+        """Return one entry per mesh that ran without backlash.
+
+        ``parted`` is the share of the samples out of contact, ``widest_gap`` in m how far flanks were apart
+        along the line of action, ``holds`` whether leaving the coast flank out changed nothing: none parted,
+        or the gap stayed below a backlash that is given.
+        """
+        return [self._entry(index) for index in self._watched]
+
+    def _entry(self, index: int) -> Json:
+        """One mesh."""
+        mesh, gap = self._system.scene.meshes[index], float(self._gap[index])
         room = mesh.coast.backlash if mesh.coast is not None else 0.0
-        found.append(
-            {
-                "effect": "backlash",
-                "part": mesh.name,
-                "holds": bool(gap <= room),
-                "parted": float(np.mean(apart)),
-                "widest_gap": gap,
-                "reason": _reason(gap, mesh.coast is not None, room),
-            }
-        )
-    return found
+        return {
+            "effect": "backlash",
+            "part": mesh.name,
+            "holds": bool(gap <= room),
+            "parted": float(self._parted[index] / max(self._samples, 1)),
+            "widest_gap": gap,
+            "reason": _reason(gap, mesh.coast is not None, room),
+        }
 
 
 def _reason(gap: float, known: bool, room: float) -> str:

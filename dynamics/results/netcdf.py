@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import json
-import os
-import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,14 +12,14 @@ import xarray
 
 from dynamics.errors import ResultError
 from dynamics.results.energy_audit import EnergyAudit
+from dynamics.results.run_file import CHUNK, DIRECTIONS, RunFile
 from dynamics.results.run_result import RunResult
-from dynamics.results.series import LABELS, SERIES
+from dynamics.results.series import LABELS, SERIES, over_time
 from dynamics.results.step_statistics import StepStatistics
-from dynamics.types import Json, RunStatus
+from dynamics.types import RunStatus
 
 SCHEMA = "lineofaction dynamics run"
 SCHEMA_VERSION = 2
-DIRECTIONS = ("x", "y", "z")
 DOCUMENTS = ("effect_ledger", "receipt", "case")
 
 
@@ -42,24 +41,17 @@ def to_dataset(result: RunResult) -> xarray.Dataset:
         for series in SERIES
         if getattr(result, series.name).size
     }
-    return xarray.Dataset(data, coordinates, _attributes(result))
+    return xarray.Dataset(data, coordinates, attributes(vars(result)))
 
 
 def write_netcdf(result: RunResult, path: Path) -> None:
     """Write to a neighbour of `path`, then move it there in one step."""
-    dataset = to_dataset(result)
-    packing = {"zlib": True, "complevel": 1, "shuffle": True}
-    encoding: dict[Any, Json] = {name: {"_FillValue": None} for name in dataset.variables}
-    for variable in dataset.data_vars:
-        encoding[variable] |= packing
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    os.close(handle)
-    part = Path(name)
-    try:
-        dataset.to_netcdf(part, engine="h5netcdf", format="NETCDF4", encoding=encoding)
-        _publish(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+    fields = dict(vars(result))
+    with RunFile(path) as file:
+        for first in range(0, result.time.size, CHUNK):
+            part = {name: fields[name][..., first : first + CHUNK] for name in over_time()}
+            file.append(fields | part)
+        file.publish(attributes(fields))
 
 
 def read_netcdf(path: Path) -> RunResult:
@@ -81,25 +73,16 @@ def read_netcdf(path: Path) -> RunResult:
         raise ResultError(f"{path}: damaged, {error!r}") from error
 
 
-def _publish(part: Path, path: Path) -> None:
-    """Flush to disk and rename; ordinary permissions instead of the temporary file's private ones."""
-    mask = os.umask(0)
-    os.umask(mask)
-    part.chmod(0o666 & ~mask)
-    with part.open("rb") as written:
-        os.fsync(written.fileno())
-    part.replace(path)
-
-
-def _attributes(result: RunResult) -> dict[str, Any]:
-    """All that is not a series."""
+def attributes(fields: Mapping[str, Any]) -> dict[str, Any]:
+    """Return all that is not a series, of the fields of a `RunResult`."""
+    status, energy = fields["status"], fields["energy"]
     return {
         "schema": SCHEMA,
         "schema_version": SCHEMA_VERSION,
-        "status": result.status.name,
-        "statistics": json.dumps(result.statistics.to_json()),
-        "energy": json.dumps(result.energy.to_json() if result.energy else None),
-        **{name: json.dumps(getattr(result, name)) for name in DOCUMENTS},
+        "status": status.name,
+        "statistics": json.dumps(fields["statistics"].to_json()),
+        "energy": json.dumps(energy.to_json() if energy else None),
+        **{name: json.dumps(fields[name]) for name in DOCUMENTS},
     }
 
 

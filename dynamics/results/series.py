@@ -56,3 +56,8 @@ SERIES = (
     Series("velocity", ("freedom", "time"), "m s-1 or rad s-1", "rate of the deviation"),
     Series("nominal_force", ("mesh",), "N", "nominal transverse mesh force"),
 )
+
+
+def over_time() -> tuple[str, ...]:
+    """Return the names of everything that has one value per sample, the time first."""
+    return ("time", *(series.name for series in SERIES if series.dimensions[-1] == "time"))

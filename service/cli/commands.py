@@ -209,12 +209,15 @@ def simulate(
         str | None,
         typer.Option("--service", help="Take the tables from this service instead of computing them here."),
     ] = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with a run that was interrupted or killed.")
+    ] = False,
     json: AsJson = False,
 ) -> None:
-    """Run the dynamics of a scene."""
+    """Run the dynamics of a scene; Ctrl-C ends it with what was computed, to be resumed."""
     from service.cli.simulate import run_simulate  # noqa: PLC0415 (start-up time)
 
-    run_simulate(scene, output, service, as_json=json)
+    run_simulate(scene, output, service, resume=resume, as_json=json)
 
 
 @app.command(epilog="Example: loa report ste.nc run.nc -o report.html")

@@ -28,8 +28,8 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
             return verb(*args, **kwargs)
         except (typer.Exit, typer.Abort):
             raise
-        except KeyboardInterrupt:
-            _leave("interrupted", EXIT_INTERRUPTED)
+        except KeyboardInterrupt as stop:
+            _leave(str(stop) or "interrupted", EXIT_INTERRUPTED)
         except BrokenPipeError:
             _close_pipe()
         except Exception as error:  # noqa: BLE001 (the last line of defence: logged by number below)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from dynamics.simulate import simulate
+from dynamics.simulate import interrupted_run, simulate_to_file
+from dynamics.system import Scene
+from dynamics.types import RunStatus
 from fe_contact.ste import SteDatabase
 from service.cli.analyze import analyzed
+from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
 from service.cli.remote import watching
 from service.cli.ste import open_ste
@@ -14,32 +17,46 @@ from service.client import LineOfActionClient
 from service.client.portable import case_of_mesh, scene_of
 from service.convert.runs import run_json, staged
 from service.convert.scene import dynamic_scene
-from service.problems import BadInput
+from service.problems import BadInput, JobFailed
 from service.schemas import Case
 from service.schemas.scene import MeshInput
 
 _ADVICE = "Name the service that holds it: --service http://127.0.0.1:8321"
 
 
-def run_simulate(file: Path, output: Path, service: str | None, *, as_json: bool) -> None:
-    """Gather the tables, integrate here, write, print."""
+def run_simulate(file: Path, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:
+    """Gather the tables, integrate here into the file, print."""
     scene, folder = scene_of(file)
     check_writable(output)
+    if resume and not interrupted_run(output).is_dir():
+        advice = "There is none there. Leave --resume out to start a run."
+        raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
     client = None if service is None else LineOfActionClient(service)
     try:
         with progress_bar() as report:
             tables = _Tables(folder, client, report)
             databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
-            run = simulate(dynamic_scene(scene, databases), progress=staged(report))
+            _run(dynamic_scene(scene, databases), output, report, resume=resume)
     finally:
         if client is not None:
             client.close()
-    run.to_netcdf(output)
     facts = {"file": str(output), **run_json(output)}
     if as_json:
         print_json(facts)
     else:
         _show(facts)
+
+
+def _run(scene: Scene, output: Path, report: Report, *, resume: bool) -> None:
+    """Integrate; say how a run ended that is not complete."""
+    with until_interrupted() as cancel:
+        status = simulate_to_file(scene, output, resume=resume, progress=staged(report), cancel=cancel)
+    if status is RunStatus.CANCELLED:
+        kept = f"What was computed is in {output}; --resume goes on from there."
+        raise KeyboardInterrupt(f"interrupted. {kept}")
+    if not status.usable:
+        ended = status.name.lower().replace("_", " ")
+        raise JobFailed(f"The run ended early: {ended}. What was computed is in {output}.")
 
 
 class _Tables:

@@ -88,6 +88,12 @@ class Claims:
             rows = connection.execute(statement).all()
         return [Claim(row.id, row.process, row.key, json.loads(row.inputs), row.attempts) for row in rows]
 
+    def waiting(self) -> set[str]:
+        """Return the computations that wait."""
+        statement = select(computations.c.id).where(computations.c.state == "accepted")
+        with reading(self._engine) as connection:
+            return set(connection.execute(statement).scalars())
+
     def dismissed(self, identifiers: Collection[str]) -> set[str]:
         """Return those of `identifiers` that nobody wants any more."""
         if not identifiers:

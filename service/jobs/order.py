@@ -24,7 +24,8 @@ class WorkOrder:
     key : str
         Name of the result.
     workspace : Path
-        Directory of this computation alone; removed afterwards.
+        Directory of this computation alone; removed afterwards. Another attempt after a worker died finds
+        what that one left.
     data_directory : Path
         Where results and the compliance cache are, to read.
     """

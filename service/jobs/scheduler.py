@@ -45,11 +45,11 @@ class Scheduler:
 
     def start(self) -> None:
         """Take up what a dead service left behind, then begin; may be started again after a stop."""
-        shutil.rmtree(self._settings.data_directory / "work", ignore_errors=True)
         for name in ("work", "log"):
             (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
         for claim in self._claims.running():
             self._again_or_fail(claim, "The service ended while it ran.")
+        self._clear(self._claims.waiting())
         self._selector = selectors.DefaultSelector()
         self._wake_out, self._wake_in = os.pipe()
         for end in (self._wake_out, self._wake_in):
@@ -157,7 +157,14 @@ class Scheduler:
                     self._store.put(product.key, product.kind, product.file)
                 self._claims.succeed(claim.id)
         finally:
-            shutil.rmtree(self._settings.data_directory / "work" / claim.id, ignore_errors=True)
+            if not outcome.died or claim.attempts >= self._settings.attempts:
+                shutil.rmtree(self._settings.data_directory / "work" / claim.id, ignore_errors=True)
+
+    def _clear(self, waiting: set[str]) -> None:
+        """Remove the workspaces of all but those that wait: they may go on from what is there."""
+        for workspace in (self._settings.data_directory / "work").iterdir():
+            if workspace.name not in waiting:
+                shutil.rmtree(workspace, ignore_errors=True)
 
     def _again_or_fail(self, claim: Claim, reason: str) -> None:
         """Give work that died another attempt, as long as there are any."""

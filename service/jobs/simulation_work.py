@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
-from dynamics.simulate import simulate
+from dynamics.errors import ResultError
+from dynamics.simulate import simulate_to_file
+from dynamics.system import Scene
 from fe_contact.ste import SteDatabase
 from service.convert.case import case_json
 from service.convert.runs import staged
@@ -12,7 +15,7 @@ from service.convert.scene import dynamic_scene
 from service.jobs.analysis_work import database_of
 from service.jobs.catalogue import ANALYZE
 from service.jobs.order import Product, Progress, WorkOrder
-from service.problems import BadInput
+from service.problems import BadInput, JobFailed
 from service.schemas.scene import MeshInput, SceneInput
 from service.store import stored_results
 
@@ -25,8 +28,18 @@ def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     for index, mesh in enumerate(scene.meshes):
         databases[mesh.name] = _table(order, index, mesh, products, progress)
     file = order.workspace / "run.nc"
-    simulate(dynamic_scene(scene, databases), progress=staged(progress)).to_netcdf(file)
+    _run(dynamic_scene(scene, databases), file, progress)
     return (*products, Product(order.key, "run", file))
+
+
+def _run(scene: Scene, file: Path, progress: Progress) -> None:
+    """Run into the file; go on from where a worker before us died."""
+    try:
+        status = simulate_to_file(scene, file, resume=True, progress=staged(progress))
+    except ResultError:
+        status = simulate_to_file(scene, file, progress=staged(progress))
+    if not status.usable:
+        raise JobFailed(f"The run ended early: {status.name.lower().replace('_', ' ')}.")
 
 
 def _table(
@@ -40,6 +53,11 @@ def _table(
     if store.find(key, "database") is not None:
         return SteDatabase.from_netcdf(store.verified(key, "database").path)
 
+    file = order.workspace / f"database_{index}.nc"
+    if file.is_file():  # of a worker that died after it
+        products.append(Product(key, "database", file))
+        return SteDatabase.from_netcdf(file)
+
     def part(stage: str, fraction: float) -> None:
         progress("analysis", ANALYZE.overall(stage, fraction) or 0.0)
 
@@ -47,7 +65,6 @@ def _table(
         database = database_of(mesh.case, order.data_directory / "compliance", part)
     except BadInput as error:
         raise error.within(f"meshes[{index}].case") from None
-    file = order.workspace / f"database_{index}.nc"
     database.to_netcdf(file)
     products.append(Product(key, "database", file))
     return database

@@ -60,6 +60,13 @@ def test_a_dying_worker_gets_a_second_attempt(machine: Bench) -> None:
     assert machine.store.verified(job.key, "database").path.read_text() == "late"
 
 
+def test_a_second_attempt_finds_what_the_first_left(machine: Bench) -> None:
+    job = machine.ended(machine.submit(mode="leave_and_die"))
+    assert (job.status, job.attempts) == ("successful", 2)
+    assert machine.store.verified(job.key, "database").path.read_text() == "left behind"
+    assert list((machine.settings.data_directory / "work").iterdir()) == []
+
+
 def test_attempts_are_limited_and_the_reason_is_stated(machine: Bench) -> None:
     job = machine.ended(machine.submit(mode="die"))
     assert (job.status, job.attempts, len(machine.starts(job))) == ("failed", 2, 2)

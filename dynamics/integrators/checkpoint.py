@@ -1,0 +1,83 @@
+"""Checkpoints of a run: every array its workspace carries, in one file that appears whole or not at all.
+
+What a workspace holds is read off its named tuples, so that state which an element or a method adds there is
+saved without a word here.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dynamics.errors import ResultError
+
+VERSION = 1
+Arrays = dict[str, Any]
+
+
+def leaves(state: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the dotted names and values of all that nested (named) tuples hold."""
+    if not isinstance(state, tuple):
+        yield name, state
+        return
+    fields = getattr(state, "_fields", range(len(state)))
+    for field, value in zip(fields, state, strict=True):
+        yield from leaves(value, f"{name}.{field}" if name else str(field))
+
+
+def fingerprint(*parts: Any) -> str:
+    """Return the SHA-256 of names, types, shapes and bytes of everything in `parts`."""
+    digest = hashlib.sha256(f"checkpoint {VERSION}".encode())
+    for name, value in leaves(parts):
+        array = np.asarray(value)
+        digest.update(f"{name} {array.dtype.str} {array.shape};".encode())
+        digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest()
+
+
+def restore(state: Any, arrays: Arrays, path: Path) -> None:
+    """Write `arrays` into the arrays of `state`, in place.
+
+    Raises
+    ------
+    ResultError
+        If one is missing or of another shape or type: the file is of another version of the program.
+    """
+    for name, target in leaves(state):
+        found = arrays.get(name)
+        if found is None or found.shape != target.shape or found.dtype != target.dtype:
+            raise ResultError(f"{path}: {name} is not that of this version. Start the run anew.")
+        target[...] = found
+
+
+def write_checkpoint(path: Path, state: Any, **facts: Any) -> None:
+    """Write the arrays of `state`, and `facts`, to a neighbour of `path`; then move it there in one step."""
+    part = path.with_suffix(".part")
+    with part.open("wb") as file:
+        np.savez(file, **dict(leaves(state)), **{f"fact {name}": value for name, value in facts.items()})
+        file.flush()
+        os.fsync(file.fileno())
+    part.replace(path)
+
+
+def read_checkpoint(path: Path) -> tuple[Arrays, Arrays]:
+    """Return the arrays of the state, and the facts.
+
+    Raises
+    ------
+    ResultError
+        If the file is damaged.
+    """
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            content = {name: file[name] for name in file.files}
+    except (OSError, ValueError, zipfile.BadZipFile, KeyError) as error:
+        raise ResultError(f"{path}: not a readable checkpoint ({error}). Start the run anew.") from error
+    facts = {name.removeprefix("fact "): value for name, value in content.items() if name[:5] == "fact "}
+    return {name: value for name, value in content.items() if name[:5] != "fact "}, facts

@@ -1,0 +1,194 @@
+"""A run on its way: its workspace, and the loop that moves it on block by block into a sink."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.integrators.advance import advance
+from dynamics.integrators.energy import stored_energy
+from dynamics.integrators.state_sink import BLOCK, StateSink
+from dynamics.integrators.static import StaticSolution
+from dynamics.integrators.step_control import Control
+from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
+from dynamics.integrators.workspace import Count, Workspace, make_workspace, step_ladder
+from dynamics.system import Integration
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray, IntArray, RunStatus
+
+Progress = Callable[[float, str], None]
+Cancel = Callable[[], bool]
+
+CHUNKS = 50
+FIRST_STEP = 1e-6
+STEP_SHARE = 0.07
+"""Error allowed per step over the tolerance of the run.
+
+Measured on the run-up of a spur pair: with it the rms error of the run is 0.2 of the tolerance at damping
+ratios of 0.05, and 0.8 at 0.01, where steps' errors ring five times longer."""
+NEWTON_SHARE = 0.01
+"""Error of Newton's method over the error allowed per step."""
+
+
+@dataclass(frozen=True)
+class March:
+    """What a run needs to go on from where it is.
+
+    Attributes
+    ----------
+    system : System
+    work : Workspace
+        The state, changed in place.
+    control : Control
+    initial : (3,) array
+        Kinetic, bushing and mesh energy at the start, J.
+    samples : int
+        Of the whole run.
+    """
+
+    system: System
+    work: Workspace
+    control: Control
+    initial: FloatArray
+    samples: int
+
+
+@dataclass(frozen=True)
+class Ending:
+    """How a run ended, and what it took.
+
+    Attributes
+    ----------
+    status : RunStatus
+    samples : int
+        Of the output grid, as far as the run came.
+    end : float
+        Time of the last step's end, s; the energies refer to it.
+    stored : (2, 3) array
+        Kinetic, bushing and mesh energy at the start and at the end, J.
+    work : (5,) array
+        Works over the run, J, in the order of `Power`.
+    count : int array
+        Statistics, in the order of `Count`.
+    step_range : (2,) array
+        Smallest and largest accepted step, s.
+    seconds : float
+        Wall time of the stepping, s; in a process's first run with reading or making the compiled code.
+    """
+
+    status: RunStatus
+    samples: int
+    end: float
+    stored: FloatArray
+    work: FloatArray
+    count: IntArray
+    step_range: FloatArray
+    seconds: float
+
+
+def start_march(
+    system: System, start: StaticSolution, integration: Integration, velocity: FloatArray | None = None
+) -> March:
+    """Stand at t = 0 in `start`, at rest or with the `velocity` (n,)."""
+    ladder = _ladder(integration)
+    work = make_workspace(system.arrays, ladder, start.displacement, integration.fixed_step or FIRST_STEP)
+    if velocity is not None:
+        work.v[:] = velocity
+    scene = system.scene
+    samples = int(np.floor(scene.duration * scene.outputs.sample_rate * (1.0 + 1e-12))) + 1
+    initial = stored_energy(system.arrays, 0.0, start.displacement, work.v, work.moved)
+    return March(system, work, _control(system, integration), initial, samples)
+
+
+def march_on(
+    march: March,
+    sink: StateSink,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    after_block: Callable[[], None] | None = None,
+) -> RunStatus:
+    """Go on to the end of the run, block by block; asked by `cancel` after each block whether to stop."""
+    duration = march.system.scene.duration
+    block = min(duration / CHUNKS, BLOCK / march.system.scene.outputs.sample_rate)
+    while True:
+        stop = min(float(march.work.time[0]) + block, duration)
+        status = _advance_to(march, stop, sink)
+        if progress is not None:
+            progress(min(float(march.work.time[0]) / max(duration, 1e-300), 1.0), "time integration")
+        if not status.usable or march.work.time[0] >= duration:
+            return status
+        if cancel is not None and cancel():
+            return RunStatus.CANCELLED
+        if after_block is not None:
+            after_block()
+
+
+def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
+    """Step until the time passes `stop`; the last step may pass it by the largest one."""
+    rate, counts = march.system.scene.outputs.sample_rate, march.work.counts
+    first = int(counts[Count.OUTPUT])
+    last = int(np.floor((stop + float(march.work.ladder[0])) * rate)) + 2
+    room = sink.room(first, max(min(last, march.samples) - first, 1 if first == 0 else 0))
+    counts[Count.FIRST_ROW] = first
+    status = RunStatus(
+        advance(march.system.arrays, march.work, march.control, stop, rate, room.q, room.v, room.moved)
+    )
+    sink.keep(first, int(counts[Count.OUTPUT]) - first)
+    return status
+
+
+def ending(march: March, status: RunStatus, seconds: float) -> Ending:
+    """Return how the march stands."""
+    work = march.work
+    end = float(work.time[0])
+    final = stored_energy(march.system.arrays, end, work.q, work.v, work.moved)
+    return Ending(
+        status,
+        int(work.counts[Count.OUTPUT]),
+        end,
+        np.array([march.initial, final]),
+        work.work,
+        work.counts,
+        _step_range(work),
+        seconds,
+    )
+
+
+def now() -> float:
+    """Return the clock that `Ending.seconds` are taken from."""
+    return clock.perf_counter()
+
+
+def _ladder(integration: Integration) -> FloatArray:
+    """Step sizes: a ladder, or the one fixed step."""
+    if integration.fixed_step is not None:
+        return np.array([integration.fixed_step, 0.0])
+    return step_ladder(integration.largest_step, integration.smallest_step)
+
+
+def _control(system: System, integration: Integration) -> Control:
+    """Make the settings for the compiled loop."""
+    implicit = integration.method == "implicit"
+    tolerance = STEP_SHARE * integration.tolerance
+    stiffness = float(np.max(system.flanks.mean_stiffness, initial=1.0))
+    return Control(
+        implicit,
+        integration.fixed_step is None,
+        system.scene.outputs.energy_audit,
+        IMPLICIT_EMBEDDED_ORDER if implicit else EXPLICIT_EMBEDDED_ORDER,
+        tolerance,
+        NEWTON_SHARE * tolerance * stiffness,
+        integration.step_limit,
+    )
+
+
+def _step_range(work: Workspace) -> FloatArray:
+    """Smallest and largest accepted step; zeros without one."""
+    if work.counts[Count.ACCEPTED] == 0:
+        return np.zeros(2)
+    return np.array(
+        [work.ladder[work.counts[Count.LARGEST_RUNG]], work.ladder[work.counts[Count.SMALLEST_RUNG]]]
+    )

@@ -1,0 +1,72 @@
+"""Where the sampled states of a run go: one protocol, in memory or (`StateSpool`) on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from dynamics.types import FloatArray, IntArray
+
+BLOCK = 8192
+"""Samples that are in memory at once where a run is streamed, and that series are made of at once always, so
+that both ways give the same bits."""
+
+
+class States(NamedTuple):
+    """Sampled states: n freedoms, k laws.
+
+    Attributes
+    ----------
+    q, v : (T, n) arrays
+        Deviations from the kinematic motion and their rates.
+    moved : (T, k) int array
+        Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
+    """
+
+    q: FloatArray
+    v: FloatArray
+    moved: IntArray
+
+    def rows(self, first: int, stop: int) -> States:
+        """Return a view of the samples `first` to `stop` - 1."""
+        return States(self.q[first:stop], self.v[first:stop], self.moved[first:stop])
+
+
+class StateSink(Protocol):
+    """Takes samples in order, and gives them back."""
+
+    def room(self, first: int, count: int) -> States:
+        """Return zeroed or unwritten rows for the samples `first` to `first + count` - 1."""
+
+    def keep(self, first: int, count: int) -> None:
+        """Keep the first `count` rows of the room last given, which started at sample `first`."""
+
+    def states(self, first: int, stop: int) -> States:
+        """Return the samples `first` to `stop` - 1."""
+
+
+class MemorySink:
+    """All samples in arrays made once."""
+
+    def __init__(self, samples: int, freedoms: int, laws: int) -> None:
+        moved = np.zeros((samples, laws), dtype=np.int64)
+        self.all = States(np.zeros((samples, freedoms)), np.zeros((samples, freedoms)), moved)
+
+    def room(self, first: int, count: int) -> States:
+        """Return a view of the rows."""
+        return self.states(first, first + count)
+
+    def keep(self, first: int, count: int) -> None:
+        """Do nothing: the rows were written in place."""
+
+    def states(self, first: int, stop: int) -> States:
+        """Return a view of the rows."""
+        return self.all.rows(first, stop)
+
+
+def blocks(samples: int) -> Iterator[tuple[int, int]]:
+    """Yield first and last + 1 of the blocks of a run with that many samples."""
+    for first in range(0, samples, BLOCK):
+        yield first, min(first + BLOCK, samples)

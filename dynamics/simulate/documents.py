@@ -1,0 +1,83 @@
+"""What a result says beside its series, from the system and how its run ended."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from dynamics.integrators.march import Ending
+from dynamics.integrators.workspace import Count
+from dynamics.results import EnergyAudit, StepStatistics
+from dynamics.results.case import resolved_case
+from dynamics.results.contact_check import ContactChecks
+from dynamics.system import Integration
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray, Json
+
+ERROR_CHECK_FACTOR = 0.1
+IMPLICIT_STAGES_PER_STEP = 5
+
+
+def documents(
+    system: System, end: Ending, checks: ContactChecks, seconds: dict[str, float], error: Json
+) -> dict[str, Any]:
+    """Return the fields of `RunResult` that are no series."""
+    audit = EnergyAudit.from_arrays(end.work, end.stored)
+    return {
+        "status": end.status,
+        "statistics": _statistics(system, end),
+        "energy": audit if system.scene.outputs.energy_audit else None,
+        "effect_ledger": {**system.ledger.to_json(), "checks": checks.found()},
+        "receipt": {"seconds": seconds, "error": error},
+        "case": resolved_case(system),
+    }
+
+
+def see(checks: ContactChecks, series: dict[str, Any]) -> None:
+    """Show a block of series to the checks."""
+    checks.see(*(series[name] for name in ("position", "dynamic_transmission_error", "mesh_force")))
+
+
+def finer(integration: Integration) -> Integration:
+    """Return the settings of the run that an error is measured against."""
+    return replace(
+        integration,
+        tolerance=ERROR_CHECK_FACTOR * integration.tolerance,
+        fixed_step=integration.fixed_step and ERROR_CHECK_FACTOR * integration.fixed_step,
+    )
+
+
+def asked_error(integration: Integration) -> Json:
+    """Return the step error of the transmission error, m rms, that the step control was asked for."""
+    return {"time_step": {"rms": integration.tolerance, "unit": "m", "source": "tolerance of step control"}}
+
+
+def measured_error(total: float, samples: int, meshes: int, seconds: float) -> Json:
+    """Return the step error from the sum of squared differences from a finer run."""
+    rms = float(np.sqrt(total / max(samples * meshes, 1)))
+    source = f"difference from a run at {ERROR_CHECK_FACTOR:g} of the tolerance"
+    return {"time_step": {"rms": rms, "unit": "m", "source": source, "seconds": seconds}}
+
+
+def squared_difference(system: System, q: FloatArray, other: FloatArray) -> float:
+    """Return the sum of the squared differences in the transmission errors of the states (T, n)."""
+    difference = (q - other) @ system.arrays.direction[: len(system.scene.meshes)].T
+    return float(np.sum(difference**2))
+
+
+def _statistics(system: System, end: Ending) -> StepStatistics:
+    """Name the counts."""
+    count = [int(value) for value in end.count]
+    implicit = system.scene.integration.method == "implicit"
+    stages = IMPLICIT_STAGES_PER_STEP * max(count[Count.ACCEPTED] + count[Count.REJECTED], 1)
+    return StepStatistics(
+        count[Count.ACCEPTED],
+        count[Count.REJECTED],
+        count[Count.NEWTON_FAILED],
+        count[Count.NEWTON_TOTAL] / stages if implicit else 0.0,
+        count[Count.NEWTON_MOST],
+        float(end.step_range[0]),
+        float(end.step_range[1]),
+    )

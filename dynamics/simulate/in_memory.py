@@ -1,0 +1,139 @@
+"""From a scene to its result in memory."""
+
+from __future__ import annotations
+
+import time as clock
+from typing import Any
+
+import numpy as np
+
+from dynamics.errors import SolveError
+from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
+from dynamics.integrators.state_sink import States, blocks
+from dynamics.integrators.workspace import Count
+from dynamics.results import RunResult
+from dynamics.results.contact_check import ContactChecks
+from dynamics.results.histories import histories
+from dynamics.results.series import over_time
+from dynamics.simulate.documents import (
+    asked_error,
+    documents,
+    finer,
+    measured_error,
+    see,
+    squared_difference,
+)
+from dynamics.system import Scene
+from dynamics.system.assemble import System, assemble
+from dynamics.types import FloatArray, Json, RunStatus
+
+
+def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
+    """Run `scene` from static equilibrium at t = 0 over its duration.
+
+    Everything is held in memory: for runs that do not fit there, see `simulate_to_file`.
+
+    Parameters
+    ----------
+    scene : Scene
+    progress : callable, optional
+        Called with the fraction done (0..1) and what is being done; what it raises ends the run.
+    cancel : callable, optional
+        Asked again and again whether to stop; e.g. ``threading.Event().is_set``.
+
+    Returns
+    -------
+    RunResult
+        Complete: its status is `RunStatus.COMPLETED`.
+
+    Raises
+    ------
+    InputError
+        If the scene's parts do not fit each other.
+    SolveError
+        If there is no equilibrium to start from, or the run stopped early or was cancelled; ``partial`` is
+        the result up to there.
+    """
+    began = clock.perf_counter()
+    system = assemble(scene)
+    start = static_equilibrium(system)
+    seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
+    require_equilibrium(system, start, seconds)
+    trajectory = integrate(system, start, scene.integration, progress, cancel=cancel)
+    seconds["integration"] = trajectory.seconds
+    error = _error_estimate(system, start, trajectory, progress)
+    result = _result(system, trajectory, seconds, error)
+    if not trajectory.status.usable:
+        reached = f"at {trajectory.end:.6g} s of {scene.duration:g} s"
+        raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
+    if progress is not None:
+        progress(1.0, "done")
+    return result
+
+
+def require_equilibrium(system: System, start: StaticSolution, seconds: dict[str, float]) -> None:
+    """Refuse to start from anything but an equilibrium.
+
+    Raises
+    ------
+    SolveError
+        If `start` is none; ``partial`` shows where the search for it ended.
+    """
+    if not start.status.usable:
+        message = f"no static equilibrium at t = 0: {start.status.name.lower()}, {start.residual:.3g} N left"
+        raise SolveError(message, _result(system, _no_trajectory(system, start), seconds, {}))
+
+
+def _result(system: System, trajectory: Trajectory, seconds: dict[str, float], error: Json) -> RunResult:
+    """Put the result together."""
+    began = clock.perf_counter()
+    checks = ContactChecks(system)
+    parts: list[dict[str, Any]] = []
+    for first, stop in blocks(trajectory.samples):
+        part = slice(first, stop)
+        states = States(trajectory.q[part], trajectory.v[part], trajectory.moved[part])
+        parts.append(histories(system, trajectory.time[part], *states))
+        see(checks, parts[-1])
+    seconds = {**seconds, "outputs": clock.perf_counter() - began}
+    return RunResult(**_joined(parts), **documents(system, trajectory, checks, seconds, error))
+
+
+def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    """Join blocks of series."""
+    if len(parts) == 1:
+        return parts[0]
+    whole = dict(parts[0])
+    for name in over_time():
+        whole[name] = np.concatenate([part.pop(name) for part in parts], axis=-1)
+    return whole
+
+
+def _error_estimate(
+    system: System, start: StaticSolution, trajectory: Trajectory, progress: Progress | None
+) -> Json:
+    """Step error of the transmission error, m rms: asked for, or measured against a finer run."""
+    integration = system.scene.integration
+    if not (integration.estimate_error and trajectory.status.usable):
+        return asked_error(integration)
+    check = integrate(system, start, finer(integration), progress)
+    total = squared_difference(system, trajectory.q, check.q)
+    return measured_error(total, trajectory.samples, len(system.scene.meshes), check.seconds)
+
+
+def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
+    """Stand for a run that never started: its first sample is where the search for equilibrium ended."""
+    q: FloatArray = start.displacement[None, :]
+    return Trajectory(
+        status=RunStatus.NO_EQUILIBRIUM,
+        samples=1,
+        time=np.zeros(1),
+        q=q,
+        v=np.zeros_like(q),
+        moved=np.zeros((1, len(system.scene.references)), dtype=np.int64),
+        end=0.0,
+        stored=np.zeros((2, 3)),
+        work=np.zeros(5),
+        count=np.zeros(len(Count), dtype=np.int64),
+        step_range=np.zeros(2),
+        seconds=0.0,
+    )

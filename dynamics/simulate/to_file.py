@@ -1,0 +1,208 @@
+"""From a scene to its result in a file: states stream to disk, checkpoints let the run be taken up again."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from dynamics.errors import ResultError
+from dynamics.integrators import Cancel, Progress, StaticSolution, static_equilibrium
+from dynamics.integrators.checkpoint import fingerprint, restore
+from dynamics.integrators.march import Ending, March, ending, march_on, start_march
+from dynamics.integrators.state_sink import blocks
+from dynamics.integrators.state_spool import StateSpool
+from dynamics.results.contact_check import ContactChecks
+from dynamics.results.histories import histories
+from dynamics.results.netcdf import attributes
+from dynamics.results.run_file import RunFile
+from dynamics.simulate.documents import (
+    asked_error,
+    documents,
+    finer,
+    measured_error,
+    see,
+    squared_difference,
+)
+from dynamics.simulate.in_memory import require_equilibrium
+from dynamics.system import Integration, Scene
+from dynamics.system.assemble import System, assemble
+from dynamics.types import Json, RunStatus
+
+CHECKPOINT_EVERY = 5.0  # s of wall time
+
+
+def interrupted_run(path: str | Path) -> Path:
+    """Return the folder that holds an unfinished run to `path`, whether it exists or not."""
+    return Path(path).with_name(f"{Path(path).name}.partial")
+
+
+def simulate_to_file(
+    scene: Scene,
+    path: str | Path,
+    *,
+    resume: bool = False,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+) -> RunStatus:
+    """Run `scene` as `simulate` does, with memory that does not grow with its duration.
+
+    While it runs, its states and checkpoints are in the folder `interrupted_run(path)`. At the end, or when
+    cancelled, everything computed is written to `path`, bit by bit what `simulate` gives. A cancelled run
+    keeps the folder, and so does one whose process was killed: started again with `resume`, it goes on from
+    its last checkpoint and ends bit by bit as if it had never stopped (its times in the receipt apart).
+
+    Parameters
+    ----------
+    scene : Scene
+    path : str or Path
+        netCDF file, see `RunResult.from_netcdf`.
+    resume : bool
+        Go on from the checkpoint if there is one. Else whatever there is of another run is removed.
+    progress, cancel : callable, optional
+        As in `simulate`.
+    checkpoint_every : float
+        s of wall time between checkpoints.
+
+    Returns
+    -------
+    RunStatus
+        How the run ended, also in the file.
+
+    Raises
+    ------
+    InputError
+        If the scene's parts do not fit each other, or another process runs to the same file.
+    SolveError
+        If there is no equilibrium to start from.
+    ResultError
+        If the checkpoint is damaged, or that of another scene.
+    """
+    path, began = Path(path), clock.perf_counter()
+    system = assemble(scene)
+    start = static_equilibrium(system)
+    seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
+    require_equilibrium(system, start, seconds)
+    folder = interrupted_run(path)
+    folder.mkdir(exist_ok=True)
+    with ExitStack() as stack:
+        leg = _Leg(stack, folder / "run", system, start, scene.integration, resume)
+        end = leg.go(progress, cancel, checkpoint_every)
+        error = asked_error(scene.integration)
+        if scene.integration.estimate_error and end.status.usable:
+            check = _Leg(stack, folder / "check", system, start, finer(scene.integration), resume)
+            other = check.go(progress, cancel, checkpoint_every)
+            end = replace(end, status=other.status)
+            error = _difference(system, leg, check, other) if other.status.usable else error
+        seconds["integration"] = end.seconds
+        _write(path, system, leg, end, seconds, error)
+    if end.status is not RunStatus.CANCELLED:
+        _remove(folder)
+    if progress is not None:
+        progress(1.0, "done" if end.status.usable else end.status.name.lower())
+    return end.status
+
+
+class _Leg:
+    """One integration with its states on disk, taken up where its checkpoint stands."""
+
+    def __init__(
+        self,
+        stack: ExitStack,
+        place: Path,
+        system: System,
+        start: StaticSolution,
+        integration: Integration,
+        resume: bool,
+    ) -> None:
+        self.march: March = start_march(system, start, integration)
+        work, control, outputs = self.march.work, self.march.control, system.scene.outputs
+        rates = (system.scene.duration, outputs.sample_rate)
+        self._mark = fingerprint(system.arrays, control, work.ladder, start.displacement, rates)
+        self.spool = stack.enter_context(StateSpool(place, work.q.size, work.moved.size))
+        self._seconds = 0.0
+        self._status: RunStatus | None = None
+        found = self.spool.checkpoint() if resume else None
+        if found is None:
+            self.spool.begin()
+        else:
+            self._take_up(place, *found)
+
+    def _take_up(self, place: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
+        """Stand where the checkpoint was written."""
+        if str(facts.get("mark")) != self._mark:
+            raise ResultError(f"{place}: of another scene or version. Start the run anew.")
+        restore(self.march.work, arrays, place)
+        self.spool.resume(int(facts["samples"]))
+        self._seconds = float(facts["seconds"])
+        status = RunStatus(int(facts["status"]))
+        self._status = None if status is RunStatus.CANCELLED else status
+
+    def go(self, progress: Progress | None, cancel: Cancel | None, every: float) -> Ending:
+        """March on to the end, with checkpoints; one that had ended stays as it is."""
+        began = saved = clock.perf_counter()
+        before = self._seconds
+
+        def after_block() -> None:
+            nonlocal saved
+            if clock.perf_counter() - saved >= every:
+                self._save(RunStatus.CANCELLED)
+                saved = clock.perf_counter()
+            self._seconds = before + clock.perf_counter() - began
+
+        if self._status is None:
+            status = march_on(self.march, self.spool, progress, cancel, after_block)
+            self._seconds = before + clock.perf_counter() - began
+            self._save(status)
+            self._status = status
+        return ending(self.march, self._status, self._seconds)
+
+    def _save(self, status: RunStatus) -> None:
+        """Write a checkpoint."""
+        samples = int(ending(self.march, status, 0.0).samples)
+        facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "status": int(status)}
+        self.spool.save(self.march.work, **facts)
+
+
+def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
+    """Measure the step error against the finer run."""
+    total = 0.0
+    for first, stop in blocks(end.samples):
+        total += squared_difference(
+            system, leg.spool.states(first, stop).q, check.spool.states(first, stop).q
+        )
+    return measured_error(total, end.samples, len(system.scene.meshes), end.seconds)
+
+
+def _write(
+    path: Path, system: System, leg: _Leg, end: Ending, seconds: dict[str, float], error: Json
+) -> None:
+    """Make the series from the states, block by block, into the file."""
+    began = clock.perf_counter()
+    checks = ContactChecks(system)
+    with RunFile(path) as file:
+        for series in _series(system, leg, end.samples):
+            see(checks, series)
+            file.append(series)
+        seconds["outputs"] = clock.perf_counter() - began
+        file.publish(attributes(documents(system, end, checks, seconds, error)))
+
+
+def _series(system: System, leg: _Leg, samples: int) -> Iterator[dict[str, Any]]:
+    """Yield the series of all blocks."""
+    rate = system.scene.outputs.sample_rate
+    for first, stop in blocks(samples):
+        yield histories(system, np.arange(first, stop) / rate, *leg.spool.states(first, stop))
+
+
+def _remove(folder: Path) -> None:
+    """Remove what an ended run does not need."""
+    for file in folder.iterdir():
+        file.unlink()
+    folder.rmdir()

@@ -1,0 +1,51 @@
+"""``loa simulate``: Ctrl-C keeps what was computed, ``--resume`` goes on from there."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import numpy as np
+import pytest
+from geared_scenes import gear_pair_scene
+from typer.testing import CliRunner
+
+from dynamics.results import RunResult
+from dynamics.simulate import simulate
+from dynamics.types import RunStatus
+from service.cli.commands import app
+from service.cli.interrupt import until_interrupted
+from service.cli.simulate import _run
+
+SCENE = gear_pair_scene(duration=0.02)
+
+
+def test_ctrl_c_keeps_what_was_computed_and_resume_goes_on(tmp_path):
+    path = tmp_path / "run.nc"
+
+    def stop(_stage: str, fraction: float) -> None:
+        if 0.3 < fraction < 0.33:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt, match="--resume goes on"):
+        _run(SCENE, path, stop, resume=False)
+    part = RunResult.from_netcdf(path)
+    assert part.status is RunStatus.CANCELLED
+    assert 0.3 * 0.02 < part.time[-1] < 0.4 * 0.02
+    _run(SCENE, path, lambda *_: None, resume=True)
+    np.testing.assert_array_equal(RunResult.from_netcdf(path).mesh_force, simulate(SCENE).mesh_force)
+
+
+def test_a_second_interrupt_is_not_held_back():
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt), until_interrupted() as asked:
+        os.kill(os.getpid(), signal.SIGINT)
+        assert asked()
+        os.kill(os.getpid(), signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_resume_without_an_interrupted_run_is_refused(tmp_path):
+    scene = "examples/palermo_scene.toml"
+    ended = CliRunner().invoke(app, ["simulate", scene, "-o", str(tmp_path / "run.nc"), "--resume"])
+    assert ended.exit_code == 2
