@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.checks import finite, positive
-from dynamics.forces.mesh_table import MeshTable, check_table
+from dynamics.forces.mesh_table import DERIVATIVES, LEVERS, MeshTable, check_table
 from dynamics.forces.technique import PlainTable
 from dynamics.types import FloatArray
 
@@ -46,14 +46,14 @@ class CoastFlank:
             check_table("table", self.table)
 
 
-def mirrored(table: PlainTable, thickness: float) -> PlainTable:
+def mirrored(table: MeshTable, thickness: float) -> PlainTable:
     """Return `table` with its positions x replaced by thickness - x, at the same forces and deflections."""
     position = np.mod(thickness - table.position, float(table.period))
     position[position >= table.period] = 0.0  # a tiny negative one rounds up to a whole period
     order = np.argsort(position)
 
     def turned(values: FloatArray) -> FloatArray:
-        return np.ascontiguousarray(values[:, :, order])
+        return np.ascontiguousarray(np.take(values, order, axis=-2))
 
     return PlainTable(
         position[order],
@@ -65,4 +65,10 @@ def mirrored(table: PlainTable, thickness: float) -> PlainTable:
         turned(table.stiffness),
         -turned(table.stiffness_slope),
         table.period,
+        **{name: turned(values) for name in LEVERS if (values := getattr(table, name, None)) is not None},
+        **{
+            name: np.array([1.0, -1.0]).reshape(2, 1, 1, 1, 1) * turned(values)
+            for name in DERIVATIVES
+            if (values := getattr(table, name, None)) is not None
+        },
     )

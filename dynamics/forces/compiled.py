@@ -21,3 +21,7 @@ compiled = _numba(cache=True)
 # Callable from compiled functions only: no wrappers, no cache entry of its own, which halves the compile
 # time.
 inner = _numba(no_cpython_wrapper=True, no_cfunc_wrapper=True)
+
+# Callable from compiled functions only, and not copied into each of them: for large functions, whose many
+# copies would take the compiler longer than a call takes the run.
+shared = partial(_numba, forceinline=False)(no_cpython_wrapper=True, no_cfunc_wrapper=True)

@@ -19,6 +19,7 @@ from dynamics.forces.rolling_contact import (
     rolling_contact,
     rolling_contact_energy,
 )
+from dynamics.forces.spatial_flank import SpatialFlankLaws, spatial_energy, spatial_flank
 from dynamics.forces.speed_torque import SpeedTorqueLaws, speed_torque
 from dynamics.forces.spring_curve import SpringCurveLaws, spring_curve, spring_curve_energy
 from dynamics.forces.table_energy import table_energy
@@ -32,10 +33,12 @@ class Law(IntEnum):
     SPEED_TORQUE = 1  # p = 1: a torque that depends on a shaft's speed
     ROLLING_CONTACT = 2  # p = 2: a rolling bearing's radial force
     SPRING_CURVE = 3  # p = 1: a bearing's force by displacement in one direction
+    SPATIAL_FLANK = 4  # p = 1 to 3: a flank that feels misalignment, centre distance, or acts off mid-face
 
 
 FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
 ROLLING_CONTACT, SPRING_CURVE = int(Law.ROLLING_CONTACT), int(Law.SPRING_CURVE)
+SPATIAL_FLANK = int(Law.SPATIAL_FLANK)
 
 
 class ElementLaws(NamedTuple):
@@ -45,6 +48,7 @@ class ElementLaws(NamedTuple):
     speed_torque: SpeedTorqueLaws
     rolling_contact: RollingContactLaws
     spring_curve: SpringCurveLaws
+    spatial_flank: SpatialFlankLaws
 
 
 class Elements(NamedTuple):
@@ -164,6 +168,20 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
     elif elements.law[e] == SPRING_CURVE:
         force, tangent = spring_curve(elements.laws.spring_curve, place, local.coordinate[row])
         local.force[row], local.elastic[row], local.tangent[row, 0] = force, force, tangent
+    elif elements.law[e] == SPATIAL_FLANK:
+        local.hint[e] = spatial_flank(
+            elements.laws.spatial_flank,
+            place,
+            local.position[elements.mesh[e]],
+            row,
+            local.coordinate,
+            local.rate,
+            local.force,
+            local.elastic,
+            local.tangent,
+            local.viscous,
+            local.hint[e],
+        )
 
 
 @inner
@@ -183,4 +201,29 @@ def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, flo
         return rolling_contact_energy(elements.laws.rolling_contact, place, x, y), 0.0
     if elements.law[e] == SPRING_CURVE:
         return spring_curve_energy(elements.laws.spring_curve, place, local.coordinate[row]), 0.0
+    if elements.law[e] == SPATIAL_FLANK:
+        energy, slope, _, _ = spatial_energy(
+            elements.laws.spatial_flank, place, local.position[elements.mesh[e]], row, local.coordinate
+        )
+        return energy, slope
     return 0.0, 0.0
+
+
+@inner
+def supplied_power(elements: Elements, local: LocalState, e: int, pace: float) -> tuple[float, float]:
+    """Return what element `e` stores as its position moves on at `pace` and as its axes move, W.
+
+    A table V(x, d; m, a) exerts dV/dd on the bodies, and stores V_x x' + V_m m' + V_a a' besides what they
+    give it; of the last two, forces along the axes take their part: -lambda F m' if it acts at its centroid.
+    """
+    if elements.law[e] != SPATIAL_FLANK:
+        return potential(elements, local, e)[1] * pace, 0.0
+    row, place, laws = elements.first[e], elements.place[e], elements.laws.spatial_flank
+    _, in_x, in_m, in_a = spatial_energy(laws, place, local.position[elements.mesh[e]], row, local.coordinate)
+    axes = 0.0
+    to_m, to_a = laws.row[place, 0], laws.row[place, 1]
+    if to_m > 0:
+        axes += (in_m - local.elastic[row + to_m]) * local.rate[row + to_m]
+    if to_a > 0:
+        axes += (in_a - local.elastic[row + to_a]) * local.rate[row + to_a]
+    return in_x * pace, axes

@@ -10,6 +10,8 @@ from dynamics.checks import increasing, integer
 from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
+DERIVATIVES = ("deflection_derivative", "stiffness_derivative")
+LEVERS = ("face_centroid",)
 FIELDS = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
 LARGEST_PERIOD = 1_000_000
 
@@ -34,6 +36,14 @@ class MeshTable(Protocol):
         Its derivative in position, m per base pitch.
     stiffness, stiffness_slope : (M, D, P, L) arrays
         Tangent stiffness dF/d(deflection) in N/m at the knots and its derivative in position.
+
+    A table may also have, for effects that need them (None or left out: it has not):
+
+    deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays
+        Differentiated once (1) or not (0) in misalignment, centre-distance change and position.
+    face_centroid : (M, D, P, L) array
+        Centroid of the load from mid-face of the driving gear, m, towards positive z of a driving gear that
+        turns clockwise seen from there.
     """
 
     @property
@@ -73,7 +83,20 @@ def check_table(field: str, table: MeshTable) -> None:
         values = np.asarray(getattr(table, name))
         if values.shape != shape or not np.all(np.isfinite(values)):
             raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {shape}")
+    _check_optional(field, table, shape)
     if np.any(np.diff(table.deflection, axis=-1) <= 0.0):
         raise InputError(f"{field}.deflection", "not increasing", "strictly increasing along the levels")
     if np.any(np.asarray(table.stiffness) < 0.0) or np.any(np.asarray(table.stiffness)[..., -1] == 0.0):
         raise InputError(f"{field}.stiffness", "negative", "0 or above, and above 0 at the last level")
+
+
+def _check_optional(field: str, table: MeshTable, shape: tuple[int, ...]) -> None:
+    """Raise `InputError` if an array that a table may have is there with another shape."""
+    for names, wanted in ((DERIVATIVES, (2, 2, 2, *shape)), (LEVERS, shape)):
+        for name in names:
+            given = getattr(table, name, None)
+            if given is None:
+                continue
+            values = np.asarray(given)
+            if values.shape != wanted or not np.all(np.isfinite(values)):
+                raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {wanted}")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.errors import InputError
-from dynamics.forces.mesh_table import MeshTable
+from dynamics.forces.mesh_table import LEVERS, MeshTable
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.forces.table_slope import deflection_slope
@@ -16,7 +16,7 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class PlainTable:
-    """A mesh-force table held as plain arrays; fields as in `MeshTable`."""
+    """A mesh-force table held as plain arrays; fields as in `MeshTable`, levers None where it has none."""
 
     position: FloatArray
     level: FloatArray
@@ -27,6 +27,9 @@ class PlainTable:
     stiffness: FloatArray
     stiffness_slope: FloatArray
     period: int = 1
+    face_centroid: FloatArray | None = None
+    deflection_derivative: FloatArray | None = None
+    stiffness_derivative: FloatArray | None = None
 
 
 def table_at(table: MeshTable, misalignment: float, center_distance_change: float) -> PlainTable:
@@ -44,6 +47,8 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
         values = np.asarray(getattr(table, name), dtype=float)
         return np.asarray(np.einsum("m,d,mdpl->pl", weight_m, weight_d, values)[None, None])
 
+    levers = {name: here(name) for name in LEVERS if getattr(table, name, None) is not None}
+
     return PlainTable(
         np.asarray(table.position, dtype=float),
         np.asarray(table.level, dtype=float),
@@ -54,6 +59,7 @@ def table_at(table: MeshTable, misalignment: float, center_distance_change: floa
         here("stiffness"),
         here("stiffness_slope"),
         table.period,
+        **levers,
     )
 
 
@@ -89,7 +95,18 @@ def secant_table(table: PlainTable, force: float) -> PlainTable:
         shaped(stiffness, stiffness),
         shaped(stiffness_slope, stiffness_slope),
         table.period,
+        **{
+            name: np.repeat(_at_force(table.level, values, force), 2, axis=-1)
+            for name in LEVERS
+            if (values := getattr(table, name)) is not None
+        },
     )
+
+
+def _at_force(level: FloatArray, values: FloatArray, force: float) -> FloatArray:
+    """Return a lever (M, D, P, L) at one force, (M, D, P, 1), linear between the levels."""
+    weight = [np.interp(force, level, unit) for unit in np.eye(level.size)]
+    return np.asarray(values @ np.array(weight)[:, None])
 
 
 def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dynamics.forces.compiled import inner
-from dynamics.forces.element_laws import FLANK, SPEED_TORQUE, potential
+from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, SPEED_TORQUE, supplied_power
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.system.arrays import SystemArrays
@@ -16,7 +16,8 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     """Write row `stage` of ``work.power`` from the local state at that stage and its rates ``work.stage_v``.
 
     Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
-    the line of action; what dV/dx stores as the position moves on is counted as supplied by the position.
+    the line of action; what dV/dx stores as the position moves on is counted as supplied by the position,
+    and likewise along the table's other axes, less the work of forces along them.
     """
     velocity = work.stage_v[stage]
     laws = work.motion.shape[0]
@@ -36,18 +37,22 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     loads += supplied
     for i in range(velocity.size):
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
+    axes = 0.0
     for e in range(system.elements.law.size):
         m = system.elements.mesh[e]
         if m >= 0:
             rate = work.local.pace[m]
             for i in range(velocity.size):
                 rate += system.turn[m, i] * velocity[i]
-            position += potential(system.elements, work.local, e)[1] * rate
+            by_position, by_axes = supplied_power(system.elements, work.local, e, rate)
+            position += by_position
+            axes += by_axes
     work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
     work.power[stage, Power.POSITION] = position
     work.power[stage, Power.BUSHING] = bushing
     work.power[stage, Power.MESH] = mesh
+    work.power[stage, Power.AXES] = axes
 
 
 @inner
@@ -59,7 +64,7 @@ def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, f
             lost = (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
             if system.elements.law[e] == SPEED_TORQUE:
                 supplied -= work.force[r] * (work.local.rate[r] + work.local.drift[r])
-            elif system.elements.law[e] == FLANK:
+            elif system.elements.law[e] == FLANK or system.elements.law[e] == SPATIAL_FLANK:
                 mesh += lost
             else:
                 bearing += lost

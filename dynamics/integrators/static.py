@@ -50,7 +50,7 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     Newton's method with step halving, from the state in which every mesh is a spring of its nominal force,
     on the flank that the load presses.
     """
-    arrays, meshes = system.arrays, system.flanks.nominal_force.size
+    arrays = system.arrays
     external = _external(system, time)
     q = _first_guess(system, time, external)
     found = force_balance(arrays, time, q, np.zeros(q.size), external)
@@ -61,13 +61,13 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     for iteration in range(ITERATION_LIMIT + 1):
         size = _size(arrays, found)
         if size <= RESIDUAL_LIMIT * scale:
-            force = found.local.force[:meshes]
+            force = found.local.force[system.driving_rows]
             return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
         update = _solve(arrays, found.stiffness, found.force, q)
         q, found = _line_search(arrays, time, q, update, external, size)
     lost = bool(np.any(_per_mesh(arrays, found.local.force) <= LOST_CONTACT * scale))
     status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
-    return StaticSolution(status, q, found.local.force[:meshes], size, ITERATION_LIMIT)
+    return StaticSolution(status, q, found.local.force[system.driving_rows], size, ITERATION_LIMIT)
 
 
 def _external(system: System, time: float) -> FloatArray:
@@ -116,14 +116,15 @@ def _on_springs(
     """
     arrays, n = system.arrays, external.size
     position = local_state(arrays, time, np.zeros(n), np.zeros(n)).position
-    table, offset = arrays.elements.laws.flank.table, arrays.elements.offset[carrying]
+    first = arrays.elements.first[carrying]
+    table, offset = arrays.elements.laws.flank.table, arrays.elements.offset[first]
     # at lift-off a table may have no stiffness to start from, so unloaded flanks start a little pressed
     touch = LEAST_TOUCH * table.level[table.offset[carrying, 4] + 1]
     force = np.maximum(system.flanks.nominal_force, touch)
     flanks = list(enumerate(carrying))
     touching = np.array([table_deflection(table, flank, position[f], 0.0) for f, flank in flanks])
     deflection = np.array([table_deflection(table, flank, position[f], force[f]) for f, flank in flanks])
-    secant, rows = force / (deflection - touching), arrays.direction[carrying]
+    secant, rows = force / (deflection - touching), arrays.direction[first]
     matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", rows, secant, rows)
     pushed = external + (secant * (touching - offset)) @ rows
     q = _solve(arrays, matrix, pushed, np.zeros(n))
@@ -147,7 +148,7 @@ def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: Float
 def _per_mesh(arrays: SystemArrays, values: FloatArray) -> FloatArray:
     """Return the sum of `values` (R,) over the flanks of each mesh, (m,)."""
     elements, total = arrays.elements, np.zeros(arrays.turn.shape[0])
-    flank = elements.law == Law.FLANK
+    flank = elements.mesh >= 0
     np.add.at(total, elements.mesh[flank], values[elements.first[:-1][flank]])
     return total
 

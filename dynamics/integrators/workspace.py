@@ -24,6 +24,7 @@ class Power(IntEnum):
     POSITION = 2  # supplied by the table's change with position
     BUSHING = 3  # dissipated in bushings
     MESH = 4  # dissipated in meshes
+    AXES = 5  # supplied by the tables' change with misalignment and centre distance
 
 
 class Count(IntEnum):
@@ -72,9 +73,9 @@ class Workspace(NamedTuple):
         Quanta of a revolution by which each free train's own rotation was moved into the reference.
     jacobian : (R, R + 1) array
         Scratch of Newton's method.
-    power : (STAGES, 5) array
+    power : (STAGES, 6) array
         Per stage; columns `Power`.
-    work : (5,) array
+    work : (6,) array
         Integrated, J.
     counts : int array
         See `Count`.

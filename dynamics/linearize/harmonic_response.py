@@ -190,7 +190,7 @@ def _solve(
     system: System, linear: LinearSystem, stiffness: FloatArray, force: ComplexArray, omega: FloatArray
 ) -> ComplexArray:
     """Displacements, (S, H, n): one solve per speed and harmonic, freedoms in metres."""
-    g = system.arrays.direction[: stiffness.size]
+    g = system.arrays.direction[system.driving_rows]
     tangent = linear.spring_stiffness[: stiffness.size]
     total = linear.stiffness + np.einsum("fi,f,fj->ij", g, stiffness - tangent, g)
     per_metre = 1.0 / linear.scale
@@ -215,7 +215,7 @@ def _result(
 ) -> HarmonicResponse:
     """Put the result together from displacements (S, H, n)."""
     scene, meshes = system.scene, stiffness.size
-    dte = np.moveaxis(u @ system.arrays.direction[:meshes].T, 2, 0)
+    dte = np.moveaxis(u @ system.arrays.direction[system.driving_rows].T, 2, 0)
     viscous = system.flanks.law.damping[:meshes, None, None]
     mesh_force = stiffness[:, None, None] * dte - force[:, None, :] + 1j * omega * viscous * dte
     mean = linear.equilibrium.mesh_force

@@ -103,7 +103,8 @@ def _tangents(system: System, tangent: FloatArray) -> list[tuple[str, FloatArray
 def _springs(system: System, tangent: FloatArray) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
     """Names, strains per freedom and stiffnesses of all springs."""
     names = [mesh.name for mesh in system.scene.meshes]
-    rows, stiffness = [system.arrays.direction[: len(names)]], [tangent[: len(names), 0]]
+    first = system.driving_rows
+    rows, stiffness = [system.arrays.direction[first]], [tangent[first, 0]]
     supports = system.supports
     moves = system.freedoms.keep(supports.motion)
     plain = [index for index in range(len(supports.name)) if index not in system.seats.place]

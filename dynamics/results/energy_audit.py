@@ -20,6 +20,9 @@ class EnergyAudit:
         d) in the direction of d only, and the imposed motion of x pays for dV/dx.
     bushings, meshes : float
         Dissipated, >= 0.
+    axes : float
+        Work supplied by the change of the mesh tables with misalignment and centre distance, less what the
+        moments of forces off mid-face take of it: none where the load's centroid belongs to the same table.
     kinetic, stored_bushings, stored_meshes : float
         Gained from start to end.
     """
@@ -29,6 +32,7 @@ class EnergyAudit:
     position: float
     bushings: float
     meshes: float
+    axes: float
     kinetic: float
     stored_bushings: float
     stored_meshes: float
@@ -37,7 +41,7 @@ class EnergyAudit:
     def residual(self) -> float:
         """What does not balance, J; 0 for an exact integration."""
         gained = self.kinetic + self.stored_bushings + self.stored_meshes
-        return self.drive + self.load + self.position - self.bushings - self.meshes - gained
+        return self.drive + self.load + self.position + self.axes - self.bushings - self.meshes - gained
 
     @property
     def relative(self) -> float:
@@ -47,7 +51,7 @@ class EnergyAudit:
         any error of it.
         """
         turnover = self.bushings + self.meshes + abs(self.position) + abs(self.stored_bushings)
-        turnover += abs(self.stored_meshes)
+        turnover += abs(self.stored_meshes) + abs(self.axes)
         return abs(self.residual) / turnover if turnover > 0.0 else 0.0
 
     @property
@@ -67,11 +71,11 @@ class EnergyAudit:
 
     @classmethod
     def from_json(cls, data: Json) -> EnergyAudit:
-        """Read what `to_json` wrote."""
-        return cls(**{name: data[name] for name in cls.__dataclass_fields__})
+        """Read what `to_json` wrote; a term that an older result does not know is 0."""
+        return cls(**{name: data.get(name, 0.0) for name in cls.__dataclass_fields__})
 
     @classmethod
     def from_arrays(cls, work: FloatArray, stored: FloatArray) -> EnergyAudit:
-        """Build from works in the order of the first five fields and stored energies (2, 3), start, end."""
+        """Build from works in the order of the first six fields and stored energies (2, 3), start, end."""
         gained = stored[1] - stored[0]
         return cls(*(float(value) for value in work), *(float(value) for value in gained))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.joints.bushing import SEAT
+from dynamics.results.axis_series import axis_series
 from dynamics.system.assemble import System
 from dynamics.system.freedoms import ROTATION
 from dynamics.system.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
@@ -22,7 +23,7 @@ def histories(
     arrays, scene = system.arrays, system.scene
     laws = observe_laws(arrays, time)
     seen = observe(arrays, time, q, v, moved)
-    meshes, wanted = len(scene.meshes), scene.outputs
+    wanted = scene.outputs
     force, moment = _on_the_ground(system, laws, seen.force, q, v, moved)
     return {
         "time": time,
@@ -34,10 +35,11 @@ def histories(
         "coupling": system.couplings.name,
         "position": seen.position,
         "mesh_frequency": _mesh_frequency(system, laws[SPEED], v),
-        "dynamic_transmission_error": seen.coordinate[:meshes],
+        "dynamic_transmission_error": seen.coordinate[system.driving_rows],
         "static_transmission_error": _static(system, seen.position),
-        "mesh_force": seen.force[:meshes],
+        "mesh_force": seen.force[system.driving_rows],
         "coast_force": _coast_force(system, seen.force),
+        **axis_series(system, seen.coordinate, seen.force),
         "speed": _speed(system, laws[SPEED], v),
         "drive_torque": _drive_torque(system, time, laws[ACCELERATION], seen.force, q, v),
         "coupling_torque": _coupling_torque(system, q, v),
@@ -134,7 +136,7 @@ def _coast_force(system: System, force: FloatArray) -> FloatArray:
     meshes, coast = len(system.scene.meshes), system.flanks.coast
     found = np.zeros((meshes if coast else 0, force.shape[1]))
     for place, mesh in enumerate(coast, start=meshes):
-        found[mesh] = force[place]
+        found[mesh] = force[system.arrays.elements.first[place]]
     return found
 
 

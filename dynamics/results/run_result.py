@@ -40,6 +40,12 @@ class RunResult:
         Transverse force of the driving flank in N, damping included, >= 0.
     coast_force : (m, T) array
         Transverse force of the coast flank in N, >= 0; m = 0 here if backlash is off in all meshes.
+    misalignment, center_distance_change : (m, T) arrays
+        m; where each mesh's table was read, as its bodies tilt and move; m = 0 here if the effect is off in
+        all meshes.
+    load_centroid : (m, T) array
+        m; where along the face the mesh force acted, from the middle of the common face towards +z, 0 out of
+        contact; m = 0 here if the moving application point is off in all meshes.
     speed : (s, T) array
         rad/s about +z.
     drive_torque : (d, T) array
@@ -78,6 +84,9 @@ class RunResult:
     static_transmission_error: FloatArray
     mesh_force: FloatArray
     coast_force: FloatArray
+    misalignment: FloatArray
+    center_distance_change: FloatArray
+    load_centroid: FloatArray
     speed: FloatArray
     drive_torque: FloatArray
     coupling_torque: FloatArray

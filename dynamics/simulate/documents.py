@@ -11,7 +11,7 @@ from dynamics.integrators.march import Ending
 from dynamics.integrators.workspace import Count
 from dynamics.results import EnergyAudit, StepStatistics
 from dynamics.results.case import resolved_case
-from dynamics.results.contact_check import ContactChecks
+from dynamics.results.run_checks import RunChecks
 from dynamics.system import Integration
 from dynamics.system.assemble import System
 from dynamics.types import FloatArray, Json
@@ -21,7 +21,7 @@ IMPLICIT_STAGES_PER_STEP = 5
 
 
 def documents(
-    system: System, end: Ending, checks: ContactChecks, seconds: dict[str, float], error: Json
+    system: System, end: Ending, checks: RunChecks, seconds: dict[str, float], error: Json
 ) -> dict[str, Any]:
     """Return the fields of `RunResult` that are no series."""
     audit = EnergyAudit.from_arrays(end.work, end.stored)
@@ -35,9 +35,9 @@ def documents(
     }
 
 
-def see(checks: ContactChecks, series: dict[str, Any]) -> None:
+def see(checks: RunChecks, series: dict[str, Any]) -> None:
     """Show a block of series to the checks."""
-    checks.see(*(series[name] for name in ("position", "dynamic_transmission_error", "mesh_force")))
+    checks.see(series)
 
 
 def finer(integration: Integration) -> Integration:
@@ -63,7 +63,7 @@ def measured_error(total: float, samples: int, meshes: int, seconds: float) -> J
 
 def squared_difference(system: System, q: FloatArray, other: FloatArray) -> float:
     """Return the sum of the squared differences in the transmission errors of the states (T, n)."""
-    difference = (q - other) @ system.arrays.direction[: len(system.scene.meshes)].T
+    difference = (q - other) @ system.arrays.direction[system.driving_rows].T
     return float(np.sum(difference**2))
 
 

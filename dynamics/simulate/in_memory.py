@@ -10,10 +10,10 @@ import numpy as np
 from dynamics.errors import SolveError
 from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
 from dynamics.integrators.state_sink import States, blocks
-from dynamics.integrators.workspace import Count
+from dynamics.integrators.workspace import Count, Power
 from dynamics.results import RunResult
-from dynamics.results.contact_check import ContactChecks
 from dynamics.results.histories import histories
+from dynamics.results.run_checks import RunChecks
 from dynamics.results.series import over_time
 from dynamics.simulate.documents import (
     asked_error,
@@ -87,7 +87,7 @@ def require_equilibrium(system: System, start: StaticSolution, seconds: dict[str
 def _result(system: System, trajectory: Trajectory, seconds: dict[str, float], error: Json) -> RunResult:
     """Put the result together."""
     began = clock.perf_counter()
-    checks = ContactChecks(system)
+    checks = RunChecks(system)
     parts: list[dict[str, Any]] = []
     for first, stop in blocks(trajectory.samples):
         part = slice(first, stop)
@@ -132,7 +132,7 @@ def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
         moved=np.zeros((1, len(system.scene.references)), dtype=np.int64),
         end=0.0,
         stored=np.zeros((2, 3)),
-        work=np.zeros(5),
+        work=np.zeros(len(Power)),
         count=np.zeros(len(Count), dtype=np.int64),
         step_range=np.zeros(2),
         seconds=0.0,

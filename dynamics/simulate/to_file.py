@@ -17,9 +17,9 @@ from dynamics.integrators.checkpoint import fingerprint, restore
 from dynamics.integrators.march import Ending, March, ending, march_on, start_march
 from dynamics.integrators.state_sink import blocks
 from dynamics.integrators.state_spool import StateSpool
-from dynamics.results.contact_check import ContactChecks
 from dynamics.results.histories import histories
 from dynamics.results.netcdf import attributes
+from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_file import RunFile
 from dynamics.simulate.documents import (
     asked_error,
@@ -185,7 +185,7 @@ def _write(
 ) -> None:
     """Make the series from the states, block by block, into the file."""
     began = clock.perf_counter()
-    checks = ContactChecks(system)
+    checks = RunChecks(system)
     with RunFile(path) as file:
         for series in _series(system, leg, end.samples):
             see(checks, series)

@@ -119,8 +119,8 @@ class SystemArrays(NamedTuple):
     block : (n, 2) int array
         First and end column of each row's diagonal block, shared by M, C and K: only elements couple them.
     direction : (R, n) array
-        G: derivative of the elements' local coordinates in q. The first m rows are the driving flanks', whose
-        coordinate is the transmission error.
+        G: derivative of the elements' local coordinates in q. The first m elements are the driving flanks,
+        whose first coordinate is the transmission error.
     turn : (m, n) array
         Derivative of the meshes' positions in q, base pitches.
     constant : (n,) array

@@ -23,7 +23,7 @@ from dynamics.system.bearing_rest import rest_on_bearings, with_tangent
 from dynamics.system.coupling_rows import CouplingRows, gather_couplings
 from dynamics.system.effects import FREEDOMS, MeshOnRotor, SupportedRotor
 from dynamics.system.effects.bearing_clearance import BearingClearance
-from dynamics.system.effects.ledger import EffectLedger, keep_ledger
+from dynamics.system.effects.ledger import EffectLedger, keep_ledger, with_mesh_effects
 from dynamics.system.elements import Element, gradients, pack_elements
 from dynamics.system.flank_elements import flank_elements
 from dynamics.system.flanks import Flanks, flank_laws, with_coast_flanks
@@ -37,6 +37,7 @@ from dynamics.system.freedoms import (
 from dynamics.system.kinematics import Kinematics, mesh_shafts, solve_kinematics
 from dynamics.system.line_of_action import LineOfAction, line_of_action
 from dynamics.system.loaded_meshes import loaded_meshes
+from dynamics.system.mesh_axes import mesh_axes
 from dynamics.system.nominal_forces import nominal_forces
 from dynamics.system.observation import local_state
 from dynamics.system.planets import kinematic_vectors, turning_inertia
@@ -44,9 +45,10 @@ from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_re
 from dynamics.system.rotor import Rotor, build_rotor
 from dynamics.system.scene import Scene
 from dynamics.system.seats import Seats, gather_seats, seated
+from dynamics.system.spatial_elements import spatial_elements
 from dynamics.system.speed_elements import speed_elements
 from dynamics.system.supports import Supports, gather_supports
-from dynamics.types import FloatArray
+from dynamics.types import FloatArray, IntArray
 
 GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
 
@@ -99,6 +101,11 @@ class System:
     bearing_damping: FloatArray
     ledger: EffectLedger
 
+    @property
+    def driving_rows(self) -> IntArray:
+        """Rows of the transmission errors among the local coordinates, (m,): driving flanks come first."""
+        return self.arrays.elements.first[: len(self.scene.meshes)]
+
 
 def assemble(scene: Scene) -> System:
     """Assemble `scene`; without the effect `bearing_clearance`, bearings by their tangents at the load.
@@ -122,7 +129,7 @@ def with_linear_bearings(system: System) -> Scene:
     """
     arrays, scene, first = system.arrays, system.scene, len(system.elements) - len(system.bearings)
     torque = np.array([float(load.torque(0.0)) for load in scene.loads])
-    mesh_force = system.flanks.nominal_force @ arrays.direction[: len(scene.meshes)]
+    mesh_force = system.flanks.nominal_force @ arrays.direction[system.driving_rows]
     force = arrays.constant + torque @ arrays.load.direction - mesh_force
     q = rest_on_bearings(arrays, arrays.stiffness, force)
     local = local_state(arrays, 0.0, q, np.zeros(q.size))
@@ -157,17 +164,21 @@ def _assemble(scene: Scene) -> System:
     _check_rotation(rotors, kinematics)
     polar = [rotor.inertia.polar for rotor in rotors]
     flanks = flank_laws(scene, kinematics, forces, polar)
-    meshes = loaded_meshes(scene, kinematics, flanks, polar, inertia)
-    ledger = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces, loads), meshes)
-    freedoms = find_freedoms(rotors, kinematics, ledger)
+    on_rotors = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces, loads))
+    freedoms = find_freedoms(rotors, kinematics, on_rotors)
     _check_mass(freedoms, rotors)
+    senses = kinematics.mesh_sense
+    axes = mesh_axes(scene, rotors, senses, lines, freedoms, supports, flanks)
+    meshes = loaded_meshes(scene, kinematics, flanks, polar, inertia, axes)
+    ledger = with_mesh_effects(on_rotors, scene.effects, meshes)
     coast = [index for index, mesh in enumerate(scene.meshes) if ledger.on("backlash", mesh.name)]
     flanks = with_coast_flanks(flanks, scene.meshes, coast)
+    plain = flank_elements(scene, rotors, senses, lines, flanks)
+    in_space, spatial_laws = spatial_elements(scene, rotors, senses, flanks, plain, ledger)
     by_speed, speed_laws = speed_elements(scene, kinematics)
     on_bearings, contact_laws, curve_laws = bearing_elements(scene, rotors, bearings, loads)
-    pressed = flank_elements(scene, rotors, kinematics.mesh_sense, lines, flanks)
-    elements = (*pressed, *by_speed, *on_bearings)
-    laws = ElementLaws(flanks.law, speed_laws, contact_laws, curve_laws)
+    elements = (*in_space, *by_speed, *on_bearings)
+    laws = ElementLaws(flanks.law, speed_laws, contact_laws, curve_laws, spatial_laws)
     arrays = _arrays(scene, rotors, kinematics, freedoms, flanks, elements, laws, supports, seats, couplings)
     tilted = bool(seats.name) or any(kind >= 3 for at in bearings for kind in at.direction)
     return System(
@@ -292,7 +303,8 @@ def _arrays(
     gradient = gradients(elements, 6 * len(rotors))
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
     packed = pack_elements(elements, laws, len(scene.references))
-    held = np.diag(stiffness) + flanks.mean_stiffness @ direction[: len(scene.meshes)] ** 2
+    along = direction[packed.first[: len(scene.meshes)]]
+    held = np.diag(stiffness) + flanks.mean_stiffness @ along**2
     held += packed.stiffness @ direction**2
     return SystemArrays(
         np.ascontiguousarray(mass),

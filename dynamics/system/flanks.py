@@ -40,6 +40,8 @@ class Flanks:
         The meshes whose coast flanks follow.
     static : PackedTables
         The driving flanks' tables themselves, whatever the technique: the static reference.
+    tables : tuple of PlainTable
+        Those of `law`, each at its mesh's constant place.
     """
 
     nominal_force: FloatArray
@@ -48,6 +50,7 @@ class Flanks:
     law: FlankLaws
     coast: tuple[int, ...]
     static: PackedTables
+    tables: tuple[PlainTable, ...]
 
 
 def flank_laws(
@@ -72,7 +75,7 @@ def flank_laws(
     top = np.array([table.level[-1] for table in static])
     reach = DAMPING_REACH * np.where(nominal > 0.0, nominal, top)
     law = FlankLaws(pack_tables(used), damping, reach)
-    return Flanks(nominal, stiffness, tuple(used), law, (), packed)
+    return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 
 
 def with_coast_flanks(flanks: Flanks, meshes: Sequence[GearMesh], coast: Sequence[int]) -> Flanks:
@@ -86,8 +89,9 @@ def with_coast_flanks(flanks: Flanks, meshes: Sequence[GearMesh], coast: Sequenc
         except InputError as error:
             raise error.within(f"meshes[{index}]") from None
     chosen = [*range(len(meshes)), *coast]
-    law = FlankLaws(pack_tables([*flanks.used, *backs]), flanks.law.damping[chosen], flanks.law.reach[chosen])
-    return replace(flanks, law=law, coast=tuple(coast))
+    tables = (*flanks.used, *backs)
+    law = FlankLaws(pack_tables(tables), flanks.law.damping[chosen], flanks.law.reach[chosen])
+    return replace(flanks, law=law, coast=tuple(coast), tables=tables)
 
 
 def _coast_table(mesh: GearMesh, flanks: Flanks, index: int) -> PlainTable:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.forces.table_lookup import table_deflection
-from dynamics.system.effects import LoadedMesh
+from dynamics.system.effects import LoadedMesh, MeshAxes
 from dynamics.system.flanks import Flanks, mesh_mobility
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.nominal_forces import mean_forces, telling_moments
@@ -22,10 +22,11 @@ def loaded_meshes(
     flanks: Flanks,
     polar_inertia: Sequence[float],
     inertia: FloatArray,
+    axes: Sequence[MeshAxes],
 ) -> list[LoadedMesh]:
     """Gather the facts of every mesh; `inertia` (s,) is that of `nominal_forces`."""
     if all(mesh.coast is None for mesh in scene.meshes):
-        return [LoadedMesh(mesh.name, 0.0, 0.0, None) for mesh in scene.meshes]
+        return [LoadedMesh(mesh.name, 0.0, 0.0, None, axes[i]) for i, mesh in enumerate(scene.meshes)]
     force = mean_forces(scene, kinematics, inertia, telling_moments(scene))
     found = []
     for index, mesh in enumerate(scene.meshes):
@@ -35,7 +36,7 @@ def loaded_meshes(
         swing = stiffness * _half_ripple(flanks, index)
         amplified = swing / (2.0 * ratio) if ratio > 0.0 else (math.inf if swing > 0.0 else 0.0)
         backlash = mesh.coast.backlash if mesh.coast is not None else None
-        found.append(LoadedMesh(mesh.name, float(np.min(force[index])), amplified, backlash))
+        found.append(LoadedMesh(mesh.name, float(np.min(force[index])), amplified, backlash, axes[index]))
     return found
 
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from fe_contact.ste import curve as curves
 from fe_contact.ste import extraction, netcdf, repair
+from fe_contact.ste.axis_derivatives import with_axis_derivatives
 from fe_contact.ste.curve import Curve
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.force_table import ForceTable
@@ -167,7 +168,9 @@ class SteDatabase(SteFields):
 
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
         """Return the table of plain arrays that dynamics takes; raises as `extraction.force_table`."""
-        return extraction.force_table(repair.without_failed(self)) if allow_failed else self._mesh_force.table
+        if not allow_failed:
+            return with_axis_derivatives(self._mesh_force)
+        return with_axis_derivatives(MeshForce(extraction.force_table(repair.without_failed(self))))
 
     def monotone_repaired(self) -> tuple[SteDatabase, repair.Repair]:
         """Return a table whose transmission error increases with load, and what had to change."""

@@ -48,7 +48,23 @@ def force_table(database: SteFields) -> ForceTable:
         stiffness=_position_third(stiffness.nodal[(0,)]),
         stiffness_slope=_position_third(stiffness.nodal.get((1,), flat)),
         period=database.period,
+        face_centroid=_position_third(_at_levels(database, database.face_centroid, levels.force)),
     )
+
+
+def _at_levels(database: SteFields, stored: FloatArray, level: FloatArray) -> FloatArray:
+    """Put a quantity of the stored loads (P, F, M, D) on all levels (P, M, D, L): linear in the force.
+
+    At lift-off it keeps its value at the lowest load, where the contact begins.
+    """
+    at = level / math.cos(database.facts.base_helix_angle)
+    above = np.clip(np.searchsorted(database.force, at), 1, max(database.force.size - 1, 1))
+    if database.force.size == 1:
+        return np.repeat(np.moveaxis(stored, 1, -1), level.size, axis=-1)
+    low, high = database.force[above - 1], database.force[above]
+    share = np.clip((at - low) / (high - low), 0.0, 1.0)
+    values = np.moveaxis(stored, 1, -1)
+    return np.asarray((1.0 - share) * values[..., above - 1] + share * values[..., above])
 
 
 def _stored_levels(database: SteFields) -> LoadLevels:

@@ -33,6 +33,12 @@ class ForceTable:
         Its derivative in position, N/m per base pitch.
     period : int
         Whole base pitches after which the table repeats.
+    deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays or None
+        Differentiated once (1) or not (0) in misalignment, centre-distance change and position: what the C1
+        interpolant over all axes uses. None without a second knot of misalignment or centre distance.
+    face_centroid : (M, D, P, L) array or None
+        Centroid of the load from mid-face at each level, m, towards positive z of the driving gear; at
+        lift-off that of the lowest load.
     """
 
     position: FloatArray
@@ -44,10 +50,13 @@ class ForceTable:
     stiffness: FloatArray
     stiffness_slope: FloatArray
     period: int = 1
+    deflection_derivative: FloatArray | None = None
+    stiffness_derivative: FloatArray | None = None
+    face_centroid: FloatArray | None = None
 
     def __post_init__(self) -> None:
         for entry in fields(self):
-            if entry.name == "period":
+            if entry.name == "period" or getattr(self, entry.name) is None:
                 continue
             array = np.array(getattr(self, entry.name), dtype=float, order="C")
             array.flags.writeable = False

@@ -60,6 +60,40 @@ class SupportedRotor:
 
 
 @dataclass(frozen=True)
+class MeshAxes:
+    """What a mesh's table says beyond position and deflection, and what of it the scene can move.
+
+    Attributes
+    ----------
+    variable : bool
+        Whether the mesh uses its table as it is (variable-torque technique).
+    derivatives : bool
+        Whether the table has derivatives along its axes.
+    misalignments, center_distances : int
+        Knots of the table.
+    tilts, moves_apart : bool
+        Whether freedoms change misalignment and centre distance.
+    misaligned, apart : float
+        Change of the mean transmission error as the nominal force tilts the shafts and moves them apart, m.
+    lever : float or None
+        Largest offset of the load's centroid from mid-face over the face width; None: not known.
+    moment : float or None
+        Displacement along the line of action at the centroid that this lever's moment makes, m.
+    """
+
+    variable: bool
+    derivatives: bool
+    misalignments: int
+    center_distances: int
+    tilts: bool
+    moves_apart: bool
+    misaligned: float
+    apart: float
+    lever: float | None
+    moment: float | None
+
+
+@dataclass(frozen=True)
 class LoadedMesh:
     """What effects of a mesh decide on.
 
@@ -74,12 +108,14 @@ class LoadedMesh:
         Half the peak-to-peak transmission error times stiffness, amplified as in resonance, N.
     backlash : float or None
         m, along the line of action; None: no coast flank given.
+    axes : MeshAxes
     """
 
     name: str
     least_force: float
     force_swing: float
     backlash: float | None
+    axes: MeshAxes
 
 
 @dataclass(frozen=True)

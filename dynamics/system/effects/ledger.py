@@ -59,10 +59,8 @@ class EffectLedger:
         return {"entries": [asdict(entry) for entry in self.entries], "left_out": dict(LEFT_OUT)}
 
 
-def keep_ledger(
-    choices: Mapping[str, str], rotors: Sequence[SupportedRotor], meshes: Sequence[LoadedMesh]
-) -> EffectLedger:
-    """Decide every effect for every rotor or mesh.
+def keep_ledger(choices: Mapping[str, str], rotors: Sequence[SupportedRotor]) -> EffectLedger:
+    """Decide the effects of every rotor.
 
     Raises
     ------
@@ -78,12 +76,19 @@ def keep_ledger(
         for effect in EFFECTS
         for rotor in rotors
     ]
+    return EffectLedger(tuple(on_rotors))
+
+
+def with_mesh_effects(
+    ledger: EffectLedger, choices: Mapping[str, str], meshes: Sequence[LoadedMesh]
+) -> EffectLedger:
+    """Decide the effects of every mesh, which look at the freedoms that the rotors have."""
     on_meshes = [
         _decide(effect, mesh.name, effect.called_for(mesh), choices)
         for effect in MESH_EFFECTS
         for mesh in meshes
     ]
-    return EffectLedger((*on_rotors, *on_meshes))
+    return EffectLedger((*ledger.entries, *on_meshes))
 
 
 def _decide(

@@ -5,19 +5,26 @@ from __future__ import annotations
 from dynamics.system.effects.axial import Axial
 from dynamics.system.effects.backlash import Backlash
 from dynamics.system.effects.bearing_clearance import BearingClearance
+from dynamics.system.effects.dynamic_center_distance import DynamicCenterDistance
+from dynamics.system.effects.dynamic_misalignment import DynamicMisalignment
 from dynamics.system.effects.effect import Effect, MeshEffect
 from dynamics.system.effects.lateral import Lateral
+from dynamics.system.effects.moving_application_point import MovingApplicationPoint
 from dynamics.system.effects.tilt import Tilt
 
 EFFECTS: tuple[Effect, ...] = (Lateral(), Axial(), Tilt(), BearingClearance())
 
-MESH_EFFECTS: tuple[MeshEffect, ...] = (Backlash(),)
+MESH_EFFECTS: tuple[MeshEffect, ...] = (
+    Backlash(),
+    DynamicMisalignment(),
+    DynamicCenterDistance(),
+    MovingApplicationPoint(),
+)
 
 LEFT_OUT: dict[str, str] = {
     "gyroscopic, Coriolis and centripetal terms": "time integration has none; whirl_modes shows their worth",
     "gravity": "weights are small against mesh forces",
     "friction": "the mesh force acts along the line of action",
-    "moving point of application": "the mesh force acts at mid-face, at the operating pitch point",
+    "point of application along the path of contact": "the mesh force acts at the operating pitch point",
     "shaft flexibility": "shafts are rigid",
-    "dynamic misalignment and centre distance": "the table is used at one constant place of these axes",
 }

@@ -22,6 +22,7 @@ ATTRIBUTES = {
     "stiffness_slope",
     "period",
 }
+OPTIONAL = {"deflection_derivative", "stiffness_derivative", "face_centroid"}
 
 
 def stored(table, database):
@@ -32,8 +33,11 @@ def stored(table, database):
 
 
 def test_attributes_are_the_contract(spur):
-    assert {entry.name for entry in fields(ForceTable)} == ATTRIBUTES
+    assert {entry.name for entry in fields(ForceTable)} == ATTRIBUTES | OPTIONAL
     table = spur.force_table()
+    assert table.face_centroid.shape == table.deflection.shape
+    assert table.deflection_derivative is None  # one place: the slopes say all
+    assert table.stiffness_derivative is None
     shapes = {
         getattr(table, name).shape for name in ATTRIBUTES if name.startswith(("deflection", "stiffness"))
     }
@@ -50,6 +54,10 @@ def test_arrays_are_read_only(spur):
 
 def test_axes_come_in_the_order_of_the_contract(four_axes):
     table = four_axes.force_table()
+    assert table.deflection_derivative.shape == (2, 2, 2, *table.deflection.shape)
+    assert np.array_equal(table.deflection_derivative[0, 0, 0], table.deflection)
+    assert np.array_equal(table.deflection_derivative[0, 0, 1], table.deflection_slope)
+    assert np.all(table.stiffness_derivative[0, 0, 0] <= table.stiffness)
     assert table.deflection.shape == (4, 3, 24, table.level.size)
     levels = table.deflection[2, 1, 5, stored(table, four_axes)]
     assert np.array_equal(levels, four_axes.static_transmission_error[5, :, 2, 1])
@@ -134,3 +142,12 @@ def test_failed_points_are_refused_by_number_and_name(make):
     assert caught.value.partial is failed
     table = failed.force_table(allow_failed=True)
     assert table.position.size * (table.level.size - 1) >= 62 * 5
+
+
+def test_the_centroid_of_the_load_is_that_of_the_database_at_its_loads(four_axes):
+    """At levels between two loads it is linear in the force; at lift-off that of the lowest load."""
+    moved = np.random.default_rng(3).normal(size=four_axes.face_centroid.shape)
+    table = replace(four_axes, face_centroid=moved).force_table()
+    at_loads = table.face_centroid[..., stored(table, four_axes)]
+    np.testing.assert_allclose(at_loads, np.moveaxis(moved, (0, 1), (2, 3)), rtol=1e-9, atol=1e-12)
+    assert np.array_equal(table.face_centroid[..., 0], at_loads[..., 0])

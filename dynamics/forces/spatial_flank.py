@@ -1,0 +1,186 @@
+"""Compiled force of a flank in space: it feels misalignment and centre distance, and acts at its centroid.
+
+Local coordinates, in metres: the deflection d; the misalignment m (growth of the gap over the common face,
+towards positive z of the table's driving gear) if the element has a row for it; the centre-distance change a
+likewise. With lambda = (face centroid)/(face width), the force f along the line of action has the moment
+-lambda f on m, and the flanks approach each other at the centroid by d - lambda m.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from dynamics.forces.compiled import inner, shared
+from dynamics.forces.grid_energy import grid_energy
+from dynamics.forces.grid_lookup import (
+    Cell,
+    GridForce,
+    find_cell,
+    grid_force,
+    hermite,
+    hermite_slope,
+    sample,
+)
+from dynamics.forces.grid_tables import GridTables
+from dynamics.types import FloatArray, IntArray
+
+CENTROID = 2  # channel
+
+
+class SpatialFlankLaws(NamedTuple):
+    """Force laws of k flanks in space.
+
+    Attributes
+    ----------
+    grid : GridTables
+        Their elastic forces and centroids.
+    damping : (k,) array
+        N s/m in full contact.
+    reach : (k,) array
+        Elastic force in N from which the damping acts in full.
+    row : (k, 2) int array
+        Row of misalignment and centre-distance change after that of the deflection; -1: none.
+    fixed : (k, 2) array
+        Their values in m where the table is used at one place.
+    follows : (k, 2) int array
+        1 where the force follows the row, 0 where it stays at the fixed value.
+    per_face : (k,) array
+        1/(face width), 1/m; 0: the force acts at mid-face.
+    mid_face : (k,) array
+        Face position of the middle of the common face from that of the driving gear, m.
+    """
+
+    grid: GridTables
+    damping: FloatArray
+    reach: FloatArray
+    row: IntArray
+    fixed: FloatArray
+    follows: IntArray
+    per_face: FloatArray
+    mid_face: FloatArray
+
+
+class Lever(NamedTuple):
+    """A quantity of the table with its derivatives in d, m and a."""
+
+    value: float
+    d: float
+    m: float
+    a: float
+
+
+@inner
+def _lever(laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce, channel: int) -> Lever:
+    """Return a per-level quantity at the force found: cubic in the force between two levels."""
+    level = laws.grid.base.offset[place, 4] + force.interval
+    start = laws.grid.base.level[level]
+    width = laws.grid.base.level[level + 1] - start
+    u = min((force.value - start) / width, 1.0)
+    at, by = hermite(u, width), hermite_slope(u, width)
+    low = sample(laws.grid.number, cell, force.interval, channel)
+    low_slope = sample(laws.grid.number, cell, force.interval, channel + 1)
+    high = sample(laws.grid.number, cell, force.interval + 1, channel)
+    high_slope = sample(laws.grid.number, cell, force.interval + 1, channel + 1)
+    value = at[0] * low.value + at[1] * low_slope.value + at[2] * high.value + at[3] * high_slope.value
+    slope = by[0] * low.value + by[1] * low_slope.value + by[2] * high.value + by[3] * high_slope.value
+    in_m = at[0] * low.m + at[1] * low_slope.m + at[2] * high.m + at[3] * high_slope.m
+    in_a = at[0] * low.a + at[1] * low_slope.a + at[2] * high.a + at[3] * high_slope.a
+    return Lever(value, slope * force.d, in_m + slope * force.m, in_a + slope * force.a)
+
+
+@inner
+def _centroid(laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce) -> Lever:
+    """Return lambda, the face centroid over the face width from the middle of the common face."""
+    if laws.per_face[place] == 0.0:
+        return Lever(0.0, 0.0, 0.0, 0.0)
+    found, per_face = _lever(laws, place, cell, force, CENTROID), laws.per_face[place]
+    moved = found.value - laws.mid_face[place]
+    return Lever(moved * per_face, found.d * per_face, found.m * per_face, found.a * per_face)
+
+
+@inner
+def _along_axis(laws: SpatialFlankLaws, place: int, axis: int, coordinate: FloatArray, row: int) -> float:
+    """Return the misalignment (axis 0) or centre-distance change (1) at which the table is read."""
+    if laws.follows[place, axis] == 0:
+        return float(laws.fixed[place, axis])
+    return float(coordinate[row + laws.row[place, axis]])
+
+
+@shared
+def spatial_flank(
+    laws: SpatialFlankLaws,
+    place: int,
+    position: float,
+    row: int,
+    coordinate: FloatArray,
+    rate: FloatArray,
+    force: FloatArray,
+    elastic: FloatArray,
+    tangent: FloatArray,
+    viscous: FloatArray,
+    hint: int,
+) -> int:
+    """Write forces and derivatives from `row` on; return the next call's hint.
+
+    f = max(0, F + c s(F/reach) (d' - lambda m')): the damping takes the approach at the centroid, so it only
+    dissipates, and the sum never pulls.
+    """
+    m = _along_axis(laws, place, 0, coordinate, row)
+    a = _along_axis(laws, place, 1, coordinate, row)
+    cell = find_cell(laws.grid, place, position, m, a)
+    found = grid_force(laws.grid, place, cell, coordinate[row], hint)
+    arm = _centroid(laws, place, cell, found)
+    to_m, to_a = laws.row[place, 0], laws.row[place, 1]
+    rows = 1 + (to_m > 0) + (to_a > 0)
+    for r in range(rows):
+        force[row + r], elastic[row + r] = 0.0, 0.0
+        for k in range(rows):
+            tangent[row + r, k], viscous[row + r, k] = 0.0, 0.0
+    m_rate = rate[row + to_m] if to_m > 0 else 0.0
+    approach = rate[row] - arm.value * m_rate
+    ratio = min(found.value / laws.reach[place], 1.0)
+    damping = laws.damping[place] * ratio * ratio * (3.0 - 2.0 * ratio)
+    damping_slope = laws.damping[place] * 6.0 * ratio * (1.0 - ratio) / laws.reach[place]
+    elastic[row] = found.value
+    if to_m > 0:
+        elastic[row + to_m] = -arm.value * found.value
+    total = found.value + damping * approach
+    if total < 0.0:
+        return found.interval
+    gain, turning = 1.0 + damping_slope * approach, damping * m_rate
+    force[row] = total
+    tangent[row, 0] = found.d * gain - turning * arm.d
+    viscous[row, 0] = damping
+    if to_m > 0:
+        viscous[row, to_m] = -damping * arm.value
+        if laws.follows[place, 0] == 1:
+            tangent[row, to_m] = found.m * gain - turning * arm.m
+    if to_a > 0:
+        tangent[row, to_a] = found.a * gain - turning * arm.a
+    if to_m > 0:
+        force[row + to_m] = -arm.value * total
+        tangent[row + to_m, 0] = -arm.value * tangent[row, 0] - arm.d * total
+        viscous[row + to_m, 0] = -arm.value * viscous[row, 0]
+        viscous[row + to_m, to_m] = -arm.value * viscous[row, to_m]
+        if laws.follows[place, 0] == 1:
+            tangent[row + to_m, to_m] = -arm.value * tangent[row, to_m] - arm.m * total
+        if to_a > 0:
+            tangent[row + to_m, to_a] = -arm.value * tangent[row, to_a] - arm.a * total
+    return found.interval
+
+
+@shared
+def spatial_energy(
+    laws: SpatialFlankLaws, place: int, position: float, row: int, coordinate: FloatArray
+) -> tuple[float, float, float, float]:
+    """Return the energy stored, J, and its derivatives in position, m and a; 0 along a fixed axis."""
+    m = _along_axis(laws, place, 0, coordinate, row)
+    a = _along_axis(laws, place, 1, coordinate, row)
+    cell = find_cell(laws.grid, place, position, m, a)
+    found = grid_energy(laws.grid, place, cell, coordinate[row])
+    return (
+        found.value,
+        found.x,
+        found.m * laws.follows[place, 0],
+        found.a * laws.follows[place, 1],
+    )

@@ -1,0 +1,28 @@
+"""Dynamic misalignment: the table is read at the misalignment that the bodies' tilts make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dynamics.system.effects.effect import LoadedMesh, Verdict
+
+
+@dataclass(frozen=True)
+class DynamicMisalignment:
+    """One more local coordinate of the flank."""
+
+    name: str = "dynamic_misalignment"
+    cost: str = "a table look-up over one more axis, twice the numbers"
+
+    def called_for(self, mesh: LoadedMesh) -> Verdict:
+        """Call for it where the table has the axis and a shaft can tilt in the plane of action."""
+        axes = mesh.axes
+        if axes.misalignments == 1:
+            return Verdict(False, False, "the table has one misalignment only", 0.0)
+        if not axes.variable:
+            return Verdict(False, False, "the constant-torque technique has one stiffness per position", 0.0)
+        if not axes.derivatives:
+            return Verdict(False, False, "the table has no derivatives along its axes", 0.0)
+        if not axes.tilts:
+            return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)
+        return Verdict(True, True, "shafts tilt in the plane of action, and the table knows", axes.misaligned)

@@ -1,0 +1,137 @@
+"""How misalignment and centre distance of a mesh follow from its bodies, and how far the load moves them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.forces.gear_mesh import GearMesh
+from dynamics.system.effects import MeshAxes
+from dynamics.system.flank_elements import approach
+from dynamics.system.flanks import Flanks
+from dynamics.system.freedoms import ROTATION, Freedoms
+from dynamics.system.line_of_action import LineOfAction
+from dynamics.system.rotor import Rotor
+from dynamics.system.scene import Scene
+from dynamics.system.supports import Supports
+from dynamics.types import FloatArray
+
+UNIT_Z = np.array([0.0, 0.0, 1.0])
+
+
+def table_sense(scene: Scene, index: int, sense: int) -> int:
+    """Return the sense about +z in which the table's driving gear pushes, +1 or -1.
+
+    A ring gear that drives is pushed back by the table's driving gear, the pinion.
+    """
+    return -sense if scene.gear(scene.meshes[index].driver).internal else sense
+
+
+def common_face_width(scene: Scene, index: int) -> float:
+    """Axial length over which both gears' faces overlap, m."""
+    ends = []
+    for name in (scene.meshes[index].driver, scene.meshes[index].driven):
+        gear = scene.gear(name)
+        middle = scene.shafts[scene.shaft_index(gear.shaft)].origin[2] + gear.position
+        ends.append((middle - gear.face_width / 2.0, middle + gear.face_width / 2.0))
+    return min(end[1] for end in ends) - max(end[0] for end in ends)
+
+
+def middle_from_driver(scene: Scene, index: int, line: LineOfAction, sense: int) -> float:
+    """Face position of the middle of the common face from that of the table's driving gear, m."""
+    mesh = scene.meshes[index]
+    gear = scene.gear(mesh.driver)
+    if gear.internal:
+        gear = scene.gear(mesh.driven)
+    middle = scene.shafts[scene.shaft_index(gear.shaft)].origin[2] + gear.position
+    return -table_sense(scene, index, sense) * float(line.point[2] - middle)
+
+
+def misalignment_gradient(
+    scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction, sense: int
+) -> FloatArray:
+    """Return the derivative of the misalignment in all rotors' freedoms, (6 r,).
+
+    The table's face position runs against the scene's z for a driving gear that turns in +z, so the gap grows
+    with it by m = s b (tilt_1 - tilt_2) (z x n) over the face width b, n the transverse line of action.
+    """
+    mesh, gradient = scene.meshes[index], np.zeros((len(rotors), 6))
+    transverse = line.force * np.array([1.0, 1.0, 0.0])
+    turn = np.cross(UNIT_Z, transverse) * table_sense(scene, index, sense) * common_face_width(scene, index)
+    for name, sign in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+        gradient[scene.shaft_index(scene.gear(name).shaft), 3:] += sign * turn
+    return gradient.ravel()
+
+
+def distance_gradient(scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction) -> FloatArray:
+    """Return the derivative of the centre distance at mid-face in all rotors' freedoms, (6 r,)."""
+    mesh, gradient = scene.meshes[index], np.zeros((len(rotors), 6))
+    shafts = [scene.shaft_index(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven)]
+    apart = np.subtract(scene.shafts[shafts[1]].origin, scene.shafts[shafts[0]].origin)
+    apart = apart * np.array([1.0, 1.0, 0.0]) / np.hypot(apart[0], apart[1])
+    for shaft, sign in zip(shafts, (-1.0, 1.0), strict=True):
+        lever = (line.point[2] - rotors[shaft].center[2]) * UNIT_Z
+        gradient[shaft] += sign * np.concatenate([apart, np.cross(lever, apart)])
+    return gradient.ravel()
+
+
+def mesh_axes(
+    scene: Scene,
+    rotors: Sequence[Rotor],
+    senses: Sequence[int],
+    lines: Sequence[LineOfAction],
+    freedoms: Freedoms,
+    supports: Supports,
+    flanks: Flanks,
+) -> list[MeshAxes]:
+    """Return each mesh's table axes and how far the nominal force moves along them on the supports."""
+    bends = freedoms.place % 6 != ROTATION
+    moves = freedoms.keep(supports.motion)
+    compliance = np.linalg.pinv(supports.matrix(supports.stiffness, moves, moves)[np.ix_(bends, bends)])
+    found = []
+    for index, mesh in enumerate(scene.meshes):
+        line, sense, force = lines[index], senses[index], float(flanks.nominal_force[index])
+        pushed, m, a = (
+            freedoms.keep(row)[bends]
+            for row in (
+                approach(scene, rotors, index, line),
+                misalignment_gradient(scene, rotors, index, line, sense),
+                distance_gradient(scene, rotors, index, line),
+            )
+        )
+        lever = _largest_lever(mesh, force, common_face_width(scene, index))
+        found.append(
+            MeshAxes(
+                variable=mesh.technique == "variable_torque",
+                derivatives=getattr(mesh.table, "deflection_derivative", None) is not None,
+                misalignments=np.size(mesh.table.misalignment),
+                center_distances=np.size(mesh.table.center_distance_change),
+                tilts=bool(np.any(m != 0.0)),
+                moves_apart=bool(np.any(a != 0.0)),
+                misaligned=_change(mesh, force, 0, -force * float(m @ compliance @ pushed)),
+                apart=_change(mesh, force, 1, -force * float(a @ compliance @ pushed)),
+                lever=lever,
+                moment=None if lever is None else force * lever**2 * float(m @ compliance @ m),
+            )
+        )
+    return found
+
+
+def _largest_lever(mesh: GearMesh, force: float, face_width: float) -> float | None:
+    """Largest offset of the load's centroid over the face width near the nominal force; None: not known."""
+    centroid = getattr(mesh.table, "face_centroid", None)
+    if centroid is None:
+        return None
+    level = int(np.argmin(np.abs(np.asarray(mesh.table.level) - force)))
+    return float(np.max(np.abs(np.asarray(centroid)[..., level]))) / face_width
+
+
+def _change(mesh: GearMesh, force: float, axis: int, moved: float) -> float:
+    """Return how the mean transmission error changes as `axis` of the table moves by `moved`, m."""
+    knots = np.asarray((mesh.table.misalignment, mesh.table.center_distance_change)[axis], dtype=float)
+    at = (mesh.misalignment, mesh.center_distance_change)[axis]
+    level = int(np.argmin(np.abs(np.asarray(mesh.table.level) - force)))
+    mean = np.mean(np.asarray(mesh.table.deflection)[..., level], axis=-1)
+    along = mean.mean(axis=1 - axis)
+    return float(abs(np.interp(at + moved, knots, along) - np.interp(at, knots, along)))

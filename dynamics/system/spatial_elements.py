@@ -1,0 +1,158 @@
+"""The flank elements of meshes whose table is read along its axes or whose force acts off mid-face."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.forces.coast_flank import mirrored
+from dynamics.forces.element_laws import Law
+from dynamics.forces.grid_tables import pack_grids
+from dynamics.forces.mesh_table import MeshTable
+from dynamics.forces.spatial_flank import SpatialFlankLaws
+from dynamics.system.effects.ledger import EffectLedger
+from dynamics.system.elements import Element
+from dynamics.system.flanks import Flanks
+from dynamics.system.line_of_action import line_of_action
+from dynamics.system.mesh_axes import (
+    common_face_width,
+    distance_gradient,
+    middle_from_driver,
+    misalignment_gradient,
+)
+from dynamics.system.rotor import Rotor
+from dynamics.system.scene import Scene
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class SpatialEffects:
+    """Which effects a mesh has."""
+
+    misalignment: bool
+    center_distance: bool
+    application_point: bool
+
+    @property
+    def any(self) -> bool:
+        """Whether its flanks are spatial."""
+        return self.misalignment or self.center_distance or self.application_point
+
+
+@dataclass(frozen=True)
+class SpatialFlank:
+    """One flank: its table, its damping, its rows after that of the deflection, and how it uses them."""
+
+    table: MeshTable
+    damping: float
+    reach: float
+    row: tuple[int, int]
+    fixed: tuple[float, float]
+    follows: tuple[int, int]
+    per_face: float
+    mid_face: float
+    gradient: FloatArray
+    offset: FloatArray
+
+
+def spatial_effects(ledger: EffectLedger, mesh: str) -> SpatialEffects:
+    """Return the effects that are on for `mesh`."""
+    return SpatialEffects(
+        ledger.on("dynamic_misalignment", mesh),
+        ledger.on("dynamic_center_distance", mesh),
+        ledger.on("moving_application_point", mesh),
+    )
+
+
+def spatial_elements(
+    scene: Scene,
+    rotors: Sequence[Rotor],
+    senses: Sequence[int],
+    flanks: Flanks,
+    plain: Sequence[Element],
+    ledger: EffectLedger,
+) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
+    """Return the elements `plain` with those of such meshes replaced, each at its place, and their laws."""
+    elements: list[Element] = []
+    found: list[SpatialFlank] = []
+    for place, element in enumerate(plain):
+        effects = spatial_effects(ledger, scene.meshes[element.mesh].name)
+        if not effects.any:
+            elements.append(element)
+            continue
+        flank = _flank(scene, rotors, senses[element.mesh], flanks, place, element, effects)
+        elements.append(Element(Law.SPATIAL_FLANK, len(found), element.mesh, flank.gradient, flank.offset))
+        found.append(flank)
+    return tuple(elements), _pack(found)
+
+
+def _flank(
+    scene: Scene,
+    rotors: Sequence[Rotor],
+    driving: int,
+    flanks: Flanks,
+    place: int,
+    element: Element,
+    effects: SpatialEffects,
+) -> SpatialFlank:
+    """Return the flank at `place` among all, which `element` has in the plane."""
+    index = element.mesh
+    mesh, coast = scene.meshes[index], place >= len(scene.meshes)
+    sense = -driving if coast else driving
+    line = line_of_action(scene, index, sense)
+    fixed = (-mesh.misalignment if coast else mesh.misalignment, mesh.center_distance_change)
+    table = _table(scene, flanks, place, index, effects)
+    follows = (
+        int(effects.misalignment and np.size(table.misalignment) > 1),
+        int(effects.center_distance and np.size(table.center_distance_change) > 1),
+    )
+    turns = bool(follows[0]) or effects.application_point
+    row = (1 if turns else -1, (2 if turns else 1) if follows[1] else -1)
+    rows, offset = [element.gradient[0]], [element.offset[0]]
+    if turns:
+        rows.append(misalignment_gradient(scene, rotors, index, line, sense))
+        offset.append(fixed[0])
+    if follows[1]:
+        rows.append(distance_gradient(scene, rotors, index, line))
+        offset.append(fixed[1])
+    return SpatialFlank(
+        table,
+        float(flanks.law.damping[place]),
+        float(flanks.law.reach[place]),
+        row,
+        fixed,
+        follows,
+        1.0 / common_face_width(scene, index) if effects.application_point else 0.0,
+        middle_from_driver(scene, index, line, sense),
+        np.array(rows),
+        np.array(offset),
+    )
+
+
+def _table(scene: Scene, flanks: Flanks, place: int, index: int, effects: SpatialEffects) -> MeshTable:
+    """Return the table over its axes where one of them moves, else the plane flank's at its place."""
+    mesh = scene.meshes[index]
+    if not (effects.misalignment or effects.center_distance):
+        return flanks.tables[place]
+    if place < len(scene.meshes):
+        return mesh.table
+    if mesh.coast is None:
+        raise InputError(f"meshes[{index}].coast", None, "given")
+    return mirrored(mesh.coast.table or mesh.table, mesh.coast.thickness)
+
+
+def _pack(flanks: Sequence[SpatialFlank]) -> SpatialFlankLaws:
+    """Lay out the laws."""
+    return SpatialFlankLaws(
+        pack_grids([flank.table for flank in flanks]),
+        np.array([flank.damping for flank in flanks], dtype=float),
+        np.array([flank.reach for flank in flanks], dtype=float),
+        np.array([flank.row for flank in flanks], dtype=np.int64).reshape(-1, 2),
+        np.array([flank.fixed for flank in flanks], dtype=float).reshape(-1, 2),
+        np.array([flank.follows for flank in flanks], dtype=np.int64).reshape(-1, 2),
+        np.array([flank.per_face for flank in flanks], dtype=float),
+        np.array([flank.mid_face for flank in flanks], dtype=float),
+    )
