@@ -52,8 +52,9 @@ def static_results(database: SteDatabase) -> tuple[Section, ...]:
     curves = Section("Static transmission error", figures=(ste_curves(database), load_sharing(database)))
     # over a longer period the deflection holds the teeth's errors, and a secant through them means nothing
     secant = (mesh_stiffness(database),) if database.period == 1 else ()
-    stiffness = Section("Mesh stiffness and the table", figures=(*secant, database_surface(database)))
-    return (curves, *_across_face(database), stiffness)
+    over_load = (database_surface(database),) if len(database.force) > 1 else ()
+    stiffness = Section("Mesh stiffness and the table", figures=(*secant, *over_load))
+    return (curves, *_across_face(database), *((stiffness,) if stiffness.figures else ()))
 
 
 def _across_face(database: SteDatabase) -> tuple[Section, ...]:

@@ -14,27 +14,35 @@ from service.report.aligned import (
     shown_loads,
     ste_shown,
 )
-from service.report.figure import Axis, Figure, Panel, Table, number
+from service.report.figure import Axis, Figure, FloatArray, Panel, Table, number
 
 _TONES = 3
+_FAR = 0.7  # lowest over highest value
+_MARGIN = 0.2
 
 
 def ste_curves(database: SteDatabase) -> Figure:
     """Draw STE against position, one line per load."""
     position, values = ste_shown(database)
-    top, bottom = float(np.nanmax(values)), min(float(np.nanmin(values)), 0.0)
-    y = Axis("static transmission error, µm", limits=(1.05e6 * bottom, 1.05e6 * top))
+    y = Axis("static transmission error, µm", limits=_limits(values * 1e6))
     panel = Panel(position_axis(database), y, load_lines(database, position, values * 1e6))
     return Figure(
         key="ste",
         title=f"Static transmission error over {_pitches(database)}",
         caption="Displacement on the transverse line of action by which the driven gear lags, relative to "
-        "conjugate motion. Low plateaus: two pairs share the load; high plateaus: one pair carries it."
-        + _period(database),
+        "conjugate motion. Low: more pairs share the load; high: fewer carry it." + _period(database),
         alternative=_words(database),
         content=(panel,),
         table=_table(database),
     )
+
+
+def _limits(values: FloatArray) -> tuple[float, float]:
+    """Return the ends of the axis: from zero, unless all curves lie so far above it that no ripple would show."""
+    top, low = float(np.nanmax(values)), float(np.nanmin(values))
+    if low > _FAR * top:
+        return low - _MARGIN * (top - low), top + _MARGIN * (top - low)
+    return 1.05 * min(low, 0.0), 1.05 * top
 
 
 def _pitches(database: SteDatabase) -> str:
@@ -57,6 +65,8 @@ def _words(database: SteDatabase) -> str:
         f"{_um(load_curve(database, k).peak_to_peak.value, 3)} µm at {labels[k]}"
         for k in (loads[0], loads[-1])
     ]
+    if len(loads) == 1:
+        return f"One periodic curve; peak to peak {ends[0]}."
     return f"{len(loads)} periodic curves rise with load; peak to peak from {ends[0]} to {ends[1]}."
 
 

@@ -8,13 +8,15 @@ import pytest
 
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.ste.fields import DIMENSIONS
 from service.report.aligned import shown_loads, ste_shown
 from service.report.database_surface import database_surface
 from service.report.figure import Surface
 from service.report.load_sharing import load_sharing, pair_shares
 from service.report.mesh_stiffness import mesh_stiffness, secant_stiffness
 from service.report.pair import iso_mesh_stiffness
-from service.report.ste_curves import ste_curves
+from service.report.static_part import static_results
+from service.report.ste_curves import _limits, ste_curves
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
@@ -116,3 +118,22 @@ def test_a_request_made_from_python_has_the_same_iso_line(database: SteDatabase)
     request = {"pair": asdict(GearPair(gear, gear, 80e-3)), "normal_force": [2660.0]}
     from_python = replace(database, metadata=Metadata(case=request))
     assert iso_mesh_stiffness(from_python) == pytest.approx(iso_mesh_stiffness(database))
+
+
+def test_a_small_ripple_on_a_high_mean_is_not_drawn_from_zero() -> None:
+    low, high = _limits(np.array([16.8, 17.3]))
+    assert 16.0 < low < 16.8
+    assert 17.3 < high < 18.0
+    assert _limits(np.array([5.1, 7.8]))[0] == 0.0
+
+
+def test_a_single_load_makes_no_surface(database: SteDatabase) -> None:
+    cut = {
+        name: np.take(getattr(database, name), [2], axis=axes.index("force"))
+        for name, axes in {"force": ("force",), **DIMENSIONS}.items()
+        if "force" in axes
+    }
+    single = replace(database, **cut)
+    over_load = [f.key for section in static_results(single) for f in section.figures]
+    assert "database" not in over_load
+    assert "database" in [f.key for section in static_results(database) for f in section.figures]
