@@ -12,9 +12,11 @@ from dynamics.checks import integer, one_of, positive
 from dynamics.forces.table_lookup import table_force
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.results.histories import bearing_force
 from dynamics.system.assemble import System
 from dynamics.system.flanks import mean_stiffness
-from dynamics.system.observation import static_deflections
+from dynamics.system.force_balance import block_diagonal
+from dynamics.system.observation import local_state, static_deflections
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 ComplexArray = NDArray[np.complex128]
@@ -48,7 +50,7 @@ class HarmonicResponse:
     mesh_force : (m, S, H) complex array
         Transverse, N.
     bearing_force : (b, 3, S, H) complex array
-        On the ground or the pin, in the bearing's own frame, N.
+        On the ground or the pin, in the bearing's own frame, N; with seats (b, 6, S, H), moments in N m.
     displacement : (n, S, H) complex array
         m and rad.
     mean_force, mean_stiffness : (m,) arrays
@@ -122,7 +124,7 @@ def harmonic_response(
     harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
     omega = 2.0 * math.pi * harmonics / np.array([[period.duration(w)] for w in speed])
     u = _solve(system, linear, stiffness, force, omega)
-    return _result(system, linear, stiffness, speed, harmonics / abs(counted), omega, static, force, u)
+    return _result(system, linear, time, stiffness, speed, harmonics / abs(counted), omega, static, force, u)
 
 
 def _mean_stiffness(system: System, linear: LinearSystem) -> FloatArray:
@@ -205,6 +207,7 @@ def _solve(
 def _result(
     system: System,
     linear: LinearSystem,
+    time: float,
     stiffness: FloatArray,
     speed: FloatArray,
     order: FloatArray,
@@ -219,9 +222,6 @@ def _result(
     viscous = system.flanks.law.damping[:meshes, None, None]
     mesh_force = stiffness[:, None, None] * dte - force[:, None, :] + 1j * omega * viscous * dte
     mean = linear.equilibrium.mesh_force
-    rate = 1j * omega[:, :, None] * u
-    on_ground = np.einsum("bkn,shn->bksh", system.bearing_stiffness, u)
-    on_ground = on_ground + np.einsum("bkn,shn->bksh", system.bearing_damping, rate)
     return HarmonicResponse(
         tuple(mesh.name for mesh in scene.meshes),
         system.supports.name,
@@ -232,12 +232,32 @@ def _result(
         static,
         np.ascontiguousarray(dte),
         mesh_force,
-        on_ground,
+        _bearing_force(system, linear, time, omega, u),
         np.ascontiguousarray(np.moveaxis(u, 2, 0)),
         mean,
         stiffness,
         mean[:, None] + _least(mesh_force, order),
     )
+
+
+def _bearing_force(
+    system: System, linear: LinearSystem, time: float, omega: FloatArray, u: ComplexArray
+) -> ComplexArray:
+    """Bearing forces (b, 3, S, H): those of a motion less those of none, real and imaginary parts apart."""
+    q = u.reshape(-1, u.shape[2])
+    rate = 1j * omega.reshape(-1, 1) * q
+    elements, rest = system.arrays.elements, np.zeros(q.shape[1])
+    at_rest = local_state(system.arrays, time, linear.equilibrium.displacement, rest)
+    rows = system.arrays.direction.T
+    local = (q @ rows) @ block_diagonal(elements, at_rest.tangent).T
+    local = local + (rate @ rows) @ block_diagonal(elements, at_rest.viscous).T
+    none = bearing_force(system, np.zeros((rows.shape[1], 1)), rest[None, :], rest[None, :])
+    real, imaginary = (
+        bearing_force(system, np.ascontiguousarray(part(local.T)), part(q), part(rate)) - none
+        for part in (np.real, np.imag)
+    )
+    found = real + 1j * imaginary
+    return np.asarray(found.reshape(*found.shape[:2], *u.shape[:2]))
 
 
 def _least(amplitude: ComplexArray, order: FloatArray) -> FloatArray:

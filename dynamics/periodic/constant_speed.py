@@ -1,0 +1,42 @@
+"""A system at one constant speed under constant loads: what has a period."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.linearize.common_period import CommonPeriod
+from dynamics.system.arrays import LawArrays, SystemArrays
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray
+
+
+def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
+    """Return the arrays with the drives at `speed` (rad/s, of the law that stands for all) for ever.
+
+    Load torques keep the values that they have at `time`.
+
+    Raises
+    ------
+    InputError
+        If the speed is 0 or of the other sense, in which other flanks carry.
+    """
+    extreme = system.scene.drives[period.law].speed.extreme
+    if not np.isfinite(speed) or speed * extreme <= 0.0:
+        bound = f"{'above' if extreme > 0.0 else 'below'} 0, the sense in which the scene turns"
+        raise InputError("speed", speed, bound, "Turn the scene's drive round for the other flanks.")
+    laws = _constant(speed * period.proportion)
+    none = np.zeros(period.proportion.size)
+    torque = np.array([float(load.torque(time)) for load in system.scene.loads])
+    arrays = system.arrays
+    return arrays._replace(
+        reference=arrays.reference._replace(speed=laws, whole=none, fraction=none),
+        load=arrays.load._replace(torque=_constant(torque)),
+    )
+
+
+def _constant(values: FloatArray) -> LawArrays:
+    """Lay out laws that never change."""
+    coefficient = np.zeros((values.size, 4))
+    coefficient[:, 0] = values
+    return LawArrays(np.arange(values.size + 1), np.zeros(values.size), coefficient)

@@ -1,0 +1,234 @@
+"""The branch of periodic motions over speed, around its folds, by pseudo-arclength continuation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from dynamics.checks import integer, positive
+from dynamics.errors import InputError
+from dynamics.periodic.floquet import ON_THE_CIRCLE, Instability
+from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
+from dynamics.periodic.shooting import RESIDUAL_LIMIT, Orbit, OrbitStatus, find_orbit, make_orbit
+from dynamics.types import FloatArray
+
+ITERATION_LIMIT = 8
+EASY = 4  # iterations: with fewer the step along the branch grows
+SMALLEST_STEP = 1e-5  # of the largest
+FOLD_LIMIT = 1e-5  # of the tangent: where its part along the speed counts as zero
+FOLD_ITERATIONS = 12
+
+
+class BranchStatus(IntEnum):
+    """Why a branch ended."""
+
+    COMPLETED = 0  # it left the range of speeds
+    STEP_FLOOR = 1  # Newton failed with the smallest step along the branch
+    POINT_LIMIT = 2  # the number of motions allowed was used up
+    NO_START = 3  # no periodic motion was found at the first speed
+
+    @property
+    def usable(self) -> bool:
+        """Whether the branch covers what was asked for."""
+        return self is BranchStatus.COMPLETED
+
+
+@dataclass(frozen=True)
+class Bifurcation:
+    """Where a branch turns back in speed, or gains or loses stability.
+
+    Attributes
+    ----------
+    kind : Instability
+        `FOLD`: the branch turns back; a sweep over the speed jumps here.
+    speed : float
+        rad/s; of a fold solved for, of other kinds interpolated between two motions.
+    point : int
+        The last motion of the branch before it.
+    """
+
+    kind: Instability
+    speed: float
+    point: int
+
+
+@dataclass(frozen=True)
+class Branch:
+    """Periodic motions along a branch, in order.
+
+    Attributes
+    ----------
+    status : BranchStatus
+    orbits : tuple of Orbit
+    bifurcations : tuple of Bifurcation
+    """
+
+    status: BranchStatus
+    orbits: tuple[Orbit, ...]
+    bifurcations: tuple[Bifurcation, ...]
+
+    @property
+    def speed(self) -> FloatArray:
+        """Of all motions, rad/s."""
+        return np.array([orbit.speed for orbit in self.orbits])
+
+    @property
+    def folds(self) -> FloatArray:
+        """Speeds at which the branch turns back, rad/s, in order."""
+        return np.array([b.speed for b in self.bifurcations if b.kind is Instability.FOLD])
+
+
+@dataclass(frozen=True)
+class _Point:
+    """A place z = (state / size, speed / scale) on the branch with its unit tangent."""
+
+    z: FloatArray
+    tangent: FloatArray
+    orbit: Orbit
+
+
+def follow_branch(
+    problem: PeriodicProblem,
+    first: float,
+    last: float,
+    largest_step: float = 0.02,
+    guess: FloatArray | None = None,
+    points: int = 500,
+) -> Branch:
+    """Follow the periodic motions from the speed `first` until they leave the range `first` to `last`.
+
+    The unknowns are state and speed together, so the branch is followed through folds and along its
+    unstable parts.
+
+    Parameters
+    ----------
+    problem : PeriodicProblem
+    first, last : float
+        rad/s, of the law that stands for all.
+    largest_step : float
+        Between neighbouring motions: change of the speed over the larger of both speeds, or of the state over
+        its size.
+    guess : (2n,) array, optional
+        State in metres to find the first motion from.
+    points : int
+        Most motions.
+
+    Returns
+    -------
+    Branch
+        With the status; nothing is raised where it ends early.
+
+    Raises
+    ------
+    InputError
+        If a speed is zero or of the wrong sense, or a value out of range.
+    """
+    positive("largest_step", largest_step)
+    integer("points", points, 2, 1_000_000)
+    if first == last:
+        raise InputError("last", last, "another speed than the first")
+    PeriodMap(problem, last).arrays  # noqa: B018 - checks the speed
+    start = find_orbit(problem, first, guess)
+    if not start.status.usable:
+        return Branch(BranchStatus.NO_START, (start,), ())
+    scale = max(abs(first), abs(last))
+    towards = np.append(np.zeros(start.state.size), np.sign(last - first) * np.sign(scale))
+    place = _place(problem, scale, start, towards)
+    trail, found, step = [place], [], largest_step
+    low, high = sorted((first, last))
+    status = BranchStatus.POINT_LIMIT
+    while len(trail) < points:
+        arrived = _step(problem, scale, trail[-1], step)
+        if arrived is None:
+            step *= 0.5
+            if step < SMALLEST_STEP * largest_step:
+                status = BranchStatus.STEP_FLOOR
+                break
+            continue
+        found += _passed(problem, scale, trail[-1], arrived, step, len(trail) - 1)
+        trail.append(arrived)
+        if arrived.orbit.iterations < EASY:
+            step = min(1.5 * step, largest_step)
+        if not low <= arrived.orbit.speed <= high:
+            status = BranchStatus.COMPLETED
+            break
+    return Branch(status, tuple(point.orbit for point in trail), tuple(found))
+
+
+def _place(problem: PeriodicProblem, scale: float, orbit: Orbit, along: FloatArray) -> _Point:
+    """Return the point of `orbit` with its tangent turned to the side of `along` (2n + 1,)."""
+    z = np.append(orbit.state / problem.size, orbit.speed / scale)
+    jacobian = _jacobian(problem, scale, PeriodMap(problem, orbit.speed), orbit.state, orbit.monodromy)
+    tangent = np.linalg.svd(jacobian)[2][-1]
+    return _Point(z, tangent if tangent @ along >= 0.0 else -tangent, orbit)
+
+
+def _jacobian(
+    problem: PeriodicProblem, scale: float, over_period: PeriodMap, y: FloatArray, monodromy: FloatArray
+) -> FloatArray:
+    """Return the derivative of (map - identity) / size in z, (2n, 2n + 1)."""
+    by_speed = over_period.by_speed(y) * (scale / problem.size)
+    return np.concatenate([monodromy - np.eye(y.size), by_speed[:, None]], axis=1)
+
+
+def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) -> _Point | None:
+    """Return the motion at the arclength `step` behind `point`, or None if Newton fails."""
+    aim = point.z + step * point.tangent
+    z = aim.copy()
+    for iteration in range(ITERATION_LIMIT + 1):
+        y, speed = z[:-1] * problem.size, float(z[-1] * scale)
+        if speed * point.orbit.speed <= 0.0:
+            return None
+        over_period = PeriodMap(problem, speed)
+        left = over_period(y) - y
+        if not np.all(np.isfinite(left)):
+            return None
+        monodromy = over_period.monodromy(y)
+        if np.max(np.abs(left)) <= RESIDUAL_LIMIT * problem.size:
+            orbit = make_orbit(over_period, OrbitStatus.CONVERGED, y, left, monodromy, iteration)
+            return _place(problem, scale, orbit, point.tangent)
+        jacobian = _jacobian(problem, scale, over_period, y, monodromy)
+        matrix = np.concatenate([jacobian, point.tangent[None, :]])
+        right = np.append(left / problem.size, point.tangent @ (z - aim))
+        if not np.all(np.isfinite(matrix)):
+            return None
+        z = z - np.linalg.lstsq(matrix, right, rcond=None)[0]
+    return None
+
+
+def _passed(
+    problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float, index: int
+) -> list[Bifurcation]:
+    """Return what lies between two neighbouring points."""
+    found = []
+    if before.tangent[-1] * behind.tangent[-1] < 0.0:
+        found.append(Bifurcation(Instability.FOLD, _fold(problem, scale, before, behind, step), index))
+    elif before.orbit.stable is not behind.orbit.stable:
+        unstable = behind.orbit if before.orbit.stable else before.orbit
+        excess = [abs(p.orbit.multipliers[0]) - 1.0 - ON_THE_CIRCLE for p in (before, behind)]
+        weight = excess[0] / (excess[0] - excess[1])
+        speed = before.orbit.speed + weight * (behind.orbit.speed - before.orbit.speed)
+        found.append(Bifurcation(unstable.instability, float(speed), index))
+    return found
+
+
+def _fold(problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float) -> float:
+    """Return the extreme speed between two points: regula falsi on the tangent's part along the speed."""
+    low, high = 0.0, step
+    at_low, at_high = before.tangent[-1], behind.tangent[-1]
+    nearest = min((before, behind), key=lambda point: abs(point.tangent[-1]))
+    for _ in range(FOLD_ITERATIONS):
+        weight = min(max(at_low / (at_low - at_high), 0.1), 0.9)
+        middle = _step(problem, scale, before, low + weight * (high - low))
+        if middle is None:
+            break
+        nearest = min((nearest, middle), key=lambda point: abs(point.tangent[-1]))
+        if abs(nearest.tangent[-1]) < FOLD_LIMIT:
+            break
+        if middle.tangent[-1] * at_low > 0.0:
+            low, at_low = low + weight * (high - low), middle.tangent[-1]
+        else:
+            high, at_high = low + weight * (high - low), middle.tangent[-1]
+    return nearest.orbit.speed

@@ -1,0 +1,199 @@
+"""The state one common period later, and its derivatives: what shooting and Floquet theory work on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from dynamics.checks import integer
+from dynamics.errors import InputError, SolveError
+from dynamics.integrators import static_equilibrium
+from dynamics.integrators.workspace import Workspace, make_workspace
+from dynamics.linearize import natural_modes
+from dynamics.linearize.common_period import CommonPeriod, common_period
+from dynamics.periodic.constant_speed import at_constant_speed
+from dynamics.periodic.march import HALVINGS, march
+from dynamics.periodic.period_grid import PeriodGrid, period_grid, refined
+from dynamics.system.arrays import SystemArrays
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray
+
+STEPS_PER_CYCLE = 24  # of the highest natural frequency
+STEPS_PER_PITCH = 64  # of the mesh with the most pitches
+NEWTON_SHARE = 1e-12  # of the largest force: last update in an implicit stage
+DIFFERENCE = 1e-6  # of the size of the state, for derivatives
+
+
+@dataclass(frozen=True)
+class PeriodicProblem:
+    """A system prepared for periodic steady states; states y are (2n,) in metres.
+
+    y = (q scale, q' rate_scale): displacements, and rates as the displacements that they become.
+
+    Attributes
+    ----------
+    system : System
+    period : CommonPeriod
+    grid : PeriodGrid
+        Steps of one period, the same at all speeds, so that the map depends smoothly on speed.
+    repeat : int
+        Common periods after which the motion is to repeat; 2 finds what period doubling leads to.
+    time : float
+        When loads are taken, s.
+    rest : (2n,) array
+        Static equilibrium, m.
+    size : float
+        Of a state, for tolerances and differences: the largest static displacement, m.
+    force_tolerance : float
+        Of the implicit stages, N.
+    """
+
+    system: System
+    period: CommonPeriod
+    grid: PeriodGrid
+    repeat: int
+    time: float
+    rest: FloatArray
+    size: float
+    force_tolerance: float
+
+    @cached_property
+    def scale(self) -> FloatArray:
+        """Metres per unit of q and q', (2n,)."""
+        return np.concatenate([self.system.arrays.scale, self.system.arrays.rate_scale])
+
+
+def periodic_problem(
+    system: System, slowest: float, repeat: int = 1, time: float = 0.0, steps_per_cycle: int = STEPS_PER_CYCLE
+) -> PeriodicProblem:
+    """Prepare `system` for speeds from `slowest` (rad/s) up.
+
+    Raises
+    ------
+    InputError
+        If there is nothing to vibrate, or the meshes have no common period.
+    SolveError
+        If there is no static equilibrium.
+    """
+    integer("repeat", repeat, 1, 1000)
+    integer("steps_per_cycle", steps_per_cycle, 4, 100_000)
+    if not system.freedoms.name:
+        raise InputError("freedoms", 0, "at least one", "Leave a shaft free to turn, or switch effects on.")
+    period, start = common_period(system), static_equilibrium(system, time)
+    if not start.status.usable:
+        raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
+    at_constant_speed(system, period, slowest, time)  # checks the speed
+    cycles = float(natural_modes(system, time).frequency[-1]) * period.duration(slowest)
+    pitches = max(abs(count) for count in period.pitches)
+    rest = start.displacement * system.arrays.scale
+    force = max(float(np.max(np.abs(start.mesh_force))), float(np.max(system.flanks.nominal_force)))
+    size = float(np.max(np.abs(rest)))
+    stiff = float(np.max(system.flanks.mean_stiffness))
+    size = max(size, force / stiff)
+    if size <= 0.0:
+        raise InputError(
+            "loads", 0.0, "present, or a nominal force given", "They set the size of the motion."
+        )
+    return PeriodicProblem(
+        system,
+        period,
+        period_grid(system, period, 1.0 / max(steps_per_cycle * cycles, STEPS_PER_PITCH * pitches)),
+        repeat,
+        time,
+        np.concatenate([rest, np.zeros(rest.size)]),
+        size,
+        NEWTON_SHARE * max(force, stiff * size),
+    )
+
+
+@dataclass(frozen=True)
+class PeriodMap:
+    """y -> state `repeat` common periods later at one speed; not to be shared between threads.
+
+    Attributes
+    ----------
+    problem : PeriodicProblem
+    speed : float
+        Of the law that stands for all, rad/s.
+    """
+
+    problem: PeriodicProblem
+    speed: float
+
+    @cached_property
+    def arrays(self) -> SystemArrays:
+        """The system at this speed."""
+        problem = self.problem
+        return at_constant_speed(problem.system, problem.period, self.speed, problem.time)
+
+    @cached_property
+    def duration(self) -> float:
+        """Of `repeat` common periods, s."""
+        return self.problem.repeat * self.problem.period.duration(self.speed)
+
+    @cached_property
+    def times(self) -> FloatArray:
+        """Ends of the steps of one common period, s."""
+        return self.problem.grid.phase * self.problem.period.duration(self.speed)
+
+    @cached_property
+    def _work(self) -> Workspace:
+        sizes = self.problem.grid.size[:-1] * self.problem.period.duration(self.speed)
+        ladder = np.append(np.outer(sizes, 0.5 ** np.arange(HALVINGS + 1)).ravel(), 0.0)
+        n = self.arrays.mass.shape[0]
+        return make_workspace(self.arrays, ladder, np.zeros(n), float(ladder[0]))
+
+    def __call__(self, y: FloatArray) -> FloatArray:
+        """Return the state `repeat` common periods after `y`, (2n,); NaN where the march failed."""
+        for _ in range(self.problem.repeat):
+            y = self._one_period(y, np.empty((3, 0, 0)))
+        return y
+
+    def path(self, y: FloatArray) -> FloatArray:
+        """Return q, q' and q'' at the ends of the steps of all periods, (3, repeat N + 1, n), SI."""
+        n, parts = y.size // 2, []
+        for _ in range(self.problem.repeat):
+            part = np.empty((3, self.times.size, n))
+            y = self._one_period(y, part)
+            parts.append(part[:, :-1])
+        return np.concatenate([*parts, part[:, -1:]], axis=1)
+
+    def monodromy(self, y: FloatArray) -> FloatArray:
+        """Return the derivative of the map at `y`, (2n, 2n), by central differences."""
+        step = DIFFERENCE * self.problem.size
+        columns = [(self(y + step * unit) - self(y - step * unit)) / (2.0 * step) for unit in np.eye(y.size)]
+        return np.stack(columns, axis=1)
+
+    def by_speed(self, y: FloatArray) -> FloatArray:
+        """Return the derivative of the map in the speed, (2n,) in m s/rad, by central differences."""
+        step = DIFFERENCE * self.speed
+        up, down = (replace(self, speed=self.speed + sign * step)(y) for sign in (1.0, -1.0))
+        return np.asarray((up - down) / (2.0 * step))
+
+    def step_error(self, y: FloatArray) -> FloatArray:
+        """Return how far half the step size moves the end of the march, (2n,) m."""
+        finer = replace(self.problem, grid=refined(self.problem.grid))
+        return PeriodMap(finer, self.speed)(y) - self(y)
+
+    def _one_period(self, y: FloatArray, path: FloatArray) -> FloatArray:
+        """March from `y` over one common period; fill `path` (3, N + 1, n) if it has room."""
+        work, n, problem = self._work, y.size // 2, self.problem
+        state = y / problem.scale
+        work.q[:], work.v[:] = state[:n], state[n:]
+        work.force[:] = 0.0
+        solved = march(
+            self.arrays,
+            work,
+            problem.system.scene.integration.method == "implicit",
+            problem.force_tolerance,
+            self.times,
+            problem.grid.rung,
+            np.empty(work.force.size, dtype=np.bool_),
+            path.size > 0,
+            path,
+        )
+        if not solved:
+            return np.full(y.size, np.nan)
+        return np.concatenate([work.q, work.v]) * problem.scale

@@ -1,0 +1,159 @@
+"""Periodic steady state at one speed by shooting: Newton's method on the map over one period."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from dynamics.periodic.floquet import ComplexArray, Instability, floquet_multipliers, instability
+from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
+from dynamics.types import FloatArray
+
+ITERATION_LIMIT = 30
+HALVINGS = 12
+RESIDUAL_LIMIT = 1e-9  # of the size of a state
+
+
+class OrbitStatus(IntEnum):
+    """How the search for a periodic motion ended."""
+
+    CONVERGED = 0
+    ITERATION_LIMIT = 1  # Newton ran out of iterations
+    STALLED = 2  # no step along Newton's direction lowered the residual
+    NOT_FINITE = 3  # the march over a period failed
+
+    @property
+    def usable(self) -> bool:
+        """Whether the motion found is periodic."""
+        return self is OrbitStatus.CONVERGED
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """A periodic motion at one speed, n freedoms.
+
+    Attributes
+    ----------
+    status : OrbitStatus
+    residual : float
+        Largest change of the state over the period, m.
+    iterations : int
+    speed : float
+        Of the law that stands for all, rad/s.
+    duration : float
+        Of the period sought, s.
+    state : (2n,) array
+        At t = 0, in metres, as `PeriodicProblem` scales them.
+    monodromy : (2n, 2n) array
+        Derivative of the state after a period in the state before it, in the same scale.
+    multipliers : (2n,) complex array
+        Floquet's, by falling size.
+    step_error : float
+        Estimate of what the steps' errors move the motion by at t = 0, m; close to a fold it grows without
+        limit, as the motion does.
+    """
+
+    status: OrbitStatus
+    residual: float
+    iterations: int
+    speed: float
+    duration: float
+    state: FloatArray
+    monodromy: FloatArray
+    multipliers: ComplexArray
+    step_error: float
+
+    @property
+    def instability(self) -> Instability:
+        """How the motion is unstable, if it is."""
+        return instability(self.multipliers)
+
+    @property
+    def stable(self) -> bool:
+        """Whether small disturbances do not grow."""
+        return self.instability is Instability.NONE
+
+
+def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None = None) -> Orbit:
+    """Return the periodic motion at `speed` that Newton's method with step halving finds from `guess`.
+
+    Parameters
+    ----------
+    problem : PeriodicProblem
+    speed : float
+        rad/s, of the law that stands for all.
+    guess : (2n,) array, optional
+        State at t = 0 in metres; the static equilibrium without one.
+
+    Returns
+    -------
+    Orbit
+        With the status of the search; nothing is raised where it fails.
+
+    Raises
+    ------
+    InputError
+        If the speed is zero or of the other sense.
+    """
+    over_period = PeriodMap(problem, speed)
+    y = np.array(problem.rest if guess is None else guess, dtype=float)
+    left = over_period(y) - y
+    status, taken = OrbitStatus.ITERATION_LIMIT, 0
+    jacobian = np.full((y.size, y.size), np.nan)
+    while taken <= ITERATION_LIMIT:
+        if not np.all(np.isfinite(left)):
+            status = OrbitStatus.NOT_FINITE
+            break
+        jacobian = over_period.monodromy(y)
+        if np.max(np.abs(left)) <= RESIDUAL_LIMIT * problem.size:
+            status = OrbitStatus.CONVERGED
+            break
+        update = _solve(np.eye(y.size) - jacobian, left)
+        moved = _line_search(over_period, y, update, left)
+        if moved is None:
+            status = OrbitStatus.STALLED
+            break
+        y, left = moved
+        taken += 1
+    return make_orbit(over_period, status, y, left, jacobian, taken)
+
+
+def make_orbit(
+    over_period: PeriodMap,
+    status: OrbitStatus,
+    y: FloatArray,
+    left: FloatArray,
+    jacobian: FloatArray,
+    iterations: int,
+) -> Orbit:
+    """Put an orbit together from where a search ended."""
+    multipliers = np.full(y.size, np.nan + 0j)
+    error = np.inf
+    if np.all(np.isfinite(jacobian)):
+        multipliers = floquet_multipliers(jacobian)
+        error = float(np.max(np.abs(_solve(np.eye(y.size) - jacobian, over_period.step_error(y)))))
+    residual = float(np.max(np.abs(left)))
+    duration, speed = over_period.duration, over_period.speed
+    return Orbit(status, residual, iterations, speed, duration, y, jacobian, multipliers, error)
+
+
+def _solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solve in the sense of least squares: at a fold the matrix is singular."""
+    if not np.all(np.isfinite(matrix)) or not np.all(np.isfinite(right)):
+        return np.full(right.size, np.nan)
+    return np.asarray(np.linalg.lstsq(matrix, right, rcond=None)[0])
+
+
+def _line_search(
+    over_period: PeriodMap, y: FloatArray, update: FloatArray, left: FloatArray
+) -> tuple[FloatArray, FloatArray] | None:
+    """Halve the update until the residual falls; None if it never does."""
+    size = float(np.linalg.norm(left))
+    for halving in range(HALVINGS):
+        trial = y + update * 0.5**halving
+        remaining = over_period(trial) - trial
+        if np.linalg.norm(remaining) < size:  # False for NaN
+            return trial, remaining
+    return None
