@@ -8,12 +8,20 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from benchmarks import corrected_plane, finite_width, reference_errors, run_up, solvers_3d, static_table
+from benchmarks import (
+    corrected_plane,
+    finite_width,
+    other_engine,
+    reference_errors,
+    run_up,
+    solvers_3d,
+    static_table,
+)
 from benchmarks.figures import Figure, markdown
 from benchmarks.machine import describe
 
 ROOT = Path(__file__).parents[1]
-SUBJECTS = (reference_errors, static_table, finite_width, run_up, corrected_plane, solvers_3d)
+SUBJECTS = (reference_errors, static_table, finite_width, run_up, other_engine, corrected_plane, solvers_3d)
 _MARKS = ("<!-- figures: written by scripts/bench --publish -->", "<!-- end of figures -->")
 
 

@@ -1,0 +1,102 @@
+"""The example scene at constant speed, here and in Exudyn: agreement, and CPU time at equal step error.
+
+Each engine gets the cheapest of its settings whose measured error is at most `ERROR`: here a tolerance,
+there a fixed step. Left out where Exudyn is not installed.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+
+from benchmarks.example_pair import PAIR, TORQUES
+from benchmarks.figures import Figure
+from benchmarks.fresh_process import measure
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+ERROR = 1e-9
+SECONDS = 0.5
+TARGET = 100.0 / 30.0
+SUBJECT = "0.5 s at 900 rpm, here and in Exudyn"
+SOLVERS = {"GeneralizedAlpha": "its implicit solver", "RK44": "its fastest solver, explicit"}
+_TABLE = (
+    PAIR
+    + """
+analyze(pair, torques={torques}, model="plane_strain").to_netcdf({table!r})
+measured = {{}}
+"""
+)
+_RUNS = """
+import sys, time
+from dataclasses import replace
+from statistics import median
+import numpy as np
+sys.path.insert(0, {examples!r})
+from exudyn_scene import constant_speed_scene
+from dynamics.engines.exudyn_scene import run_in_exudyn
+from dynamics.simulate import simulate
+from dynamics.system.scene import Integration
+from fe_contact.ste import SteDatabase
+scene = constant_speed_scene(SteDatabase.from_netcdf({table!r}), 900.0, {seconds})
+
+def own(tolerance):
+    began = time.process_time()
+    run = simulate(replace(scene, integration=Integration(tolerance=tolerance)))
+    return run.dynamic_transmission_error[0], time.process_time() - began
+
+def other(solver, parts):
+    run = run_in_exudyn(scene, solver=solver, step=5e-5 / parts)
+    return run.dynamic_transmission_error, run.cpu_seconds
+
+def rms(values):
+    return float(np.sqrt(np.mean(values**2)))
+
+def cheapest(run, settings):
+    for setting in settings:
+        error = rms(run(setting)[0] - exact)
+        if error <= {error}:
+            return dict(error=error, setting=setting, seconds=median(run(setting)[1] for _ in range(5)))
+
+exact = own(1e-12)[0]
+measured = {{"own": cheapest(own, 4e-8 / 2.0 ** np.arange(0.0, 8.0, 0.5))}}
+parts = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64)
+for solver in {solvers}:
+    measured[solver] = cheapest(lambda n: other(solver, n), parts)
+measured["difference"] = rms(other("RK44", 32)[0] - exact) / float(np.std(exact))
+"""
+
+
+def figures() -> list[Figure]:
+    """Return agreement, CPU seconds at the error, and their ratios; nothing without Exudyn."""
+    if find_spec("exudyn") is None:
+        sys.stderr.write("  left out: Exudyn is not installed (pip install lineofaction[exudyn])\n")
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        names = {"table": str(Path(folder) / "ste.nc"), "examples": str(EXAMPLES)}
+        measure(_TABLE.format(torques=list(TORQUES), **names))
+        code = _RUNS.format(seconds=SECONDS, error=ERROR, solvers=list(SOLVERS), **names)
+        found = measure(code)
+    own = found["own"]
+    rows = [
+        Figure(
+            SUBJECT,
+            "difference of the transmission errors, rms over swing",
+            100.0 * found["difference"],
+            "%",
+            1.0,
+        ),
+        Figure(SUBJECT, "here, at most 1 nm of step error", own["seconds"], "CPU s"),
+        Figure(SUBJECT, "here, step error", 1e9 * own["error"], "nm", 1.0),
+    ]
+    for solver, text in SOLVERS.items():
+        theirs = found[solver]
+        rows += [
+            Figure(SUBJECT, f"{text} ({solver}), at most 1 nm", theirs["seconds"], "CPU s"),
+            Figure(SUBJECT, f"{solver}, step error", 1e9 * theirs["error"], "nm", 1.0),
+            Figure(
+                SUBJECT, f"time here over {solver}", 100.0 * own["seconds"] / theirs["seconds"], "%", TARGET
+            ),
+        ]
+    return rows

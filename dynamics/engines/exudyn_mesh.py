@@ -1,0 +1,168 @@
+"""The mesh force as an element of Exudyn, for gears on parallel axes that move in their plane.
+
+Exudyn itself (extra ``exudyn``) is needed only when an element is added to one of its systems.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from dynamics.engines.mesh_element import MeshElement
+from dynamics.errors import InputError
+from dynamics.forces.compiled import compiled
+from dynamics.forces.flank_force import FlankLaws, flank_force
+from dynamics.forces.packed_tables import pack_tables
+from dynamics.forces.technique import table_at
+from dynamics.types import FloatArray, IntArray
+
+Drive = Callable[[float], tuple[float, float]]
+"""Angle (rad) and speed (rad/s) of the driver about +z at a time."""
+
+DRIVER_ANGLE, DRIVER_SPEED = 0, 1
+
+
+@dataclass(frozen=True)
+class PlanarMesh:
+    """A mesh between two bodies with the freedoms x, y and the rotation about +z.
+
+    Attributes
+    ----------
+    element : MeshElement
+        Used at `misalignment` and `center_distance_change`.
+    direction : (float, float)
+        Unit vector along which the driver pushes the driven gear.
+    sense : int
+        +1 or -1: in which the driver turns about +z.
+    internal : bool
+        One of the gears is a ring gear.
+    misalignment, center_distance_change : float
+        Place on the table's axes, m.
+    """
+
+    element: MeshElement
+    direction: tuple[float, float]
+    sense: int
+    internal: bool = False
+    misalignment: float = 0.0
+    center_distance_change: float = 0.0
+
+    @property
+    def gradient(self) -> FloatArray:
+        """Derivative of the transmission error in (x, y, angle) of driver and driven gear, (6,)."""
+        n, (r1, r2) = np.array(self.direction), self.element.base_radius
+        driven = self.sense * (-r2 if self.internal else r2)
+        return np.array([*n, self.sense * r1, *-n, driven])
+
+    @property
+    def turn(self) -> float:
+        """Base pitches per radian of the driver about +z."""
+        return self.sense * self.element.teeth[0] / (2.0 * np.pi)
+
+    def laws(self) -> FlankLaws:
+        """Return the force law for the compiled look-up."""
+        place = table_at(self.element.table, self.misalignment, self.center_distance_change)
+        damping, reach = np.array([self.element.damping]), np.array([self.element.reach])
+        return FlankLaws(pack_tables([place]), damping, reach)
+
+
+def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Drive | None = None) -> Any:
+    """Add the mesh to an Exudyn system as an object on the nodes of two bodies.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    mesh : PlanarMesh
+    nodes : (node index, node index)
+        Of the driver and the driven gear: `NodeRigidBody2D`. With a `drive` the driver's is a `NodePoint2D`.
+    drive : callable or None
+        The driver's rotation, if it is imposed and no coordinate.
+
+    Returns
+    -------
+    exudyn.ObjectIndex
+        An `ObjectGenericODE2` without mass, with the force and its derivatives as user functions.
+
+    Raises
+    ------
+    InputError
+        If Exudyn is not installed.
+    """
+    items = exudyn().itemInterface
+    law, columns = mesh.laws(), 5 if drive is not None else 6
+    gradient = mesh.gradient if drive is None else np.delete(mesh.gradient, 2)
+    base, radius, angle = mesh.element.position_offset, mesh.gradient[2], 2
+    imposed, found, hint = np.zeros(2), np.zeros(3), np.zeros(1, dtype=np.int64)
+    outer, turn = np.outer(gradient, gradient), mesh.turn
+    facts = np.array([base, turn, radius])
+
+    def evaluate(t: float, q: Any, v: Any) -> None:
+        if drive is not None:
+            imposed[DRIVER_ANGLE], imposed[DRIVER_SPEED] = drive(t)
+        coordinate, rate = np.asarray(q), np.asarray(v)
+        own = coordinate[angle] if drive is None else imposed[DRIVER_ANGLE]
+        _evaluate(law, facts, gradient, own, imposed, coordinate, rate, hint, found)
+
+    def force(_mbs: Any, t: float, _item: int, q: Any, v: Any) -> FloatArray:
+        evaluate(t, q, v)
+        return np.asarray(-found[0] * gradient)
+
+    def jacobian(_mbs: Any, t: float, _item: int, q: Any, v: Any, stiff: float, viscous: float) -> FloatArray:
+        evaluate(t, q, v)
+        return np.asarray((stiff * found[1] + viscous * found[2]) * outer)
+
+    zero = np.zeros((columns, columns))
+    return mbs.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=list(nodes),
+            massMatrix=zero,
+            stiffnessMatrix=zero,
+            dampingMatrix=zero,
+            forceVector=np.zeros(columns),
+            forceUserFunction=force,
+            jacobianUserFunction=jacobian,
+        )
+    )
+
+
+def exudyn() -> Any:
+    """Return the package.
+
+    Raises
+    ------
+    InputError
+        If it is not installed.
+    """
+    try:
+        import exudyn as package  # noqa: PLC0415 - an extra
+        import exudyn.itemInterface  # noqa: PLC0415
+    except ImportError:
+        raise InputError(
+            "exudyn", None, "installed", "Install the extra: pip install lineofaction[exudyn]"
+        ) from None
+    return package
+
+
+@compiled
+def _evaluate(
+    law: FlankLaws,
+    facts: FloatArray,
+    gradient: FloatArray,
+    angle: float,
+    imposed: FloatArray,
+    coordinate: FloatArray,
+    rate: FloatArray,
+    hint: IntArray,
+    found: FloatArray,
+) -> None:
+    """Write force, stiffness and viscosity into `found`; `imposed` is what the coordinates do not hold."""
+    deflection, speed = facts[2] * imposed[0], facts[2] * imposed[1]
+    for k in range(gradient.size):
+        deflection += gradient[k] * coordinate[k]
+        speed += gradient[k] * rate[k]
+    x = facts[0] + facts[1] * angle
+    force, _, tangent, viscous, place = flank_force(law, 0, x, deflection, speed, hint[0])
+    found[0], found[1], found[2], hint[0] = force, tangent, viscous, place

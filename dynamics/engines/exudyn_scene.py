@@ -1,0 +1,223 @@
+"""A scene of one spur pair rebuilt in Exudyn from bodies, springs and loads, the mesh as an element."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from dynamics.bodies import TimeLaw
+from dynamics.engines.exudyn_mesh import Drive, PlanarMesh, add_gear_mesh, exudyn
+from dynamics.engines.mesh_element import mesh_element
+from dynamics.errors import InputError, SolveError
+from dynamics.integrators import static_equilibrium
+from dynamics.joints import Bushing
+from dynamics.system.assemble import System, assemble
+from dynamics.system.scene import Scene
+from dynamics.types import FloatArray
+
+PLANAR = ("x", "y", "rotation")
+REBUILT = (
+    *("shafts", "gears", "meshes", "drives", "bushings", "loads"),
+    *("duration", "effects", "outputs", "integration"),
+)
+SOLVERS = ("GeneralizedAlpha", "TrapezoidalIndex2", "RK44", "DOPRI5")
+
+
+@dataclass(frozen=True)
+class PlanarRun:
+    """What a run in Exudyn gave.
+
+    Attributes
+    ----------
+    time : (T,) array
+        s.
+    dynamic_transmission_error : (T,) array
+        m.
+    cpu_seconds : float
+        Of the time integration alone.
+    """
+
+    time: FloatArray
+    dynamic_transmission_error: FloatArray
+    cpu_seconds: float
+
+
+def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float = 5e-6) -> PlanarRun:
+    """Run `scene` in Exudyn from its static equilibrium at constant speed.
+
+    Parameters
+    ----------
+    scene : Scene
+        One mesh of spur gears that move in their plane, a rigid drive of constant speed on the driver's
+        shaft, isotropic bushings, constant loads.
+    solver : str
+        One of Exudyn's by its name there: `SOLVERS`.
+    step : float
+        Time step in s; fixed.
+
+    Returns
+    -------
+    PlanarRun
+        On the scene's output grid as far as whole steps meet it.
+
+    Raises
+    ------
+    InputError
+        If Exudyn is not installed, or the scene holds what is not rebuilt.
+    SolveError
+        If there is no equilibrium to start from, or Exudyn gives up.
+    """
+    package = exudyn()
+    if solver not in SOLVERS:
+        raise InputError("solver", solver, f"one of {', '.join(SOLVERS)}")
+    system = assemble(scene)
+    drive_speed = _check(system)
+    start = static_equilibrium(system)
+    if not start.status.usable:
+        raise SolveError("no static equilibrium at t = 0")
+    sense = system.kinematics.mesh_sense[0]
+    mesh = _planar_mesh(system, sense)
+    container = package.SystemContainer()
+    mbs = container.AddSystem()
+    nodes = _bodies(
+        mbs, system, dict(zip(system.freedoms.name, start.displacement, strict=True)), drive_speed
+    )
+    add_gear_mesh(mbs, mesh, nodes, _constant(drive_speed))
+    coordinates = package.OutputVariableType.Coordinates
+    sensors = [
+        mbs.AddSensor(
+            package.itemInterface.SensorNode(
+                nodeNumber=node, storeInternal=True, outputVariableType=coordinates
+            )
+        )
+        for node in nodes
+    ]
+    mbs.Assemble()
+    began = clock.process_time()
+    solved = mbs.SolveDynamic(
+        _settings(package, scene, step), solverType=getattr(package.DynamicSolverType, solver)
+    )
+    seconds = clock.process_time() - began
+    if not solved:
+        raise SolveError(f"Exudyn's {solver} did not finish with steps of {step:g} s")
+    return _observed(mesh, drive_speed, [mbs.GetSensorStoredData(sensor) for sensor in sensors], seconds)
+
+
+def _check(system: System) -> float:
+    """Refuse what is not rebuilt; return the drive's speed."""
+    scene = system.scene
+    if len(scene.meshes) != 1 or len(scene.shafts) != 2:
+        raise InputError("meshes", len(scene.meshes), "one, of two shafts")
+    beyond = [name for name in system.freedoms.name if name.rpartition(".")[2] not in PLANAR]
+    if beyond:
+        raise InputError("effects", beyond, "off", "Only motion in the plane is rebuilt.")
+    if len(system.elements) != 1:
+        bound = "1: the driving flank"
+        raise InputError(
+            "elements", len(system.elements), bound, "Leave out coast flanks and curved supports."
+        )
+    plain = (None, None, None)
+    for bushing in scene.bushings:
+        if (bushing.stiffness, bushing.damping, bushing.preload) != plain:
+            raise InputError("bushings", bushing.name, "isotropic, without preload")
+    for part in fields(scene):
+        if part.name not in REBUILT and getattr(scene, part.name):
+            raise InputError(part.name, len(getattr(scene, part.name)), "left out")
+    for index, load in enumerate(scene.loads):
+        _constant_value(f"loads[{index}].torque", load.torque)
+    drive = scene.drives[0]
+    if not drive.rigid or drive.shaft != scene.gear(scene.meshes[0].driver).shaft:
+        raise InputError("drives[0]", drive.name, "rigid, on the driver's shaft")
+    return _constant_value("drives[0].speed", drive.speed)
+
+
+def _constant_value(field: str, law: object) -> float:
+    """Return the value of a law that never changes."""
+    if not isinstance(law, TimeLaw) or len(set(law.value)) != 1:
+        raise InputError(field, law, "constant")
+    return float(law.value[0])
+
+
+def _planar_mesh(system: System, sense: int) -> PlanarMesh:
+    """Return the mesh in the plane."""
+    given = system.scene.meshes[0]
+    gears = [system.scene.gear(name) for name in (given.driver, given.driven)]
+    return PlanarMesh(
+        mesh_element(system.scene, given.name),
+        (float(system.lines[0].force[0]), float(system.lines[0].force[1])),
+        sense,
+        any(gear.internal for gear in gears),
+        given.misalignment,
+        given.center_distance_change,
+    )
+
+
+def _constant(speed: float) -> Drive:
+    """Return the drive of that speed."""
+    return lambda t: (speed * t, speed)
+
+
+def _bodies(mbs: Any, system: System, start: dict[str, float], speed: float) -> tuple[Any, Any]:
+    """Add both rotors, driver first, on their bushings and under their loads; return their nodes."""
+    items, scene, mesh = exudyn().itemInterface, system.scene, system.scene.meshes[0]
+    ground = mbs.AddMarker(items.MarkerNodePosition(nodeNumber=mbs.AddNode(items.NodePointGround())))
+    nodes = []
+    for place, gear in enumerate((mesh.driver, mesh.driven)):
+        shaft = scene.shaft_index(scene.gear(gear).shaft)
+        rotor, name = system.rotors[shaft], scene.shafts[shaft].name
+        at = [start.get(f"{name}.{freedom}", 0.0) for freedom in PLANAR]
+        turning = float(system.kinematics.ratio[shaft][0]) * speed
+        if place == 0:
+            node = mbs.AddNode(items.NodePoint2D(referenceCoordinates=[0.0, 0.0], initialCoordinates=at[:2]))
+            mbs.AddObject(items.ObjectMassPoint2D(mass=rotor.inertia.mass, nodeNumber=node))
+        else:
+            node = mbs.AddNode(
+                items.NodeRigidBody2D(initialCoordinates=at, initialVelocities=[0.0, 0.0, turning])
+            )
+            body = {"mass": rotor.inertia.mass, "inertia": rotor.inertia.polar, "nodeNumber": node}
+            mbs.AddObject(items.ObjectRigidBody2D(**body))
+            marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
+            torque = sum(load.torque.value[0] for load in scene.loads if load.shaft == name)
+            mbs.AddLoad(
+                items.LoadCoordinate(markerNumber=marker, load=-math.copysign(torque, turning * torque))
+            )
+        _add_bushings(mbs, [ground, mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node))], rotor.bushings)
+        nodes.append(node)
+    return nodes[0], nodes[1]
+
+
+def _add_bushings(mbs: Any, markers: list[Any], bushings: tuple[Bushing, ...]) -> None:
+    """Add springs and dampers from the ground to the axis, with the damping a run uses."""
+    for bushing in bushings:
+        mbs.AddObject(
+            exudyn().itemInterface.ObjectConnectorCartesianSpringDamper(
+                markerNumbers=markers,
+                stiffness=[bushing.radial_stiffness, bushing.radial_stiffness, 0.0],
+                damping=[bushing.radial_damping, bushing.radial_damping, 0.0],
+            )
+        )
+
+
+def _settings(package: Any, scene: Scene, step: float) -> Any:
+    """Return the settings of a run of fixed steps that keeps the output grid in memory."""
+    settings = package.SimulationSettings()
+    settings.timeIntegration.endTime = scene.duration
+    settings.timeIntegration.numberOfSteps = math.ceil(scene.duration / step * (1.0 - 1e-9))
+    settings.timeIntegration.automaticStepSize = False
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    settings.solution.sensors.writePeriod = 1.0 / scene.outputs.sample_rate
+    return settings
+
+
+def _observed(mesh: PlanarMesh, speed: float, stored: list[FloatArray], seconds: float) -> PlanarRun:
+    """Return the transmission error from the coordinates of both nodes."""
+    driver, driven = (np.asarray(rows) for rows in stored)
+    gradient, time = mesh.gradient, driver[:, 0]
+    angle = gradient[2] * speed * time
+    found = driver[:, 1:3] @ gradient[:2] + angle + driven[:, 1:4] @ gradient[3:]
+    return PlanarRun(time, found, seconds)

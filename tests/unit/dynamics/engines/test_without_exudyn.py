@@ -1,0 +1,18 @@
+"""Exudyn is an extra: without it nothing else misses it, and its element says what to install."""
+
+from __future__ import annotations
+
+import sys
+
+import pytest
+from geared_scenes import gear_pair_scene
+
+from dynamics.bodies import TimeLaw
+from dynamics.engines.exudyn_scene import run_in_exudyn
+from dynamics.errors import InputError
+
+
+def test_the_error_names_the_extra(monkeypatch):
+    monkeypatch.setitem(sys.modules, "exudyn", None)
+    with pytest.raises(InputError, match=r"exudyn = None: must be installed.*lineofaction\[exudyn\]"):
+        run_in_exudyn(gear_pair_scene(speed=TimeLaw.constant(90.0)))
