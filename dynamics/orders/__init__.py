@@ -1,18 +1,25 @@
 """Spectra of run results: over frequency, over mesh orders, and their peaks."""
 
-from dynamics.orders.order_tracking import OrderTrack, order_track, resample_to_position
 from dynamics.orders.peaks import Peak, find_peaks
+from dynamics.orders.position_grid import resample_to_position
+from dynamics.orders.sidebands import Sideband, sidebands
 from dynamics.orders.spectrum import MeshOrder, Spectrum, mesh_orders, spectrum, window_spectrum
+from dynamics.orders.waterfall import OrderTrack, Waterfall, frequency_waterfall, order_track, order_waterfall
 
 __all__ = [
     "MeshOrder",
     "OrderTrack",
     "Peak",
+    "Sideband",
     "Spectrum",
+    "Waterfall",
     "find_peaks",
+    "frequency_waterfall",
     "mesh_orders",
     "order_track",
+    "order_waterfall",
     "resample_to_position",
+    "sidebands",
     "spectrum",
     "window_spectrum",
 ]

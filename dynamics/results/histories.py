@@ -17,9 +17,17 @@ from dynamics.types import FloatArray, IntArray
 
 
 def histories(
-    system: System, time: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray
+    system: System,
+    time: FloatArray,
+    q: FloatArray,
+    v: FloatArray,
+    moved: IntArray,
+    acceleration: FloatArray | None = None,
 ) -> dict[str, Any]:
-    """Return the series of `RunResult` for the states `q`, `v` (T, n), `moved` (T, k) at `time` (T,)."""
+    """Return the series of `RunResult` for the states `q`, `v` (T, n), `moved` (T, k) at `time` (T,).
+
+    `acceleration` (T, n) is that of the freedoms, if wanted.
+    """
     arrays, scene = system.arrays, system.scene
     laws = observe_laws(arrays, time)
     seen = observe(arrays, time, q, v, moved)
@@ -48,7 +56,26 @@ def histories(
         "displacement": np.ascontiguousarray(q.T) if wanted.displacements else np.empty((0, time.size)),
         "velocity": np.ascontiguousarray(v.T) if wanted.displacements else np.empty((0, time.size)),
         "nominal_force": system.flanks.nominal_force,
+        **_accelerations(system, laws, acceleration, moved),
     }
+
+
+def _accelerations(
+    system: System, laws: FloatArray, acceleration: FloatArray | None, moved: IntArray
+) -> dict[str, FloatArray]:
+    """Accelerations of the freedoms, and of the shafts at their bearings."""
+    none = {"acceleration": np.empty((0, len(moved))), "bearing_acceleration": np.empty((0, 3, len(moved)))}
+    if acceleration is None:
+        return none
+    found = dict(none)
+    if system.scene.outputs.displacements:
+        found["acceleration"] = np.ascontiguousarray(acceleration.T)
+    if system.scene.outputs.bearing_forces:
+        moves = system.freedoms.keep(system.supports.motion)
+        bearings, _, freedoms = moves.shape
+        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration.T).reshape(bearings, 3, -1)
+        found["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, moved)
+    return found
 
 
 def _on_the_ground(

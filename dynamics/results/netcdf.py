@@ -20,7 +20,7 @@ from dynamics.types import RunStatus
 
 SCHEMA = "lineofaction dynamics run"
 SCHEMA_VERSION = 2
-DOCUMENTS = ("effect_ledger", "receipt", "case")
+DOCUMENTS = ("effect_ledger", "receipt", "case", "modes")
 
 
 def to_dataset(result: RunResult) -> xarray.Dataset:
@@ -106,5 +106,5 @@ def _from_dataset(dataset: xarray.Dataset) -> RunResult:
         status=RunStatus[dataset.attrs["status"]],
         statistics=StepStatistics(**json.loads(dataset.attrs["statistics"])),
         energy=EnergyAudit.from_json(energy) if energy else None,
-        **{name: json.loads(dataset.attrs[name]) for name in DOCUMENTS},
+        **{name: json.loads(dataset.attrs.get(name, "{}")) for name in DOCUMENTS},
     )

@@ -69,6 +69,14 @@ class RunResult:
     effect_ledger, receipt, case : dict
         Plain JSON: effects on and off with reasons; times and error estimate; the scene as resolved, with
         every damping value used.
+    modes : dict
+        Natural modes about the static equilibrium at t = 0: lists `frequency` (Hz), `damping_ratio` and
+        `freedom` (the one with most of the kinetic energy); empty if they were not found.
+    acceleration : (n, T) array
+        Second rate of the deviations, m/s2 and rad/s2; n = 0 if not asked for.
+    bearing_acceleration : (b, 3, T) array
+        Of the shaft at each bearing (of a planet against its pin), m/s2, in the frame of `bearing_force`;
+        the turning of a carrier's frame adds no terms. b = 0 if not asked for.
     """
 
     time: FloatArray
@@ -101,6 +109,9 @@ class RunResult:
     effect_ledger: Json = field(default_factory=dict)
     receipt: Json = field(default_factory=dict)
     case: Json = field(default_factory=dict)
+    modes: Json = field(default_factory=dict)
+    acceleration: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    bearing_acceleration: FloatArray = field(default_factory=lambda: np.empty((0, 3, 0)))
 
     @property
     def sample_rate(self) -> float:

@@ -57,6 +57,10 @@ SERIES = (
     Series("bearing_moment", ("bearing", "direction", "time"), "N m", "moment of the shaft on the ground"),
     Series("displacement", ("freedom", "time"), "m or rad", "deviation from the kinematic motion"),
     Series("velocity", ("freedom", "time"), "m s-1 or rad s-1", "rate of the deviation"),
+    Series("acceleration", ("freedom", "time"), "m s-2 or rad s-2", "second rate of the deviation"),
+    Series(
+        "bearing_acceleration", ("bearing", "direction", "time"), "m s-2", "acceleration of the shaft there"
+    ),
     Series("nominal_force", ("mesh",), "N", "nominal transverse mesh force"),
 )
 

@@ -7,10 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.errors import SolveError
+from dynamics.integrators.accelerations import accelerations
 from dynamics.integrators.march import Ending
+from dynamics.integrators.state_sink import States
 from dynamics.integrators.workspace import Count
+from dynamics.linearize import natural_modes
 from dynamics.results import EnergyAudit, StepStatistics
 from dynamics.results.case import resolved_case
+from dynamics.results.histories import histories
 from dynamics.results.run_checks import RunChecks
 from dynamics.system import Integration
 from dynamics.system.assemble import System
@@ -32,6 +37,29 @@ def documents(
         "effect_ledger": {**system.ledger.to_json(), "checks": checks.found()},
         "receipt": {"seconds": seconds, "error": error},
         "case": resolved_case(system),
+        "modes": _modes(system),
+    }
+
+
+def series_of(system: System, time: FloatArray, states: States) -> dict[str, Any]:
+    """Return all series of `RunResult` for the `states` at `time` (T,)."""
+    seconds = None
+    if system.scene.outputs.accelerations:
+        seconds = accelerations(system.arrays, time, states)
+    return histories(system, time, *states, acceleration=seconds)
+
+
+def _modes(system: System) -> Json:
+    """Return the natural modes in plain numbers; nothing where there is no equilibrium."""
+    try:
+        found = natural_modes(system)
+    except SolveError:
+        return {}
+    most = np.argmax(found.kinetic_energy, axis=1) if found.frequency.size else []
+    return {
+        "frequency": [float(value) for value in found.frequency],
+        "damping_ratio": [float(value) for value in found.damping_ratio],
+        "freedom": [found.freedom[index] for index in most],
     }
 
 

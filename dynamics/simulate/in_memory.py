@@ -12,7 +12,6 @@ from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, i
 from dynamics.integrators.state_sink import States, blocks
 from dynamics.integrators.workspace import Count, Power
 from dynamics.results import RunResult
-from dynamics.results.histories import histories
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.series import over_time
 from dynamics.simulate.documents import (
@@ -21,6 +20,7 @@ from dynamics.simulate.documents import (
     finer,
     measured_error,
     see,
+    series_of,
     squared_difference,
 )
 from dynamics.system import Scene
@@ -92,7 +92,7 @@ def _result(system: System, trajectory: Trajectory, seconds: dict[str, float], e
     for first, stop in blocks(trajectory.samples):
         part = slice(first, stop)
         states = States(trajectory.q[part], trajectory.v[part], trajectory.moved[part])
-        parts.append(histories(system, trajectory.time[part], *states))
+        parts.append(series_of(system, trajectory.time[part], states))
         see(checks, parts[-1])
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
     return RunResult(**_joined(parts), **documents(system, trajectory, checks, seconds, error))

@@ -17,7 +17,6 @@ from dynamics.integrators.checkpoint import fingerprint, restore
 from dynamics.integrators.march import Ending, March, ending, march_on, start_march
 from dynamics.integrators.state_sink import blocks
 from dynamics.integrators.state_spool import StateSpool
-from dynamics.results.histories import histories
 from dynamics.results.netcdf import attributes
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_file import RunFile
@@ -27,6 +26,7 @@ from dynamics.simulate.documents import (
     finer,
     measured_error,
     see,
+    series_of,
     squared_difference,
 )
 from dynamics.simulate.in_memory import require_equilibrium
@@ -198,7 +198,7 @@ def _series(system: System, leg: _Leg, samples: int) -> Iterator[dict[str, Any]]
     """Yield the series of all blocks."""
     rate = system.scene.outputs.sample_rate
     for first, stop in blocks(samples):
-        yield histories(system, np.arange(first, stop) / rate, *leg.spool.states(first, stop))
+        yield series_of(system, np.arange(first, stop) / rate, leg.spool.states(first, stop))
 
 
 def _remove(folder: Path) -> None:

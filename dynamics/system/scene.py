@@ -32,6 +32,8 @@ class Outputs:
         Store the force of every bearing, and its moment where a bearing holds tilt.
     displacements : bool
         Store displacement and velocity of every freedom.
+    accelerations : bool
+        Store the acceleration of the shaft at every bearing, and of every freedom if displacements are.
     energy_audit : bool
         Integrate the powers and close the balance at the end (a quarter more time).
     """
@@ -40,6 +42,7 @@ class Outputs:
     bearing_forces: bool = True
     displacements: bool = False
     energy_audit: bool = True
+    accelerations: bool = False
 
     def __post_init__(self) -> None:
         positive("sample_rate", self.sample_rate)

@@ -314,7 +314,12 @@ def _outputs(scene: SceneInput) -> Outputs:
     """Return what to store."""
     given = scene.outputs
     with _named("outputs"):
-        return Outputs(given.sample_rate_hz, given.bearing_forces, given.displacements)
+        return Outputs(
+            given.sample_rate_hz,
+            given.bearing_forces,
+            given.displacements,
+            accelerations=given.accelerations,
+        )
 
 
 def _integration(scene: SceneInput) -> Integration:

@@ -7,14 +7,21 @@ from typing import Any
 import numpy as np
 
 from dynamics.results import RunResult
+from dynamics.results.contact_state import contact_shares
 from service.report.bearing_force import bearing_force
 from service.report.bearing_spectrum import bearing_spectrum
+from service.report.campbell import campbell
 from service.report.dynamic_error import dynamic_error
+from service.report.dynamic_factor import dynamic_factor_figure
 from service.report.facts import facts, records
 from service.report.figure import Figure, Table, number
+from service.report.order_cuts import order_cuts
 from service.report.page import Headline, Section
+from service.report.planet_sharing import planet_sharing
 from service.report.run_series import RunSeries, run_series
+from service.report.sideband_table import sideband_tables
 
+LEAST_PITCHES = 64  # of a run whose orders are shown
 _LEDGER = {"effect": "effect", "part": "part", "on": "simulated", "reason": "because"}
 
 
@@ -43,7 +50,7 @@ def dynamic_results(run: RunResult) -> tuple[Section, ...]:
     series = run_series(run)
     text = "" if len(run.mesh) == 1 else f"Of {len(run.mesh)} meshes, {run.mesh[0]} is shown."
     motion = Section("Dynamic transmission error", text, figures=(dynamic_error(series),))
-    return motion, *_bearings(series)
+    return motion, *_bearings(series), *_orders(run), *_forces(run)
 
 
 def dynamic_making(run: RunResult) -> tuple[Section, ...]:
@@ -63,6 +70,41 @@ def _bearings(series: RunSeries) -> tuple[Section, ...]:
         return ()
     figures: tuple[Figure, ...] = (bearing_force(series), bearing_spectrum(series))
     return (Section("Bearing forces", figures=figures),)
+
+
+def _orders(run: RunResult) -> tuple[Section, ...]:
+    """Show the mesh orders over the run, for runs long enough to have them."""
+    if np.ptp(np.unwrap(run.position[0], period=1.0)) < LEAST_PITCHES:
+        return ()
+    figures = (campbell(run), order_cuts(run))
+    return (Section("Orders", figures=figures, tables=sideband_tables(run)),)
+
+
+def _forces(run: RunResult) -> tuple[Section, ...]:
+    """Show how dynamic the mesh force is, and how planets share it."""
+    figures = [] if planet_sharing(run) is None else [planet_sharing(run)]
+    if np.ptp(np.unwrap(run.position[0], period=1.0)) >= LEAST_PITCHES:
+        figures.insert(0, dynamic_factor_figure(run))
+    shown = tuple(figure for figure in figures if figure is not None)
+    return (Section("Mesh forces", figures=shown, tables=(_contact(run),)),)
+
+
+def _contact(run: RunResult) -> Table:
+    """Tabulate how long which flanks carry."""
+    shares = contact_shares(run)
+    states = tuple(shares[0])
+    rows = tuple(
+        (mesh, *(number(100.0 * found[state], 3) for state in states))
+        for mesh, found in zip(run.mesh, shares, strict=True)
+    )
+    head = (
+        "mesh",
+        *(
+            f"{state} flank{'s' if state == 'both' else ''}, %" if state != "off" else "apart, %"
+            for state in states
+        ),
+    )
+    return Table("Contact state, share of the samples", head, rows)
 
 
 def _effects(run: RunResult) -> Section:

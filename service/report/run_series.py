@@ -53,7 +53,7 @@ class RunSeries:
 
 def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
     """Take the series of one mesh out of a run."""
-    shaft = run.shaft.index(_driving_shaft(run, mesh))
+    shaft = run.shaft.index(driving_shaft(run, mesh))
     bearings = {name: run.bearing_force[k].T for k, name in enumerate(run.bearing)}
     return RunSeries(
         time=run.time,
@@ -68,7 +68,7 @@ def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
     )
 
 
-def _driving_shaft(run: RunResult, mesh: int) -> str:
+def driving_shaft(run: RunResult, mesh: int) -> str:
     """Name of the shaft that carries the driving gear."""
     driver = run.case["meshes"][mesh]["driver"]
     return str(next(gear["shaft"] for gear in run.case["gears"] if gear["name"] == driver))

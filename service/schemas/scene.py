@@ -132,6 +132,9 @@ class OutputsInput(BoundaryModel):
         default=True, description="Store forces and moments of every bearing", examples=[True]
     )
     displacements: bool = Field(default=False, description="Store every freedom", examples=[False])
+    accelerations: bool = Field(
+        default=False, description="Store the acceleration of the shaft at every bearing", examples=[False]
+    )
 
 
 class IntegrationInput(BoundaryModel):

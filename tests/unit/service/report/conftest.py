@@ -159,8 +159,12 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
     force = np.zeros((2, 3, time.size))
     force[1, 1] = -1000 + 10 * np.cos(phase) + 20 * np.sin(2 * phase)
     case = {
-        "meshes": [{"name": "mesh", "driver": "pinion"}],
-        "gears": [{"name": "pinion", "shaft": "input"}, {"name": "wheel", "shaft": "output"}],
+        "meshes": [{"name": "mesh", "driver": "pinion", "driven": "wheel"}],
+        "shafts": [{"name": "output"}, {"name": "input"}],
+        "gears": [
+            {"name": "pinion", "shaft": "input", "teeth": 20},
+            {"name": "wheel", "shaft": "output", "teeth": 20},
+        ],
         "outputs": {"sample_rate": rate},
     }
     return RunResult(

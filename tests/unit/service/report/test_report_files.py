@@ -20,7 +20,14 @@ def files(tmp_path: Path, database: SteDatabase, run: RunResult) -> tuple[Path, 
 
 
 STATIC = {"ste", "load_sharing", "mesh_stiffness", "database"}
-DYNAMIC = {"dynamic_error", "bearing_force", "bearing_spectrum"}
+DYNAMIC = {
+    "dynamic_error",
+    "bearing_force",
+    "bearing_spectrum",
+    "campbell",
+    "order_cuts",
+    "dynamic_factor",
+}
 
 
 def test_kinds_are_read_from_the_files(files: tuple[Path, Path]) -> None:

@@ -1,0 +1,147 @@
+"""Waterfalls: amplitude over speed and frequency, or over speed and mesh order, and cuts through them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.checks import integer
+from dynamics.errors import InputError
+from dynamics.orders.position_grid import check_series, resample_to_position
+from dynamics.orders.spectrum import spectrum
+from dynamics.results import RunResult
+from dynamics.types import FloatArray
+
+ON_LINE = 1e-6  # of a line's distance
+
+
+@dataclass(frozen=True)
+class Waterfall:
+    """Spectra of B blocks along a run.
+
+    Attributes
+    ----------
+    line : (K,) array
+        Frequencies in Hz, or orders in multiples of the mesh frequency, from 0, equally spaced.
+    time, mesh_frequency : (B,) arrays
+        Means of each block, s and Hz.
+    amplitude : (..., B, K) array
+        Peak amplitude under a Hann window, in `unit`; the mean at line 0.
+    unit : str
+    """
+
+    line: FloatArray
+    time: FloatArray
+    mesh_frequency: FloatArray
+    amplitude: FloatArray
+    unit: str
+
+    def cut(self, line: float) -> FloatArray:
+        """Return the amplitude over the run at one line, (..., B): an order cut where lines are orders.
+
+        Raises
+        ------
+        InputError
+            If there is no such line.
+        """
+        place = line / self.line[1]
+        nearest = round(place)
+        if abs(place - nearest) > ON_LINE or not 0 <= nearest < self.line.size:
+            bound = f"a multiple of {self.line[1]:g} up to {self.line[-1]:g}"
+            raise InputError("line", line, bound, "Longer blocks have more lines.")
+        return np.asarray(self.amplitude[..., nearest])
+
+
+@dataclass(frozen=True)
+class OrderTrack:
+    """Amplitudes of mesh orders along a run.
+
+    Attributes
+    ----------
+    order : (K,) array
+        Multiples of the mesh frequency, from 0.
+    time, mesh_frequency : (B,) arrays
+        Middle of each block, s and Hz.
+    amplitude : (..., B, K) array
+        Peak amplitude in the series' unit.
+    """
+
+    order: FloatArray
+    time: FloatArray
+    mesh_frequency: FloatArray
+    amplitude: FloatArray
+
+
+def order_waterfall(
+    result: RunResult, series: str, pitches: int = 16, highest: int = 10, mesh: int = 0
+) -> Waterfall:
+    """Return the spectra over mesh orders, up to `highest`, of blocks of `pitches` base pitches.
+
+    Orders are 1/`pitches` apart. A multiple of a gear's teeth puts the orders of its shaft on lines.
+
+    Raises
+    ------
+    InputError
+        If the run is shorter than one block, or has no such series.
+    """
+    unit = check_series(result, series)
+    integer("pitches", pitches, 1, 1_000_000)
+    integer("highest", highest, 1, 1000)
+    per_pitch = max(64, 8 * highest)
+    _, time, values = resample_to_position(result, getattr(result, series), per_pitch, mesh)
+    length = pitches * per_pitch
+    blocks = time.size // length
+    if blocks == 0:
+        raise InputError("pitches", pitches, f"at most {time.size // per_pitch}, the run's length")
+    cut = values[..., : blocks * length].reshape(*values.shape[:-1], blocks, length)
+    lines = spectrum(cut, float(per_pitch), unit)
+    middle = time[: blocks * length].reshape(blocks, length).mean(axis=1)
+    frequency = np.interp(middle, result.time, result.mesh_frequency[mesh])
+    wanted = slice(0, highest * pitches + 1)
+    return Waterfall(lines.frequency[wanted], middle, frequency, lines.amplitude[..., wanted], unit)
+
+
+def order_track(
+    result: RunResult, series: str, pitches: int = 16, highest: int = 10, mesh: int = 0
+) -> OrderTrack:
+    """Return the amplitudes of the mesh orders 0 to `highest` in blocks of `pitches` base pitches.
+
+    Raises
+    ------
+    InputError
+        If the run is shorter than one block.
+    """
+    whole = order_waterfall(result, series, pitches, highest, mesh)
+    orders = np.arange(highest + 1)
+    amplitude = whole.amplitude[..., orders * pitches]
+    return OrderTrack(orders.astype(float), whole.time, whole.mesh_frequency, amplitude)
+
+
+def frequency_waterfall(
+    result: RunResult, series: str, block: float, overlap: float = 0.5, mesh: int = 0
+) -> Waterfall:
+    """Return the spectra over frequency of blocks of `block` seconds that overlap by that share.
+
+    Raises
+    ------
+    InputError
+        If the run is shorter than one block, or has no such series.
+    """
+    unit = check_series(result, series)
+    length = round(block * result.sample_rate)
+    if not 4 <= length <= result.time.size:
+        bound = f"from {4.0 / result.sample_rate:g} s to the run's {result.time[-1]:g} s"
+        raise InputError("block", block, bound)
+    if not 0.0 <= overlap < 1.0:
+        raise InputError("overlap", overlap, "from 0 to below 1")
+    step = max(round(length * (1.0 - overlap)), 1)
+    first = np.arange(0, result.time.size - length + 1, step)
+    values = getattr(result, series)
+    lines = [spectrum(values[..., at : at + length], result.sample_rate, unit) for at in first]
+    time, mesh_frequency = (
+        np.array([over[at : at + length].mean() for at in first])
+        for over in (result.time, result.mesh_frequency[mesh])
+    )
+    amplitude = np.stack([found.amplitude for found in lines], axis=-2)
+    return Waterfall(lines[0].frequency, time, mesh_frequency, amplitude, unit)

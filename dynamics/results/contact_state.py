@@ -1,0 +1,33 @@
+"""Contact state of a mesh: which flanks touch."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.results.run_result import RunResult
+
+
+class ContactState(IntEnum):
+    """Which flanks of a mesh carry."""
+
+    OFF = 0
+    DRIVING = 1
+    COAST = 2
+    BOTH = 3
+
+
+def contact_state(result: RunResult) -> NDArray[np.int8]:
+    """Return a `ContactState` per mesh and sample, (m, T)."""
+    state = (result.mesh_force > 0.0).astype(np.int8)
+    if result.coast_force.size:
+        state += 2 * (result.coast_force > 0.0).astype(np.int8)
+    return state
+
+
+def contact_shares(result: RunResult) -> list[dict[str, float]]:
+    """Return per mesh the share of the samples in each state, by its name in lower case."""
+    found = contact_state(result)
+    return [{state.name.lower(): float(np.mean(row == state)) for state in ContactState} for row in found]

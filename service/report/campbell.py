@@ -1,0 +1,123 @@
+"""Campbell diagram: amplitude over speed and frequency, with mesh orders and natural modes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dynamics.orders import Waterfall, frequency_waterfall
+from dynamics.results import RunResult
+from service.report import palette
+from service.report.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    HeatMap,
+    Line,
+    Panel,
+    Reference,
+    Table,
+    number,
+    unit_of,
+)
+from service.report.run_signal import run_axis, shown_signal
+
+BLOCKS, LINES, ORDERS, SHOWN_MODES, DEPTH = 90, 220, 8, 8, 60.0
+ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
+
+
+def campbell(run: RunResult) -> Figure:
+    """Draw spectra of short blocks side by side."""
+    signal = shown_signal(run)
+    made = frequency_waterfall(run, signal.series, 2.0 * float(run.time[-1]) / BLOCKS)
+    amplitude = signal.of(made.amplitude)
+    axis, place = run_axis(run, made.time)
+    top = min((ORDERS + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
+    modes = _apart([float(f) for f in run.modes.get("frequency", ()) if 0.0 < f < top], 0.01 * top)
+    return Figure(
+        key="campbell",
+        title=f"Campbell diagram of the {signal.name}",
+        caption="Colour: amplitude of each block's spectrum (Hann window), in dB below the largest. Dotted: "
+        "multiples of the mesh frequency. Dashed: natural frequencies about the static equilibrium, one for "
+        "those that lie together.",
+        alternative=_words(made, amplitude, place, axis, modes),
+        content=(_panel(made, amplitude, axis, place, top, modes),),
+        table=_table(run, top),
+    )
+
+
+def _panel(
+    made: Waterfall, amplitude: FloatArray, axis: Axis, place: FloatArray, top: float, modes: list[float]
+) -> Panel:
+    """Colours, orders and modes."""
+    shade = _shade(made, amplitude, place, top)
+    ends = (float(shade.x[0]), float(shade.x[-1]))
+    lines = []
+    for order in range(1, ORDERS + 1):
+        height = order * made.mesh_frequency
+        seen = np.where(height <= top, height, np.nan)
+        lines.append(Line("mesh orders", place, seen, ORDER_COLOUR, "dot", 1.0))
+    marks = []
+    for index, mode in enumerate(modes):
+        lines.append(Line("natural modes", np.array(ends), np.full(2, mode), palette.ORANGE, "dash", 1.4))
+        marks.append(Reference(f"{number(mode, 4)} Hz", mode, "horizontal", 0.99 if index % 2 else 0.12))
+    x = Axis(axis.label, limits=ends)
+    return Panel(x, Axis("frequency, Hz", limits=(0.0, top)), tuple(lines), tuple(marks), shade=shade)
+
+
+def _apart(modes: list[float], least: float) -> list[float]:
+    """Leave out what would be drawn over another mode."""
+    kept: list[float] = []
+    for mode in sorted(modes):
+        if not kept or mode - kept[-1] > least:
+            kept.append(mode)
+    return kept[:SHOWN_MODES]
+
+
+def _shade(made: Waterfall, amplitude: FloatArray, place: FloatArray, top: float) -> HeatMap:
+    """Levels on an even grid of the axis; the loudest of the lines that fall into one cell."""
+    kept = np.flatnonzero((made.line > 0.0) & (made.line <= top))
+    group = max(int(np.ceil(kept.size / LINES)), 1)
+    kept = kept[: kept.size // group * group]
+    rows = amplitude[:, kept].reshape(amplitude.shape[0], -1, group).max(axis=-1)
+    order = np.argsort(place)
+    even = np.linspace(place.min(), place.max(), place.size)
+    middle = 0.5 * (place[order][1:] + place[order][:-1])
+    columns = rows[order][np.searchsorted(middle, even)]
+    level = 20.0 * np.log10(np.maximum(columns / max(float(columns.max()), 1e-300), 1e-12))
+    z = np.clip(level + DEPTH, 0.0, None).T
+    height = made.line[kept].reshape(-1, group).mean(axis=-1)
+    return HeatMap(even, height, z, f"level above −{DEPTH:g} dB of the largest, dB", DEPTH)
+
+
+def _words(made: Waterfall, amplitude: FloatArray, place: FloatArray, axis: Axis, modes: list[float]) -> str:
+    """Say where the largest amplitude is, and by which mode."""
+    block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
+    frequency = float(made.line[line + 1])
+    order = frequency / float(made.mesh_frequency[block])
+    where = f"at {number(float(place[block]), 3)} {unit_of(axis.label)}"
+    found = (
+        f"Largest: {number(float(amplitude[block, line + 1]), 3)} {made.unit} at {number(frequency, 4)} Hz "
+    )
+    found += f"{where}, mesh order {number(order, 3)}."
+    if modes:
+        near = min(modes, key=lambda mode: abs(mode - frequency))
+        found += f" The nearest natural frequency is {number(near, 4)} Hz."
+    return found
+
+
+def _table(run: RunResult, top: float) -> Table | None:
+    """List the natural modes and the mesh frequencies and orders that excite them."""
+    modes = run.modes
+    if not modes:
+        return None
+    low, high = float(run.mesh_frequency[0].min()), float(run.mesh_frequency[0].max())
+    rows = []
+    facts = zip(modes["frequency"], modes["damping_ratio"], modes["freedom"], strict=True)
+    for frequency, ratio, freedom in facts:
+        if not 0.0 < frequency < top:
+            continue
+        met = [k for k in range(1, ORDERS + 1) if low <= frequency / k <= high]
+        orders = ", ".join(f"{k} at {number(frequency / k, 3)} Hz" for k in met)
+        rows.append((number(frequency, 4), number(100.0 * ratio, 2), freedom, orders or "none"))
+    head = ("natural frequency, Hz", "damping ratio, %", "moves most", "met by mesh order at mesh frequency")
+    return Table("Natural modes in the range of the diagram", head, tuple(rows))

@@ -1,0 +1,81 @@
+"""Figures of orders: Campbell diagram, order cuts, dynamic factor, load sharing, sidebands."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from planetary_scenes import planetary_scene, published_set
+
+from dynamics.results import RunResult
+from dynamics.simulate import simulate
+from service.report.campbell import DEPTH, campbell
+from service.report.dynamic_factor import dynamic_factor_figure
+from service.report.dynamic_part import dynamic_results
+from service.report.figure import HeatMap, Panel
+from service.report.order_cuts import order_cuts
+from service.report.planet_sharing import planet_sharing
+from service.report.sideband_table import sideband_tables
+
+MODES = {
+    "frequency": [0.0, 300.0, 301.0, 900.0],
+    "damping_ratio": [0.0, 0.05, 0.05, 0.02],
+    "freedom": ["input.y"] * 4,
+}
+
+
+def panel(figure) -> Panel:
+    (found,) = figure.content
+    return found
+
+
+def test_the_campbell_diagram_is_loudest_along_the_second_order(run: RunResult) -> None:
+    figure = campbell(replace(run, modes=MODES))
+    shade = panel(figure).shade
+    assert isinstance(shade, HeatMap)
+    assert shade.z.max() == pytest.approx(DEPTH)
+    loudest = shade.y[np.argmax(shade.z, axis=0)]
+    np.testing.assert_allclose(loudest[20:], 2 * 20 * shade.x[20:] / 60, atol=11.3)  # half a line
+    modes = [line.y[0] for line in panel(figure).lines if line.name == "natural modes"]
+    assert modes == [300.0, 900.0]
+    assert figure.table is not None
+    assert figure.table.rows[0][:3] == ("300.0", "5.0", "input.y")
+    assert figure.table.rows[0][3].startswith("1 at 300 Hz, 2 at 150 Hz")
+
+
+def test_order_cuts_are_the_amplitudes_of_the_run(run: RunResult) -> None:
+    first, second, *others = panel(order_cuts(run)).lines
+    assert panel(order_cuts(run)).x.label == "speed of the driving gear, rpm"
+    middle = slice(3, -1)
+    np.testing.assert_allclose(first.y[middle], 10.0, rtol=0.02)
+    np.testing.assert_allclose(second.y[middle], 20.0, rtol=0.02)
+    assert max(line.y[middle].max() for line in others) < 0.3
+
+
+def test_at_constant_speed_the_axis_is_time(run: RunResult) -> None:
+    steady = replace(run, speed=np.full_like(run.speed, 50.0))
+    assert panel(order_cuts(steady)).x.label == "time, s"
+
+
+def test_the_dynamic_factor_of_a_constant_force_is_its_ratio(run: RunResult) -> None:
+    largest, mean, least = panel(dynamic_factor_figure(run)).lines
+    for line in (largest, mean, least):
+        np.testing.assert_allclose(line.y, 2660.0 / 2660.44, rtol=1e-12)
+
+
+def test_load_sharing_is_drawn_for_sun_and_ring_and_only_for_planets() -> None:
+    run = simulate(planetary_scene(published_set(3), duration=0.02))
+    figure = planet_sharing(run)
+    assert figure is not None
+    assert [part.title for part in figure.content] == ["sun", "ring"]
+    assert len(figure.table.rows) == 6
+    assert [section.title for section in dynamic_results(run)][-1] == "Mesh forces"
+
+
+def test_sidebands_are_tabulated_with_what_modulates(run: RunResult) -> None:
+    travel = np.unwrap(run.position[0], period=1.0)
+    force = run.bearing_force.copy()
+    force[1, 1] *= 1.0 + 0.3 * np.cos(2 * np.pi * travel / 20)
+    (table,) = sideband_tables(replace(run, bearing_force=force))
+    assert table.rows[0][0] in ("1", "2")
+    assert {row[1] for row in table.rows[:2]} <= {"+1 × pinion", "-1 × pinion", "+1 × wheel", "-1 × wheel"}
+    assert sideband_tables(replace(run, bearing_force=run.bearing_force)) == ()
