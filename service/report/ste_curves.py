@@ -38,7 +38,7 @@ def ste_curves(database: SteDatabase) -> Figure:
 
 
 def _limits(values: FloatArray) -> tuple[float, float]:
-    """Return the ends of the axis: from zero, unless all curves lie so far above it that no ripple would show."""
+    """Return the ends of the axis: from zero, unless the curves lie so far above it that no ripple shows."""
     top, low = float(np.nanmax(values)), float(np.nanmin(values))
     if low > _FAR * top:
         return low - _MARGIN * (top - low), top + _MARGIN * (top - low)
