@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from fe_contact.analysis import (
         ContactPattern,
         DeformedPair,
+        Frontier,
         LoadDistribution,
         RootStress,
         Sensitivity,
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
         contact_pattern,
         deformed_pairs,
         flank_results,
+        frontier,
         root_stress,
         study_sensitivity,
     )
@@ -47,6 +49,7 @@ __all__ = [
     "Estimate",
     "FlankGrid",
     "FlankModification",
+    "Frontier",
     "Gear",
     "GearBlank",
     "GearPair",
@@ -64,6 +67,7 @@ __all__ = [
     "contact_pattern",
     "deformed_pairs",
     "flank_results",
+    "frontier",
     "root_stress",
     "study_sensitivity",
 ]
@@ -73,6 +77,8 @@ _HOME = {
     "contact_pattern": "fe_contact.analysis",
     "deformed_pairs": "fe_contact.analysis",
     "flank_results": "fe_contact.analysis",
+    "frontier": "fe_contact.analysis",
+    "Frontier": "fe_contact.analysis",
     "root_stress": "fe_contact.analysis",
     "study_sensitivity": "fe_contact.analysis",
     "ContactPattern": "fe_contact.analysis",

@@ -4,6 +4,7 @@ from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.contact_pattern import ContactPattern, contact_pattern
 from fe_contact.analysis.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.analysis.flank_results import flank_results
+from fe_contact.analysis.frontier import Frontier, frontier
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.request import check_request
 from fe_contact.analysis.root_stress import RootStress, root_stress
@@ -13,6 +14,7 @@ from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sens
 __all__ = [
     "ContactPattern",
     "DeformedPair",
+    "Frontier",
     "LoadDistribution",
     "RippleCurve",
     "RootPassage",
@@ -25,6 +27,7 @@ __all__ = [
     "contact_pattern",
     "deformed_pairs",
     "flank_results",
+    "frontier",
     "load_distribution",
     "root_stress",
     "study_sensitivity",

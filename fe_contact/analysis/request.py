@@ -132,6 +132,11 @@ def check_request(
         dict(effects or {}),
         None if pitches is None else integer("pitches", pitches, 1, LARGEST_PERIOD),
     )
+    return check_asked(request, whole_table=whole_table)
+
+
+def check_asked(request: Request, *, whole_table: bool = True) -> Checked:
+    """Compose the model of a request and refuse what it cannot hold; parameters of `check_request`."""
     composed, ledger = compose(request.scene, request.choices, EFFECTS)
     if not composed.across_face:
         refuse_beyond_plane(request.scene)

@@ -11,8 +11,9 @@ from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import STEEL
 
+MEASURED_OVER_THEORY = 0.8
+"""C_M: measured gears against the theoretical stiffness."""
 _PER_MM_UM = 1e9  # N/(mm um) in N/m per m of face width
-_CORRECTION = 0.8  # C_M: measured gears against the theoretical stiffness
 _THINNEST_WEB = 0.2  # b_s/b
 _THINNEST_RIM = 1.0  # s_R/m_n
 _LOW_LINE_LOAD = 1e5  # N/m (100 N/mm): below it the stiffness falls with the load
@@ -60,7 +61,12 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
     rack = 0.5 * (_rack_factor(pair.pinion) + _rack_factor(pair.wheel))
     body = 0.5 * (blank_factor(pair.pinion) + blank_factor(pair.wheel))
     single = (
-        theoretical * _CORRECTION * body * rack * math.cos(pair.pinion.helix_angle) * _modulus_ratio(pair)
+        theoretical
+        * MEASURED_OVER_THEORY
+        * body
+        * rack
+        * math.cos(pair.pinion.helix_angle)
+        * _modulus_ratio(pair)
     )
     if line_load is not None:
         single *= min(1.0, positive("line_load", line_load) / _LOW_LINE_LOAD)

@@ -260,6 +260,25 @@ def sensitivity(
     run_sensitivity(cases, output, misalignment_um, center_distance_change_percent, as_json=json)
 
 
+@app.command(epilog="Example: loa frontier examples/palermo_spur_20_20.toml -o frontier")
+@guarded
+def frontier(
+    case: Annotated[Path, typer.Argument(help="Case file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder, or a file ending in .png, .html, .json."),
+    ] = None,
+    rungs: Annotated[
+        str | None, typer.Option(help="Rungs to run, separated by commas; default: all that are valid.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Run the accuracy ladder on a case: error against time, from ISO 6336 to fine finite elements."""
+    from service.cli.frontier import run_frontier  # noqa: PLC0415 (start-up time)
+
+    run_frontier(case, output, rungs, as_json=json)
+
+
 @app.command(epilog="Example: loa serve --port 8321 --workers 2")
 @guarded
 def serve(

@@ -24,7 +24,7 @@ class Axis:
 
 @dataclass(frozen=True)
 class Line:
-    """A curve. NaN breaks it. `x` and `y` have the shape (n,)."""
+    """A curve, or points if `width` is 0. NaN breaks it. `x` and `y` have the shape (n,)."""
 
     name: str
     x: FloatArray
@@ -32,6 +32,7 @@ class Line:
     colour: str
     dash: Dash = "solid"
     width: float = 1.8
+    markers: bool = False
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,15 @@ class Reference:
     value: float
     direction: Literal["horizontal", "vertical"] = "vertical"
     at: float = 0.5
+
+
+@dataclass(frozen=True)
+class Note:
+    """A short text above right of a point."""
+
+    x: float
+    y: float
+    text: str
 
 
 @dataclass(frozen=True)
@@ -88,6 +98,7 @@ class Panel:
     references: tuple[Reference, ...] = ()
     title: str = ""
     shade: HeatMap | Strokes | None = None
+    notes: tuple[Note, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,10 @@ def _legend_columns(names: list[str]) -> int:
 
 def _draw(ax: Axes, line: Line) -> Any:
     """Draw one curve and return its handle."""
-    (handle,) = ax.plot(line.x, line.y, color=line.colour, ls=_DASH[line.dash], lw=line.width * 0.8)
+    stroke: dict[str, Any] = {"color": line.colour, "ls": _DASH[line.dash], "lw": line.width * 0.8}
+    if line.markers:
+        stroke |= {"marker": "o", "ms": 6}
+    (handle,) = ax.plot(line.x, line.y, **stroke)
     return handle
 
 
@@ -81,6 +84,8 @@ def _finish(ax: Axes, panel: Panel) -> None:
         _scale(ax, axis, name)
     for reference in panel.references:
         _refer(ax, reference, boxed=panel.shade is not None)
+    for note in panel.notes:
+        ax.annotate(note.text, (note.x, note.y), (5, 4), textcoords="offset points", fontsize=8)
     if panel.title:
         ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold")
     ax.grid(color=palette.GRID, lw=0.6)

@@ -59,7 +59,7 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
         if repeats_below(panels, index):
             layout["xaxis" + suffix] |= {"title": {"text": ""}}
         layout["yaxis" + suffix] = _axis(panel.y) | place
-        layout["annotations"] += _panel_title(panel, suffix)
+        layout["annotations"] += _panel_title(panel, suffix) + _notes(panel, suffix)
         if panel.shade is not None:
             data += shade_traces(panel.shade, suffix, domain)
         for line in panel.lines:
@@ -117,7 +117,7 @@ def _line(line: Line, suffix: str, show: bool) -> Json:
     """One curve; curves of one name share a legend entry."""
     return {
         "type": "scatter",
-        "mode": "lines",
+        "mode": "lines" if not line.markers else "lines+markers" if line.width else "markers",
         "name": line.name,
         "x": numbers(line.x),
         "y": numbers(line.y),
@@ -136,6 +136,17 @@ def _panel_title(panel: Panel, suffix: str) -> list[Json]:
     place = {"xref": f"x{suffix} domain", "yref": f"y{suffix} domain", "x": 0, "y": 1}
     anchor = {"xanchor": "left", "yanchor": "bottom", "showarrow": False}
     return [place | anchor | {"text": f"<b>{panel.title}</b>"}]
+
+
+def _notes(panel: Panel, suffix: str) -> list[Json]:
+    """Put short texts beside their points; annotations count decades on a logarithmic axis."""
+    found = []
+    for note in panel.notes:
+        place = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}
+        for name, axis, value in (("x", panel.x, note.x), ("y", panel.y, note.y)):
+            place[name] = float(np.log10(value)) if axis.scale == "log" else value
+        found.append(place | {"xanchor": "left", "yanchor": "bottom", "xshift": 4, "font": {"size": 12}})
+    return found
 
 
 def _add_reference(layout: Json, reference: Reference, panel: Panel, suffix: str) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from service.report.content import page_of
 from service.report.image import png
 from service.report.inputs import Inputs, read_inputs
-from service.report.page import html
+from service.report.page import Page, html
 
 
 def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | None = None) -> list[Path]:
@@ -40,7 +40,11 @@ def write_report(inputs: Path | Sequence[Path], output: Path, images: Path | Non
 
 def write_page(read: Inputs, output: Path, images: Path | None = None) -> list[Path]:
     """Write the page of what was read; parameters and result are those of `write_report`."""
-    page = page_of(read)
+    return write_whole(page_of(read), output, images)
+
+
+def write_whole(page: Page, output: Path, images: Path | None = None) -> list[Path]:
+    """Write a page put together elsewhere; parameters and result are those of `write_report`."""
     drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
     _write(output, html(page, drawn).encode("utf-8"))
     written = [output]

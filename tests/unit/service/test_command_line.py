@@ -24,7 +24,18 @@ from typer.testing import CliRunner, Result
 from service.cli.commands import app
 
 ROOT = Path(__file__).parents[3]
-VERBS = ("analyze", "ste", "root-stress", "simulate", "report", "sensitivity", "serve", "submit", "fetch")
+VERBS = (
+    "analyze",
+    "ste",
+    "root-stress",
+    "simulate",
+    "report",
+    "sensitivity",
+    "frontier",
+    "serve",
+    "submit",
+    "fetch",
+)
 
 
 def loa(*arguments: object) -> Result:

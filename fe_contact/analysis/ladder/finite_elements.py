@@ -1,0 +1,70 @@
+"""The rungs of finite elements: `analyze` with a model and a mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from fe_contact.analysis.compute_database import Progress, compute_database
+from fe_contact.analysis.request import Checked, check_asked
+from fe_contact.effects import FaceLoadDistribution, FiniteWidth
+from fe_contact.errors import InputError
+from fe_contact.planning import Accuracy
+from fe_contact.planning.discretisation import PLANE_REFINEMENT
+from fe_contact.ste import SteDatabase
+
+SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}
+"""Modules; of `SectorRecipe`."""
+
+
+@dataclass(frozen=True)
+class FiniteElementRung:
+    """A model and a mesh of `analyze`.
+
+    Attributes
+    ----------
+    name, title : str
+    model : str
+        "plane_strain", "3d", or "auto" for the plane corrected for its finite width.
+    level : str
+        "draft", "standard" or "fine".
+    """
+
+    name: str
+    title: str
+    model: str
+    level: str
+
+    @property
+    def family(self) -> str:
+        """Rungs of one family differ by their mesh only."""
+        return self.model
+
+    @property
+    def element_size(self) -> float:
+        """Size of the elements beside that of the other rungs of the family."""
+        return SECTOR_FLANK_SIZE[self.level] if self.model == "3d" else 1.0 / PLANE_REFINEMENT[self.level]
+
+    def refusal(self, checked: Checked) -> str | None:
+        """Say why the rung is not valid: no plane holds what acts across the face."""
+        try:
+            self.as_asked(checked)
+        except InputError as error:
+            return f"{error.field} must be {error.bound}"
+        return None
+
+    def as_asked(self, checked: Checked) -> Checked:
+        """Return the request with this model and mesh; explicit choices of other effects stay."""
+        request = checked.request
+        accuracy = Accuracy(level=self.level, model=self.model, positions=request.accuracy.positions)
+        own = (FaceLoadDistribution.name, FiniteWidth.name)
+        effects = {name: choice for name, choice in request.effects.items() if name not in own}
+        if self.model == "auto":
+            effects |= {FaceLoadDistribution.name: "off", FiniteWidth.name: "on"}
+        asked = replace(request, accuracy=accuracy, effects=effects)
+        return check_asked(asked)
+
+    def run(self, checked: Checked, progress: Progress, cache: Path | None) -> SteDatabase:
+        """Compute the table."""
+        asked = self.as_asked(checked)
+        return compute_database(asked, asked.request.to_json(), progress, cache)

@@ -1,0 +1,27 @@
+"""The accuracy ladder at the boundary: from a case to its frontier."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from fe_contact.analysis.frontier import Frontier, frontier
+from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.schemas import Case
+
+
+def frontier_of(
+    case: Case, rungs: Sequence[str] | None, progress: Callable[[str, float], None] | None = None
+) -> Frontier:
+    """Run the ladder on a case, whose pitch deviations are left aside with their number of pitches.
+
+    Raises
+    ------
+    BadInput
+        No such pair or rung.
+    JobFailed
+        Fewer than two rungs gave a table.
+    """
+    pair = gear_pair(case)
+    asked = {name: value for name, value in analysis_arguments(case).items() if name != "pitches"}
+    with boundary_errors():
+        return frontier(pair, **asked, rungs=rungs, progress=progress)

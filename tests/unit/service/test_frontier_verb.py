@@ -1,0 +1,85 @@
+"""``loa frontier``: JSON, page and picture of a ladder; refusals by name."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from fe_contact.analysis.frontier import Frontier, RungResult
+from service.cli.commands import app
+from service.report.frontier import frontier_figure, frontier_page, frontier_table
+from service.report.image import png
+from service.report.interactive import plotly_figure
+from service.report.page import html
+
+EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
+
+
+def ladder(name: str, seconds: float, error: float) -> RungResult:
+    one = np.ones(1)
+    return RungResult(name, name, one, one, 0.1, error, 2.0 * error, seconds, {"contact": seconds}, 2**20)
+
+
+@pytest.fixture
+def found() -> Frontier:
+    rungs = (ladder("iso6336", 1e-2, 0.3), ladder("corrected", 1.0, 1e-3), ladder("3d_fine", 9.0, 5e-4))
+    return Frontier(rungs, {"3d_draft": "no mesh"}, 64, "corrected", "3d_fine")
+
+
+def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
+    figure = frontier_figure(found)
+    texts = [note.text for note in figure.content[0].notes]
+    assert texts == ["iso6336", "corrected (knee)", "3d fine (chosen, reference)"]
+    assert png(figure).startswith(b"\x89PNG")
+    layout = plotly_figure(figure)["layout"]
+    at = [note for note in layout["annotations"] if note["text"] == "corrected (knee)"]
+    assert [(note["x"], note["y"]) for note in at] == [
+        (0.0, pytest.approx(-1.0)),
+        (0.0, pytest.approx(np.log10(0.2))),
+    ]
+
+
+def test_the_peer_costs_its_published_time_for_the_same_table(found: Frontier) -> None:
+    peer = next(
+        line for line in frontier_figure(found).content[0].lines if line.name.startswith("full contact")
+    )
+    assert peer.x.tolist() == [12.0 * 64, 30.0 * 64, 75.0 * 64]
+    np.testing.assert_allclose(peer.y, [0.06, 0.02, 0.02])
+    assert "CalculiX 2.20" in frontier_figure(found).caption
+
+
+def test_the_page_says_what_was_not_run(found: Frontier) -> None:
+    page = frontier_page(found, "Ladder")
+    text = html(page, {"frontier": b""})
+    assert "no mesh" in text
+    assert len(frontier_table(found).rows) == 3 + 3
+
+
+def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:
+    lonely = ladder("3d_fine", 9.0, float("nan"))
+    whole = Frontier((*found.results[:2], lonely), {}, 64, None, None).to_json()
+    json.dumps(whole, allow_nan=False)
+    assert "mean_error" not in whole["rungs"][2]
+    frontier_figure(Frontier((*found.results[:2], lonely), {}, 64, None, None))
+
+
+def test_the_verb_writes_what_it_prints(tmp_path: Path) -> None:
+    output = tmp_path / "frontier.json"
+    done = CliRunner().invoke(
+        app, ["frontier", str(EXAMPLE), "-o", str(output), "--rungs", "iso6336,thin_slices", "--json"]
+    )
+    assert done.exit_code == 0, done.output
+    printed = json.loads(done.stdout)
+    assert printed.pop("written") == [str(output)]
+    assert printed == json.loads(output.read_text(encoding="utf-8"))
+    assert printed["reference"] == "thin_slices"
+    assert printed["solves"] == 64 * 12
+
+
+def test_unknown_rungs_and_files_are_said_by_name(tmp_path: Path) -> None:
+    for arguments, said in ((["--rungs", "4d"], "rungs"), (["-o", str(tmp_path / "x.pdf")], "output")):
+        done = CliRunner().invoke(app, ["frontier", str(EXAMPLE), *arguments])
+        assert done.exit_code == 2
+        assert said in done.stderr
