@@ -23,6 +23,7 @@ from dynamics.forces.spatial_flank import SpatialFlankLaws, spatial_energy, spat
 from dynamics.forces.speed_torque import SpeedTorqueLaws, speed_torque
 from dynamics.forces.spring_curve import SpringCurveLaws, spring_curve, spring_curve_energy
 from dynamics.forces.table_energy import table_energy
+from dynamics.forces.turning import TurningLaws, turning, turning_energy
 from dynamics.types import FloatArray, IntArray
 
 
@@ -34,11 +35,13 @@ class Law(IntEnum):
     ROLLING_CONTACT = 2  # p = 2: a rolling bearing's radial force
     SPRING_CURVE = 3  # p = 1: a bearing's force by displacement in one direction
     SPATIAL_FLANK = 4  # p = 1 to 3: a flank that feels misalignment, centre distance, or acts off mid-face
+    TURNING = 5  # p = 2 or 3: gyroscopic moments, Coriolis and centripetal terms
 
 
 FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
 ROLLING_CONTACT, SPRING_CURVE = int(Law.ROLLING_CONTACT), int(Law.SPRING_CURVE)
 SPATIAL_FLANK = int(Law.SPATIAL_FLANK)
+TURNING = int(Law.TURNING)
 
 
 class ElementLaws(NamedTuple):
@@ -49,6 +52,7 @@ class ElementLaws(NamedTuple):
     rolling_contact: RollingContactLaws
     spring_curve: SpringCurveLaws
     spatial_flank: SpatialFlankLaws
+    turning: TurningLaws
 
 
 class Elements(NamedTuple):
@@ -71,6 +75,8 @@ class Elements(NamedTuple):
         flanks, whose coordinates that motion does not change.
     stiffness : (R,) array
         Typical stiffness of bearings, N/m, for error norms and first guesses; 0 for all others.
+    speed : (E, 2, k) array
+        Spin of a shaft and speed of its frame per unit speed of each law; for turning terms.
     laws : ElementLaws
     """
 
@@ -81,6 +87,7 @@ class Elements(NamedTuple):
     offset: FloatArray
     drift: FloatArray
     stiffness: FloatArray
+    speed: FloatArray
     laws: ElementLaws
 
 
@@ -97,6 +104,8 @@ class LocalState(NamedTuple):
         y (m) and y' (m/s), those of the deviations from the kinematic motion.
     drift : (R,) array
         What the kinematic motion adds to the rates, m/s.
+    speed : (E, 2) array
+        Spin and speed of the frame in the kinematic motion, rad/s.
     force, elastic : (R,) arrays
         f and the part of it that stores energy, N.
     tangent, viscous : (R, P) arrays
@@ -110,6 +119,7 @@ class LocalState(NamedTuple):
     coordinate: FloatArray
     rate: FloatArray
     drift: FloatArray
+    speed: FloatArray
     force: FloatArray
     elastic: FloatArray
     tangent: FloatArray
@@ -127,6 +137,7 @@ def make_local(elements: Elements, meshes: int) -> LocalState:
         np.zeros(rows),
         np.zeros(rows),
         np.zeros(rows),
+        np.zeros((count, 2)),
         np.zeros(rows),
         np.zeros(rows),
         np.zeros((rows, most)),
@@ -182,6 +193,19 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
             local.viscous,
             local.hint[e],
         )
+    elif elements.law[e] == TURNING:
+        turning(
+            elements.laws.turning,
+            place,
+            row,
+            (local.speed[e, 0], local.speed[e, 1]),
+            local.coordinate,
+            local.rate,
+            local.force,
+            local.elastic,
+            local.tangent,
+            local.viscous,
+        )
 
 
 @inner
@@ -206,6 +230,9 @@ def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, flo
             elements.laws.spatial_flank, place, local.position[elements.mesh[e]], row, local.coordinate
         )
         return energy, slope
+    if elements.law[e] == TURNING:
+        speed = (local.speed[e, 0], local.speed[e, 1])
+        return turning_energy(elements.laws.turning, place, row, speed, local.coordinate), 0.0
     return 0.0, 0.0
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import FLANK, Elements, LocalState, potential
+from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, Elements, LocalState, potential
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray
@@ -34,7 +34,7 @@ def _in_elements(elements: Elements, local: LocalState) -> tuple[float, float]:
     """Energies that flanks and that bearings store."""
     mesh, bearing = 0.0, 0.0
     for e in range(elements.law.size):
-        if elements.law[e] == FLANK:
+        if elements.law[e] == FLANK or elements.law[e] == SPATIAL_FLANK:
             mesh += potential(elements, local, e)[0]
         else:
             bearing += potential(elements, local, e)[0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dynamics.forces.compiled import inner
-from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, SPEED_TORQUE, supplied_power
+from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, SPEED_TORQUE, TURNING, supplied_power
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.system.arrays import SystemArrays
@@ -32,9 +32,10 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
         for i in range(velocity.size):
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
-    lost_in_bearings, mesh, supplied = _in_elements(system, work)
+    lost_in_bearings, mesh, supplied, kept = _in_elements(system, work)
     bushing, position = lost_in_bearings, 0.0
     loads += supplied
+    drives -= kept
     for i in range(velocity.size):
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
     axes = 0.0
@@ -56,9 +57,13 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 
 
 @inner
-def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float]:
-    """Return the powers that bearings and flanks dissipate, and the one that torques by speed supply."""
-    bearing, mesh, supplied = 0.0, 0.0, 0.0
+def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float, float]:
+    """Return the powers that bearings and flanks dissipate and that torques by speed supply.
+
+    Then that which the kinematic motion exchanges with turning frames: kinetic energy in the product of
+    displacements and speeds, which the balance does not hold.
+    """
+    bearing, mesh, supplied, kept = 0.0, 0.0, 0.0, 0.0
     for e in range(system.elements.law.size):
         for r in range(system.elements.first[e], system.elements.first[e + 1]):
             lost = (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
@@ -68,7 +73,9 @@ def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, f
                 mesh += lost
             else:
                 bearing += lost
-    return bearing, mesh, supplied
+                if system.elements.law[e] == TURNING:
+                    kept += work.force[r] * work.local.drift[r]
+    return bearing, mesh, supplied, kept
 
 
 @inner

@@ -64,7 +64,7 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
     arrays = system.arrays
     rest = np.zeros(start.displacement.size)
-    balance = force_balance(arrays, time, start.displacement, rest, rest)
+    balance = force_balance(arrays, time, start.displacement, rest, rest, turning=False)
     free = arrays.reference.freedom >= 0
     names, strain, coefficient = _springs(system, balance.local.tangent)
     return LinearSystem(

@@ -17,11 +17,10 @@ from dynamics.system.bearing_elements import (
     bearing_elements,
     bearing_loads,
     bearing_places,
-    nonlinear_worths,
 )
-from dynamics.system.bearing_rest import rest_on_bearings, with_tangent
+from dynamics.system.bearing_rest import linear_scene
 from dynamics.system.coupling_rows import CouplingRows, gather_couplings
-from dynamics.system.effects import FREEDOMS, MeshOnRotor, SupportedRotor
+from dynamics.system.effects import FREEDOMS
 from dynamics.system.effects.bearing_clearance import BearingClearance
 from dynamics.system.effects.ledger import EffectLedger, keep_ledger, with_mesh_effects
 from dynamics.system.elements import Element, gradients, pack_elements
@@ -39,7 +38,6 @@ from dynamics.system.line_of_action import LineOfAction, line_of_action
 from dynamics.system.loaded_meshes import loaded_meshes
 from dynamics.system.mesh_axes import mesh_axes
 from dynamics.system.nominal_forces import nominal_forces
-from dynamics.system.observation import local_state
 from dynamics.system.planets import kinematic_vectors, turning_inertia
 from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.system.rotor import Rotor, build_rotor
@@ -47,7 +45,10 @@ from dynamics.system.scene import Scene
 from dynamics.system.seats import Seats, gather_seats, seated
 from dynamics.system.spatial_elements import spatial_elements
 from dynamics.system.speed_elements import speed_elements
+from dynamics.system.supported_rotors import supported_rotors
 from dynamics.system.supports import Supports, gather_supports
+from dynamics.system.turning_elements import turning_elements
+from dynamics.system.turning_rotors import turning_rotors
 from dynamics.types import FloatArray, IntArray
 
 GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
@@ -118,36 +119,11 @@ def assemble(scene: Scene) -> System:
     system = _assemble(scene)
     if not system.bearings or scene.effects.get(BearingClearance().name) != "off":
         return system
-    return replace(_assemble(with_linear_bearings(system)), ledger=system.ledger)
-
-
-def with_linear_bearings(system: System) -> Scene:
-    """Return the scene with linear bushings in place of bearings that are not.
-
-    They have the tangent stiffness and damping, and by their preload the force, of where the bodies rest on
-    the bearings under the nominal mesh forces and the loads at t = 0.
-    """
-    arrays, scene, first = system.arrays, system.scene, len(system.elements) - len(system.bearings)
-    torque = np.array([float(load.torque(0.0)) for load in scene.loads])
-    mesh_force = system.flanks.nominal_force @ arrays.direction[system.driving_rows]
-    force = arrays.constant + torque @ arrays.load.direction - mesh_force
-    q = rest_on_bearings(arrays, arrays.stiffness, force)
-    local = local_state(arrays, 0.0, q, np.zeros(q.size))
+    mesh_force = system.flanks.nominal_force @ system.arrays.direction[system.driving_rows]
+    bearings = [(system.supports.name[at.support], at) for at in system.bearings]
     bushings = {part.name: part for rotor in system.rotors for part in rotor.bushings}
-    for number, at in enumerate(system.bearings):
-        start = int(arrays.elements.first[first + number])
-        rows, size = slice(start, start + len(at.direction)), len(at.direction)
-        name = system.supports.name[at.support]
-        bushings[name] = with_tangent(
-            bushings[name],
-            at,
-            local.force[rows],
-            local.tangent[rows, :size],
-            local.viscous[rows, :size],
-            local.coordinate[rows],
-        )
-    linear = tuple(bushings[part.name] for part in scene.bushings)
-    return replace(scene, bushings=linear, rolling_contacts=(), spring_curves=())
+    linear = linear_scene(scene, system.arrays, bearings, bushings, -mesh_force)
+    return replace(_assemble(linear), ledger=system.ledger)
 
 
 def _assemble(scene: Scene) -> System:
@@ -164,7 +140,9 @@ def _assemble(scene: Scene) -> System:
     _check_rotation(rotors, kinematics)
     polar = [rotor.inertia.polar for rotor in rotors]
     flanks = flank_laws(scene, kinematics, forces, polar)
-    on_rotors = keep_ledger(scene.effects, _supported(scene, rotors, lines, forces, loads))
+    turns = turning_rotors(scene, kinematics, rotors)
+    carried = supported_rotors(scene, rotors, lines, forces, loads, turns)
+    on_rotors = keep_ledger(scene.effects, carried)
     freedoms = find_freedoms(rotors, kinematics, on_rotors)
     _check_mass(freedoms, rotors)
     senses = kinematics.mesh_sense
@@ -176,9 +154,13 @@ def _assemble(scene: Scene) -> System:
     plain = flank_elements(scene, rotors, senses, lines, flanks)
     in_space, spatial_laws = spatial_elements(scene, rotors, senses, flanks, plain, ledger)
     by_speed, speed_laws = speed_elements(scene, kinematics)
+    vectors = kinematic_vectors(rotors, kinematics)
+    by_turning, turning_laws = turning_elements(
+        scene, rotors, kinematics, vectors, freedoms, supports, seats, ledger
+    )
     on_bearings, contact_laws, curve_laws = bearing_elements(scene, rotors, bearings, loads)
-    elements = (*in_space, *by_speed, *on_bearings)
-    laws = ElementLaws(flanks.law, speed_laws, contact_laws, curve_laws, spatial_laws)
+    elements = (*in_space, *by_speed, *by_turning, *on_bearings)
+    laws = ElementLaws(flanks.law, speed_laws, contact_laws, curve_laws, spatial_laws, turning_laws)
     arrays = _arrays(scene, rotors, kinematics, freedoms, flanks, elements, laws, supports, seats, couplings)
     tilted = bool(seats.name) or any(kind >= 3 for at in bearings for kind in at.direction)
     return System(
@@ -231,44 +213,6 @@ def _on_ground(
     full = np.concatenate([plain, np.zeros_like(plain)], axis=1)
     full[seats.place, :SEAT] += (matrix @ freedoms.keep(seats.motion)).reshape(-1, SEAT, plain.shape[2])
     return full
-
-
-def _supported(
-    scene: Scene,
-    rotors: Sequence[Rotor],
-    lines: Sequence[LineOfAction],
-    forces: FloatArray,
-    loads: dict[str, float],
-) -> list[SupportedRotor]:
-    """Gather what the effects decide on; a carrier feels the meshes of its planets at their pins."""
-    meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
-    for mesh, line, force in zip(scene.meshes, lines, forces, strict=True):
-        for name in (mesh.driver, mesh.driven):
-            gear = scene.gear(name)
-            index = scene.shaft_index(gear.shaft)
-            lever = float(line.point[2] - rotors[index].center[2])
-            radius = gear.base_radius / math.cos(line.working_pressure_angle)
-            axial = abs(float(line.force[2]))
-            meshes[index].append(MeshOnRotor(float(force), lever, axial, radius))
-            carrier = rotors[index].carrier
-            if carrier is not None:
-                arm = rotors[index].center - rotors[carrier].center
-                on_carrier = MeshOnRotor(float(force), float(arm[2]), axial, float(np.hypot(arm[0], arm[1])))
-                meshes[carrier].append(on_carrier)
-    clearances = nonlinear_worths(scene, loads)
-    return [
-        SupportedRotor(
-            rotor.shaft.name,
-            rotor.shaft.length,
-            rotor.radial_stiffness,
-            rotor.axial_stiffness,
-            rotor.tilt_stiffness,
-            rotor.elastic_lever,
-            tuple(on_rotor),
-            tuple(worth for name, worth in clearances if name == rotor.shaft.name),
-        )
-        for rotor, on_rotor in zip(rotors, meshes, strict=True)
-    ]
 
 
 def _arrays(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from dynamics.joints.matrix import Matrix
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.bearing_elements import BearingElement
 from dynamics.system.observation import local_state
+from dynamics.system.scene import Scene
 from dynamics.types import FloatArray, IntArray
 
 ITERATIONS = 200
@@ -62,6 +64,37 @@ def _springs(
             stiffness[first] = local.tangent[first, 0]
             offset[first] = local.force[first] - local.tangent[first, 0] * local.coordinate[first]
     return stiffness[rows], offset[rows]
+
+
+def linear_scene(
+    scene: Scene,
+    arrays: SystemArrays,
+    bearings: Sequence[tuple[str, BearingElement]],
+    bushings: Mapping[str, Bushing],
+    push: FloatArray,
+) -> Scene:
+    """Return the scene with linear bushings in place of bearings that are not.
+
+    They have the tangent stiffness and damping, and by their preload the force, of where the bodies rest on
+    the bearings under the forces `push` (n,) of the meshes and the loads at t = 0. `bearings` are the last
+    elements with the names of their bushings, `bushings` these with their dampings filled in.
+    """
+    torque = np.array([float(load.torque(0.0)) for load in scene.loads])
+    q = rest_on_bearings(arrays, arrays.stiffness, arrays.constant + torque @ arrays.load.direction + push)
+    local, found = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(bushings)
+    first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]
+    for start, (name, at) in zip(first, bearings, strict=False):
+        size = len(at.direction)
+        rows = slice(start, start + size)
+        state = (
+            local.force[rows],
+            local.tangent[rows, :size],
+            local.viscous[rows, :size],
+            local.coordinate[rows],
+        )
+        found[name] = with_tangent(found[name], at, *state)
+    linear = tuple(found[part.name] for part in scene.bushings)
+    return replace(scene, bushings=linear, rolling_contacts=(), spring_curves=())
 
 
 def with_tangent(

@@ -28,6 +28,8 @@ class Element:
         m.
     drift : (p, k) array or None
         Rate of the coordinates per unit speed of each law of the kinematic motion, m/rad; None: 0.
+    speed : (2, k) array or None
+        Spin and speed of the frame per unit speed of each law, for turning terms; None: 0.
     stiffness : (p,) array or None
         Typical stiffness of a bearing, N/m; None: 0.
     """
@@ -39,6 +41,7 @@ class Element:
     offset: FloatArray
     drift: FloatArray | None = None
     stiffness: FloatArray | None = None
+    speed: FloatArray | None = None
 
 
 def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) -> Elements:
@@ -51,6 +54,7 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
         np.zeros(element.offset.size) if element.stiffness is None else element.stiffness
         for element in elements
     ]
+    speed = [np.zeros((2, motions)) if element.speed is None else element.speed for element in elements]
     sizes = [element.offset.size for element in elements]
     return Elements(
         np.array([int(element.law) for element in elements], dtype=np.int64),
@@ -60,6 +64,7 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
         np.concatenate([np.empty(0), *(element.offset for element in elements)]),
         np.concatenate([np.empty((0, motions)), *drift]),
         np.concatenate([np.empty(0), *stiffness]),
+        np.array(speed).reshape(len(elements), 2, motions),
         laws,
     )
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.forces.element_laws import Elements, LocalState
+from dynamics.forces.element_laws import Elements, Law, LocalState
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.observation import local_state
 from dynamics.types import FloatArray
@@ -34,15 +34,25 @@ class ForceBalance:
 
 
 def force_balance(
-    arrays: SystemArrays, time: float, q: FloatArray, v: FloatArray, external: FloatArray
+    arrays: SystemArrays,
+    time: float,
+    q: FloatArray,
+    v: FloatArray,
+    external: FloatArray,
+    turning: bool = True,
 ) -> ForceBalance:
-    """Return the balance of `external` (n,), supports and elements in the state `q`, `v` (n,) at `time`."""
+    """Return the balance of `external` (n,), supports and elements in the state `q`, `v` (n,) at `time`.
+
+    Without `turning` the derivatives leave out gyroscopic, Coriolis and centripetal terms.
+    """
     local = local_state(arrays, time, q, v)
     force = external - arrays.damping @ v - arrays.stiffness @ q - local.force @ arrays.direction
+    rows = np.repeat(arrays.elements.law == Law.TURNING, np.diff(arrays.elements.first))
+    kept = np.where(rows & (not turning), 0.0, 1.0)[:, None]
     return ForceBalance(
         force,
-        arrays.stiffness + _on_freedoms(arrays, local.tangent),
-        arrays.damping + _on_freedoms(arrays, local.viscous),
+        arrays.stiffness + _on_freedoms(arrays, kept * local.tangent),
+        arrays.damping + _on_freedoms(arrays, kept * local.viscous),
         local,
     )
 

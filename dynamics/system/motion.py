@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import Elements
+from dynamics.forces.element_laws import TURNING, Elements, LocalState
 from dynamics.forces.table_lookup import wrapped
 from dynamics.system.arrays import LawArrays, Reference, SystemArrays
 from dynamics.types import FloatArray, IntArray
@@ -81,12 +81,19 @@ def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, p
 
 
 @inner
-def set_drift(elements: Elements, motion: FloatArray, drift: FloatArray) -> None:
-    """Write what the kinematic motion adds to the rates of the elements' local coordinates."""
-    for r in range(drift.size):
-        drift[r] = 0.0
+def set_drift(elements: Elements, motion: FloatArray, local: LocalState) -> None:
+    """Write what the kinematic motion adds to the rates of local coordinates, and the speeds of turning."""
+    for r in range(local.drift.size):
+        local.drift[r] = 0.0
         for k in range(motion.shape[0]):
-            drift[r] += elements.drift[r, k] * motion[k, SPEED]
+            local.drift[r] += elements.drift[r, k] * motion[k, SPEED]
+    for e in range(elements.law.size):
+        if elements.law[e] != TURNING:
+            continue
+        for j in range(2):
+            local.speed[e, j] = 0.0
+            for k in range(motion.shape[0]):
+                local.speed[e, j] += elements.speed[e, j, k] * motion[k, SPEED]
 
 
 @inner

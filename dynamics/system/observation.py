@@ -93,7 +93,7 @@ def _evaluate(
     """Evaluate all elements in one state."""
     write_motion(system.reference, time, moved, motion)
     set_phases(system.reference, motion, local.position, local.pace)
-    set_drift(system.elements, motion, local.drift)
+    set_drift(system.elements, motion, local)
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
     for e in range(system.elements.law.size):
         evaluate(system.elements, local, e)

@@ -8,6 +8,7 @@ from dynamics.system.effects.effect import (
     MeshEffect,
     MeshOnRotor,
     SupportedRotor,
+    TurningRotor,
     Verdict,
 )
 from dynamics.system.effects.registry import EFFECTS, LEFT_OUT, MESH_EFFECTS
@@ -23,5 +24,6 @@ __all__ = [
     "MeshEffect",
     "MeshOnRotor",
     "SupportedRotor",
+    "TurningRotor",
     "Verdict",
 ]

@@ -31,6 +31,26 @@ class MeshOnRotor:
 
 
 @dataclass(frozen=True)
+class TurningRotor:
+    """How a rotor turns, and what that does to its natural frequencies.
+
+    Attributes
+    ----------
+    tilt_share : float
+        I_p w/(2 sqrt(I_t k_t)) at the largest speed w of the run.
+    frame_share : float
+        Largest W/omega of all members of its turning frame: its speed over their lateral natural frequency.
+    framed, free : bool
+        Whether it is described in a turning frame; whether free rotations turn it.
+    """
+
+    tilt_share: float = 0.0
+    frame_share: float = 0.0
+    framed: bool = False
+    free: bool = False
+
+
+@dataclass(frozen=True)
 class SupportedRotor:
     """What effects decide on: stiffness of a rotor's supports, and the meshes it carries.
 
@@ -47,6 +67,7 @@ class SupportedRotor:
     meshes : tuple of MeshOnRotor
     nonlinear : tuple of float
         For each law of its bearings that is not linear, what its tangent misses of the displacement, m.
+    turning : TurningRotor
     """
 
     name: str
@@ -57,6 +78,7 @@ class SupportedRotor:
     elastic_lever: float
     meshes: tuple[MeshOnRotor, ...]
     nonlinear: tuple[float, ...] = ()
+    turning: TurningRotor = TurningRotor()
 
 
 @dataclass(frozen=True)

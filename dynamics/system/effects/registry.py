@@ -8,11 +8,12 @@ from dynamics.system.effects.bearing_clearance import BearingClearance
 from dynamics.system.effects.dynamic_center_distance import DynamicCenterDistance
 from dynamics.system.effects.dynamic_misalignment import DynamicMisalignment
 from dynamics.system.effects.effect import Effect, MeshEffect
+from dynamics.system.effects.gyroscopic import Gyroscopic
 from dynamics.system.effects.lateral import Lateral
 from dynamics.system.effects.moving_application_point import MovingApplicationPoint
 from dynamics.system.effects.tilt import Tilt
 
-EFFECTS: tuple[Effect, ...] = (Lateral(), Axial(), Tilt(), BearingClearance())
+EFFECTS: tuple[Effect, ...] = (Lateral(), Axial(), Tilt(), BearingClearance(), Gyroscopic())
 
 MESH_EFFECTS: tuple[MeshEffect, ...] = (
     Backlash(),
@@ -22,7 +23,7 @@ MESH_EFFECTS: tuple[MeshEffect, ...] = (
 )
 
 LEFT_OUT: dict[str, str] = {
-    "gyroscopic, Coriolis and centripetal terms": "time integration has none; whirl_modes shows their worth",
+    "centrifugal loads": "of planets on their pins; the terms of displacements are in the effect gyroscopic",
     "gravity": "weights are small against mesh forces",
     "friction": "the mesh force acts along the line of action",
     "point of application along the path of contact": "the mesh force acts at the operating pitch point",

@@ -1,0 +1,81 @@
+"""Forces of turning: gyroscopic moments, Coriolis and centripetal terms; their compiled law."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from dynamics.forces.compiled import inner
+from dynamics.types import BoolArray, FloatArray
+
+
+class TurningLaws(NamedTuple):
+    """l elements in y = (a, b) across the axis of a shaft of spin w in a frame of speed W.
+
+    With J = z x the inertia resists by (c_1 w + c_2 W) J y' + (c_3 w W + c_4 W^2) y, and a ground damper seen
+    from the frame by c_5 W J y.
+
+    Attributes
+    ----------
+    factor : (l, 5) array
+        c_1 to c_5: kg, kg/rad ..., N s/m.
+    lever : (l,) array
+        Of the row of the spin, m: row over angle.
+    spinning : (l,) bool array
+        Whether a third row adds the shaft's own rotation to the spin of the kinematic motion.
+    """
+
+    factor: FloatArray
+    lever: FloatArray
+    spinning: BoolArray
+
+
+@inner
+def turning(
+    laws: TurningLaws,
+    place: int,
+    row: int,
+    speed: tuple[float, float],
+    coordinate: FloatArray,
+    rate: FloatArray,
+    force: FloatArray,
+    elastic: FloatArray,
+    tangent: FloatArray,
+    viscous: FloatArray,
+) -> None:
+    """Write forces and derivatives into the rows of an element, the first of which is `row`.
+
+    `speed` holds spin and speed of the frame in the kinematic motion. The row of the spin carries no force.
+    """
+    spin, frame = speed
+    rows = 2
+    if laws.spinning[place]:
+        rows = 3
+        spin += rate[row + 2] / laws.lever[place]
+    c = laws.factor
+    swirl = c[place, 0] * spin + c[place, 1] * frame
+    hold = c[place, 2] * spin * frame + c[place, 3] * frame * frame
+    drag = c[place, 4] * frame
+    for k in range(rows):
+        force[row + k], elastic[row + k] = 0.0, 0.0
+        for j in range(rows):
+            tangent[row + k, j], viscous[row + k, j] = 0.0, 0.0
+    for k in range(2):
+        other, sign = 1 - k, 2.0 * k - 1.0  # J y = (-y_2, y_1)
+        here, there = coordinate[row + k], coordinate[row + other]
+        elastic[row + k] = hold * here
+        force[row + k] = sign * (swirl * rate[row + other] + drag * there) + hold * here
+        tangent[row + k, k], tangent[row + k, other] = hold, sign * drag
+        viscous[row + k, other] = sign * swirl
+        if rows == 2:
+            continue
+        by_spin = sign * c[place, 0] * rate[row + other] + c[place, 2] * frame * here
+        viscous[row + k, 2] = by_spin / laws.lever[place]
+
+
+@inner
+def turning_energy(
+    laws: TurningLaws, place: int, row: int, speed: tuple[float, float], coordinate: FloatArray
+) -> float:
+    """Return the energy of the terms in y, J; negative where they push outwards."""
+    hold = laws.factor[place, 2] * speed[0] * speed[1] + laws.factor[place, 3] * speed[1] ** 2
+    return float(0.5 * hold * (coordinate[row] ** 2 + coordinate[row + 1] ** 2))

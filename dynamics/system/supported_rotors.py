@@ -1,0 +1,55 @@
+"""What the effects of rotors decide on: supports, meshes, bearings, speeds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.system.bearing_elements import nonlinear_worths
+from dynamics.system.effects import MeshOnRotor, SupportedRotor, TurningRotor
+from dynamics.system.line_of_action import LineOfAction
+from dynamics.system.rotor import Rotor
+from dynamics.system.scene import Scene
+from dynamics.types import FloatArray
+
+
+def supported_rotors(
+    scene: Scene,
+    rotors: Sequence[Rotor],
+    lines: Sequence[LineOfAction],
+    forces: FloatArray,
+    loads: dict[str, float],
+    turns: Sequence[TurningRotor],
+) -> list[SupportedRotor]:
+    """Gather what the effects decide on; a carrier feels the meshes of its planets at their pins."""
+    meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
+    for mesh, line, force in zip(scene.meshes, lines, forces, strict=True):
+        for name in (mesh.driver, mesh.driven):
+            gear = scene.gear(name)
+            index = scene.shaft_index(gear.shaft)
+            lever = float(line.point[2] - rotors[index].center[2])
+            radius = gear.base_radius / math.cos(line.working_pressure_angle)
+            axial = abs(float(line.force[2]))
+            meshes[index].append(MeshOnRotor(float(force), lever, axial, radius))
+            carrier = rotors[index].carrier
+            if carrier is not None:
+                arm = rotors[index].center - rotors[carrier].center
+                on_carrier = MeshOnRotor(float(force), float(arm[2]), axial, float(np.hypot(arm[0], arm[1])))
+                meshes[carrier].append(on_carrier)
+    clearances = nonlinear_worths(scene, loads)
+    return [
+        SupportedRotor(
+            rotor.shaft.name,
+            rotor.shaft.length,
+            rotor.radial_stiffness,
+            rotor.axial_stiffness,
+            rotor.tilt_stiffness,
+            rotor.elastic_lever,
+            tuple(on_rotor),
+            tuple(worth for name, worth in clearances if name == rotor.shaft.name),
+            turn,
+        )
+        for rotor, on_rotor, turn in zip(rotors, meshes, turns, strict=True)
+    ]
