@@ -22,7 +22,8 @@ from dynamics.types import FloatArray, IntArray
 Drive = Callable[[float], tuple[float, float]]
 """Angle (rad) and speed (rad/s) of the driver about +z at a time."""
 
-DRIVER_ANGLE, DRIVER_SPEED = 0, 1
+Force = Callable[[Any, float, int, Any, Any], FloatArray]
+Jacobian = Callable[[Any, float, int, Any, Any, float, float], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -92,28 +93,8 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
         If Exudyn is not installed.
     """
     items = exudyn().itemInterface
-    law, columns = mesh.laws(), 5 if drive is not None else 6
-    gradient = mesh.gradient if drive is None else np.delete(mesh.gradient, 2)
-    base, radius, angle = mesh.element.position_offset, mesh.gradient[2], 2
-    imposed, found, hint = np.zeros(2), np.zeros(3), np.zeros(1, dtype=np.int64)
-    outer, turn = np.outer(gradient, gradient), mesh.turn
-    facts = np.array([base, turn, radius])
-
-    def evaluate(t: float, q: Any, v: Any) -> None:
-        if drive is not None:
-            imposed[DRIVER_ANGLE], imposed[DRIVER_SPEED] = drive(t)
-        coordinate, rate = np.asarray(q), np.asarray(v)
-        own = coordinate[angle] if drive is None else imposed[DRIVER_ANGLE]
-        _evaluate(law, facts, gradient, own, imposed, coordinate, rate, hint, found)
-
-    def force(_mbs: Any, t: float, _item: int, q: Any, v: Any) -> FloatArray:
-        evaluate(t, q, v)
-        return np.asarray(-found[0] * gradient)
-
-    def jacobian(_mbs: Any, t: float, _item: int, q: Any, v: Any, stiff: float, viscous: float) -> FloatArray:
-        evaluate(t, q, v)
-        return np.asarray((stiff * found[1] + viscous * found[2]) * outer)
-
+    force, jacobian = user_functions(mesh, drive)
+    columns = 6 if drive is None else 5
     zero = np.zeros((columns, columns))
     return mbs.AddObject(
         items.ObjectGenericODE2(
@@ -126,6 +107,36 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
             jacobianUserFunction=jacobian,
         )
     )
+
+
+def user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force, Jacobian]:
+    """Return the two functions of the mesh that Exudyn calls.
+
+    Force: (system, t, item, q, v) to the generalised forces on the coordinates q, which are x, y, angle of
+    the driver and of the driven gear, without the driver's angle if there is a `drive`. Jacobian: (system, t,
+    item, q, v, a, b) to -a df/dq - b df/dv at constant position.
+    """
+    law, gradient = mesh.laws(), mesh.gradient if drive is None else np.delete(mesh.gradient, 2)
+    facts = np.array([mesh.element.position_offset, mesh.turn, mesh.gradient[2]])
+    imposed, found, hint = np.zeros(2), np.zeros(3), np.zeros(1, dtype=np.int64)
+    outer = np.outer(gradient, gradient)
+
+    def evaluate(t: float, q: Any, v: Any) -> None:
+        coordinate, rate = np.asarray(q), np.asarray(v)
+        if drive is not None:
+            imposed[0], imposed[1] = drive(t)
+        angle = coordinate[2] if drive is None else imposed[0]
+        _evaluate(law, facts, gradient, angle, imposed, coordinate, rate, hint, found)
+
+    def force(_mbs: Any, t: float, _item: int, q: Any, v: Any) -> FloatArray:
+        evaluate(t, q, v)
+        return np.asarray(-found[0] * gradient)
+
+    def jacobian(_mbs: Any, t: float, _item: int, q: Any, v: Any, stiff: float, viscous: float) -> FloatArray:
+        evaluate(t, q, v)
+        return np.asarray((stiff * found[1] + viscous * found[2]) * outer)
+
+    return force, jacobian
 
 
 def exudyn() -> Any:
