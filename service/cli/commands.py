@@ -123,11 +123,13 @@ def flank(
 @app.command(epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed")
 @guarded
 def export(
-    case: Annotated[Path, typer.Argument(help="Case file; for an FMU an STE database.")],
+    case: Annotated[Path, typer.Argument(help="Case file; for an FMU an STE database, or a run.")],
     output: Annotated[
         Path,
         typer.Option(
-            "-o", "--output", help="Folder for pinion.vtu and wheel.vtu, made if missing; or MESH.fmu."
+            "-o",
+            "--output",
+            help="Folder for pinion.vtu and wheel.vtu, made if missing; or MESH.fmu; of a run .unv or .csv.",
         ),
     ],
     torque: Annotated[
@@ -147,11 +149,17 @@ def export(
     damping_n_s_per_m: Annotated[
         float, typer.Option(help="Mesh damping an FMU starts with in N s/m along the line of action.")
     ] = 0.0,
+    function: Annotated[
+        str, typer.Option(help="Of a run: time, spectrum (over frequency) or orders (over mesh orders).")
+    ] = "time",
+    start: Annotated[float | None, typer.Option("--from", help="Of a run: from this time in s.")] = None,
+    end: Annotated[float | None, typer.Option("--to", help="Of a run: to this time in s.")] = None,
     json: AsJson = False,
 ) -> None:
-    """Write both gears as they bend in mesh, for ParaView and the like; or the mesh force as an FMU."""
+    """Write both gears as they bend in mesh (ParaView), the mesh force as an FMU, or a run as UFF or CSV."""
     from service.cli.export import run_export  # noqa: PLC0415 (start-up time)
     from service.cli.export_fmu import run_export_fmu  # noqa: PLC0415
+    from service.cli.export_run import is_for_runs, run_export_run  # noqa: PLC0415
 
     point = {
         "torque_n_m": torque,
@@ -159,7 +167,9 @@ def export(
         "misalignment_um": misalignment_um,
         "center_distance_change_mm": center_distance_change_mm,
     }
-    if output.suffix == ".fmu":
+    if is_for_runs(output):
+        run_export_run(case, output, function, (start, end), as_json=json)
+    elif output.suffix == ".fmu":
         run_export_fmu(case, output, point, damping_n_s_per_m, as_json=json)
     else:
         run_export(case, output, point, at, beside, as_json=json)

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import meshio
 import pytest
+from geared_scenes import gear_pair_scene
 from typer.testing import CliRunner, Result
 
+from dynamics.simulate import simulate
 from service.cli.commands import app
 
 SMALL = """
@@ -33,6 +35,19 @@ model = "plane_strain"
 
 def loa(*arguments: object) -> Result:
     return CliRunner().invoke(app, ["export", *(str(argument) for argument in arguments)])
+
+
+def test_a_run_becomes_a_universal_file_or_a_table(tmp_path: Path) -> None:
+    simulate(gear_pair_scene(duration=0.02)).to_netcdf(tmp_path / "run.nc")
+    done = loa(tmp_path / "run.nc", "-o", tmp_path / "run.unv", "--function", "spectrum", "--json")
+    assert done.exit_code == 0
+    assert json.loads(done.stdout) == {"written": [str(tmp_path / "run.unv")], "functions": 14}
+    assert (tmp_path / "run.unv").read_text().count("\n    58\n") == 14
+    assert loa(tmp_path / "run.nc", "-o", tmp_path / "run.csv").exit_code == 0
+    assert (tmp_path / "run.csv").read_text().startswith("time (s),")
+    for arguments in (("run.csv", "--function", "orders"), ("run.unv", "--function", "rms")):
+        assert loa(tmp_path / "run.nc", "-o", tmp_path / arguments[0], *arguments[1:]).exit_code == 2
+    assert loa(tmp_path / "run.nc", "-o", tmp_path / "x.unv", "--from", "0.03").exit_code == 2
 
 
 @pytest.fixture

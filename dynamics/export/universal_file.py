@@ -1,0 +1,150 @@
+"""Runs as universal files: time series, spectra or order spectra at bearings and meshes."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from dynamics.checks import one_of
+from dynamics.export.datasets import (
+    FunctionType,
+    NodalFunction,
+    Quantity,
+    function_dataset,
+    nodes_dataset,
+    units_dataset,
+)
+from dynamics.orders import order_waterfall, window_spectrum
+from dynamics.results import RunResult
+from dynamics.results.series import over_time
+from dynamics.types import FloatArray, Json
+
+FUNCTIONS = ("time", "spectrum", "orders")
+FIRST_MESH_NODE = 1001
+"""Bearings are nodes 1, 2 ... in the order of the run, meshes 1001, 1002 ..."""
+HIGHEST_ORDER = 20
+ORDINATES = {
+    "bearing_force": Quantity(9, 0, 1, "Force", "N"),
+    "bearing_moment": Quantity(9, 1, 1, "Moment", "N m"),
+    "bearing_acceleration": Quantity(12, 1, 0, "Acceleration", "m/s2"),
+    "mesh_force": Quantity(9, 0, 1, "Mesh force", "N"),
+    "dynamic_transmission_error": Quantity(8, 1, 0, "Transmission error", "m"),
+}
+ROTATIONS = ("bearing_moment",)
+SPECTRUM = "amplitude (peak), Hann window"
+TEXT = {"time": "time series", "spectrum": SPECTRUM, "orders": f"{SPECTRUM}, power mean of all blocks"}
+ABSCISSAE = {
+    "time": (FunctionType.TIME_RESPONSE, Quantity(17, 0, 0, "Time", "s")),
+    "spectrum": (FunctionType.SPECTRUM, Quantity(18, 0, 0, "Frequency", "Hz")),
+    "orders": (FunctionType.ORDER, Quantity(20, 0, 0, "Mesh order", "1")),
+}
+
+
+def write_universal_file(
+    result: RunResult,
+    path: str | Path,
+    function: str = "time",
+    start: float | None = None,
+    end: float | None = None,
+) -> int:
+    """Write bearing forces, moments and accelerations, mesh forces and transmission errors, if there.
+
+    Units (dataset 164), places of bearings and meshes (2411), one dataset 58 per component. Directions 1, 2,
+    3 are x, y, z of the fixed frame (of a planet bearing: of its carrier's), 4, 5, 6 moments about them, 0 a
+    scalar. The format keeps six digits of the abscissa's increment and thirteen of every ordinate.
+
+    Parameters
+    ----------
+    result : RunResult
+    path : str or Path
+        Written whole or not at all.
+    function : str
+        ``"time"``, ``"spectrum"`` (peak amplitude over frequency) or ``"orders"`` (over mesh orders of the
+        first mesh, up to 20, blocks of 16 base pitches averaged in power).
+    start, end : float, optional
+        Stretch of time, s; left out: the whole run.
+
+    Returns
+    -------
+    int
+        Number of functions written.
+
+    Raises
+    ------
+    InputError
+        If the function is unknown, or the stretch too short for it.
+    """
+    one_of("function", function, FUNCTIONS)
+    path = Path(path)
+    first = result.time[0] if start is None else start
+    part = _stretch(result, float(first), float(result.time[-1] if end is None else end))
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
+    draft, count = Path(name), 0
+    try:
+        with os.fdopen(handle, "w", encoding="ascii", errors="replace") as file:
+            file.write(units_dataset())
+            file.write(nodes_dataset(_nodes(result)))
+            for nodal in _functions(part, function):
+                file.write(function_dataset(nodal))
+                count += 1
+        mask = os.umask(0)
+        os.umask(mask)
+        draft.chmod(0o666 & ~mask)
+        draft.replace(path)
+    finally:
+        draft.unlink(missing_ok=True)
+    return count
+
+
+def _stretch(result: RunResult, start: float, end: float) -> RunResult:
+    """Cut a stretch of time out of a run."""
+    window = result.window(start, end)
+    return replace(result, **{name: getattr(result, name)[..., window] for name in over_time()})
+
+
+def _functions(result: RunResult, function: str) -> Iterator[NodalFunction]:
+    """Yield one function per component of every exported series."""
+    kind, abscissa = ABSCISSAE[function]
+    for series, ordinate in ORDINATES.items():
+        if not getattr(result, series).size:
+            continue
+        first, increment, values = _values(result, series, function)
+        at_mesh = values.ndim == 2
+        names = result.mesh if at_mesh else result.bearing
+        turned = 3 if series in ROTATIONS else 0
+        for place in np.ndindex(values.shape[:-1]):
+            direction = 0 if at_mesh else place[1] + 1 + turned
+            component = "" if at_mesh else f" {'xyz'[place[1]]}"
+            title = f"{series} {names[place[0]]}{component} ({ordinate.unit})"
+            rate = f"{result.sample_rate:.17g} samples per second"
+            lines = (title, TEXT[function], "NONE", f"lineofaction, {rate}")
+            node = place[0] + (FIRST_MESH_NODE if at_mesh else 1)
+            axes = (abscissa, ordinate, first, increment)
+            yield NodalFunction(kind, lines, names[place[0]], node, direction, *axes, values[place])
+
+
+def _values(result: RunResult, series: str, function: str) -> tuple[float, float, FloatArray]:
+    """Return the abscissa's first value and increment, and the ordinates."""
+    if function == "time":
+        return float(result.time[0]), 1.0 / result.sample_rate, getattr(result, series)
+    if function == "spectrum":
+        lines = window_spectrum(result, series, float(result.time[0]), float(result.time[-1]))
+        return 0.0, lines.resolution, lines.amplitude
+    orders = order_waterfall(result, series, highest=HIGHEST_ORDER)
+    mean = np.sqrt(np.mean(orders.amplitude**2, axis=-2))
+    return 0.0, float(orders.line[1]), np.asarray(mean)
+
+
+def _nodes(result: RunResult) -> list[tuple[int, FloatArray]]:
+    """Label and place of every bearing that was stored, and of every mesh."""
+    origin = {shaft["name"]: np.array(shaft["origin"]) for shaft in result.case["shafts"]}
+    parts: list[Json] = [*result.case["bushings"], *result.case["planet_bearings"]]
+    seat = {part["name"]: origin[part["shaft"]] + [0.0, 0.0, part["position"]] for part in parts}
+    nodes = [(index, seat[name]) for index, name in enumerate(result.bearing, start=1)]
+    meshes = enumerate(result.case["meshes"], start=FIRST_MESH_NODE)
+    return [*nodes, *((label, np.array(mesh["point_of_action"])) for label, mesh in meshes)]
