@@ -34,7 +34,7 @@ class Law(IntEnum):
     SPEED_TORQUE = 1  # p = 1: a torque that depends on a shaft's speed
     ROLLING_CONTACT = 2  # p = 2: a rolling bearing's radial force
     SPRING_CURVE = 3  # p = 1: a bearing's force by displacement in one direction
-    SPATIAL_FLANK = 4  # p = 1 to 3: a flank that feels misalignment, centre distance, or acts off mid-face
+    SPATIAL_FLANK = 4  # p = 1 to 5: a flank that feels misalignment, centre distance, friction
     TURNING = 5  # p = 2 or 3: gyroscopic moments, Coriolis and centripetal terms
 
 
@@ -254,3 +254,12 @@ def supplied_power(elements: Elements, local: LocalState, e: int, pace: float) -
     if to_a > 0:
         axes += (in_a - local.elastic[row + to_a]) * local.rate[row + to_a]
     return in_x * pace, axes
+
+
+@inner
+def slides(elements: Elements, e: int, row: int) -> bool:
+    """Return whether `row` of element `e` carries sliding friction."""
+    if elements.law[e] != SPATIAL_FLANK:
+        return False
+    first = elements.laws.spatial_flank.row[elements.place[e], 2]
+    return bool(first > 0 and row >= elements.first[e] + first)

@@ -42,6 +42,8 @@ class GearMesh:
         m; where the table has such axes, the constant place at which it is used.
     coast : CoastFlank or None
         The backs of the teeth, for the effect ``"backlash"``. None: only the driving flank carries force.
+    friction : float or None
+        Coefficient of sliding friction, for the effect ``"friction"``. None: none.
     """
 
     name: str
@@ -56,6 +58,7 @@ class GearMesh:
     misalignment: float = 0.0
     center_distance_change: float = 0.0
     coast: CoastFlank | None = None
+    friction: float | None = None
 
     def __post_init__(self) -> None:
         check_table("table", self.table)
@@ -65,5 +68,7 @@ class GearMesh:
         if self.nominal_force is not None:
             positive("nominal_force", self.nominal_force)
         not_negative("damping_ratio", self.damping_ratio)
+        if self.friction is not None:
+            positive("friction", self.friction)
         for name in ("position_offset", "misalignment", "center_distance_change"):
             finite(name, getattr(self, name))

@@ -11,7 +11,7 @@ from dynamics.errors import InputError
 from dynamics.types import FloatArray
 
 DERIVATIVES = ("deflection_derivative", "stiffness_derivative")
-LEVERS = ("face_centroid",)
+LEVERS = ("face_centroid", "sliding_share", "sliding_lever")
 FIELDS = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
 LARGEST_PERIOD = 1_000_000
 
@@ -44,6 +44,9 @@ class MeshTable(Protocol):
     face_centroid : (M, D, P, L) array
         Centroid of the load from mid-face of the driving gear, m, towards positive z of a driving gear that
         turns clockwise seen from there.
+    sliding_share, sliding_lever : (M, D, P, L) arrays
+        Sums over the pairs of load share times the sign of y, and times |y| (m), y the place of a pair's
+        contact from the pitch point, > 0 where it recedes.
     """
 
     @property

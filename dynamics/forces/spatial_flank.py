@@ -1,9 +1,10 @@
-"""Compiled force of a flank in space: it feels misalignment and centre distance, and acts at its centroid.
+"""Compiled force of a flank in space: misalignment, centre distance, place of the load, friction.
 
 Local coordinates, in metres: the deflection d; the misalignment m (growth of the gap over the common face,
 towards positive z of the table's driving gear) if the element has a row for it; the centre-distance change a
-likewise. With lambda = (face centroid)/(face width), the force f along the line of action has the moment
--lambda f on m, and the flanks approach each other at the centroid by d - lambda m.
+likewise; sliding at the pitch point and rolling on it, if there is friction. With lambda = (face centroid)/
+(face width), the force f along the line of action has the moment -lambda f on m, and the flanks approach
+each other at the centroid by d - lambda m.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from dynamics.forces.grid_lookup import (
 from dynamics.forces.grid_tables import GridTables
 from dynamics.types import FloatArray, IntArray
 
-CENTROID = 2  # channel
+CENTROID, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
 
 
 class SpatialFlankLaws(NamedTuple):
@@ -38,8 +39,9 @@ class SpatialFlankLaws(NamedTuple):
         N s/m in full contact.
     reach : (k,) array
         Elastic force in N from which the damping acts in full.
-    row : (k, 2) int array
-        Row of misalignment and centre-distance change after that of the deflection; -1: none.
+    row : (k, 3) int array
+        Row of misalignment, centre-distance change and sliding after that of the deflection; -1: none. The
+        row of rolling follows that of sliding.
     fixed : (k, 2) array
         Their values in m where the table is used at one place.
     follows : (k, 2) int array
@@ -48,6 +50,10 @@ class SpatialFlankLaws(NamedTuple):
         1/(face width), 1/m; 0: the force acts at mid-face.
     mid_face : (k,) array
         Face position of the middle of the common face from that of the driving gear, m.
+    friction : (k,) array
+        Friction force over the transverse force of a pair.
+    radius : (k,) array
+        Of the row of rolling, m.
     """
 
     grid: GridTables
@@ -58,6 +64,8 @@ class SpatialFlankLaws(NamedTuple):
     follows: IntArray
     per_face: FloatArray
     mid_face: FloatArray
+    friction: FloatArray
+    radius: FloatArray
 
 
 class Lever(NamedTuple):
@@ -130,12 +138,12 @@ def spatial_flank(
     cell = find_cell(laws.grid, place, position, m, a)
     found = grid_force(laws.grid, place, cell, coordinate[row], hint)
     arm = _centroid(laws, place, cell, found)
-    to_m, to_a = laws.row[place, 0], laws.row[place, 1]
-    rows = 1 + (to_m > 0) + (to_a > 0)
-    for r in range(rows):
-        force[row + r], elastic[row + r] = 0.0, 0.0
+    to_m, to_a, to_s = laws.row[place, 0], laws.row[place, 1], laws.row[place, 2]
+    rows = 1 + (to_m > 0) + (to_a > 0) + 2 * (to_s > 0)
+    for r in range(row, row + rows):
+        force[r], elastic[r] = 0.0, 0.0
         for k in range(rows):
-            tangent[row + r, k], viscous[row + r, k] = 0.0, 0.0
+            tangent[r, k], viscous[r, k] = 0.0, 0.0
     m_rate = rate[row + to_m] if to_m > 0 else 0.0
     approach = rate[row] - arm.value * m_rate
     ratio = min(found.value / laws.reach[place], 1.0)
@@ -148,25 +156,56 @@ def spatial_flank(
     if total < 0.0:
         return found.interval
     gain, turning = 1.0 + damping_slope * approach, damping * m_rate
-    force[row] = total
-    tangent[row, 0] = found.d * gain - turning * arm.d
-    viscous[row, 0] = damping
+    read_m = to_m if laws.follows[place, 0] == 1 else -1
+    force[row], tangent[row, 0], viscous[row, 0] = total, found.d * gain - turning * arm.d, damping
     if to_m > 0:
         viscous[row, to_m] = -damping * arm.value
-        if laws.follows[place, 0] == 1:
-            tangent[row, to_m] = found.m * gain - turning * arm.m
+    if read_m > 0:
+        tangent[row, read_m] = found.m * gain - turning * arm.m
     if to_a > 0:
         tangent[row, to_a] = found.a * gain - turning * arm.a
     if to_m > 0:
-        force[row + to_m] = -arm.value * total
-        tangent[row + to_m, 0] = -arm.value * tangent[row, 0] - arm.d * total
-        viscous[row + to_m, 0] = -arm.value * viscous[row, 0]
-        viscous[row + to_m, to_m] = -arm.value * viscous[row, to_m]
-        if laws.follows[place, 0] == 1:
-            tangent[row + to_m, to_m] = -arm.value * tangent[row, to_m] - arm.m * total
-        if to_a > 0:
-            tangent[row + to_m, to_a] = -arm.value * tangent[row, to_a] - arm.a * total
+        back = Lever(-arm.value, -arm.d, -arm.m, -arm.a)
+        _in_proportion(force, tangent, viscous, row, row + to_m, rows, back, read_m, to_a)
+    if to_s > 0:
+        share = _friction(laws, place, cell, found, SLIDING_SHARE, 1.0)
+        lever = _friction(laws, place, cell, found, SLIDING_LEVER, laws.radius[place])
+        _in_proportion(force, tangent, viscous, row, row + to_s, rows, share, read_m, to_a)
+        _in_proportion(force, tangent, viscous, row, row + to_s + 1, rows, lever, read_m, to_a)
     return found.interval
+
+
+@inner
+def _friction(
+    laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce, channel: int, radius: float
+) -> Lever:
+    """Return the force along a row of friction over that along the line of action."""
+    found, factor = _lever(laws, place, cell, force, channel), laws.friction[place] / radius
+    return Lever(factor * found.value, factor * found.d, factor * found.m, factor * found.a)
+
+
+@inner
+def _in_proportion(
+    force: FloatArray,
+    tangent: FloatArray,
+    viscous: FloatArray,
+    row: int,
+    here: int,
+    rows: int,
+    factor: Lever,
+    to_m: int,
+    to_a: int,
+) -> None:
+    """Write the row `here` of a force that is `factor` times that of `row`, with its derivatives."""
+    force[here] = factor.value * force[row]
+    for k in range(rows):
+        tangent[here, k] = factor.value * tangent[row, k]
+        viscous[here, k] = factor.value * viscous[row, k]
+    tangent[here, 0] += factor.d * force[row]
+    if to_m > 0:
+        tangent[here, to_m] += factor.m * force[row]
+    if to_a > 0:
+        tangent[here, to_a] += factor.a * force[row]
 
 
 @shared

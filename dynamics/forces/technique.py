@@ -28,6 +28,8 @@ class PlainTable:
     stiffness_slope: FloatArray
     period: int = 1
     face_centroid: FloatArray | None = None
+    sliding_share: FloatArray | None = None
+    sliding_lever: FloatArray | None = None
     deflection_derivative: FloatArray | None = None
     stiffness_derivative: FloatArray | None = None
 

@@ -69,7 +69,7 @@ class Ending:
         Time of the last step's end, s; the energies refer to it.
     stored : (2, 3) array
         Kinetic, bushing and mesh energy at the start and at the end, J.
-    work : (6,) array
+    work : (7,) array
         Works over the run, J, in the order of `Power`.
     count : int array
         Statistics, in the order of `Count`.

@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 from dynamics.forces.compiled import inner
-from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, SPEED_TORQUE, TURNING, supplied_power
+from dynamics.forces.element_laws import (
+    FLANK,
+    SPATIAL_FLANK,
+    SPEED_TORQUE,
+    TURNING,
+    slides,
+    supplied_power,
+)
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.system.arrays import SystemArrays
@@ -32,7 +39,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
         for i in range(velocity.size):
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
-    lost_in_bearings, mesh, supplied, kept = _in_elements(system, work)
+    lost_in_bearings, mesh, friction, supplied, kept = _in_elements(system, work)
     bushing, position = lost_in_bearings, 0.0
     loads += supplied
     drives -= kept
@@ -54,28 +61,31 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     work.power[stage, Power.BUSHING] = bushing
     work.power[stage, Power.MESH] = mesh
     work.power[stage, Power.AXES] = axes
+    work.power[stage, Power.FRICTION] = friction
 
 
 @inner
-def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float, float]:
-    """Return the powers that bearings and flanks dissipate and that torques by speed supply.
+def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float, float, float]:
+    """Return the powers lost in bearings, flanks and friction, and the one that torques by speed supply.
 
     Then that which the kinematic motion exchanges with turning frames: kinetic energy in the product of
     displacements and speeds, which the balance does not hold.
     """
-    bearing, mesh, supplied, kept = 0.0, 0.0, 0.0, 0.0
+    bearing, mesh, friction, supplied, kept = 0.0, 0.0, 0.0, 0.0, 0.0
     for e in range(system.elements.law.size):
         for r in range(system.elements.first[e], system.elements.first[e + 1]):
             lost = (work.force[r] - work.local.elastic[r]) * work.local.rate[r]
             if system.elements.law[e] == SPEED_TORQUE:
                 supplied -= work.force[r] * (work.local.rate[r] + work.local.drift[r])
+            elif slides(system.elements, e, r):
+                friction += work.force[r] * (work.local.rate[r] + work.local.drift[r])
             elif system.elements.law[e] == FLANK or system.elements.law[e] == SPATIAL_FLANK:
                 mesh += lost
             else:
                 bearing += lost
                 if system.elements.law[e] == TURNING:
                     kept += work.force[r] * work.local.drift[r]
-    return bearing, mesh, supplied, kept
+    return bearing, mesh, friction, supplied, kept
 
 
 @inner

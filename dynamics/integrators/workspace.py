@@ -25,6 +25,7 @@ class Power(IntEnum):
     BUSHING = 3  # dissipated in bushings
     MESH = 4  # dissipated in meshes
     AXES = 5  # supplied by the tables' change with misalignment and centre distance
+    FRICTION = 6  # dissipated by sliding flanks
 
 
 class Count(IntEnum):
@@ -73,9 +74,9 @@ class Workspace(NamedTuple):
         Quanta of a revolution by which each free train's own rotation was moved into the reference.
     jacobian : (R, R + 1) array
         Scratch of Newton's method.
-    power : (STAGES, 6) array
+    power : (STAGES, 7) array
         Per stage; columns `Power`.
-    work : (6,) array
+    work : (7,) array
         Integrated, J.
     counts : int array
         See `Count`.

@@ -59,6 +59,7 @@ def _mesh(system: System, index: int) -> Json:
         "position_offset": mesh.position_offset,
         "misalignment": mesh.misalignment,
         "center_distance_change": mesh.center_distance_change,
+        "friction": mesh.friction,
         "working_pressure_angle": line.working_pressure_angle,
         "line_of_action": [float(value) for value in line.force],
         "point_of_action": [float(value) for value in line.point],

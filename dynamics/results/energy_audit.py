@@ -23,6 +23,8 @@ class EnergyAudit:
     axes : float
         Work supplied by the change of the mesh tables with misalignment and centre distance, less what the
         moments of forces off mid-face take of it: none where the load's centroid belongs to the same table.
+    friction : float
+        Dissipated by sliding flanks.
     kinetic, stored_bushings, stored_meshes : float
         Gained from start to end.
     """
@@ -33,6 +35,7 @@ class EnergyAudit:
     bushings: float
     meshes: float
     axes: float
+    friction: float
     kinetic: float
     stored_bushings: float
     stored_meshes: float
@@ -41,7 +44,8 @@ class EnergyAudit:
     def residual(self) -> float:
         """What does not balance, J; 0 for an exact integration."""
         gained = self.kinetic + self.stored_bushings + self.stored_meshes
-        return self.drive + self.load + self.position + self.axes - self.bushings - self.meshes - gained
+        lost = self.bushings + self.meshes + self.friction
+        return self.drive + self.load + self.position + self.axes - lost - gained
 
     @property
     def relative(self) -> float:
@@ -51,7 +55,7 @@ class EnergyAudit:
         any error of it.
         """
         turnover = self.bushings + self.meshes + abs(self.position) + abs(self.stored_bushings)
-        turnover += abs(self.stored_meshes) + abs(self.axes)
+        turnover += abs(self.stored_meshes) + abs(self.axes) + abs(self.friction)
         return abs(self.residual) / turnover if turnover > 0.0 else 0.0
 
     @property
@@ -76,6 +80,6 @@ class EnergyAudit:
 
     @classmethod
     def from_arrays(cls, work: FloatArray, stored: FloatArray) -> EnergyAudit:
-        """Build from works in the order of the first six fields and stored energies (2, 3), start, end."""
+        """Build from works in the order of the first seven fields and stored energies (2, 3), start, end."""
         gained = stored[1] - stored[0]
         return cls(*(float(value) for value in work), *(float(value) for value in gained))

@@ -152,7 +152,9 @@ def _assemble(scene: Scene) -> System:
     coast = [index for index, mesh in enumerate(scene.meshes) if ledger.on("backlash", mesh.name)]
     flanks = with_coast_flanks(flanks, scene.meshes, coast)
     plain = flank_elements(scene, rotors, senses, lines, flanks)
-    in_space, spatial_laws = spatial_elements(scene, rotors, senses, flanks, plain, ledger)
+    in_space, spatial_laws = spatial_elements(
+        scene, rotors, senses, flanks, plain, ledger, kinematic_vectors(rotors, kinematics)
+    )
     by_speed, speed_laws = speed_elements(scene, kinematics)
     vectors = kinematic_vectors(rotors, kinematics)
     by_turning, turning_laws = turning_elements(

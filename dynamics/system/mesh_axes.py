@@ -76,6 +76,28 @@ def distance_gradient(scene: Scene, rotors: Sequence[Rotor], index: int, line: L
     return gradient.ravel()
 
 
+def sliding_gradients(
+    scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction, driving: int
+) -> FloatArray:
+    """Return the derivatives of sliding at the pitch point and of rolling on it, (2, 6 r).
+
+    A contact at y n from the pitch point slides at (w_1 - w_2) y along z x n, whichever flank it is on: the
+    first row is the relative displacement along that direction, the second the relative rotation times the
+    driver's base radius, each in the sense in which the load slides at the y > 0 of the table. Where a ring
+    gear drives, that y runs against n and w_1 - w_2 against the sense `driving` of the driving flank.
+    """
+    mesh, gradient = scene.meshes[index], np.zeros((2, len(rotors), 6))
+    sign = table_sense(scene, index, driving)
+    across = driving * np.cross(UNIT_Z, line.force * np.array([1.0, 1.0, 0.0]))
+    radius = scene.gear(mesh.driver).base_radius
+    for name, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+        shaft = scene.shaft_index(scene.gear(name).shaft)
+        arm = line.point - rotors[shaft].center
+        gradient[0, shaft] += side * np.concatenate([across, np.cross(arm, across)])
+        gradient[1, shaft, ROTATION] += side * sign * radius
+    return gradient.reshape(2, 6 * len(rotors))
+
+
 def mesh_axes(
     scene: Scene,
     rotors: Sequence[Rotor],
@@ -113,6 +135,10 @@ def mesh_axes(
                 apart=_change(mesh, force, 1, -force * float(a @ compliance @ pushed)),
                 lever=lever,
                 moment=None if lever is None else force * lever**2 * float(m @ compliance @ m),
+                friction=mesh.friction,
+                slides=getattr(mesh.table, "sliding_lever", None) is not None,
+                driven=not scene.free_rotations,
+                slowed=_slowed(scene, index, force, float(flanks.mean_stiffness[index])),
             )
         )
     return found
@@ -125,6 +151,16 @@ def _largest_lever(mesh: GearMesh, force: float, face_width: float) -> float | N
         return None
     level = int(np.argmin(np.abs(np.asarray(mesh.table.level) - force)))
     return float(np.max(np.abs(np.asarray(centroid)[..., level]))) / face_width
+
+
+def _slowed(scene: Scene, index: int, force: float, stiffness: float) -> float:
+    """Return the deflection of the force that the largest friction torque adds or takes, m."""
+    mesh = scene.meshes[index]
+    arm = getattr(mesh.table, "sliding_lever", None)
+    if arm is None or mesh.friction is None:
+        return 0.0
+    share = mesh.friction * float(np.max(np.asarray(arm))) / scene.gear(mesh.driven).base_radius
+    return share * force / stiffness
 
 
 def _change(mesh: GearMesh, force: float, axis: int, moved: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -22,10 +23,11 @@ from dynamics.system.mesh_axes import (
     distance_gradient,
     middle_from_driver,
     misalignment_gradient,
+    sliding_gradients,
 )
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
-from dynamics.types import FloatArray
+from dynamics.types import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -35,11 +37,12 @@ class SpatialEffects:
     misalignment: bool
     center_distance: bool
     application_point: bool
+    friction: bool
 
     @property
     def any(self) -> bool:
         """Whether its flanks are spatial."""
-        return self.misalignment or self.center_distance or self.application_point
+        return self.misalignment or self.center_distance or self.application_point or self.friction
 
 
 @dataclass(frozen=True)
@@ -49,13 +52,16 @@ class SpatialFlank:
     table: MeshTable
     damping: float
     reach: float
-    row: tuple[int, int]
+    row: tuple[int, int, int]
     fixed: tuple[float, float]
     follows: tuple[int, int]
     per_face: float
     mid_face: float
+    friction: float
+    radius: float
     gradient: FloatArray
     offset: FloatArray
+    slides: BoolArray
 
 
 def spatial_effects(ledger: EffectLedger, mesh: str) -> SpatialEffects:
@@ -64,6 +70,7 @@ def spatial_effects(ledger: EffectLedger, mesh: str) -> SpatialEffects:
         ledger.on("dynamic_misalignment", mesh),
         ledger.on("dynamic_center_distance", mesh),
         ledger.on("moving_application_point", mesh),
+        ledger.on("friction", mesh),
     )
 
 
@@ -74,8 +81,12 @@ def spatial_elements(
     flanks: Flanks,
     plain: Sequence[Element],
     ledger: EffectLedger,
+    vectors: FloatArray,
 ) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
-    """Return the elements `plain` with those of such meshes replaced, each at its place, and their laws."""
+    """Return the elements `plain` with those of such meshes replaced, each at its place, and their laws.
+
+    `vectors` (k, 6 r) are the kinematic ones, along which flanks slide but keep their deflection.
+    """
     elements: list[Element] = []
     found: list[SpatialFlank] = []
     for place, element in enumerate(plain):
@@ -84,7 +95,10 @@ def spatial_elements(
             elements.append(element)
             continue
         flank = _flank(scene, rotors, senses[element.mesh], flanks, place, element, effects)
-        elements.append(Element(Law.SPATIAL_FLANK, len(found), element.mesh, flank.gradient, flank.offset))
+        drift = np.where(flank.slides[:, None], flank.gradient @ vectors.T, 0.0)
+        elements.append(
+            Element(Law.SPATIAL_FLANK, len(found), element.mesh, flank.gradient, flank.offset, drift)
+        )
         found.append(flank)
     return tuple(elements), _pack(found)
 
@@ -110,25 +124,34 @@ def _flank(
         int(effects.center_distance and np.size(table.center_distance_change) > 1),
     )
     turns = bool(follows[0]) or effects.application_point
-    row = (1 if turns else -1, (2 if turns else 1) if follows[1] else -1)
-    rows, offset = [element.gradient[0]], [element.offset[0]]
+    row_m, row_a = 1 if turns else -1, (2 if turns else 1) if follows[1] else -1
+    rows, offset = [element.gradient[0]], [float(element.offset[0])]
     if turns:
         rows.append(misalignment_gradient(scene, rotors, index, line, sense))
         offset.append(fixed[0])
     if follows[1]:
         rows.append(distance_gradient(scene, rotors, index, line))
         offset.append(fixed[1])
+    slides = len(rows) if effects.friction else -1
+    if effects.friction:
+        rows.extend(sliding_gradients(scene, rotors, index, line, driving))
+        offset.extend([0.0, 0.0])
+    driver = scene.gear(mesh.driver)
+    coefficient = (mesh.friction or 0.0) / math.cos(driver.base_helix_angle)
     return SpatialFlank(
         table,
         float(flanks.law.damping[place]),
         float(flanks.law.reach[place]),
-        row,
+        (row_m, row_a, slides),
         fixed,
         follows,
         1.0 / common_face_width(scene, index) if effects.application_point else 0.0,
         middle_from_driver(scene, index, line, sense),
+        coefficient if effects.friction else 0.0,
+        driver.base_radius,
         np.array(rows),
         np.array(offset),
+        np.arange(len(rows)) >= (slides if effects.friction else len(rows)),
     )
 
 
@@ -150,9 +173,11 @@ def _pack(flanks: Sequence[SpatialFlank]) -> SpatialFlankLaws:
         pack_grids([flank.table for flank in flanks]),
         np.array([flank.damping for flank in flanks], dtype=float),
         np.array([flank.reach for flank in flanks], dtype=float),
-        np.array([flank.row for flank in flanks], dtype=np.int64).reshape(-1, 2),
+        np.array([flank.row for flank in flanks], dtype=np.int64).reshape(-1, 3),
         np.array([flank.fixed for flank in flanks], dtype=float).reshape(-1, 2),
         np.array([flank.follows for flank in flanks], dtype=np.int64).reshape(-1, 2),
         np.array([flank.per_face for flank in flanks], dtype=float),
         np.array([flank.mid_face for flank in flanks], dtype=float),
+        np.array([flank.friction for flank in flanks], dtype=float),
+        np.array([flank.radius for flank in flanks], dtype=float),
     )

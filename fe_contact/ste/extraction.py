@@ -14,6 +14,7 @@ from fe_contact.ste.force_table import ForceTable
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
 from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiffness_grid
 from fe_contact.ste.load_refinement import LoadLevels, refined
+from fe_contact.ste.sliding import sliding
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -38,6 +39,7 @@ def force_table(database: SteFields) -> ForceTable:
     unlimited = stiffness_grid((axis,), levels.stiffness, (monotone_slopes(axis, levels.stiffness),))
     stiffness = monotone_stiffness(unlimited, deflection, levels.force)
     flat = np.zeros_like(levels.deflection)  # the slopes of a table of one position
+    slides, arm = sliding(database)
     return ForceTable(
         position=database.position,
         level=levels.force,
@@ -49,6 +51,8 @@ def force_table(database: SteFields) -> ForceTable:
         stiffness_slope=_position_third(stiffness.nodal.get((1,), flat)),
         period=database.period,
         face_centroid=_position_third(_at_levels(database, database.face_centroid, levels.force)),
+        sliding_share=_position_third(_at_levels(database, slides, levels.force)),
+        sliding_lever=_position_third(_at_levels(database, arm, levels.force)),
     )
 
 

@@ -39,6 +39,9 @@ class ForceTable:
     face_centroid : (M, D, P, L) array or None
         Centroid of the load from mid-face at each level, m, towards positive z of the driving gear; at
         lift-off that of the lowest load.
+    sliding_share, sliding_lever : (M, D, P, L) arrays or None
+        Sums over the pairs of load share times the sign of y, and times |y| (m): y is the place of a pair's
+        contact from the pitch point, > 0 where it recedes.
     """
 
     position: FloatArray
@@ -53,6 +56,8 @@ class ForceTable:
     deflection_derivative: FloatArray | None = None
     stiffness_derivative: FloatArray | None = None
     face_centroid: FloatArray | None = None
+    sliding_share: FloatArray | None = None
+    sliding_lever: FloatArray | None = None
 
     def __post_init__(self) -> None:
         for entry in fields(self):

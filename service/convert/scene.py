@@ -255,6 +255,7 @@ def _mesh(index: int, given: MeshInput, database: SteDatabase) -> GearMesh:
             misalignment=given.misalignment_um * UM,
             center_distance_change=given.center_distance_change_mm * MM,
             coast=_coast_flank(given.coast_flank, database.facts.base_pitch),
+            friction=given.friction,
         )
 
 

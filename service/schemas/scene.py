@@ -101,6 +101,13 @@ class MeshInput(BoundaryModel):
     center_distance_change_mm: float = Field(
         default=0.0, ge=-100.0, le=100.0, description="Change of the centre distance in mm", examples=[0.0]
     )
+    friction: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1.0,
+        description="Coefficient of sliding friction of the teeth; left out: none",
+        examples=[0.05],
+    )
     coast_flank: CoastFlankInput | None = Field(
         default=None,
         description="The backs of the teeth; left out: only the driving flank carries force",

@@ -101,6 +101,14 @@ class MeshAxes:
         Largest offset of the load's centroid from mid-face over the face width; None: not known.
     moment : float or None
         Displacement along the line of action at the centroid that this lever's moment makes, m.
+    friction : float or None
+        Coefficient of friction; None: not given.
+    slides : bool
+        Whether the table says where along the path of contact the load slides.
+    driven : bool
+        Whether drives move the train.
+    slowed : float
+        Change of the transmission error that the largest friction torque makes, m.
     """
 
     variable: bool
@@ -113,6 +121,10 @@ class MeshAxes:
     apart: float
     lever: float | None
     moment: float | None
+    friction: float | None
+    slides: bool
+    driven: bool
+    slowed: float
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from dynamics.system.effects.bearing_clearance import BearingClearance
 from dynamics.system.effects.dynamic_center_distance import DynamicCenterDistance
 from dynamics.system.effects.dynamic_misalignment import DynamicMisalignment
 from dynamics.system.effects.effect import Effect, MeshEffect
+from dynamics.system.effects.friction import Friction
 from dynamics.system.effects.gyroscopic import Gyroscopic
 from dynamics.system.effects.lateral import Lateral
 from dynamics.system.effects.moving_application_point import MovingApplicationPoint
@@ -20,12 +21,13 @@ MESH_EFFECTS: tuple[MeshEffect, ...] = (
     DynamicMisalignment(),
     DynamicCenterDistance(),
     MovingApplicationPoint(),
+    Friction(),
 )
 
 LEFT_OUT: dict[str, str] = {
     "centrifugal loads": "of planets on their pins; the terms of displacements are in the effect gyroscopic",
     "gravity": "weights are small against mesh forces",
-    "friction": "the mesh force acts along the line of action",
+    "friction of bearings": "bearings turn without loss",
     "point of application along the path of contact": "the mesh force acts at the operating pitch point",
     "shaft flexibility": "shafts are rigid",
 }

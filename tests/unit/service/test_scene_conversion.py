@@ -349,3 +349,10 @@ def test_a_coast_flank_has_the_thickness_of_teeth_that_share_the_pitch() -> None
     assert told is not None
     assert told.thickness == 0.4
     assert scene().meshes[0].coast is None
+
+
+def test_a_coefficient_of_friction_goes_to_its_mesh() -> None:
+    assert scene().meshes[0].friction is None
+    assert scene(lambda t: t["meshes"][0].update(friction=0.05)).meshes[0].friction == 0.05
+    with pytest.raises(BadInput, match="friction"):
+        scene(lambda t: t["meshes"][0].update(friction=0.0))

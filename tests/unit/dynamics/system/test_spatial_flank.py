@@ -136,6 +136,7 @@ def test_a_table_that_does_not_depend_on_its_axes_runs_like_one_without_them():
         derivative[f"{name}_derivative"] = numbers
     knots = np.array([-1e-4, 0.0, 1e-4])
     spread = replace(flat.force_table(), misalignment=knots, center_distance_change=knots, face_centroid=None,
+                     sliding_share=None, sliding_lever=None,
                      **wide, **derivative)  # fmt: skip
     plain, spatial = (simulate(scene_on(t, EFFECTS[:2])) for t in (flat.force_table(), spread))
     assert spatial.misalignment.shape == plain.mesh_force.shape

@@ -22,7 +22,13 @@ ATTRIBUTES = {
     "stiffness_slope",
     "period",
 }
-OPTIONAL = {"deflection_derivative", "stiffness_derivative", "face_centroid"}
+OPTIONAL = {
+    "sliding_share",
+    "sliding_lever",
+    "deflection_derivative",
+    "stiffness_derivative",
+    "face_centroid",
+}
 
 
 def stored(table, database):
