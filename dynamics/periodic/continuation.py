@@ -18,7 +18,8 @@ ITERATION_LIMIT = 8
 EASY = 4  # iterations: with fewer the step along the branch grows
 SMALLEST_STEP = 1e-5  # of the largest
 FOLD_LIMIT = 1e-5  # of the tangent: where its part along the speed counts as zero
-FOLD_ITERATIONS = 12
+FOLD_ITERATIONS = 20
+FOLD_SHARE = 0.3  # of a bracket that each iteration takes off at least
 
 
 class BranchStatus(IntEnum):
@@ -215,20 +216,24 @@ def _passed(
 
 
 def _fold(problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float) -> float:
-    """Return the extreme speed between two points: regula falsi on the tangent's part along the speed."""
+    """Return the extreme speed between two points: bracketed on the tangent's part along the speed.
+
+    Where flanks graze a branch has a corner instead of a smooth fold: the bracket closes on it.
+    """
     low, high = 0.0, step
     at_low, at_high = before.tangent[-1], behind.tangent[-1]
-    nearest = min((before, behind), key=lambda point: abs(point.tangent[-1]))
+    speeds = [before.orbit.speed, behind.orbit.speed]
     for _ in range(FOLD_ITERATIONS):
-        weight = min(max(at_low / (at_low - at_high), 0.1), 0.9)
-        middle = _step(problem, scale, before, low + weight * (high - low))
+        weight = min(max(at_low / (at_low - at_high), FOLD_SHARE), 1.0 - FOLD_SHARE)
+        place = low + weight * (high - low)
+        middle = _step(problem, scale, before, place)
         if middle is None:
             break
-        nearest = min((nearest, middle), key=lambda point: abs(point.tangent[-1]))
-        if abs(nearest.tangent[-1]) < FOLD_LIMIT:
+        speeds.append(middle.orbit.speed)
+        if abs(middle.tangent[-1]) < FOLD_LIMIT:
             break
         if middle.tangent[-1] * at_low > 0.0:
-            low, at_low = low + weight * (high - low), middle.tangent[-1]
+            low, at_low = place, middle.tangent[-1]
         else:
-            high, at_high = low + weight * (high - low), middle.tangent[-1]
-    return nearest.orbit.speed
+            high, at_high = place, middle.tangent[-1]
+    return max(speeds) if before.tangent[-1] > 0.0 else min(speeds)
