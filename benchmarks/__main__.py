@@ -12,6 +12,7 @@ from benchmarks import (
     corrected_plane,
     finite_width,
     other_engine,
+    predictions,
     reference_errors,
     run_up,
     solvers_3d,
@@ -21,7 +22,16 @@ from benchmarks.figures import Figure, markdown
 from benchmarks.machine import describe
 
 ROOT = Path(__file__).parents[1]
-SUBJECTS = (reference_errors, static_table, finite_width, run_up, other_engine, corrected_plane, solvers_3d)
+SUBJECTS = (
+    reference_errors,
+    static_table,
+    finite_width,
+    run_up,
+    other_engine,
+    corrected_plane,
+    solvers_3d,
+    predictions,
+)
 _MARKS = ("<!-- figures: written by scripts/bench --publish -->", "<!-- end of figures -->")
 
 

@@ -9,6 +9,7 @@ from fe_contact.analysis.load_distribution import LoadDistribution, load_distrib
 from fe_contact.analysis.request import check_request
 from fe_contact.analysis.root_stress import RootStress, root_stress
 from fe_contact.analysis.root_stress_history import RootPassage, RootPeak, RootStressHistory
+from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "RootPeak",
     "RootStress",
     "RootStressHistory",
+    "RunPlan",
     "Sensitivity",
     "analyze",
     "check_request",
@@ -29,6 +31,7 @@ __all__ = [
     "flank_results",
     "frontier",
     "load_distribution",
+    "plan_run",
     "root_stress",
     "study_sensitivity",
 ]

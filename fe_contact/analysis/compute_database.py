@@ -19,7 +19,9 @@ from fe_contact.analysis.table_nodes import table_nodes
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.planning import Plan, make_plan
+from fe_contact.planning import Plan, Prediction, expected_error, planned, predict_run
+from fe_contact.planning.cost_model import log_name
+from fe_contact.planning.run_log import record
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
@@ -46,7 +48,10 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
     """
     clock = StageClock()
     request = checked.request
-    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+    with clock.stage("planning"):
+        wish = request.pair, request.load, request.accuracy, checked.model
+        plan = planned(*wish, request.alignments, cache)
+        prediction = predict_run(request.pair, plan, checked.model, request.alignments, cache)
     fine = _places(request, plan, clock, report, cache, coarse=False)
     with clock.stage("contact"):
         nodes = table_nodes(fine, plan)
@@ -75,7 +80,18 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
             **table_support(fine, support),
         )
         held_out = held_out_axes(table, fine, request.scene, checked.decided)
-    return replace(table, metadata=_metadata(case, plan, checked, clock, errors, solved, held_out))
+    record(
+        cache, prediction.logged, {log_name(prediction.kind, name): s for name, s in clock.seconds.items()}
+    )
+    metadata = _metadata(case, plan, checked, clock, errors, solved, held_out)
+    metadata.receipt["prediction"] = _predicted(prediction, plan, request)
+    return replace(table, metadata=metadata)
+
+
+def _predicted(prediction: Prediction, plan: Plan, request: Request) -> Json:
+    """Return what was expected of the run before it began, to stand beside what happened."""
+    error = expected_error(request.pair, plan.discretisation, plan.level)
+    return prediction.to_json() | {"error": error.to_json()}
 
 
 def _places(

@@ -16,6 +16,7 @@ from fe_contact.analysis.request import Checked, check_request
 from fe_contact.analysis.warm_up import warm_up
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
+from fe_contact.planning import chosen_level
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 
@@ -290,7 +291,8 @@ def _result(
 
 def chosen_rung(checked: Checked) -> str | None:
     """Return the name of the rung that a request's own model and mesh are; None if none is."""
-    level = checked.request.accuracy.mesh_level
+    asked = checked.request
+    level = chosen_level(asked.pair, asked.load, asked.accuracy, checked.model, asked.alignments).level
     if checked.model.across_face:
         return f"3d_{level}"
     if checked.model.finite_width:

@@ -52,6 +52,11 @@ class Request:
         return self.pair.torque(self.load)
 
     @property
+    def alignments(self) -> tuple[int, int]:
+        """Numbers of misalignments and of centre distances."""
+        return self.misalignment.size, self.center_distance_change.size
+
+    @property
     def scene(self) -> ContactScene:
         """What the effects judge by."""
         alignments = self.misalignment, self.center_distance_change

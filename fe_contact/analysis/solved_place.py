@@ -15,7 +15,7 @@ from fe_contact.analysis.table_places import table_places
 from fe_contact.checks import finite
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError, SolveError
-from fe_contact.planning import make_plan
+from fe_contact.planning import planned
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 
@@ -42,7 +42,7 @@ def solve_place(
         No acceptable mesh, or positions without a solution.
     """
     request = checked.request
-    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+    plan = planned(request.pair, request.load, request.accuracy, checked.model, cache=cache)
     report("compliance", 0.0)
     with clock.stage("compliance"):
         nominal = pair_contact(request.pair, plan, cache)

@@ -85,6 +85,11 @@ def write_compliance(
         Path(name).unlink(missing_ok=True)
 
 
+def has_compliance(directory: Path | None, key: str) -> bool:
+    """Whether a result is kept under `key`; whether it is whole shows when it is read."""
+    return directory is not None and _file(directory, key).is_file()
+
+
 def _file(directory: Path, key: str) -> Path:
     """Return the file of a key."""
     return directory / f"compliance-{key}.npz"

@@ -1,23 +1,34 @@
 """From a pair, an accuracy and a contact model to a plan."""
 
 from fe_contact.planning.accuracy import Accuracy
+from fe_contact.planning.cost_model import Prediction, predict_run
 from fe_contact.planning.cycle_cost import MOST_ROWS, CycleCost, cycle_cost, refuse_long_cycle
 from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
+from fe_contact.planning.error_model import ExpectedError, expected_error
+from fe_contact.planning.level_choice import LevelChoice
 from fe_contact.planning.plan import NodeRule, Plan, make_plan
+from fe_contact.planning.planned import chosen_level, planned
 from fe_contact.planning.root_recipes import FaceRootMeshes, PlaneRootMeshes, root_meshes
 
 __all__ = [
     "MOST_ROWS",
     "Accuracy",
     "CycleCost",
+    "ExpectedError",
     "FaceDiscretisation",
     "FaceRootMeshes",
+    "LevelChoice",
     "NodeRule",
     "Plan",
     "PlaneDiscretisation",
     "PlaneRootMeshes",
+    "Prediction",
+    "chosen_level",
     "cycle_cost",
+    "expected_error",
     "make_plan",
+    "planned",
+    "predict_run",
     "refuse_long_cycle",
     "root_meshes",
 ]

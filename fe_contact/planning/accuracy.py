@@ -9,15 +9,13 @@ from fe_contact.errors import InputError
 
 LEVELS = ("draft", "standard", "fine")
 MODELS = ("auto", "plane_strain", "plane_stress", "3d")
-FINE_TOLERANCE = 0.002
-"""Below this relative error the fine mesh is needed; the standard one keeps a few 1e-4 in 2-D."""
-SHORT_BUDGET = 3.0
-"""Seconds below which only the draft mesh fits."""
 
 
 @dataclass(frozen=True)
 class Accuracy:
     """What the caller asked for: exactly one of the first three, or none (then `level` = "standard").
+
+    `planned_level` says which mesh that is.
 
     Attributes
     ----------
@@ -55,14 +53,3 @@ class Accuracy:
         if self.positions is not None:
             advice = "64 resolve a spur pair; leave it out for adaptive nodes."
             integer("positions", self.positions, 8, 4096, advice)
-
-    @property
-    def mesh_level(self) -> str:
-        """The level itself, or the coarsest one that meets the tolerance or fits the time."""
-        if self.level is not None:
-            return self.level
-        if self.tolerance is not None and self.tolerance < FINE_TOLERANCE:
-            return "fine"
-        if self.time_budget is not None and self.time_budget < SHORT_BUDGET:
-            return "draft"
-        return "standard"

@@ -75,6 +75,8 @@ class Plan:
         Bodies have the rim and web of their blank; else they are solid.
     bore_seat : bool
         Bores rest on their seats; else they are fixed all over.
+    level : str
+        "draft", "standard" or "fine": that of the meshes.
     """
 
     discretisation: Discretisation
@@ -85,6 +87,7 @@ class Plan:
     support: FloatArray
     thin_rim: bool = True
     bore_seat: bool = True
+    level: str = "standard"
 
     def bodies(self, pair: ParallelAxes) -> tuple[Toothing, Toothing]:
         """Return both gears as their finite elements have them."""
@@ -105,7 +108,9 @@ class Plan:
         }
 
 
-def make_plan(pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: ContactModel) -> Plan:
+def make_plan(
+    pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: ContactModel, level: str = "standard"
+) -> Plan:
     """Choose meshes, slices, patches, positions and support loads.
 
     Parameters
@@ -117,20 +122,32 @@ def make_plan(pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: C
     model : ContactModel
         `across_face` asks for three dimensions, `finite_width` for a plane corrected towards them, `thin_rim`
         for the blanks, `bore_seat` for the seats.
+    level : str
+        Of the meshes, unless the accuracy names one; `fe_contact.planning.planned` chooses it by the
+        accuracy.
     """
+    level = accuracy.level or level
     levels = increasing("load", load)
     discretisation: Discretisation
     if model.across_face:
-        discretisation = face_discretisation(pair, accuracy.mesh_level)
+        discretisation = face_discretisation(pair, level)
     else:
         stress = accuracy.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
-        discretisation = plane_discretisation(pair, accuracy.mesh_level, hypothesis, model.finite_width)
+        discretisation = plane_discretisation(pair, level, hypothesis, model.finite_width)
     patch = _patch_rule(pair, LARGEST_SUPPORT * levels[-1], discretisation.least_patch)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     support = _support_loads(levels)
     return Plan(
-        discretisation, patch, accuracy.positions, nodes, levels, support, model.thin_rim, model.bore_seat
+        discretisation,
+        patch,
+        accuracy.positions,
+        nodes,
+        levels,
+        support,
+        model.thin_rim,
+        model.bore_seat,
+        level,
     )
 
 

@@ -270,6 +270,21 @@ def sensitivity(
     run_sensitivity(cases, output, misalignment_um, center_distance_change_percent, as_json=json)
 
 
+@app.command(epilog="Example: loa plan examples/palermo_spur_20_20.toml --time-budget-s 5")
+@guarded
+def plan(
+    case: Annotated[Path, typer.Argument(help="Case file.")],
+    time_budget_s: Annotated[
+        float | None, typer.Option(help="CPU seconds to hold the plan against, beside the case's tolerance.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Predict time by stage, memory and error of a case, with its effects; computes no contact."""
+    from service.cli.plan import run_plan  # noqa: PLC0415 (start-up time)
+
+    run_plan(case, time_budget_s, as_json=json)
+
+
 @app.command(epilog="Example: loa frontier examples/palermo_spur_20_20.toml -o frontier")
 @guarded
 def frontier(

@@ -32,6 +32,7 @@ VERBS = (
     "report",
     "sensitivity",
     "frontier",
+    "plan",
     "serve",
     "submit",
     "fetch",

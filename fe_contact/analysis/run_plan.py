@@ -1,0 +1,159 @@
+"""What a run will be and cost, said without meshing or solving anything."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from fe_contact.analysis.request import Checked, check_request
+from fe_contact.checks import positive
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning import (
+    Accuracy,
+    ExpectedError,
+    LevelChoice,
+    Plan,
+    Prediction,
+    chosen_level,
+    expected_error,
+    make_plan,
+    predict_run,
+)
+from fe_contact.planning.error_model import LEVELS
+from fe_contact.types import FloatArray, Json
+
+
+@dataclass(frozen=True)
+class PlannedLevel:
+    """One mesh level: what it is predicted to cost, and its expected error."""
+
+    level: str
+    cost: Prediction
+    error: ExpectedError
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"level": self.level, "cost": self.cost.to_json(), "error": self.error.to_json()}
+
+
+@dataclass(frozen=True)
+class RunPlan:
+    """The plan of a run.
+
+    Attributes
+    ----------
+    checked : Checked
+        The request with its model and its ledger of effects.
+    choice : LevelChoice
+        The mesh that would be taken.
+    plan : Plan
+    levels : tuple of PlannedLevel
+        All mesh levels of the same model.
+    conflict : str
+        Why tolerance and time cannot both be had; empty if they can, or if not both were given.
+    """
+
+    checked: Checked
+    choice: LevelChoice
+    plan: Plan
+    levels: tuple[PlannedLevel, ...]
+    conflict: str
+
+    @property
+    def chosen(self) -> PlannedLevel:
+        """What is predicted of the mesh that would be taken."""
+        return next(entry for entry in self.levels if entry.level == self.choice.level)
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "choice": self.choice.to_json(),
+            "prediction": self.chosen.cost.to_json(),
+            "error": self.chosen.error.to_json(),
+            "levels": [entry.to_json() for entry in self.levels],
+            "conflict": self.conflict,
+            "plan": self.plan.to_json(),
+            "effect_ledger": [entry.to_json() for entry in self.checked.ledger],
+        }
+
+
+def plan_run(
+    pair: ParallelAxes,
+    *,
+    torques: Sequence[float] | FloatArray | None = None,
+    normal_forces: Sequence[float] | FloatArray | None = None,
+    tolerance: float | None = None,
+    level: str | None = None,
+    time_budget: float | None = None,
+    model: str = "auto",
+    positions: int | None = None,
+    pitches: int | None = None,
+    misalignments: Sequence[float] = (0.0,),
+    center_distance_changes: Sequence[float] = (0.0,),
+    effects: Mapping[str, str] | None = None,
+    cache: Path | None = None,
+) -> RunPlan:
+    """Predict time by stage, memory and error of `analyze`, and list its effects.
+
+    Parameters are those of `analyze`; `time_budget` may stand beside `tolerance` or `level`: these then
+    choose the mesh, and the plan says whether it fits the time.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    """
+    both = time_budget is not None and (tolerance is not None or level is not None)
+    checked = check_request(
+        pair,
+        torques=torques,
+        normal_forces=normal_forces,
+        tolerance=tolerance,
+        level=level,
+        time_budget=None if both else time_budget,
+        model=model,
+        positions=positions,
+        pitches=pitches,
+        misalignments=misalignments,
+        center_distance_changes=center_distance_changes,
+        effects=effects,
+    )
+    asked = checked.request
+    wish = asked.pair, asked.load, asked.accuracy, checked.model
+    choice = chosen_level(*wish, asked.alignments, cache)
+    levels = tuple(_planned(checked, name, cache) for name in LEVELS)
+    plan = make_plan(*wish, choice.level)
+    conflict = ""
+    if both and time_budget is not None:
+        conflict = _conflict(choice, levels, tolerance, positive("time_budget", time_budget, "Seconds."))
+    return RunPlan(checked, choice, plan, levels, conflict)
+
+
+def _planned(checked: Checked, level: str, cache: Path | None) -> PlannedLevel:
+    """Predict one mesh level of the request's model."""
+    asked = checked.request
+    accuracy: Accuracy = replace(asked.accuracy, tolerance=None, time_budget=None, level=level)
+    plan = make_plan(asked.pair, asked.load, accuracy, checked.model)
+    cost = predict_run(asked.pair, plan, checked.model, asked.alignments, cache)
+    return PlannedLevel(level, cost, expected_error(asked.pair, plan.discretisation, level))
+
+
+def _conflict(
+    choice: LevelChoice, levels: Sequence[PlannedLevel], tolerance: float | None, time_budget: float
+) -> str:
+    """Say why tolerance and time cannot both be had; empty if they can."""
+    wish = f"level {choice.level}" if tolerance is None else f"{100.0 * tolerance:.3g} %"
+    asked = f"{wish} within {time_budget:.3g} CPU s cannot be had"
+    if not choice.met:
+        return f"{asked}: {choice.reason}"
+    needed = next(entry for entry in levels if entry.level == choice.level)
+    if needed.cost.cpu_seconds <= time_budget:
+        return ""
+    fits = [entry for entry in levels if entry.cost.cpu_seconds <= time_budget]
+    best = (
+        f"the time allows {fits[-1].level} with {100.0 * fits[-1].error.total:.2g} %"
+        if fits
+        else "no mesh fits"
+    )
+    return f"{asked}: {choice.level} needs {needed.cost.cpu_seconds:.2g} CPU s; {best}"

@@ -1,0 +1,80 @@
+"""What runs were predicted to cost and did cost: the log that improves the prediction of the next one.
+
+Each line of the file is one stage of one run. The correction of a stage is the median of measured over
+predicted time of its last runs, in logarithms, among which two made-up runs stand that went as predicted: a
+single odd run moves nothing far, and many runs that agree decide.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import statistics
+from collections.abc import Mapping
+from pathlib import Path
+
+FILE = "run-log.jsonl"
+LAST = 40
+"""Runs of a stage that count."""
+_MADE_UP = 2
+_SHORTEST = 1e-3
+"""Seconds; shorter stages say nothing about speed."""
+_LARGEST_FILE = 1_000_000
+
+
+def corrections(cache: Path | None) -> dict[str, float]:
+    """Return the factor that earlier runs put on the predicted time, by stage that has been run."""
+    ratios: dict[str, list[float]] = {}
+    for stage, ratio in _lines(cache):
+        ratios.setdefault(stage, []).append(math.log(ratio))
+    made_up = [0.0] * _MADE_UP
+    return {stage: math.exp(statistics.median([*found[-LAST:], *made_up])) for stage, found in ratios.items()}
+
+
+def record(cache: Path | None, predicted: Mapping[str, float], measured: Mapping[str, float]) -> None:
+    """Add a run.
+
+    Parameters
+    ----------
+    cache : Path, optional
+        Directory of the log; None: nothing is kept.
+    predicted, measured : mapping
+        CPU seconds by stage, predicted without corrections; stages in only one of the two, or shorter than a
+        millisecond, are left out.
+    """
+    if cache is None:
+        return
+    lines = [
+        json.dumps({"stage": stage, "predicted": predicted[stage], "measured": measured[stage]})
+        for stage in predicted.keys() & measured.keys()
+        if min(predicted[stage], measured[stage]) >= _SHORTEST
+    ]
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+        file = cache / FILE
+        if file.exists() and file.stat().st_size > _LARGEST_FILE:
+            file.unlink()
+        with file.open("a", encoding="utf-8") as stream:
+            stream.write("".join(f"{line}\n" for line in lines))
+    except OSError:
+        return
+
+
+def _lines(cache: Path | None) -> list[tuple[str, float]]:
+    """Return stage and measured over predicted time of every line that can be read."""
+    if cache is None:
+        return []
+    try:
+        text = (cache / FILE).read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return []
+    found = []
+    for line in text.splitlines():
+        try:
+            entry = json.loads(line)
+            ratio = float(entry["measured"]) / float(entry["predicted"])
+            if isinstance(entry["stage"], str) and math.isfinite(ratio) and ratio > 0.0:
+                found.append((entry["stage"], ratio))
+        except (ValueError, KeyError, TypeError, ZeroDivisionError):
+            continue
+    return found

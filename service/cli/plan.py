@@ -1,0 +1,52 @@
+"""``loa plan``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fe_contact.analysis.run_plan import RunPlan
+from fe_contact.planning.cost_model import STAGES
+from service.cli.output import console, print_json, table
+from service.convert.plan import plan_of
+from service.schemas import Case, read_model
+from service.settings import cache_home
+
+
+def run_plan(file: Path, time_budget_s: float | None, *, as_json: bool) -> None:
+    """Plan, print."""
+    found = plan_of(read_model(Case, file), time_budget_s, cache_home() / "compliance")
+    if as_json:
+        print_json(found.to_json())
+    else:
+        _show(found)
+
+
+def _show(found: RunPlan) -> None:
+    """Print the plan for people."""
+    out = console()
+    head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", ""]
+    rows = [
+        [
+            entry.level,
+            f"{entry.cost.cpu_seconds:.2g}",
+            *(f"{entry.cost.stages[stage]:.2g}" for stage in STAGES),
+            f"{entry.cost.memory_bytes / 2**20:.0f}",
+            f"{100.0 * entry.error.total:.2g}",
+            f"{100.0 * entry.error.model:.2g}",
+            "chosen" if entry is found.chosen else "",
+        ]
+        for entry in found.levels
+    ]
+    out.print(table(head, rows, "Predicted, nothing computed"))
+    model = found.plan.discretisation.to_json()["model"].replace("_", " ")
+    positions = found.plan.positions or f"about {found.chosen.cost.positions}, placed where the curve bends"
+    out.print(
+        f"model {model}; positions {positions}; mesh {found.choice.level}: {found.choice.reason}",
+        highlight=False,
+    )
+    if found.conflict or not found.choice.met:
+        out.print(f"cannot be had: {found.conflict or found.choice.reason}", highlight=False)
+    for entry in found.checked.ledger:
+        state = "on " if entry.on else "off"
+        out.print(f"effect {entry.name}: {state} ({entry.choice}); {entry.verdict.reason}", highlight=False)
+        out.print(f"       worth {entry.verdict.worth}; cost {entry.cost}", highlight=False)

@@ -1,0 +1,180 @@
+"""Predicting a run: speed of the host, the log that corrects it, choice of a mesh; nothing is computed."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair, analyze
+from fe_contact.analysis.run_plan import plan_run
+from fe_contact.errors import InputError
+from fe_contact.planning import host_speed
+from fe_contact.planning.error_model import ExpectedError
+from fe_contact.planning.host_speed import FILE, host_slowness
+from fe_contact.planning.level_choice import level_for_time, level_for_tolerance
+from fe_contact.planning.run_log import FILE as LOG
+from fe_contact.planning.run_log import corrections, record
+
+LEVELS = ("draft", "standard", "fine")
+
+
+def pair(helix: float = 0.0, width: float = 8e-3, teeth: int = 20) -> GearPair:
+    gear = Gear(
+        teeth=teeth, normal_module=2e-3, face_width=width, bore_diameter=teeth * 1e-3, helix_angle=helix
+    )
+    mate = Gear(
+        teeth=teeth, normal_module=2e-3, face_width=width, bore_diameter=teeth * 1e-3, helix_angle=-helix
+    )
+    return GearPair(gear, mate, teeth * 2e-3 / math.cos(helix))
+
+
+def test_the_speed_of_the_host_is_kept(tmp_path, monkeypatch):
+    first = host_slowness(tmp_path)
+    assert 0.001 <= first <= 1000.0
+    monkeypatch.setattr(host_speed, "measured_slowness", lambda: pytest.fail("measured again"))
+    assert host_slowness(tmp_path) == first
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        "",
+        "{",
+        "[1]",
+        '{"slowness": 2.0}',
+        '{"identity": {"version": -1}, "slowness": 2.0}',
+        '{"identity": null, "slowness": NaN}',
+    ],
+)
+def test_a_damaged_or_foreign_measurement_is_made_anew(tmp_path, monkeypatch, damage):
+    (tmp_path / FILE).write_text(damage, encoding="utf-8")
+    monkeypatch.setattr(host_speed, "measured_slowness", lambda: 3.0)
+    assert host_slowness(tmp_path) == 3.0
+    assert json.loads((tmp_path / FILE).read_text(encoding="utf-8"))["slowness"] == 3.0
+
+
+@pytest.mark.parametrize("value", [math.nan, 0.0, -1.0, 1e9])
+def test_a_measurement_that_cannot_be_is_made_anew(tmp_path, monkeypatch, value):
+    monkeypatch.setattr(host_speed, "measured_slowness", lambda: 3.0)
+    host_slowness(tmp_path)
+    content = json.loads((tmp_path / FILE).read_text(encoding="utf-8"))
+    (tmp_path / FILE).write_text(json.dumps(content | {"slowness": value}), encoding="utf-8")
+    assert host_slowness(tmp_path) == 3.0
+
+
+def test_the_correction_converges_to_what_runs_agree_on(tmp_path):
+    """Runs of 2.5 times the predicted time with 10 % of scatter: within the scatter from the third run on."""
+    random = np.random.default_rng(5)
+    found = []
+    for _ in range(12):
+        record(tmp_path, {"stage": 1.0}, {"stage": 2.5 * math.exp(0.1 * random.standard_normal())})
+        found.append(corrections(tmp_path)["stage"])
+    assert found[0] == 1.0
+    assert max(abs(value / 2.5 - 1.0) for value in found[2:]) < 0.3
+    assert found[-1] == pytest.approx(2.5, rel=0.1)
+
+
+def test_one_odd_run_moves_nothing_far(tmp_path):
+    for ratio in (2.0, 2.0, 2.0, 2.0, 2.0, 100.0):
+        record(tmp_path, {"stage": 1.0}, {"stage": ratio})
+    assert corrections(tmp_path) == {"stage": pytest.approx(2.0)}
+
+
+def test_the_last_runs_decide(tmp_path):
+    """A host that becomes faster is believed after as many runs as count."""
+    for ratio in [4.0] * 60 + [1.5] * 40:
+        record(tmp_path, {"stage": 1.0}, {"stage": ratio})
+    assert corrections(tmp_path)["stage"] == pytest.approx(1.5)
+
+
+def test_damaged_lines_and_missing_stages_are_passed_over(tmp_path):
+    for _ in range(5):
+        record(tmp_path, {"a": 1.0, "b": 0.0, "c": 1.0}, {"a": 3.0, "b": 1.0, "d": 1.0})
+    with (tmp_path / LOG).open("a", encoding="utf-8") as stream:
+        stream.write('{"stage": "a"\nnonsense\n{"stage": "a", "predicted": 0, "measured": 1}\n')
+    assert corrections(tmp_path) == {"a": pytest.approx(3.0)}
+    assert corrections(None) == {}
+
+
+def test_a_tolerance_takes_the_coarsest_mesh_that_meets_it():
+    errors = {"draft": 0.02, "standard": 0.005, "fine": 0.001}
+    chosen = {t: level_for_tolerance(t, lambda n: ExpectedError(errors[n], 0.0)) for t in (0.1, 0.01, 0.002)}
+    assert [choice.level for choice in chosen.values()] == list(LEVELS)
+    assert all(choice.met for choice in chosen.values())
+
+
+def test_a_tolerance_that_no_mesh_meets_is_said():
+    beyond = level_for_tolerance(1e-4, lambda _: ExpectedError(1e-3, 0.0))
+    assert (beyond.level, beyond.met) == ("fine", False)
+    flat = level_for_tolerance(1e-2, lambda n: ExpectedError({"draft": 2e-2}.get(n, 5e-3), 3e-2))
+    assert (flat.level, flat.met) == ("standard", False)
+    assert "model 3 %" in flat.reason
+
+
+def test_a_time_takes_the_finest_mesh_that_fits():
+    seconds = {"draft": 1.0, "standard": 3.0, "fine": 10.0}
+    assert [level_for_time(t, seconds.__getitem__).level for t in (1.5, 5.0, 50.0)] == list(LEVELS)
+    late = level_for_time(0.1, seconds.__getitem__)
+    assert (late.level, late.met) == ("draft", False)
+
+
+def test_a_plan_computes_nothing(monkeypatch):
+    """Neither a mesh nor a compliance nor a contact is asked for."""
+    for place in (
+        "fe_contact.mesh.gmsh_child.subprocess.run",
+        "fe_contact.analysis.pair_contact.solve_contact",
+        "fe_contact.compliance.flank_compliance_2d.compute_flank_compliance",
+        "fe_contact.compliance.cyclic_compliance.compute_flank_compliance_3d",
+    ):
+        monkeypatch.setattr(place, lambda *_, **__: pytest.fail("computed"))
+    for made in (plan_run(pair(), normal_forces=[500.0]), plan_run(pair(0.3), normal_forces=[500.0])):
+        assert made.chosen.cost.cpu_seconds > 0.0
+        assert made.plan.level == made.choice.level == "standard"
+
+
+def test_finer_meshes_cost_more_and_err_less():
+    for levels in (plan_run(p, normal_forces=[500.0]).levels for p in (pair(), pair(0.3), pair(teeth=60))):
+        seconds = [entry.cost.cpu_seconds for entry in levels]
+        errors = [entry.error.total for entry in levels]
+        assert seconds == sorted(seconds)
+        assert errors == sorted(errors, reverse=True)
+
+
+def test_more_loads_positions_and_alignments_cost_more():
+    def contact(**more):
+        made = plan_run(pair(), **({"normal_forces": [500.0], "positions": 64, "model": "3d"} | more))
+        return made.chosen.cost.stages["contact"]
+
+    plain = contact()
+    assert contact(positions=128) == pytest.approx(2.0 * plain)
+    assert contact(normal_forces=[100.0, 200.0, 500.0]) > plain
+    assert contact(misalignments=[0.0, 1e-5]) > plain
+    assert contact(center_distance_changes=[0.0, 1e-5]) > 1.5 * plain
+
+
+def test_tolerance_and_time_that_cannot_both_be_had_are_said():
+    wish = {"normal_forces": [500.0], "tolerance": 0.005, "model": "3d"}
+    assert plan_run(pair(), **wish, time_budget=1e4).conflict == ""
+    tight = plan_run(pair(), **wish, time_budget=1e-3)
+    assert "cannot be had" in tight.conflict
+    assert "no mesh fits" in tight.conflict
+    needed = [entry.cost.cpu_seconds for entry in tight.levels]
+    between = plan_run(pair(), **wish, time_budget=0.5 * (needed[0] + needed[1]))
+    assert "the time allows draft" in between.conflict
+    with pytest.raises(InputError, match="time_budget"):
+        plan_run(pair(), **wish, time_budget=-1.0)
+
+
+def test_a_run_keeps_what_was_predicted_beside_what_happened(tmp_path):
+    """Also in the log; compliances that are in the cache are predicted to cost nothing."""
+    asked = {"normal_forces": [500.0], "model": "plane_strain", "level": "draft", "positions": 8}
+    planned = plan_run(pair(), **asked, cache=tmp_path)
+    first = analyze(pair(), **asked, cache=tmp_path).metadata.receipt
+    assert first["prediction"]["stages"] == pytest.approx(planned.chosen.cost.stages)
+    assert first["prediction"]["error"]["total"] > 0.0
+    logged = [json.loads(line) for line in (tmp_path / LOG).read_text(encoding="utf-8").splitlines()]
+    assert {"plane compliance", "plane error estimate"} <= {entry["stage"] for entry in logged}
+    second = analyze(pair(), **asked, cache=tmp_path).metadata.receipt
+    assert second["prediction"]["stages"]["compliance"] == 0.0
+    assert second["stages"]["compliance"]["cpu_seconds"] < first["stages"]["compliance"]["cpu_seconds"]
