@@ -290,15 +290,17 @@ def _result(
 
 
 def chosen_rung(checked: Checked) -> str | None:
-    """Return the name of the rung that a request's own model and mesh are; None if none is."""
+    """Return the name of the rung that a request's own model and mesh are; None if none is.
+
+    Plane strain has one rung, whose error is the model's: it stands for all its meshes.
+    """
     asked = checked.request
     level = chosen_level(asked.pair, asked.load, asked.accuracy, checked.model, asked.alignments).level
     if checked.model.across_face:
         return f"3d_{level}"
     if checked.model.finite_width:
         return "corrected" if level == "standard" else f"corrected_{level}"
-    plain = checked.request.accuracy.model != "plane_stress" and level == "standard"
-    return "plane_strain" if plain else None
+    return None if asked.accuracy.model == "plane_stress" else "plane_strain"
 
 
 def _silent(stage: str, fraction: float) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
-from fe_contact.analysis.frontier import frontier
+from fe_contact.analysis.frontier import chosen_rung, frontier
 from fe_contact.analysis.ladder import ISO6336, RUNGS, THIN_SLICES
 from fe_contact.analysis.ladder.slice_springs import SpringContact, slice_stiffness
 from fe_contact.analysis.pareto import front_of, knee_of
@@ -149,6 +149,16 @@ def test_a_rung_that_is_not_valid_says_why():
     plane = [name for name in refused if name.startswith(("plane", "corrected"))]
     assert all("helix" in refused[name][1] for name in plane)
     assert all(refused[name] == (None, None) for name in refused if name.startswith("3d"))
+
+
+@pytest.mark.parametrize("level", ["draft", "standard", "fine"])
+@pytest.mark.parametrize("model", ["auto", "plane_strain", "3d"])
+def test_the_chosen_rung_is_the_model_and_the_mesh_asked_for(model, level):
+    checked = check_request(pair_of(), normal_forces=[500.0], model=model, level=level)
+    rung = next(rung for rung in RUNGS if rung.name == chosen_rung(checked))
+    made = rung.as_asked(checked)
+    assert made.model == checked.model
+    assert made.request.accuracy.level == (level if model != "plane_strain" else "standard")
 
 
 def test_an_unknown_rung_is_refused_by_name():
