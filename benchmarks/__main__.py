@@ -10,6 +10,7 @@ from pathlib import Path
 
 from benchmarks import (
     corrected_plane,
+    error_honesty,
     finite_width,
     other_engine,
     predictions,
@@ -31,6 +32,7 @@ SUBJECTS = (
     corrected_plane,
     solvers_3d,
     predictions,
+    error_honesty,
 )
 _MARKS = ("<!-- figures: written by scripts/bench --publish -->", "<!-- end of figures -->")
 
@@ -47,6 +49,7 @@ def main(arguments: Sequence[str]) -> int:
     _keep(machine, figures, page)
     if "--publish" in arguments:
         _publish(page, machine, figures)
+        error_honesty.publish(error_honesty.judged(), machine)
     return 0 if all(figure.met is not False for figure in figures) else 1
 
 

@@ -26,6 +26,7 @@ def analyze(
     misalignments: Sequence[float] = (0.0,),
     center_distance_changes: Sequence[float] = (0.0,),
     effects: Mapping[str, str] | None = None,
+    receipt: str = "full",
     case: Json | None = None,
     progress: Progress | None = None,
     cache: Path | None = None,
@@ -54,6 +55,9 @@ def analyze(
         plane of action, zero at its middle.
     effects : mapping, optional
         Effect name to "on", "off" or "auto".
+    receipt : str
+        "full" measures the error of the result by source; "minimal" solves nothing for it: errors are then
+        NaN, not estimated, and the receipt says so.
     case : dict, optional
         The case as the caller phrased it, echoed into the result and hashed; default: the request in SI
         units.
@@ -87,6 +91,7 @@ def analyze(
         misalignments=misalignments,
         center_distance_changes=center_distance_changes,
         effects=effects,
+        receipt=receipt,
     )
     return compute_database(checked, case or checked.request.to_json(), progress or _silent, cache)
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.error_estimate import ErrorSources, estimate_errors, worst_residual
-from fe_contact.analysis.held_out_axes import AxisError, held_out_axes
+from fe_contact.analysis.error_estimate import worst_residual
+from fe_contact.analysis.judged_table import judged_table, unjudged_table
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked, Request
@@ -26,10 +26,10 @@ from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
-from fe_contact.types import Json
+from fe_contact.types import FloatArray, Json
 
 Progress = Callable[[str, float], None]
-SOLVER_VERSION = "2"
+SOLVER_VERSION = "3"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 
@@ -48,50 +48,66 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
     """
     clock = StageClock()
     request = checked.request
+    full = request.accuracy.receipt == "full"
     with clock.stage("planning"):
         wish = request.pair, request.load, request.accuracy, checked.model
         plan = planned(*wish, request.alignments, cache)
         prediction = predict_run(request.pair, plan, checked.model, request.alignments, cache)
     fine = _places(request, plan, clock, report, cache, coarse=False)
     with clock.stage("contact"):
-        nodes = table_nodes(fine, plan)
+        nodes = table_nodes(fine, plan, measured=full)
         report("contact", 0.3)
-        pitches = np.arange(fine.period)
-        solved = [place.solve_pitches(nodes.position, plan.load, pitches) for place in fine.places]
-        support = [place.solve_pitches(nodes.position, plan.support, pitches) for place in fine.places]
+        solved = _solved(fine, nodes, plan.load)
+        table = _table(request, fine, nodes, solved, _solved(fine, nodes, plan.support))
         report("contact", 1.0)
-    coarse = _places(request, plan, clock, report, cache, coarse=True)
-    with clock.stage("error estimate"):
-        rough = [place.solve_pitches(nodes.position, plan.load, pitches)[1] for place in coarse.places]
-        found = [solution for _, solution in solved]
-        plane = _in_plane_strain(fine, nodes, plan) if plan.discretisation.corrected else found
-        errors = estimate_errors(fine, found, plane, rough, nodes, plan)
-        table = SteDatabase(
-            position=(pitches[:, None] + nodes.position).ravel(),
-            force=plan.load,
-            torque=request.torque,
-            misalignment=request.misalignment,
-            center_distance_change=request.center_distance_change,
-            facts=pair_facts(request.pair),
-            period=fine.period,
-            error_estimate=errors.total,
-            metadata=Metadata(),
-            **table_fields(fine, solved),
-            **table_support(fine, support),
-        )
-        held_out = held_out_axes(table, fine, request.scene, checked.decided)
-    record(
-        cache, prediction.logged, {log_name(prediction.kind, name): s for name, s in clock.seconds.items()}
-    )
-    metadata = _metadata(case, plan, checked, clock, errors, solved, held_out)
+    judged = unjudged_table(table, fine, plan)
+    if full:
+        coarse = _places(request, plan, clock, report, cache, coarse=True)
+        with clock.stage("error estimate"):
+            judged = judged_table(table, fine, coarse, solved, nodes, checked, plan)
+        spent = {log_name(prediction.kind, name): seconds for name, seconds in clock.seconds.items()}
+        record(cache, prediction.logged, spent)
+    metadata = _metadata(case, plan, checked, clock, judged.to_json(), solved)
     metadata.receipt["prediction"] = _predicted(prediction, plan, request)
-    return replace(table, metadata=metadata)
+    return replace(table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+
+
+def _table(
+    request: Request,
+    places: Places,
+    nodes: PositionNodes,
+    solved: list[tuple[ContactProblem, ContactSolution]],
+    support: list[tuple[ContactProblem, ContactSolution]],
+) -> SteDatabase:
+    """Assemble the table, its errors not yet estimated."""
+    position = (np.arange(places.period)[:, None] + nodes.position).ravel()
+    return SteDatabase(
+        position=position,
+        force=request.load,
+        torque=request.torque,
+        misalignment=request.misalignment,
+        center_distance_change=request.center_distance_change,
+        facts=pair_facts(request.pair),
+        period=places.period,
+        error_estimate=np.full((position.size, request.load.size, *places.shape), np.nan),
+        metadata=Metadata(),
+        **table_fields(places, solved),
+        **table_support(places, support),
+    )
 
 
 def _predicted(prediction: Prediction, plan: Plan, request: Request) -> Json:
     """Return what was expected of the run before it began, to stand beside what happened."""
     error = expected_error(request.pair, plan.discretisation, plan.level)
     return prediction.to_json() | {"error": error.to_json()}
+
+
+def _solved(
+    places: Places, nodes: PositionNodes, load: FloatArray
+) -> list[tuple[ContactProblem, ContactSolution]]:
+    """Solve every place at the positions of all base pitches."""
+    pitches = np.arange(places.period)
+    return [place.solve_pitches(nodes.position, load, pitches) for place in places.places]
 
 
 def _places(
@@ -106,31 +122,25 @@ def _places(
     return table_places(request.scene, request.choices, nominal)
 
 
-def _in_plane_strain(places: Places, nodes: PositionNodes, plan: Plan) -> list[ContactSolution]:
-    """Solve every place without the correction for its finite width."""
-    pitches = np.arange(places.period)
-    flat = [place.in_plane_strain for place in places.places]
-    return [place.solve_pitches(nodes.position, plan.load, pitches)[1] for place in flat]
-
-
 def _metadata(
     case: Json,
     plan: Plan,
     checked: Checked,
     clock: StageClock,
-    errors: ErrorSources,
+    errors: Json,
     solved: list[tuple[ContactProblem, ContactSolution]],
-    held_out: dict[str, AxisError],
 ) -> Metadata:
     """Everything about the making of the table."""
-    receipt = clock.to_json() | {
-        "error_by_source": errors.to_json(),
-        "held_out": {name: error.to_json() for name, error in held_out.items()},
-        "plan": plan.to_json(),
-        "newton_iterations_max": max(int(solution.iterations.max()) for _, solution in solved),
-        "residuals_max": max(worst_residual(solution) for _, solution in solved),
-        "patch_outgrown_points": sum(int(solution.beyond.sum()) for _, solution in solved),
-    }
+    receipt = (
+        clock.to_json()
+        | errors
+        | {
+            "plan": plan.to_json(),
+            "newton_iterations_max": max(int(solution.iterations.max()) for _, solution in solved),
+            "residuals_max": max(worst_residual(solution) for _, solution in solved),
+            "patch_outgrown_points": sum(int(solution.beyond.sum()) for _, solution in solved),
+        }
+    )
     if checked.cycle is not None:
         receipt["predicted"] = checked.cycle.to_json()
     return Metadata(

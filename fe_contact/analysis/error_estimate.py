@@ -24,7 +24,9 @@ from fe_contact.planning import Plan, PlaneDiscretisation
 from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03
-"""Error of the correction for a finite width in parts of the correction itself."""
+"""Error of the correction for a finite width in parts of the correction itself, at any position."""
+CORRECTION_ERROR_OF_CURVES = 0.015
+"""The same of mean, peak-to-peak and harmonics: one and a half times the largest measured of the mean."""
 
 
 @dataclass(frozen=True)
@@ -33,14 +35,15 @@ class ErrorSources:
 
     Attributes
     ----------
-    discretisation, interpolation, contact, finite_width : ndarray
-        Finite elements, table beside the node, contact solver, correction of the plane.
+    discretisation, slices, interpolation, contact, finite_width : ndarray
+        Finite elements, slices of the face, table beside the node, contact solver, correction of the plane.
     model : float
         Relative excess of the mean STE that plane strain leaves out; 0 where it is corrected for it, in plane
         stress, and in three dimensions.
     """
 
     discretisation: FloatArray
+    slices: FloatArray
     interpolation: FloatArray
     contact: FloatArray
     finite_width: FloatArray
@@ -49,12 +52,13 @@ class ErrorSources:
     @property
     def total(self) -> FloatArray:
         """Sum of the sources at each point, m."""
-        return self.discretisation + self.interpolation + self.contact + self.finite_width
+        return self.discretisation + self.slices + self.interpolation + self.contact + self.finite_width
 
     def to_json(self) -> Json:
         """Return the largest of each source by load, m, and the model's own uncertainty."""
         sources = {
             "discretisation_m": self.discretisation,
+            "slices_m": self.slices,
             "table_interpolation_m": self.interpolation,
             "contact_solver_m": self.contact,
             "finite_width_m": self.finite_width,
@@ -63,23 +67,35 @@ class ErrorSources:
         return worst | {"plane_for_finite_width_relative": self.model}
 
 
-def estimate_errors(
-    places: Places,
-    fine: list[ContactSolution],
-    plane: list[ContactSolution],
-    coarse: list[ContactSolution],
-    nodes: PositionNodes,
-    plan: Plan,
-) -> ErrorSources:
+@dataclass(frozen=True)
+class Nested:
+    """Solutions of every place at the table's positions, from the run's own and rougher discretisations.
+
+    Attributes
+    ----------
+    fine : list of ContactSolution
+        The table's.
+    plane : list of ContactSolution
+        Without the correction for a finite width; `fine` if there is none.
+    coarse : list of ContactSolution
+        On the coarse meshes, without that correction.
+    sliced : list of ContactSolution
+        In half the slices; `fine` in the plane.
+    """
+
+    fine: list[ContactSolution]
+    plane: list[ContactSolution]
+    coarse: list[ContactSolution]
+    sliced: list[ContactSolution]
+
+
+def estimate_errors(places: Places, nested: Nested, nodes: PositionNodes, plan: Plan) -> ErrorSources:
     """Combine the measured differences.
 
     Parameters
     ----------
     places : Places
-    fine, coarse : list of ContactSolution
-        Of every place, on both meshes; on the coarse one without the correction for the finite width.
-    plane : list of ContactSolution
-        On the fine meshes without that correction; `fine` if there is none.
+    nested : Nested
     nodes : PositionNodes
         With the interpolation error of the judged places; the largest of them stands for every place.
     plan : Plan
@@ -87,11 +103,12 @@ def estimate_errors(
     made = plan.discretisation
     judged = nodes.error.reshape(len(nodes.error), -1, plan.load.size).max(axis=1)
     return ErrorSources(
-        places.gathered(_differences(plane, coarse, made.remaining)),
-        places.gathered([judged] * len(fine)),
-        places.gathered([contact_error(solution) for solution in fine]),
-        places.gathered(_differences(fine, plane, CORRECTION_ERROR)),
-        _left_out(plan, places.places[0].contact.pair),
+        places.gathered(_differences(nested.plane, nested.coarse, made.remaining)),
+        places.gathered(_differences(nested.fine, nested.sliced, made.remaining_slices)),
+        places.gathered([judged] * len(nested.fine)),
+        places.gathered([contact_error(solution) for solution in nested.fine]),
+        places.gathered(_differences(nested.fine, nested.plane, CORRECTION_ERROR)),
+        left_out(plan, places.places[0].contact.pair),
     )
 
 
@@ -101,7 +118,7 @@ def _differences(these: list[ContactSolution], those: list[ContactSolution], par
     return [part * np.nan_to_num(np.abs(one.deflection - other.deflection)) for one, other in pairs]
 
 
-def _left_out(plan: Plan, pair: ParallelAxes) -> float:
+def left_out(plan: Plan, pair: ParallelAxes) -> float:
     """Return the relative excess of the mean STE that plane strain leaves out where it was asked for."""
     made = plan.discretisation
     asked = isinstance(made, PlaneDiscretisation) and made.hypothesis is PlaneHypothesis.PLANE_STRAIN

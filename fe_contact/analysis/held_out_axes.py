@@ -11,6 +11,7 @@ from fe_contact.analysis.table_places import Place, Places, table_places
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
 from fe_contact.ste import SteDatabase
+from fe_contact.ste.curve_quantities import QUANTITIES, quantity_changes
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import FloatArray, IntArray, Json
 
@@ -18,6 +19,9 @@ LOAD_PROBES = np.array([0.25, 0.5, 0.75])
 """Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it."""
 POSITIONS = 16
 """Positions at which an interval of centre distances is judged: each needs a compliance of its own."""
+
+Curves = tuple[FloatArray, FloatArray]
+"""Interpolant and solutions, (positions, L) in m."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +36,14 @@ class AxisError:
     error : ndarray, shape (I, L) or (I, 1)
         Largest difference between interpolant and solution over the positions in m, at each load of the
         table; of the held-out loads themselves for the axis of loads. NaN where a solution did not converge.
+    change : ndarray, shape (22, I, L) or (22, I, 1)
+        What that does to mean, peak-to-peak and harmonics, m; bounds of it from `error` for centre distances,
+        which are not judged at all positions.
     """
 
     at: FloatArray
     error: FloatArray
+    change: FloatArray
 
     def to_json(self) -> Json:
         """Return plain JSON; intervals without a solution hold null."""
@@ -98,11 +106,15 @@ def _measured(
 ) -> dict[str, AxisError]:
     """Measure every axis of two nodes or more."""
 
-    def differences(place: Place, rows: IntArray, load: FloatArray, *alignment: float) -> FloatArray:
-        """Differences between interpolant and solutions (positions, L), m; NaN where one did not converge."""
+    def curves(place: Place, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
+        """Interpolant and solutions (positions, L), m; NaN where one did not converge."""
         position = table.position[rows]
         solved = place.solve(position, load)[1].deflection
-        return np.asarray(np.abs(table.ste(position[:, None], load, *alignment) - solved))
+        return table.ste(position[:, None], load, *alignment), solved
+
+    def changes(found: Curves) -> FloatArray:
+        """Return the changes of the quantities, (22, L) in m."""
+        return quantity_changes(table.position[everywhere], *found, 1)
 
     found = {}
     everywhere = np.arange(int(np.searchsorted(table.position, 1.0)))
@@ -110,22 +122,33 @@ def _measured(
     if table.force.size > 1:
         loads = table.force[:-1, None] ** (1.0 - LOAD_PROBES) * table.force[1:, None] ** LOAD_PROBES
         (place,) = _places(places, scene, choices, m, d)
-        error = differences(place, everywhere, loads.ravel(), m[0], d[0]).max(axis=0)
-        found["force"] = AxisError(loads[:, 1], error.reshape(loads.shape).max(axis=1)[:, None])
+        pair = curves(place, everywhere, loads.ravel(), m[0], d[0])
+        error = _worst(pair).reshape(loads.shape).max(axis=1)
+        change = changes(pair).reshape(-1, *loads.shape).max(axis=2)
+        found["force"] = AxisError(loads[:, 1], error[:, None], change[..., None])
     if table.misalignment.size > 1:
         middles = _middles(table.misalignment)
         held_out = zip(_places(places, scene, choices, middles, d), middles, strict=True)
-        errors = [differences(place, everywhere, table.force, x, d[0]).max(axis=0) for place, x in held_out]
-        found["misalignment"] = AxisError(middles, np.array(errors))
+        pairs = [curves(place, everywhere, table.force, x, d[0]) for place, x in held_out]
+        change = np.stack([changes(pair) for pair in pairs], axis=1)
+        found["misalignment"] = AxisError(middles, np.array([_worst(pair) for pair in pairs]), change)
     if table.center_distance_change.size > 1:
         middles = _middles(table.center_distance_change)
         held_out = zip(_places(places, scene, choices, m, middles), middles, strict=True)
-        errors = [
-            differences(place, rows, table.force, m[0], x).max(axis=0)
-            for (place, x), rows in zip(held_out, _telling(table), strict=True)
-        ]
-        found["center_distance_change"] = AxisError(middles, np.array(errors))
+        errors = np.array(
+            [
+                _worst(curves(place, rows, table.force, m[0], x))
+                for (place, x), rows in zip(held_out, _telling(table), strict=True)
+            ]
+        )
+        bounds = np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)])
+        found["center_distance_change"] = AxisError(middles, errors, bounds)
     return found
+
+
+def _worst(found: Curves) -> FloatArray:
+    """Largest difference (L,) over the positions, m."""
+    return np.asarray(np.abs(found[0] - found[1]).max(axis=0))
 
 
 def _telling(table: SteDatabase) -> list[IntArray]:

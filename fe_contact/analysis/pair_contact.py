@@ -84,6 +84,14 @@ class PairContact:
             return self
         return replace(self, plane=self.uncorrected, uncorrected=None, _problems={})
 
+    def in_slices(self, count: int) -> PairContact:
+        """Return the same bodies in another number of slices; itself in the plane."""
+        made = self.plan.discretisation
+        if not isinstance(made, FaceDiscretisation):
+            return self
+        plan = replace(self.plan, discretisation=replace(made, slices=count))
+        return replace(self, plan=plan, _problems={})
+
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
         key = (position.tobytes(), model.corner_contact, model.couple_teeth, model.compliances)

@@ -27,11 +27,15 @@ class PositionNodes:
         Increasing in [0, 1).
     interval_error : ndarray, shape (P, L)
         Difference in m between interpolant and solution in the interval after each node, at the worst probe;
-        (T P, L) where it is known for each of T base pitches.
+        (T P, L) where it is known for each of T base pitches. NaN where it was not asked for.
+    value, middle : ndarray, shapes (P, L) or (T P, L)
+        STE in m at the nodes and in the middle of the interval after each.
     """
 
     position: FloatArray
     interval_error: FloatArray
+    value: FloatArray
+    middle: FloatArray
 
     @property
     def error(self) -> FloatArray:
@@ -43,7 +47,16 @@ def fixed_nodes(count: int, solve: Callable[[FloatArray], FloatArray]) -> Positi
     """`count` equally spaced nodes; the error is measured at the middles of all intervals."""
     nodes = np.arange(count) / count
     everywhere = np.ones(count, dtype=bool)
-    return PositionNodes(nodes, _probed(nodes, solve(nodes), solve, everywhere, MIDDLE)[2])
+    values = solve(nodes)
+    _, found, error = _probed(nodes, values, solve, everywhere, MIDDLE)
+    own = values.shape[0] // 2
+    return PositionNodes(nodes, error, values[own], found[own])
+
+
+def unmeasured_nodes(count: int, columns: int) -> PositionNodes:
+    """`count` equally spaced nodes between which nothing is measured, for L columns of curves."""
+    unknown = np.full((count, columns), np.nan)
+    return PositionNodes(np.arange(count) / count, unknown, unknown, unknown)
 
 
 def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
@@ -66,17 +79,18 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     nodes = np.arange(rule.start) / rule.start
     values = solve(nodes)
     settled = np.zeros(rule.start, dtype=bool)
-    error = np.full(values.shape[1:], np.inf)
+    error, between = np.full(values.shape[1:], np.inf), np.zeros_like(values)
     for remaining in reversed(range(MAX_ROUNDS)):
         own = values[values.shape[0] // 2]
         allowed = np.maximum(rule.tolerance * np.ptp(own, axis=0), 1e-6 * np.abs(own).max(axis=0))
         middles, found, probed = _probed(nodes, values, solve, ~settled, PROBES)
-        error[~settled] = probed[~settled]
+        error[~settled], between[:, ~settled] = probed[~settled], found[:, ~settled]
         missed = np.any(error > allowed, axis=1)
         if not missed.any() or not remaining or nodes.size + missed.sum() > rule.most:
             break
-        nodes, values, settled, error = _inserted(nodes, values, missed, middles, found, error)
-    return PositionNodes(nodes, error)
+        nodes, values, settled, error, between = _inserted(nodes, values, missed, middles, between, error)
+    own = values.shape[0] // 2
+    return PositionNodes(nodes, error, values[own], between[own])
 
 
 def _probed(
@@ -112,7 +126,7 @@ def _inserted(
     middles: FloatArray,
     found: FloatArray,
     error: FloatArray,
-) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray]:
+) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray, FloatArray]:
     """Insert the middles of the missed intervals; both halves and the neighbours are measured again."""
     touched = missed | np.roll(missed, 1) | np.roll(missed, -1)
     order = np.argsort(np.concatenate([nodes, middles[missed]]), kind="stable")
@@ -122,4 +136,5 @@ def _inserted(
         np.concatenate([values, found[:, missed]], axis=1)[:, order],
         np.concatenate([~touched, np.zeros(int(missed.sum()), dtype=bool)])[order],
         np.concatenate([error, np.full((int(missed.sum()), error.shape[1]), np.inf)])[order],
+        np.concatenate([found, np.zeros_like(found[:, missed])], axis=1)[:, order],
     )

@@ -118,6 +118,7 @@ def check_request(
     center_distance_changes: Sequence[float] | FloatArray = (0.0,),
     effects: Mapping[str, str] | None = None,
     whole_table: bool = True,
+    receipt: str = "full",
 ) -> Checked:
     """Check everything that `analyze` is given, without computing anything.
 
@@ -131,7 +132,7 @@ def check_request(
     request = Request(
         pair,
         load_levels(pair, torques, normal_forces),
-        Accuracy(tolerance, time_budget, level, model, positions),
+        Accuracy(tolerance, time_budget, level, model, positions, receipt),
         axis("misalignments", misalignments),
         axis("center_distance_changes", center_distance_changes),
         dict(effects or {}),

@@ -6,7 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.analysis.position_nodes import PositionNodes, adaptive_nodes, fixed_nodes
+from fe_contact.analysis.position_nodes import (
+    PositionNodes,
+    adaptive_nodes,
+    fixed_nodes,
+    unmeasured_nodes,
+)
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactModel
 from fe_contact.planning import MOST_ROWS, Plan
@@ -14,11 +19,11 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray, IntArray
 
 
-def table_nodes(places: Places, plan: Plan) -> PositionNodes:
+def table_nodes(places: Places, plan: Plan, measured: bool = True) -> PositionNodes:
     """Place the positions: the number asked for, or where the curves of judged places and pitches bend.
 
     Over several base pitches the error is then measured in every one of them, at the middle of every
-    interval.
+    interval. Without `measured` nothing is solved but what places the positions.
     """
     windows = judged_windows(places.places[0].model, plan.nodes.judged_pitches)
 
@@ -27,13 +32,15 @@ def table_nodes(places: Places, plan: Plan) -> PositionNodes:
         curves = [_curves(places, plan, position, window) for window in windows]
         return np.concatenate(curves, axis=2)
 
+    if plan.positions is not None and not measured:
+        return unmeasured_nodes(plan.positions, len(places.judged) * plan.load.size)
     if plan.positions is not None:
         nodes = fixed_nodes(plan.positions, solve)
     else:
         rows = places.period * len(places.places)
         most = max(min(plan.nodes.most, MOST_ROWS // rows), plan.nodes.start)
         nodes = adaptive_nodes(replace(plan.nodes, most=most), solve)
-    return nodes if places.period == 1 else _measured(nodes.position, places, plan)
+    return nodes if places.period == 1 or not measured else _measured(nodes.position, places, plan)
 
 
 def judged_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
@@ -70,5 +77,5 @@ def _measured(nodes: FloatArray, places: Places, plan: Plan) -> PositionNodes:
     middles = nodes + 0.5 * np.diff(nodes, append=nodes[0] + 1.0)
     found = _curves(places, plan, middles, pitches)
     query = (pitches[:, None] + middles).ravel()
-    error = np.abs(interpolate(axis, values, query) - found.reshape(query.size, -1))
-    return PositionNodes(nodes, error)
+    between = found.reshape(query.size, -1)
+    return PositionNodes(nodes, np.abs(interpolate(axis, values, query) - between), values, between)

@@ -71,6 +71,12 @@ class Places:
         last = len(self.places) - 1
         return tuple(self.places[i] for i in sorted({0, last // 2, last}))
 
+    def in_slices(self, count: int) -> Places:
+        """Return the same places in other slices; those of one centre distance share their compliance."""
+        contacts = {id(place.contact): place.contact.in_slices(count) for place in self.places}
+        places = tuple(replace(place, contact=contacts[id(place.contact)]) for place in self.places)
+        return replace(self, places=places)
+
     def gathered(self, values: list[NDArray[Any]]) -> NDArray[Any]:
         """Stack arrays (P, L, ...) of all places into (P, L, M, D, ...)."""
         stacked = np.stack(values, axis=2)

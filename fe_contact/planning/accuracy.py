@@ -8,6 +8,7 @@ from fe_contact.checks import integer, positive, within
 from fe_contact.errors import InputError
 
 LEVELS = ("draft", "standard", "fine")
+RECEIPTS = ("full", "minimal")
 MODELS = ("auto", "plane_strain", "plane_stress", "3d")
 
 
@@ -29,6 +30,8 @@ class Accuracy:
         "auto", "plane_strain", "plane_stress" or "3d".
     positions : int, optional
         Fixed number of equally spaced positions; without it nodes are placed where the curve bends.
+    receipt : str
+        "full", or "minimal": nothing is solved for the sake of error estimates.
     """
 
     tolerance: float | None = None
@@ -36,6 +39,7 @@ class Accuracy:
     level: str | None = None
     model: str = "auto"
     positions: int | None = None
+    receipt: str = "full"
 
     def __post_init__(self) -> None:
         asked = [n for n in ("tolerance", "time_budget", "level") if getattr(self, n) is not None]
@@ -50,6 +54,8 @@ class Accuracy:
             raise InputError("level", self.level, f"one of {', '.join(LEVELS)}")
         if self.model not in MODELS:
             raise InputError("model", self.model, f"one of {', '.join(MODELS)}")
+        if self.receipt not in RECEIPTS:
+            raise InputError("receipt", self.receipt, f"one of {', '.join(RECEIPTS)}")
         if self.positions is not None:
             advice = "64 resolve a spur pair; leave it out for adaptive nodes."
             integer("positions", self.positions, 8, 4096, advice)

@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fe_contact.errors import InputError
+from fe_contact.ste.curve_errors import errors_by_source
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.load_sharing import error_band, load_share, pairs_seen
 from fe_contact.ste.loads import OperatingPoint
 from fe_contact.ste.mesh_force import MeshForce
-from fe_contact.ste.spectrum import Spectrum, even_positions, spectrum
+from fe_contact.ste.spectrum import HARMONICS, Spectrum, even_positions, spectrum
 from fe_contact.types import Estimate, FloatArray
 
 _FARTHEST = 1000  # periods from the reference; load shares get a column per pair passed on the way
@@ -41,7 +42,7 @@ class Curve:
     load_share : (Q, N) array
         Part of the load on each pair.
     mean, peak_to_peak : Estimate
-        Over one period, whatever `position` holds.
+        Over one period, whatever `position` holds. An error of NaN was not estimated.
     harmonics : tuple of Estimate
         Mesh harmonics: amplitudes A_n of ste(x) = mean + sum A_n cos(2 pi n x + phi_n), n = 1 .. 20.
     harmonic_phases : (20,) array
@@ -71,9 +72,9 @@ class Curve:
 def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: ArrayLike | None) -> Curve:
     """Evaluate the curve at positions `at` (the stored ones if None).
 
-    The error of the mean is the mean of the pointwise band, that of peak-to-peak the sum of the bands at
-    the two extremes, that of a harmonic twice the mean band: bounds for any error inside the pointwise
-    bands, so errors common to all positions make the true ones smaller.
+    The errors of mean, peak-to-peak and harmonics are the sums of their stored sources. Of a table without
+    them they are bounds for any error inside the pointwise bands: of the mean the mean of the band, of
+    peak-to-peak the sum of the bands at the two extremes, of a harmonic twice the mean band.
 
     Raises
     ------
@@ -83,23 +84,27 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
     position = database.position if at is None else _positions(at, _FARTHEST * database.period)
     even = even_positions(database.period)
     everywhere = np.concatenate([even, database.position])  # extremes of a stored load lie on knots
-    ste, error = _evaluate(database, force, point, everywhere)
-    mean_error = float(np.mean(error[: even.size]))
-    orders = spectrum(ste[: even.size], database.period, database.facts.teeth, 2.0 * mean_error)
+    ste, band, below = _evaluate(database, force, point, everywhere)
+    mean_band = float(np.mean((band + below)[: even.size]))
+    orders = spectrum(ste[: even.size], database.period, database.facts.teeth, 2.0 * mean_band)
     mesh = slice(database.period - 1, None, database.period)
     lowest, highest = int(np.argmin(ste)), int(np.argmax(ste))
-    asked, asked_error = _evaluate(database, force, point, position)
+    mean_error, ripple_error, *harmonic_errors = _errors(database, point, band, below, ste, even.size)
+    asked, *asked_error = _evaluate(database, force, point, position)
     return Curve(
         point=point,
         torque=point.force * database.facts.base_radius[0] * math.cos(database.facts.base_helix_angle),
         position=position,
         ste=asked,
-        error=asked_error,
+        error=sum(asked_error, np.zeros(position.size)),
         pair=pairs_seen(database, position),
         load_share=load_share(database, position, point),
         mean=Estimate(float(np.mean(ste[: even.size])), mean_error, "m"),
-        peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), float(error[highest] + error[lowest]), "m"),
-        harmonics=tuple(Estimate(float(size), orders.error, "m") for size in orders.amplitude[mesh]),
+        peak_to_peak=Estimate(float(ste[highest] - ste[lowest]), ripple_error, "m"),
+        harmonics=tuple(
+            Estimate(float(size), error, "m")
+            for size, error in zip(orders.amplitude[mesh], harmonic_errors, strict=True)
+        ),
         harmonic_phases=orders.phase[mesh],
         spectrum=orders,
         period=database.period,
@@ -108,19 +113,37 @@ def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: Arra
 
 def _evaluate(
     database: SteFields, force: MeshForce, point: OperatingPoint, position: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """Transmission error and its band at the positions."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Transmission error, its band, and what loads below the smallest one add to it, at the positions."""
     alignment = (point.misalignment, point.center_distance_change)
     transverse = math.cos(database.facts.base_helix_angle)
     ste, _ = force.deflection_at(position, point.force * transverse, *alignment)
     error = error_band(database, position, point)
     smallest_load = min([database.force[0], *database.support_force[:1]])
     if point.force >= smallest_load:
-        return ste, error
+        return ste, error, np.zeros_like(ste)
     # below the smallest load the law is a convention; the truth lies between lift-off and that load
     lift_off, _ = force.deflection_at(position, 0.0, *alignment)
     smallest, _ = force.deflection_at(position, smallest_load * transverse, *alignment)
-    return ste, error + np.maximum(ste - lift_off, smallest - ste)
+    return ste, error, np.maximum(ste - lift_off, smallest - ste)
+
+
+def _errors(
+    database: SteFields,
+    point: OperatingPoint,
+    band: FloatArray,
+    below: FloatArray,
+    ste: FloatArray,
+    even: int,
+) -> list[float]:
+    """Errors of mean, peak-to-peak and harmonics in m; NaN: a source was not estimated."""
+    stored = database.curve_error.size > 0
+    left = below if stored else band + below
+    ends = left[int(np.argmin(ste))] + left[int(np.argmax(ste))]
+    mean = float(np.mean(left[:even]))
+    bounds = np.array([mean, ends, *[2.0 * mean] * HARMONICS])
+    total = bounds + errors_by_source(database, point).sum(axis=0) if stored else bounds
+    return [float(error) for error in total]
 
 
 def _positions(at: ArrayLike, farthest: int) -> FloatArray:

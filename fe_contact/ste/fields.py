@@ -40,6 +40,8 @@ DIMENSIONS: dict[str, tuple[str, ...]] = {
     "support_tangent_compliance": SUPPORT,
     "support_pairs_in_contact": SUPPORT,
 }
+CURVE_ERROR = ("source", "quantity", "force", "misalignment", "center_distance_change")
+"""Dimensions of the errors of mean, peak-to-peak and harmonics, which older tables do not have."""
 INTEGER_TYPES: dict[str, type[np.signedinteger[Any]]] = {
     "pair": np.int64,
     "pairs_in_contact": np.int16,
@@ -82,7 +84,7 @@ class SteFields:
     pairs_in_contact, status : (P, F, M, D) integer arrays
         Number of pairs that carry load; `fe_contact.types.Status` of the solve.
     error_estimate : (P, F, M, D) array
-        Half-width of the error band of the transmission error, m, >= 0.
+        Half-width of the error band of the transmission error, m, >= 0; NaN where it was not estimated.
     residuals : (P, F, M, D, 4) array
         Equilibrium, penetration, tension, complementarity of the contact solution.
     facts : PairFacts
@@ -94,6 +96,9 @@ class SteFields:
         As the arrays of the same names without `support`.
     period : int
         Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike.
+    curve_error : (8, 22, F, M, D) array
+        Errors of mean, peak-to-peak and 20 harmonics in m, >= 0, by source (`ste.curve_errors.SOURCES`); NaN:
+        not estimated. Empty for tables without, whose errors follow from the bands.
 
     Raises
     ------
@@ -124,9 +129,11 @@ class SteFields:
     support_tangent_compliance: FloatArray = field(default_factory=lambda: np.empty(0))
     support_pairs_in_contact: NDArray[np.int16] = field(default_factory=lambda: np.empty(0, np.int16))
     period: int = 1
+    curve_error: FloatArray = field(default_factory=lambda: np.empty((0,) * len(CURVE_ERROR)))
 
     def __post_init__(self) -> None:
         self._default_support()
+        object.__setattr__(self, "curve_error", _frozen_copy("curve_error", self.curve_error))
         for name in DIMENSIONS:
             object.__setattr__(self, name, _frozen_copy(name, getattr(self, name)))
         _check_shapes(self)
@@ -187,7 +194,9 @@ class SteFields:
             self.facts == other.facts
             and self.metadata == other.metadata
             and self.period == other.period
-            and all(_same_bits(getattr(self, name), getattr(other, name)) for name in DIMENSIONS)
+            and all(
+                _same_bits(getattr(self, name), getattr(other, name)) for name in (*DIMENSIONS, "curve_error")
+            )
         )
 
 
@@ -211,6 +220,12 @@ def _check_shapes(table: SteFields) -> None:
         actual = getattr(table, name).shape
         if actual != expected:
             raise DatabaseError(f"{name} has shape {actual}; ({', '.join(dimensions)}) needs {expected}")
+    _refuse(
+        table.curve_error.size > 0
+        and table.curve_error.shape[2:] != table.static_transmission_error.shape[1:],
+        "curve_error",
+        f"have the dimensions {', '.join(CURVE_ERROR)}",
+    )
 
 
 def _check_axes(table: SteFields) -> None:
@@ -263,7 +278,8 @@ def _check_values(table: SteFields) -> None:
         "load_share",
         "sum to 1 where converged",
     )
-    _refuse(not np.all(table.error_estimate[good] >= 0.0), "error_estimate", "be >= 0 m where converged")
+    for name, errors in (("error_estimate", table.error_estimate[good]), ("curve_error", table.curve_error)):
+        _refuse(bool(np.any(errors < 0.0)), name, "be >= 0 m, or NaN where not estimated")
 
 
 def _refuse(wrong: bool, name: str, demand: str) -> None:

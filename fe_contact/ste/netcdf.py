@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fe_contact.errors import DatabaseError
+from fe_contact.ste.curve_errors import SOURCES
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
-from fe_contact.ste.fields import DIMENSIONS, RESIDUALS, SteFields
+from fe_contact.ste.fields import CURVE_ERROR, DIMENSIONS, RESIDUALS, SteFields
 from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
 from fe_contact.types import Json, Status
 
@@ -45,6 +46,10 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     "pairs_in_contact": ("1", "number of tooth pairs that carry load"),
     "status": ("1", "outcome of the contact solve"),
     "error_estimate": ("m", "half-width of the error band of the static transmission error"),
+    "curve_error": (
+        "m",
+        "error of mean, peak-to-peak and the harmonics 1 to 20, by source: " + ", ".join(SOURCES),
+    ),
     "support_force": ("N", "further loads that only carry the force extraction"),
     "support_transmission_error": ("m", "static transmission error at the support loads"),
     "support_tangent_compliance": ("m N-1", "derivative of the transmission error at the support loads"),
@@ -60,6 +65,8 @@ def to_dataset(database: SteFields) -> xarray.Dataset:
     variables = {
         name: (DIMENSIONS[name], getattr(database, name), _variable_attributes(name)) for name in DIMENSIONS
     }
+    if database.curve_error.size:
+        variables["curve_error"] = (CURVE_ERROR, database.curve_error, _variable_attributes("curve_error"))
     coordinates = {name: variables.pop(name) for name in _COORDINATES}
     coordinates["torque"] = variables.pop("torque")
     return xarray.Dataset(variables, coordinates, _global_attributes(database))
@@ -89,7 +96,7 @@ def read(path: Path) -> dict[str, Any]:
     missing = sorted(set(DIMENSIONS) - set(arrays))
     if missing:
         raise DatabaseError(f"{path}: damaged, without {', '.join(missing)}")
-    content = {name: arrays[name] for name in DIMENSIONS}
+    content = {name: arrays[name] for name in (*DIMENSIONS, "curve_error") if name in arrays}
     period = _period(path, attributes)
     if attributes.get("data_sha256") != _digest(content, period):
         raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
@@ -123,8 +130,14 @@ def _global_attributes(database: SteFields) -> Json:
         "period": np.int64(database.period),
         "facts": json.dumps(database.facts.to_json()),
         **{name: json.dumps(metadata[name]) for name in _JSON_ATTRIBUTES},
-        "data_sha256": _digest({name: getattr(database, name) for name in DIMENSIONS}, database.period),
+        "data_sha256": _digest(_stored(database), database.period),
     }
+
+
+def _stored(database: SteFields) -> dict[str, Any]:
+    """Arrays that are written, by name."""
+    names = (*DIMENSIONS, "curve_error") if database.curve_error.size else tuple(DIMENSIONS)
+    return {name: getattr(database, name) for name in names}
 
 
 def _period(path: Path, attributes: Json) -> int:
@@ -137,7 +150,7 @@ def _period(path: Path, attributes: Json) -> int:
 
 def _digest(arrays: dict[str, Any], period: int) -> str:
     """SHA-256 over the arrays, and over the period if it is not 1."""
-    return digest({name: arrays[name] for name in DIMENSIONS}, f"period {period};" if period != 1 else "")
+    return digest(arrays, f"period {period};" if period != 1 else "")
 
 
 def _facts(path: Path, attributes: Json) -> PairFacts:

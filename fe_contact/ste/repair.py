@@ -10,7 +10,7 @@ from scipy.optimize import isotonic_regression
 
 from fe_contact.errors import SolveError
 from fe_contact.ste.extraction import deflection_levels
-from fe_contact.ste.fields import DIMENSIONS, GRID, SteFields
+from fe_contact.ste.fields import CURVE_ERROR, DIMENSIONS, GRID, SteFields
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 Table = TypeVar("Table", bound=SteFields)
@@ -57,7 +57,8 @@ def without_failed(table: Table) -> Table:
     if any(rows.size == 0 for rows in keep.values()):
         raise SolveError(f"{table.failure_message()}. No complete row remains.", table)
     arrays = {}
-    for name, dimensions in DIMENSIONS.items():
+    stored = DIMENSIONS | ({"curve_error": CURVE_ERROR} if table.curve_error.size else {})
+    for name, dimensions in stored.items():
         array = getattr(table, name)
         for i, dimension in enumerate(dimensions):
             array = np.take(array, keep[dimension], axis=i) if dimension in keep else array
@@ -68,9 +69,9 @@ def without_failed(table: Table) -> Table:
 def monotone_repaired(table: Table) -> tuple[Table, Repair]:
     """Make the transmission error increase with load by isotonic regression, and report the change.
 
-    Only the load series that fall somewhere are touched. The change is added to their error estimate and
-    the report to the receipt, as ``monotone_repair``. Support loads are dropped: beside mended ones they
-    might fall.
+    Only the load series that fall somewhere are touched. The change is added to their error bands, from which
+    the errors of mean, peak-to-peak and harmonics then follow, and the report to the receipt, as
+    ``monotone_repair``. Support loads are dropped: beside mended ones they might fall.
 
     Raises
     ------
@@ -92,6 +93,7 @@ def monotone_repaired(table: Table) -> tuple[Table, Repair]:
         static_transmission_error=np.moveaxis(mended[..., 1:], -1, 1),
         no_load_transmission_error=mended[..., 0],
         error_estimate=table.error_estimate + change,
+        curve_error=table.curve_error[:0],
         metadata=metadata,
         support_force=np.empty(0),
     )

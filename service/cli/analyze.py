@@ -77,7 +77,10 @@ def _cost(receipt: dict[str, Any]) -> str:
         text += f"\nperiod {pitches} base pitches; contact predicted {seconds:.2g} CPU s"
     held_out = _held_out(receipt.get("held_out", {}))
     if held_out:
-        text += f"\nlargest error at held-out points between the nodes: {held_out} (not in the errors)"
+        text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
+    missing = receipt.get("not_estimated", [])
+    if missing:
+        text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"
     left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
     if left_out:
         text += f"\nplane strain: this width deflects about {100 * left_out:.2g} % more (not in the errors)"
@@ -96,10 +99,9 @@ def _held_out(axes: dict[str, Any]) -> str:
 
 def _row(load: dict[str, Any]) -> list[str]:
     """One load of the table, each figure with its error."""
-    pairs = [
-        (load["mean_um"], load["mean_error_um"]),
-        (load["peak_to_peak_um"], load["peak_to_peak_error_um"]),
-        *zip(load["harmonics_um"], load["harmonics_error_um"], strict=True),
-    ]
-    figures = [f"{value:.4g} ±{error:.1g}" for value, error in pairs[: 2 + _SHOWN_HARMONICS]]
+    values = [load["mean_um"], load["peak_to_peak_um"], *load["harmonics_um"]][: 2 + _SHOWN_HARMONICS]
+    figures = [f"{value:.4g}" for value in values]
+    if "mean_error_um" in load:
+        errors = [load["mean_error_um"], load["peak_to_peak_error_um"], *load["harmonics_error_um"]]
+        figures = [f"{figure} ±{error:.1g}" for figure, error in zip(figures, errors, strict=False)]
     return [f"{load['torque_n_m']:.6g}", f"{load['normal_force_n']:.6g}", *figures]

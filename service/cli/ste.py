@@ -110,8 +110,9 @@ def _show(curve: dict[str, Any]) -> None:
         f"torque {curve['torque_n_m']:.6g} N m, normal force {curve['normal_force_n']:.6g} N", highlight=False
     )
     for name in ("mean", "peak_to_peak"):
-        value, error = curve[f"{name}_um"], curve[f"{name}_error_um"]
-        out.print(f"{name.replace('_', '-')} {value:.4f} ±{error:.1g} um", highlight=False)
+        error = curve.get(f"{name}_error_um")
+        band = "um, error not estimated" if error is None else f"±{error:.1g} um"
+        out.print(f"{name.replace('_', '-')} {curve[f'{name}_um']:.4f} {band}", highlight=False)
     harmonics = ", ".join(f"{value:.4f}" for value in curve["harmonics_um"][:8])
     out.print(f"harmonics {harmonics} um", highlight=False)
     if curve["period"] > 1:

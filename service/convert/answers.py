@@ -71,8 +71,8 @@ def _curve(curve: Curve) -> Json:
 
 
 def _figures(curve: Curve) -> Json:
-    """Mean, peak-to-peak and harmonics with their error bands."""
-    return {
+    """Mean, peak-to-peak and harmonics with their errors; without those if they were not estimated."""
+    figures = {
         "mean_um": _um(curve.mean)[0],
         "mean_error_um": _um(curve.mean)[1],
         "peak_to_peak_um": _um(curve.peak_to_peak)[0],
@@ -80,6 +80,10 @@ def _figures(curve: Curve) -> Json:
         "harmonics_um": [_um(item)[0] for item in curve.harmonics],
         "harmonics_error_um": [_um(item)[1] for item in curve.harmonics],
     }
+    known = bool(
+        np.isfinite([item.error for item in (curve.mean, curve.peak_to_peak, *curve.harmonics)]).all()
+    )
+    return {name: value for name, value in figures.items() if known or "error" not in name}
 
 
 def _orders(curve: Curve) -> Json:

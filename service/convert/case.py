@@ -226,6 +226,7 @@ def analysis_arguments(case: Case) -> Json:
         "model": accuracy.model,
         "positions": accuracy.positions,
         "pitches": accuracy.pitches,
+        "receipt": accuracy.receipt,
         "effects": dict(case.effects),
     }
 

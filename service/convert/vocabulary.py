@@ -20,6 +20,7 @@ _CASE = {
     "model": "accuracy.model",
     "positions": "accuracy.positions",
     "pitches": "accuracy.pitches",
+    "receipt": "accuracy.receipt",
 }
 
 _LAST = {

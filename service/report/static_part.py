@@ -123,11 +123,14 @@ def _accuracy(database: SteDatabase) -> Table:
     """Worst error estimate and residuals over the table."""
     good = ~database.failed
     relative = database.error_estimate[good] / database.static_transmission_error[good]
-    rows = [
-        ("points", f"{database.status.size}, {database.n_failed} failed"),
-        ("largest error estimate, µm", _um(float(np.max(database.error_estimate[good])), 2)),
-        ("median error estimate, % of STE", number(100.0 * float(np.median(relative)), 2)),
-    ]
+    rows = [("points", f"{database.status.size}, {database.n_failed} failed")]
+    if np.isnan(relative).any():
+        rows += [("error estimate", "not estimated")]
+    else:
+        rows += [
+            ("largest error estimate, µm", _um(float(np.max(database.error_estimate[good])), 2)),
+            ("median error estimate, % of STE", number(100.0 * float(np.median(relative)), 2)),
+        ]
     worst = np.max(np.abs(database.residuals[good]), axis=0)
     rows += [
         (f"largest residual, {name}", number(float(value), 2))
@@ -138,7 +141,7 @@ def _accuracy(database: SteDatabase) -> Table:
 
 def _band(estimate: Estimate) -> str:
     """Half-width of the error band."""
-    return f"± {_um(estimate.error, 2)} µm"
+    return "not estimated" if math.isnan(estimate.error) else f"± {_um(estimate.error, 2)} µm"
 
 
 def _um(value: float, digits: int = 4) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.ste import SteDatabase
+from fe_contact.types import Estimate
 from service.report.aligned import (
     load_curve,
     load_labels,
@@ -75,12 +76,18 @@ def _table(database: SteDatabase) -> Table:
     rows = []
     for load, label in enumerate(load_labels(database)):
         curve = load_curve(database, load)
-        band = [f"{_um(e.value)} ± {_um(e.error, 2)}" for e in (curve.mean, curve.peak_to_peak)]
+        band = [_band(e) for e in (curve.mean, curve.peak_to_peak)]
         tones = [_um(e.value, 3) for e in curve.harmonics[:_TONES]]
         rows.append((label, number(float(database.force[load]), 5), *band, *tones))
     head = ("torque", "normal force, N", "mean, µm", "peak to peak, µm")
     orders = tuple(f"harmonic {k}, µm" for k in range(1, _TONES + 1))
     return Table("Static transmission error by load", head + orders, tuple(rows))
+
+
+def _band(estimate: Estimate) -> str:
+    """Write a number in micrometres, with its error if that was estimated."""
+    value = _um(estimate.value)
+    return value if np.isnan(estimate.error) else f"{value} ± {_um(estimate.error, 2)}"
 
 
 def _um(value: float, digits: int = 4) -> str:

@@ -114,6 +114,11 @@ class AccuracyInput(BoundaryModel):
     model: Literal["auto", "plane_strain", "plane_stress", "3d"] = Field(
         default="auto", description="The body model; auto lets the planner choose", examples=["auto"]
     )
+    receipt: Literal["full", "minimal"] = Field(
+        default="full",
+        description="full: errors by source; minimal: nothing is solved to estimate errors",
+        examples=["full"],
+    )
     positions: int | None = Field(
         default=None,
         ge=8,

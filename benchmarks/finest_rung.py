@@ -1,0 +1,73 @@
+"""The finest discretisation that can be afforded: what error estimates are held against."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.honesty_cases import HonestyCase
+from fe_contact.analysis import check_request
+from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.table_places import table_places
+from fe_contact.geometry import Toothing
+from fe_contact.mesh import SectorRecipe
+from fe_contact.planning import FaceDiscretisation, PlaneDiscretisation, make_plan
+from fe_contact.planning.discretisation import Discretisation
+from fe_contact.ste.interpolation import Axis, interpolate
+from fe_contact.types import FloatArray
+
+PLANE_FACTOR, SLICES, LAYERS = 1.5, 47, 24
+PLANE_POSITIONS, FACE_POSITIONS = 512, 128
+_SAMPLES = 4096
+
+
+@dataclass(frozen=True)
+class Quantities:
+    """Mean, peak-to-peak and first harmonic by load, m."""
+
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    first_harmonic: FloatArray
+
+
+def finest(case: HonestyCase, cache: Path) -> Quantities:
+    """Solve a case on meshes and in slices finer than "fine", at many positions."""
+    options = {name: value for name, value in case.options.items() if name != "positions"}
+    checked = check_request(case.pair, normal_forces=case.forces, level="fine", **options)
+    request = checked.request
+    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+    plan = replace(plan, discretisation=_finer(plan.discretisation, plan.bodies(request.pair)))
+    (place,) = table_places(request.scene, request.choices, pair_contact(request.pair, plan, cache)).places
+    flat = isinstance(plan.discretisation, PlaneDiscretisation)
+    position = np.arange(count := PLANE_POSITIONS if flat else FACE_POSITIONS) / count
+    curve = place.solve(position, plan.load)[1].deflection
+    even = interpolate(Axis(position, 1.0), curve, np.arange(_SAMPLES) / _SAMPLES)
+    lines = 2.0 * np.abs(np.fft.rfft(even, axis=0)[1]) / _SAMPLES
+    return Quantities(even.mean(axis=0), np.ptp(curve, axis=0), lines)
+
+
+def _finer(made: Discretisation, bodies: tuple[Toothing, Toothing]) -> Discretisation:
+    """Return a discretisation beyond "fine"."""
+    if isinstance(made, FaceDiscretisation):
+        first, second = (_fine_sector(recipe) for recipe in made.recipes)
+        return replace(made, recipes=(first, second), slices=SLICES)
+    one, two = (recipe.refined(PLANE_FACTOR) for recipe in made.recipes)
+    solids = None
+    if made.finite_width is not None:
+        solids = (_fine_solid(bodies[0]), _fine_solid(bodies[1]))
+    return replace(made, recipes=(one, two), finite_width=solids)
+
+
+def _fine_sector(recipe: SectorRecipe) -> SectorRecipe:
+    """Return "fine" with a finer section near the flank and more layers."""
+    sizes = ("flank_size", "depth_size", "depth_limit")
+    return replace(recipe, layers=LAYERS, **{name: 0.9 * getattr(recipe, name) for name in sizes})
+
+
+def _fine_solid(gear: Toothing) -> SectorRecipe:
+    """Return solids of half the face with elements of 0.6 of the usual size and one more layer."""
+    recipe = SectorRecipe.even_load(gear)
+    sizes = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
+    return replace(recipe, layers=4, **{name: 0.6 * getattr(recipe, name) for name in sizes})

@@ -1,0 +1,56 @@
+"""Errors of mean, peak-to-peak and harmonics by source, as a table stores them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.ste.curve_quantities import QUANTITIES
+from fe_contact.ste.fields import SteFields
+from fe_contact.ste.loads import OperatingPoint
+from fe_contact.types import FloatArray
+
+AT_NODES = ("discretisation", "slices", "contact_solver", "finite_width", "position")
+"""Sources that act at stored loads and alignments as well."""
+BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
+"""Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""
+SOURCES = AT_NODES + BETWEEN_NODES
+
+
+def errors_by_source(table: SteFields, point: OperatingPoint) -> FloatArray:
+    """Return the errors of the quantities (sources, 22) in m at one load and alignment.
+
+    Linear between the nodes. NaN: not estimated.
+    """
+    values = np.moveaxis(table.curve_error, (2, 3, 4), (0, 1, 2))
+    at_nodes = values[:, :, :, : len(AT_NODES)]
+    between = []
+    axes = (
+        (table.force, point.force),
+        (table.misalignment, point.misalignment),
+        (table.center_distance_change, point.center_distance_change),
+    )
+    for knots, at in axes:
+        at_nodes = _linear(knots, at_nodes, at)
+    for i, source in enumerate(range(len(AT_NODES), len(SOURCES))):
+        knots, at = axes[i]
+        inside = at not in knots and knots[0] < at < knots[-1]
+        between.append(_interval(values[..., source, :], axes, i) if inside else np.zeros(QUANTITIES))
+    return np.concatenate([at_nodes, np.array(between)])
+
+
+def _linear(knots: FloatArray, values: FloatArray, at: float) -> FloatArray:
+    """Interpolate values (K, ...) linearly, held beyond the ends; a knot is not touched by its neighbours."""
+    left = int(np.clip(np.searchsorted(knots, at, side="right") - 1, 0, knots.size - 1))
+    if left == knots.size - 1 or at <= knots[left]:
+        return np.asarray(values[left])
+    part = (at - knots[left]) / (knots[left + 1] - knots[left])
+    return np.asarray((1.0 - part) * values[left] + part * values[left + 1])
+
+
+def _interval(values: FloatArray, axes: tuple[tuple[FloatArray, float], ...], axis: int) -> FloatArray:
+    """Errors (22,) of the interval of one axis that holds the point, linear along the other two."""
+    knots, at = axes[axis]
+    values = np.moveaxis(values, axis, 0)[int(np.searchsorted(knots, at)) - 1]
+    for i, (others, where) in enumerate(axes):
+        values = values if i == axis else _linear(others, values, where)
+    return values

@@ -1,0 +1,119 @@
+"""Mean, peak-to-peak and mesh harmonics of transmission-error curves, and how they differ."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.ste.interpolation import Axis, interpolate
+from fe_contact.ste.spectrum import HARMONICS
+from fe_contact.types import FloatArray
+
+QUANTITIES = 2 + HARMONICS
+"""Mean, peak-to-peak, and the harmonics, in this order."""
+MEAN, PEAK_TO_PEAK, FIRST_HARMONIC = 0, 1, 2
+# samples of a pitch, a dozen for the shortest harmonic, and of a long period where that would be too many
+_PER_PITCH, _PER_PERIOD, _FEWEST = 256, 2**15, 64
+_FEWEST_ROWS = 8
+
+Quantities = tuple[FloatArray, NDArray[np.complex128]]
+"""Peak-to-peak (C,), and mean and phasors (21, C)."""
+
+
+def quantity_changes(
+    position: FloatArray, one: FloatArray, other: FloatArray, period: int, at: FloatArray | None = None
+) -> FloatArray:
+    """Return by how much the quantities of two sets of curves differ, (22, C) in m.
+
+    Of a harmonic it is the length of the difference of the two phasors, which bounds the change of its
+    amplitude and does not vanish where only the phase moves; of peak-to-peak, where the knots are the same,
+    at least half the peak-to-peak of the difference, since the change itself may cross zero by accident.
+
+    Parameters
+    ----------
+    position : ndarray, shape (P,)
+        Knots of `one` in base pitches, increasing in [0, period).
+    one, other : ndarray, shapes (P, C), (Q, C)
+        STE in m; NaN where a solution failed. Such a row is left out of the curves it belongs to.
+    period : int
+        Base pitches.
+    at : ndarray, shape (Q,), optional
+        Knots of `other`; default: those of `one`.
+
+    Returns
+    -------
+    ndarray
+        NaN for curves with fewer than eight rows.
+    """
+    knots = position if at is None else at
+    good = np.isfinite(one) if at is not None else np.isfinite(one) & np.isfinite(other)
+    beside = np.isfinite(other) if at is not None else good
+    if good.all() and beside.all():
+        found = _changes(_quantities(position, one, period), _quantities(knots, other, period))
+        return found if at is not None else _with_bend(found, one - other)
+    found = np.full((QUANTITIES, one.shape[1]), np.nan)
+    for c in range(one.shape[1]):
+        rows, others = good[:, c], beside[:, c]
+        if min(rows.sum(), others.sum()) >= _FEWEST_ROWS:
+            first = _quantities(position[rows], one[rows, c : c + 1], period)
+            second = _quantities(knots[others], other[others, c : c + 1], period)
+            found[:, c] = _changes(first, second)[:, 0]
+            if at is None:
+                found[:, c : c + 1] = _with_bend(found[:, c : c + 1], (one - other)[rows, c : c + 1])
+    return found
+
+
+def _with_bend(changes: FloatArray, difference: FloatArray) -> FloatArray:
+    """Let peak-to-peak change at least by half the peak-to-peak of the difference (P, C)."""
+    least = 0.5 * np.ptp(difference, axis=0)
+    return np.concatenate([changes[:1], np.maximum(changes[1:2], least), changes[2:]])
+
+
+def missed_peaks(position: FloatArray, values: FloatArray, period: int) -> FloatArray:
+    """Return by how much corners between the knots may stand out of the range of curves (P, C), (C,) in m.
+
+    A corner is where the chords before and after an interval meet inside it; tops and bottoms are added.
+    """
+    step = Axis(position, float(period)).spacing[:, None]
+    return _missed_tops(step, values) + _missed_tops(step, -values)
+
+
+def _missed_tops(step: FloatArray, values: FloatArray) -> FloatArray:
+    """Height of the highest corner above the highest knot, >= 0."""
+    following = np.roll(values, -1, axis=0)
+    chord = (following - values) / step
+    before, after = np.roll(chord, 1, axis=0), np.roll(chord, -1, axis=0)
+    peaked = (before > 0.0) & (after < 0.0)
+    turn = np.where(peaked, before - after, 1.0)
+    where = np.clip((following - values - after * step) / turn, 0.0, step)
+    tops = np.where(peaked, values + before * where, -np.inf)
+    return np.asarray(np.maximum(tops.max(axis=0) - values.max(axis=0), 0.0))
+
+
+def error_bound(position: FloatArray, band: FloatArray, values: FloatArray, period: int) -> FloatArray:
+    """Return what errors within bands (P, C) around curves (P, C) can do to the quantities, (22, C) in m.
+
+    To the mean their mean, to peak-to-peak their sum at both extremes, to a harmonic twice their mean.
+    """
+    axis = Axis(position, float(period))
+    weight = 0.5 * (axis.spacing + np.roll(axis.spacing, 1)) / period
+    mean = weight @ np.nan_to_num(band)
+    known = np.nan_to_num(values)
+    ends = [np.take_along_axis(band, pick(known, axis=0)[None], 0)[0] for pick in (np.argmax, np.argmin)]
+    return np.stack([mean, np.nan_to_num(ends[0] + ends[1]), *[2.0 * mean] * HARMONICS])
+
+
+def _quantities(position: FloatArray, values: FloatArray, period: int) -> Quantities:
+    """Peak-to-peak of the knots (C,), and mean and phasors of the interpolant (21, C)."""
+    per_pitch = max(min(_PER_PITCH, _PER_PERIOD // period), _FEWEST)
+    even = np.arange(period * per_pitch) / per_pitch
+    samples = interpolate(Axis(position, float(period)), values, even)
+    lines = np.fft.rfft(samples, axis=0)[: HARMONICS * period + 1 : period] * (2.0 / even.size)
+    lines[0] *= 0.5
+    return np.asarray(np.ptp(values, axis=0)), lines
+
+
+def _changes(one: Quantities, other: Quantities) -> FloatArray:
+    """Differences of two sets of quantities, (22, C)."""
+    lines = np.abs(one[1] - other[1])
+    return np.concatenate([lines[:1], np.abs(one[0] - other[0])[None], lines[1:]])

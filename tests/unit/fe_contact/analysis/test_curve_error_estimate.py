@@ -1,0 +1,115 @@
+"""Laws of the estimated errors of mean, peak-to-peak and harmonics."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.planning.discretisation import face_discretisation
+from fe_contact.ste.curve_errors import SOURCES
+from fe_contact.ste.fields import DIMENSIONS
+
+FORCE = 3000.0
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory):
+    return tmp_path_factory.mktemp("compliance")
+
+
+def spur(**modification: float) -> GearPair:
+    pinion = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    changed = dataclasses.replace(pinion, modification=FlankModification(**modification))
+    return GearPair(changed, pinion, 80e-3)
+
+
+def helical() -> GearPair:
+    pinion = Gear(
+        teeth=18,
+        normal_module=3e-3,
+        face_width=15e-3,
+        bore_diameter=25e-3,
+        helix_angle=math.radians(20.0),
+    )
+    wheel = dataclasses.replace(pinion, helix_angle=-pinion.helix_angle)
+    return GearPair(pinion, wheel, 18 * 3e-3 / math.cos(pinion.helix_angle))
+
+
+def figures(table, **place):
+    curve = table.curve(force=FORCE, **place)
+    return curve.mean, curve.peak_to_peak, curve.harmonics[0]
+
+
+@pytest.mark.parametrize(
+    ("pair", "how"),
+    [
+        (spur(), {"positions": 32}),
+        (spur(profile_slope=5e-6), {"positions": 64}),
+        (spur(profile_crowning=8e-6), {"model": "plane_strain", "positions": 64}),
+    ],
+)
+def test_the_estimate_covers_the_true_error(pair, how, cache):
+    """Against a mesh more than three times as fine and positions where the curve bends."""
+    rough = analyze(pair, normal_forces=[FORCE], level="draft", cache=cache, **how)
+    how = {"model": how.get("model", "auto")}
+    truth = analyze(pair, normal_forces=[FORCE], level="fine", cache=cache, **how)
+    for found, exact in zip(figures(rough), figures(truth), strict=True):
+        assert abs(found.value - exact.value) <= found.error
+        assert found.error < 0.05 * found.value
+
+
+def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
+    """Few slices make false steps: the estimate must see them, also where the mesh is exact."""
+    table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32, cache=cache)
+    slices = table.curve_error[SOURCES.index("slices"), :, 0, 0, 0]
+    ripple = float(table.peak_to_peak(force=FORCE))
+    assert 0.005 * ripple < slices[1] < ripple
+    assert slices[0] < 0.01 * float(table.mean(force=FORCE))
+    made = face_discretisation(helical(), "draft")
+    assert made.coarse_slices == made.slices // 2 | 1
+    assert made.remaining_slices == pytest.approx(1.0 / ((made.slices / made.coarse_slices) ** 1.25 - 1.0))
+
+
+def test_a_finer_level_states_a_smaller_error(cache):
+    errors = [
+        [found.error for found in figures(analyze(spur(), normal_forces=[FORCE], level=level, cache=cache))]
+        for level in ("draft", "standard", "fine")
+    ]
+    assert np.all(np.diff(errors, axis=0) < 0.0)
+
+
+def test_a_source_that_does_not_act_is_zero(cache):
+    plane = analyze(spur(), normal_forces=[FORCE], model="plane_strain", level="draft", cache=cache)
+    for name in ("slices", "finite_width", "force", "misalignment", "center_distance_change"):
+        assert not plane.curve_error[SOURCES.index(name)].any()
+    assert plane.curve_error[SOURCES.index("discretisation")].any()
+
+
+def test_the_receipt_tells_the_sources_that_the_numbers_add_up(cache):
+    table = analyze(spur(), normal_forces=[1500.0, FORCE], level="draft", cache=cache)
+    by_source = table.metadata.receipt["curve_error"]
+    assert set(by_source) == set(SOURCES)
+    assert not table.metadata.receipt["not_estimated"]
+    stated = sum(source["peak_to_peak_m"][1] for source in by_source.values())
+    assert stated == pytest.approx(table.peak_to_peak(force=FORCE).error, rel=1e-12)
+    between = table.peak_to_peak(force=0.5 * (1500.0 + FORCE)).error
+    assert between > 0.5 * sum(source["peak_to_peak_m"][0] for source in by_source.values())
+
+
+@pytest.mark.parametrize("positions", [None, 32])
+def test_a_minimal_receipt_changes_no_result_and_says_what_is_unknown(positions, cache):
+    how = {"normal_forces": [1500.0, FORCE], "level": "draft", "positions": positions, "cache": cache}
+    full, minimal = analyze(spur(), **how), analyze(spur(), receipt="minimal", **how)
+    for name in DIMENSIONS:
+        if name != "error_estimate":
+            assert np.array_equal(getattr(full, name), getattr(minimal, name)), name
+    receipt = minimal.metadata.receipt
+    assert receipt["not_estimated"] == list(SOURCES)
+    assert not receipt["curve_error"]
+    assert "error estimate" not in receipt["stages"]
+    assert np.isnan(minimal.error_estimate).all()
+    assert all(math.isnan(found.error) for found in figures(minimal))
