@@ -111,6 +111,7 @@ def test_the_static_limit_is_the_database_at_the_place_of_the_bodies(table, data
     system = assemble(scene)
     found = static_equilibrium(system)
     assert found.status is StaticStatus.CONVERGED
+    assert system.arrays.elements.offset.tolist() == [0.0, 5e-6, 2e-5]  # the mesh's constant parts
     d, m, a = (system.arrays.direction @ found.displacement) + system.arrays.elements.offset
     assert abs(m - 5e-6) > 1e-6
     assert abs(a - 2e-5) > 1e-6
