@@ -1,10 +1,25 @@
 """Rigid bodies: shafts, the gears on them, their inertia, and laws of time that move or load them."""
 
 from dynamics.bodies.angle_law import AngleLaw
+from dynamics.bodies.craig_bampton import ReducedBody, craig_bampton
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.shaft import Shaft
 from dynamics.bodies.speed_curve import SpeedCurve
 from dynamics.bodies.time_law import TimeLaw
+from dynamics.bodies.timoshenko_beam import BeamSection, TimoshenkoBeam, timoshenko_beam
 
-__all__ = ["AngleLaw", "GearBody", "Inertia", "Shaft", "SpeedCurve", "TimeLaw", "hollow_cylinder"]
+__all__ = [
+    "AngleLaw",
+    "BeamSection",
+    "GearBody",
+    "Inertia",
+    "ReducedBody",
+    "Shaft",
+    "SpeedCurve",
+    "TimeLaw",
+    "TimoshenkoBeam",
+    "craig_bampton",
+    "hollow_cylinder",
+    "timoshenko_beam",
+]
