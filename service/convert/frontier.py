@@ -8,11 +8,13 @@ from fe_contact.analysis.frontier import Frontier, frontier
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.schemas import Case
 
+_LEFT_ASIDE = ("pitches", "receipt")
+
 
 def frontier_of(
     case: Case, rungs: Sequence[str] | None, progress: Callable[[str, float], None] | None = None
 ) -> Frontier:
-    """Run the ladder on a case, whose pitch deviations are left aside with their number of pitches.
+    """Run the ladder on a case, over all pitches that differ, with the whole receipt.
 
     Raises
     ------
@@ -22,6 +24,6 @@ def frontier_of(
         Fewer than two rungs gave a table.
     """
     pair = gear_pair(case)
-    asked = {name: value for name, value in analysis_arguments(case).items() if name != "pitches"}
+    asked = {name: value for name, value in analysis_arguments(case).items() if name not in _LEFT_ASIDE}
     with boundary_errors():
         return frontier(pair, **asked, rungs=rungs, progress=progress)

@@ -18,7 +18,8 @@ def plan_of(case: Case, time_budget_s: float | None, cache: Path | None) -> RunP
         No such pair, or a wish that no plan can meet.
     """
     pair = gear_pair(case)
-    arguments = analysis_arguments(case)
+    # what a minimal receipt saves is the error estimate, which the plan lists by itself
+    arguments = {name: value for name, value in analysis_arguments(case).items() if name != "receipt"}
     if time_budget_s is not None:
         arguments["time_budget"] = time_budget_s
     with boundary_errors():
