@@ -71,8 +71,8 @@ def plane_cases() -> list[HonestyCase]:
         HonestyCase("spur 17/43, shifted", _pair(_gear(17, **spread), _gear(43), 0.295)),
         HonestyCase("spur 30/60, tip relief", _pair(_gear(30, modification=relieved), _gear(60))),
         HonestyCase("spur 25/31, profile crowning", _pair(_gear(25, modification=crowned), _gear(31))),
-        HonestyCase("spur 24/37, centre distance + 0.1 m", _pair(_gear(24), _gear(37), 0.1)),
-        HonestyCase("spur 20/20, face of 1.2 m", _pair(_gear(20, 1.2), _gear(20, 1.2))),
+        HonestyCase("spur 24/37, centre distance + 0.1 modules", _pair(_gear(24), _gear(37), 0.1)),
+        HonestyCase("spur 20/20, face of 1.2 modules", _pair(_gear(20, 1.2), _gear(20, 1.2))),
         HonestyCase(
             "spur 20/40, thin rim", _pair(_gear(20), _gear(40, blank=GearBlank(2.0 * M, 1.5 * M, 25.0 * M)))
         ),

@@ -62,3 +62,16 @@ def test_publishing_replaces_the_figures_and_nothing_else(
         assert text.count("| table | cold |") == 1
         assert "memory" not in text  # no target, so no place in the README
     assert (tmp_path / "docs" / "benchmarks.md").read_text() == "page"
+
+
+def test_named_subjects_are_measured_and_the_others_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(bench, "ROOT", tmp_path)
+    monkeypatch.setattr(bench.finite_width, "figures", lambda: [FIGURES[0]])
+    assert bench.main(["finite_width"]) == 0
+    printed = capsys.readouterr().out
+    assert "| table | cold |" in printed
+    assert "not measured this time: reference_errors, static_table, run_up" in printed
+    assert bench.main(["finite_widht"]) == 2
+    assert "no subject finite_widht; one of reference_errors" in capsys.readouterr().err
