@@ -8,8 +8,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from dynamics.errors import InputError
-from dynamics.joints.housing import read_housing_matrices
 from service.problems import BadInput
 
 FIELD, ROWS = "stiffness_file", "stiffness_matrix"
@@ -32,6 +30,9 @@ def with_housing_files(table: Table, folder: Path) -> Table:
 
 def _written_out(given: object, folder: Path, index: int) -> object:
     """One housing with its file's matrices."""
+    from dynamics.errors import InputError  # noqa: PLC0415 - the client reads scenes too, and stays light
+    from dynamics.joints.housing import read_housing_matrices  # noqa: PLC0415
+
     if not isinstance(given, dict) or FIELD not in given:
         return given
     field, name = f"housings[{index}].{FIELD}", given[FIELD]
