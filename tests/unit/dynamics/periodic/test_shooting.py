@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from geared_scenes import RPM, gear_pair_scene, repeated, spring_table, square_wave_table
+from geared_scenes import RPM, gear_pair_scene, repeated, spring_table, square_wave_table, with_bushings
 from planetary_scenes import MESH_STIFFNESS, driven_scene, planetary_scene, published_set
 
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
+from dynamics.forces import RollingContact
 from dynamics.linearize import common_period, harmonic_response
 from dynamics.periodic import (
     BranchStatus,
@@ -30,9 +31,21 @@ from dynamics.system.assemble import assemble
 SPEED = 900.0 * RPM
 
 
-def test_a_small_ripple_gives_the_harmonic_response():
+def on_rolling_bearings(scene):
+    """Four roller bearings with clearance instead of springs across the axis."""
+    scene = with_bushings(scene, radial_stiffness=0.0)
+    contacts = tuple(
+        RollingContact(bushing.name, stiffness=5e8, clearance=2e-5, exponent=10.0 / 9.0)
+        for bushing in scene.bushings
+    )
+    return replace(scene, rolling_contacts=contacts)
+
+
+@pytest.mark.parametrize("bearings", ["springs", "rolling"])
+def test_a_small_ripple_gives_the_harmonic_response(bearings):
     """The same phases, through all bearings."""
-    system = assemble(gear_pair_scene(spring_table(4e8, 1e-7)))
+    scene = gear_pair_scene(spring_table(4e8, 1e-8 if bearings == "rolling" else 1e-7))
+    system = assemble(on_rolling_bearings(scene) if bearings == "rolling" else scene)
     problem = periodic_problem(system, SPEED)
     found = motion(problem, find_orbit(problem, SPEED))
     linear = harmonic_response(system, [SPEED], 1)
