@@ -5,10 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray
 
 from dynamics.errors import ResultError
 from dynamics.results.energy_audit import EnergyAudit
@@ -18,6 +17,9 @@ from dynamics.results.series import LABELS, SERIES, over_time
 from dynamics.results.step_statistics import StepStatistics
 from dynamics.types import RunStatus
 
+if TYPE_CHECKING:
+    import xarray
+
 SCHEMA = "lineofaction dynamics run"
 SCHEMA_VERSION = 2
 DOCUMENTS = ("effect_ledger", "receipt", "case", "modes")
@@ -25,6 +27,8 @@ DOCUMENTS = ("effect_ledger", "receipt", "case", "modes")
 
 def to_dataset(result: RunResult) -> xarray.Dataset:
     """Return `result` as a dataset: CF-style names and units, documents as JSON attributes."""
+    import xarray  # noqa: PLC0415 - a second, and not needed to run a scene
+
     coordinates: dict[str, Any] = {
         dimension: (dimension, np.array(getattr(result, field), dtype=object))
         for field, dimension in LABELS.items()
@@ -56,6 +60,8 @@ def write_netcdf(result: RunResult, path: Path) -> None:
 
 def read_netcdf(path: Path) -> RunResult:
     """Read a file of `write_netcdf`."""
+    import xarray  # noqa: PLC0415 - a second, and not needed to run a scene
+
     if not path.is_file():
         raise ResultError(f"{path}: no such file")
     try:

@@ -216,3 +216,9 @@ def test_a_large_scene_fits_into_the_attributes(tmp_path):
     large = replace(result, case={**result.case, "remark": "x" * 300_000})
     large.to_netcdf(tmp_path / "run.nc")
     assert RunResult.from_netcdf(tmp_path / "run.nc").case == large.case
+
+
+def test_running_a_scene_needs_no_xarray():
+    code = "import sys, dynamics.simulate; print(sorted({'xarray', 'pandas'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
