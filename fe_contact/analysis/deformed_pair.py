@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_contact.analysis.compute_database import Progress
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request import check_one_load
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
 from fe_contact.checks import integer
 from fe_contact.compliance.deformation_2d import deformed_sections
@@ -121,18 +121,17 @@ def deformed_pairs(
     MeshError, SolveError
         No acceptable mesh, or positions without a solution.
     """
-    checked = check_request(
+    checked = check_one_load(
         pair,
-        torques=None if torque is None else [torque],
-        normal_forces=None if normal_force is None else [normal_force],
+        torque,
+        normal_force,
+        misalignment,
+        center_distance_change,
         tolerance=tolerance,
         level=level,
         time_budget=time_budget,
         model=model,
-        misalignments=[misalignment],
-        center_distance_changes=[center_distance_change],
         effects=effects,
-        whole_table=False,
     )
     integer("beside", beside, 0, 100)
     report = progress or _silent

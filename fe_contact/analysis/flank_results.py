@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from fe_contact.analysis.compute_database import SOLVER_VERSION, Progress, software_versions
 from fe_contact.analysis.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
-from fe_contact.analysis.request import Checked, check_request
+from fe_contact.analysis.request import Checked, check_one_load
 from fe_contact.analysis.solved_place import checked_positions, solve_place
 from fe_contact.geometry import ParallelAxes
 from fe_contact.stage_clock import StageClock
@@ -66,18 +66,17 @@ def flank_results(
     MeshError, SolveError
         No acceptable mesh, or positions without a solution.
     """
-    checked = check_request(
+    checked = check_one_load(
         pair,
-        torques=None if torque is None else [torque],
-        normal_forces=None if normal_force is None else [normal_force],
+        torque,
+        normal_force,
+        misalignment,
+        center_distance_change,
         tolerance=tolerance,
         level=level,
         time_budget=time_budget,
         model=model,
-        misalignments=[misalignment],
-        center_distance_changes=[center_distance_change],
         effects=effects,
-        whole_table=False,
     )
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
     found = _solved(checked, position, progress or _silent, cache)

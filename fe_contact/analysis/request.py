@@ -141,6 +141,35 @@ def check_request(
     return check_asked(request, whole_table=whole_table)
 
 
+def check_one_load(
+    pair: ParallelAxes,
+    torque: float | None,
+    normal_force: float | None,
+    misalignment: float,
+    center_distance_change: float,
+    *,
+    tolerance: float | None,
+    level: str | None,
+    time_budget: float | None,
+    model: str,
+    effects: Mapping[str, str] | None,
+) -> Checked:
+    """Check what is asked of one load (N m or N, exactly one) and alignment (m), as `check_request` does."""
+    return check_request(
+        pair,
+        torques=None if torque is None else [torque],
+        normal_forces=None if normal_force is None else [normal_force],
+        tolerance=tolerance,
+        level=level,
+        time_budget=time_budget,
+        model=model,
+        misalignments=[misalignment],
+        center_distance_changes=[center_distance_change],
+        effects=effects,
+        whole_table=False,
+    )
+
+
 def check_asked(request: Request, *, whole_table: bool = True) -> Checked:
     """Compose the model of a request and refuse what it cannot hold; parameters of `check_request`."""
     composed, ledger = compose(request.scene, request.choices, EFFECTS)

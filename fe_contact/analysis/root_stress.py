@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from fe_contact.analysis.compute_database import Progress
 from fe_contact.analysis.flank_results import POSITIONS
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request import check_one_load
 from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
 from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
@@ -91,18 +91,17 @@ def root_stress(
     MeshError, SolveError
         No acceptable mesh, or positions without a solution.
     """
-    checked = check_request(
+    checked = check_one_load(
         pair,
-        torques=None if torque is None else [torque],
-        normal_forces=None if normal_force is None else [normal_force],
+        torque,
+        normal_force,
+        misalignment,
+        center_distance_change,
         tolerance=tolerance,
         level=level,
         time_budget=time_budget,
         model=model,
-        misalignments=[misalignment],
-        center_distance_changes=[center_distance_change],
         effects=effects,
-        whole_table=False,
     )
     clock, report = StageClock(), progress or _silent
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
