@@ -7,6 +7,7 @@ from dynamics.forces.mesh_table import MeshTable
 from dynamics.forces.rolling_contact import RollingContact
 from dynamics.forces.speed_torque import SpeedTorque
 from dynamics.forces.spring_curve import SpringCurve
+from dynamics.forces.straight_table import straight_table
 
 __all__ = [
     "CoastFlank",
@@ -16,4 +17,5 @@ __all__ = [
     "RollingContact",
     "SpeedTorque",
     "SpringCurve",
+    "straight_table",
 ]

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.errors import InputError
 from dynamics.system.arrays import Drives, Loads, Reference
 from dynamics.system.coupling_rows import CouplingRows
 from dynamics.system.freedoms import ROTATION, Freedoms, mass_diagonal
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.law_arrays import pack_laws, revolutions
+from dynamics.system.motion_check import check_loads
 from dynamics.system.planets import carried_motion
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
@@ -51,13 +51,10 @@ def lay_out_reference(
 
 def lay_out_loads(scene: Scene, kinematics: Kinematics, freedoms: Freedoms) -> Loads:
     """Lay out the load torques: each against the sense of its shaft."""
+    check_loads(scene, kinematics)
     direction = np.zeros((len(scene.loads), len(scene.shafts), 6))
     for row, load in enumerate(scene.loads):
         shaft = scene.shaft_index(load.shaft)
-        if kinematics.sense[shaft] == 0:
-            raise InputError(
-                f"loads[{row}].shaft", load.shaft, "a shaft that turns", "A held shaft needs no load."
-            )
         direction[row, shaft, ROTATION] = -kinematics.sense[shaft]
     on_drive = direction[:, list(kinematics.law_shaft), ROTATION] * np.array(kinematics.rigid)
     return Loads(

@@ -7,7 +7,7 @@ from pathlib import Path
 from dynamics.simulate import interrupted_run, simulate_to_file
 from dynamics.system import Scene
 from dynamics.types import RunStatus
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import PairFacts, SteDatabase
 from service.cli.analyze import analyzed
 from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
@@ -15,8 +15,10 @@ from service.cli.remote import watching
 from service.cli.ste import open_ste
 from service.client import LineOfActionClient
 from service.client.portable import case_of_mesh, scene_of
+from service.convert.checks import check_case
 from service.convert.runs import run_json, staged
-from service.convert.scene import dynamic_scene
+from service.convert.scene import check_scene, dynamic_scene
+from service.convert.topology import facts_of
 from service.problems import BadInput, JobFailed
 from service.schemas import Case
 from service.schemas.scene import MeshInput
@@ -35,6 +37,7 @@ def run_simulate(file: Path, output: Path, service: str | None, *, resume: bool,
     try:
         with progress_bar() as report:
             tables = _Tables(folder, client, report)
+            check_scene(scene, {mesh.name: tables.facts(i, mesh) for i, mesh in enumerate(scene.meshes)})
             databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
             _run(dynamic_scene(scene, databases), output, report, resume=resume)
     finally:
@@ -77,6 +80,17 @@ class _Tables:
         assert case is not None
         try:
             return self._of_case(case)
+        except BadInput as error:
+            raise error.within(f"{place}.case") from None
+
+    def facts(self, index: int, mesh: MeshInput) -> PairFacts:
+        """Return the facts of a mesh's pair; of a case without computing anything."""
+        place = f"meshes[{index}]"
+        case = case_of_mesh(mesh, place, self._folder)
+        if case is None:
+            return self.of(index, mesh).facts
+        try:
+            return facts_of(check_case(case))
         except BadInput as error:
             raise error.within(f"{place}.case") from None
 

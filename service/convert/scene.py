@@ -7,10 +7,20 @@ from contextlib import contextmanager
 
 from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, SpeedCurve, TimeLaw, hollow_cylinder
 from dynamics.errors import InputError
-from dynamics.forces import CoastFlank, GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
+from dynamics.forces import (
+    CoastFlank,
+    GearMesh,
+    LoadTorque,
+    MeshTable,
+    RollingContact,
+    SpeedTorque,
+    SpringCurve,
+    straight_table,
+)
 from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
 from dynamics.system import Integration, Outputs, Scene, with_planets
 from dynamics.system.kinematics import solve_kinematics
+from dynamics.system.motion_check import check_load_flow, check_motion
 from fe_contact.ste import PairFacts, SteDatabase
 from service.convert.case import boundary_errors
 from service.convert.errors import translated
@@ -29,6 +39,7 @@ from service.schemas.scene_bodies import (
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 
 _SMALLEST_STEP_S = 1e-12
+ANY_STIFFNESS = 1e8  # N/m; checks that need no table do not read it
 
 
 def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Scene:
@@ -49,16 +60,27 @@ def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Sc
     """
     facts = {name: database.facts for name, database in databases.items()}
     with boundary_errors():
-        meshes = tuple(_mesh(i, mesh, databases[mesh.name]) for i, mesh in enumerate(scene.meshes))
-    one_of_each = _assembled(scene, facts, meshes)
-    with _named(""):
-        solve_kinematics(one_of_each)
-    return _with_all_planets(scene, one_of_each)
+        tables = {name: database.force_table() for name, database in databases.items()}
+    return _moving(scene, facts, tables)
 
 
 def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
-    """Raise `BadInput` if no such system exists, by the facts of the pairs (by name of the mesh) alone."""
-    _assembled(scene, facts, ())
+    """Raise `BadInput` if no such system exists or moves, by the facts of the pairs (by name of the mesh)."""
+    _moving(scene, facts, dict.fromkeys(facts, straight_table(ANY_STIFFNESS)))
+
+
+def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[str, MeshTable]) -> Scene:
+    """Return the scene with all its planets, its parts checked one by one, together, and in motion."""
+    meshes = tuple(
+        _mesh(i, mesh, tables[mesh.name], facts[mesh.name].base_pitch) for i, mesh in enumerate(scene.meshes)
+    )
+    one_of_each = _assembled(scene, facts, meshes)
+    with _named(""):
+        check_motion(one_of_each)
+    whole = _with_all_planets(scene, one_of_each)
+    with _named(""):
+        check_load_flow(whole, solve_kinematics(whole))
+    return whole
 
 
 def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[GearMesh, ...]) -> Scene:
@@ -239,14 +261,14 @@ def _with_all_planets(given: SceneInput, scene: Scene) -> Scene:
     return scene
 
 
-def _mesh(index: int, given: MeshInput, database: SteDatabase) -> GearMesh:
-    """Return a mesh with the force table of its database."""
+def _mesh(index: int, given: MeshInput, table: MeshTable, base_pitch: float) -> GearMesh:
+    """Return a mesh with its force table."""
     with _named(f"meshes[{index}]"):
         return GearMesh(
             name=given.name,
             driver=given.driver,
             driven=given.driven,
-            table=database.force_table(),
+            table=table,
             technique=given.technique,
             damping=given.damping_n_s_per_m,
             damping_ratio=given.damping_ratio,
@@ -254,7 +276,7 @@ def _mesh(index: int, given: MeshInput, database: SteDatabase) -> GearMesh:
             position_offset=given.position_offset,
             misalignment=given.misalignment_um * UM,
             center_distance_change=given.center_distance_change_mm * MM,
-            coast=_coast_flank(given.coast_flank, database.facts.base_pitch),
+            coast=_coast_flank(given.coast_flank, base_pitch),
             friction=given.friction,
         )
 
