@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from dynamics.system.arrays import Drives, Loads, Reference
-from dynamics.system.coupling_rows import CouplingRows
+from dynamics.system.connections import Connections
 from dynamics.system.freedoms import ROTATION, Freedoms, mass_diagonal
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.law_arrays import pack_laws, revolutions
+from dynamics.system.mechanism import Mechanism
 from dynamics.system.motion_check import check_loads
 from dynamics.system.planets import carried_motion
-from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
-from dynamics.system.supports import Supports
 from dynamics.types import FloatArray
 
 
@@ -66,24 +64,12 @@ def lay_out_loads(scene: Scene, kinematics: Kinematics, freedoms: Freedoms) -> L
 
 
 def lay_out_drives(
-    scene: Scene,
-    rotors: Sequence[Rotor],
-    kinematics: Kinematics,
-    freedoms: Freedoms,
-    supports: Supports,
-    couplings: CouplingRows,
-    gradient: FloatArray,
-    vectors: FloatArray,
+    mechanism: Mechanism, freedoms: Freedoms, connections: Connections, gradient: FloatArray
 ) -> Drives:
     """Lay out what each drive's torque is made of: the balance of its own shaft, or its own spring."""
-    laws = len(kinematics.law_shaft)
-    turned = np.zeros(
-        (laws, 6 * len(rotors))
-    )  # motion of all rotors per radian of a rigid drive's shaft alone
-    own = carried_motion(rotors, freedoms.place)
-    for law in range(laws):
-        if kinematics.rigid[law]:
-            turned[law] = own[:, 6 * kinematics.law_shaft[law] + ROTATION]
+    scene, kinematics = mechanism.scene, mechanism.kinematics
+    supports, couplings = connections.supports, connections.couplings
+    turned = _turned_alone(mechanism, freedoms)
     strained = np.einsum("bki,ai->bka", supports.motion, turned)
     moves = freedoms.keep(supports.motion)
     stiffness = supports.matrix(supports.stiffness, strained, moves)
@@ -101,6 +87,17 @@ def lay_out_drives(
         np.ascontiguousarray(turned @ gradient.T),
         np.ascontiguousarray(stiffness),
         np.ascontiguousarray(damping),
-        np.ascontiguousarray(turned * mass_diagonal(rotors) @ vectors.T),
+        np.ascontiguousarray(turned * mass_diagonal(mechanism.rotors) @ mechanism.vectors.T),
         np.einsum("bka,bk,bk->a", strained, supports.stiffness, supports.error),
     )
+
+
+def _turned_alone(mechanism: Mechanism, freedoms: Freedoms) -> FloatArray:
+    """Motion of all rotors per radian of each rigid drive's shaft alone, (k, 6 r); 0 for other laws."""
+    kinematics = mechanism.kinematics
+    turned = np.zeros((len(kinematics.law_shaft), 6 * len(mechanism.rotors)))
+    own = carried_motion(mechanism.rotors, freedoms.place)
+    for law, shaft in enumerate(kinematics.law_shaft):
+        if kinematics.rigid[law]:
+            turned[law] = own[:, 6 * shaft + ROTATION]
+    return turned

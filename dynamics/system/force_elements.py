@@ -1,0 +1,28 @@
+"""All force elements of a model, in their order: flanks, torques by speed, turning, bearings."""
+
+from __future__ import annotations
+
+from dynamics.forces.element_laws import ElementLaws
+from dynamics.system.bearing_elements import bearing_elements
+from dynamics.system.elements import Element
+from dynamics.system.flank_elements import flank_elements
+from dynamics.system.model import Model
+from dynamics.system.spatial_elements import spatial_elements
+from dynamics.system.speed_elements import speed_elements
+from dynamics.system.turning_elements import turning_elements
+
+
+def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
+    """Return the driving flanks of all meshes, then everything else, and their laws."""
+    mechanism, flanks, ledger = model.mechanism, model.flanks, model.ledger
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
+    senses, vectors, joined = kinematics.mesh_sense, mechanism.vectors, model.connections
+    plain = flank_elements(scene, rotors, senses, mechanism.lines, flanks)
+    in_space, spatial = spatial_elements(scene, rotors, senses, flanks, plain, ledger, vectors)
+    by_speed, speed = speed_elements(scene, kinematics)
+    by_turning, turning = turning_elements(
+        scene, rotors, kinematics, vectors, model.freedoms, joined.supports, joined.seats, ledger
+    )
+    on_bearings, contact, curve = bearing_elements(scene, rotors, mechanism.bearings, mechanism.bearing_load)
+    laws = ElementLaws(flanks.law, speed, contact, curve, spatial, turning)
+    return (*in_space, *by_speed, *by_turning, *on_bearings), laws

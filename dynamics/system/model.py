@@ -1,0 +1,91 @@
+"""What a scene is modelled with: freedoms, connections, flanks, and the effects decided on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from dynamics.errors import InputError
+from dynamics.system.connections import Connections, gather_connections
+from dynamics.system.effects.ledger import EffectLedger, keep_ledger, with_mesh_effects
+from dynamics.system.flanks import Flanks, flank_laws, with_coast_flanks
+from dynamics.system.freedoms import Freedoms, find_freedoms, mass_diagonal
+from dynamics.system.loaded_meshes import loaded_meshes
+from dynamics.system.mechanism import GIVE_INERTIA, Mechanism
+from dynamics.system.mesh_axes import mesh_axes
+from dynamics.system.rotor import Rotor
+from dynamics.system.supported_rotors import supported_rotors
+from dynamics.system.turning_rotors import turning_rotors
+
+
+@dataclass(frozen=True)
+class Model:
+    """A mechanism with its effects decided.
+
+    Attributes
+    ----------
+    mechanism : Mechanism
+    freedoms : Freedoms
+    connections : Connections
+    flanks : Flanks
+        Force laws as resolved: nominal forces, damping, tables.
+    ledger : EffectLedger
+    """
+
+    mechanism: Mechanism
+    freedoms: Freedoms
+    connections: Connections
+    flanks: Flanks
+    ledger: EffectLedger
+
+
+def decide_model(mechanism: Mechanism) -> Model:
+    """Decide the effects of rotors, which give the freedoms, and then those of meshes, which look at them.
+
+    Raises
+    ------
+    InputError
+        If a choice is unknown, a free direction has no inertia, or a table does not fit its mesh.
+    """
+    flanks = _flanks(mechanism)
+    ledger = _on_rotors(mechanism)
+    freedoms = find_freedoms(mechanism.rotors, mechanism.kinematics, ledger)
+    _check_mass(freedoms, mechanism.rotors)
+    connections = gather_connections(mechanism.scene, mechanism.rotors)
+    ledger = _on_meshes(mechanism, freedoms, connections, flanks, ledger)
+    meshes = mechanism.scene.meshes
+    coast = [index for index, mesh in enumerate(meshes) if ledger.on("backlash", mesh.name)]
+    return Model(mechanism, freedoms, connections, with_coast_flanks(flanks, meshes, coast), ledger)
+
+
+def _flanks(mechanism: Mechanism) -> Flanks:
+    """Resolve the driving flanks."""
+    scene, kinematics = mechanism.scene, mechanism.kinematics
+    return flank_laws(scene, kinematics, mechanism.nominal_force, mechanism.polar_inertia)
+
+
+def _on_rotors(mechanism: Mechanism) -> EffectLedger:
+    """Decide the effects of rotors."""
+    scene, rotors = mechanism.scene, mechanism.rotors
+    turns = turning_rotors(scene, mechanism.kinematics, rotors)
+    forces, loads = mechanism.nominal_force, mechanism.bearing_load
+    return keep_ledger(scene.effects, supported_rotors(scene, rotors, mechanism.lines, forces, loads, turns))
+
+
+def _on_meshes(
+    mechanism: Mechanism, freedoms: Freedoms, connections: Connections, flanks: Flanks, ledger: EffectLedger
+) -> EffectLedger:
+    """Decide the effects of meshes too."""
+    scene, kinematics, rotors = mechanism.scene, mechanism.kinematics, mechanism.rotors
+    senses, supports = kinematics.mesh_sense, connections.supports
+    axes = mesh_axes(scene, rotors, senses, mechanism.lines, freedoms, supports, flanks)
+    inertia = mechanism.turning_inertia
+    meshes = loaded_meshes(scene, kinematics, flanks, mechanism.polar_inertia, inertia, axes)
+    return with_mesh_effects(ledger, scene.effects, meshes)
+
+
+def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:
+    """Every free direction needs inertia."""
+    for name, value in zip(freedoms.name, mass_diagonal(rotors)[freedoms.place], strict=True):
+        if value <= 0.0:
+            raise InputError(f"inertia of {name}", float(value), "above 0", GIVE_INERTIA)

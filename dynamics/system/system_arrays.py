@@ -1,0 +1,94 @@
+"""A model laid out as the plain arrays that the compiled loops see."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.forces.element_laws import ElementLaws
+from dynamics.system.arrays import SystemArrays
+from dynamics.system.connections import linear_matrices
+from dynamics.system.effects import FREEDOMS
+from dynamics.system.elements import Element, gradients, pack_elements
+from dynamics.system.freedoms import ROTATION, Freedoms, mass_diagonal, shared_blocks
+from dynamics.system.kinematics import Kinematics, mesh_shafts
+from dynamics.system.model import Model
+from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_reference
+from dynamics.system.rotor import Rotor
+from dynamics.system.scene import Scene
+from dynamics.types import FloatArray
+
+
+def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
+    """Reduce every six-freedom array to the free directions."""
+    mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
+    vectors = mechanism.vectors
+    stiffness, damping, constant = linear_matrices(joined, freedoms)
+    _add_drive_springs(scene, kinematics, freedoms, stiffness, damping)
+    full_mass = mass_diagonal(rotors)
+    mass = freedoms.motion.T @ (full_mass[:, None] * freedoms.motion)
+    gradient = gradients(elements, 6 * len(rotors))
+    scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
+    packed = pack_elements(elements, laws, len(scene.references))
+    along = direction[packed.first[: len(scene.meshes)]]
+    held = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
+    held += packed.stiffness @ direction**2
+    return SystemArrays(
+        np.ascontiguousarray(mass),
+        damping,
+        stiffness,
+        shared_blocks([mass, damping, stiffness]),
+        direction,
+        freedoms.keep(_turns(scene, rotors, kinematics)),
+        constant,
+        freedoms.keep(-full_mass * vectors),
+        np.ascontiguousarray((vectors * full_mass) @ vectors.T),
+        lay_out_drives(mechanism, freedoms, joined, gradient),
+        scale,
+        scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
+        packed,
+        lay_out_reference(scene, kinematics, freedoms, vectors),
+        lay_out_loads(scene, kinematics, freedoms),
+    )
+
+
+def _add_drive_springs(
+    scene: Scene, kinematics: Kinematics, freedoms: Freedoms, stiffness: FloatArray, damping: FloatArray
+) -> None:
+    """Add the springs between drives and their shafts."""
+    for shaft, drive in zip(kinematics.law_shaft, scene.drives, strict=False):
+        if drive.stiffness is not None:
+            place = freedoms.find(shaft, ROTATION)
+            stiffness[place, place] += drive.stiffness
+            damping[place, place] += drive.damping
+
+
+def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
+    """Return the derivatives of each position, (m, 6 r): the driver's rotation against its carrier's."""
+    turn = np.zeros((len(scene.meshes), len(rotors), 6))
+    for row, mesh in enumerate(scene.meshes):
+        driver, _, carrier = mesh_shafts(scene, row)
+        rate = kinematics.mesh_sense[row] * scene.gear(mesh.driver).teeth / (2.0 * math.pi)
+        turn[row, driver, ROTATION] = rate
+        if carrier is not None:
+            turn[row, carrier, ROTATION] -= rate
+    return turn.reshape(len(scene.meshes), 6 * len(rotors))
+
+
+def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatArray:
+    """Metres per unit of each freedom, (n,): for rotations the largest base or pin radius on the shaft."""
+    largest = max((gear.base_radius for gear in scene.gears), default=1.0)
+    radius = np.zeros(len(rotors))
+    for gear in scene.gears:
+        shaft = scene.shaft_index(gear.shaft)
+        radius[shaft] = max(radius[shaft], gear.base_radius)
+    for rotor in rotors:
+        if rotor.carrier is not None:
+            arm = rotor.center - rotors[rotor.carrier].center
+            radius[rotor.carrier] = max(radius[rotor.carrier], float(np.hypot(arm[0], arm[1])))
+    scale = np.ones((len(rotors), len(FREEDOMS)))
+    scale[:, 3:] = np.where(radius > 0.0, radius, largest)[:, None]
+    return np.ascontiguousarray(scale.ravel()[freedoms.place])
