@@ -18,6 +18,7 @@ from benchmarks import (
     run_up,
     solvers_3d,
     static_table,
+    worth_estimates,
 )
 from benchmarks.figures import Figure, markdown
 from benchmarks.machine import describe
@@ -33,6 +34,7 @@ SUBJECTS = (
     solvers_3d,
     predictions,
     error_honesty,
+    worth_estimates,
 )
 _MARKS = ("<!-- figures: written by scripts/bench --publish -->", "<!-- end of figures -->")
 
@@ -57,6 +59,8 @@ def main(arguments: Sequence[str]) -> int:
         _publish(page, machine, figures)
         if "error_honesty" in chosen:
             error_honesty.publish(error_honesty.judged(), machine)
+        if "worth_estimates" in chosen:
+            worth_estimates.publish(worth_estimates.judged(), machine)
     return 0 if all(figure.met is not False for figure in figures) else 1
 
 

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fe_contact.analysis import (
+        Ablation,
         ContactPattern,
         DeformedPair,
         Frontier,
         LoadDistribution,
         RootStress,
         Sensitivity,
+        ablate,
         analyze,
         contact_pattern,
         deformed_pairs,
@@ -43,6 +45,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "STEEL",
+    "Ablation",
     "BoreSeat",
     "ContactPattern",
     "DeformedPair",
@@ -63,6 +66,7 @@ __all__ = [
     "Shaft",
     "Status",
     "SteDatabase",
+    "ablate",
     "analyze",
     "contact_pattern",
     "deformed_pairs",
@@ -73,6 +77,8 @@ __all__ = [
 ]
 
 _HOME = {
+    "ablate": "fe_contact.analysis",
+    "Ablation": "fe_contact.analysis",
     "analyze": "fe_contact.analysis",
     "contact_pattern": "fe_contact.analysis",
     "deformed_pairs": "fe_contact.analysis",

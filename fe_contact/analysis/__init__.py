@@ -1,5 +1,6 @@
 """The main flow: gear pair in, STE database out; and what happens on its flanks."""
 
+from fe_contact.analysis.ablation import Ablation, EffectAblation, ablate
 from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.contact_pattern import ContactPattern, contact_pattern
 from fe_contact.analysis.deformed_pair import DeformedPair, deformed_pairs
@@ -13,8 +14,10 @@ from fe_contact.analysis.run_plan import RunPlan, plan_run
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 
 __all__ = [
+    "Ablation",
     "ContactPattern",
     "DeformedPair",
+    "EffectAblation",
     "Frontier",
     "LoadDistribution",
     "RippleCurve",
@@ -24,6 +27,7 @@ __all__ = [
     "RootStressHistory",
     "RunPlan",
     "Sensitivity",
+    "ablate",
     "analyze",
     "check_request",
     "contact_pattern",

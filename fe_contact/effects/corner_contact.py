@@ -36,9 +36,8 @@ class CornerContact:
             if clear
             else f"deflections up to {1e6 * deflection:.1f} um close the gap at the tip edges"
         )
-        return Verdict(
-            not clear, reason, "nothing" if clear else "mean and peak-to-peak STE about 2 % at rated load"
-        )
+        worth = "nothing while the edges stay clear" if clear else "mean and peak-to-peak STE about 2 %"
+        return Verdict(not clear, reason, worth)
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Let tip edges touch."""

@@ -58,6 +58,11 @@ class Verdict:
     reason: str
     worth: str
 
+    @property
+    def neutral(self) -> bool:
+        """Whether the scene holds nothing that the effect could add: on or off is the same."""
+        return not self.on and self.worth == "nothing"
+
 
 class Effect(Protocol):
     """Interface of an effect.

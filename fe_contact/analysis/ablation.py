@@ -1,0 +1,292 @@
+"""Ablation: every effect switched over by itself, the change beside what it was estimated at."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis.compute_database import Progress, compute_database
+from fe_contact.analysis.request import Checked, check_asked, check_request
+from fe_contact.effects import EFFECTS, LedgerEntry
+from fe_contact.effects.flipping import flipped
+from fe_contact.effects.worth import Worth, estimate_worth
+from fe_contact.errors import InputError, MeshError, SolveError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning import planned, predict_run
+from fe_contact.types import FloatArray, Json
+
+HARMONICS = 5
+"""Mesh harmonics that are compared."""
+
+
+@dataclass(frozen=True)
+class Figures:
+    """What a table says of its curves at each load (L,), m, at the largest of its misalignments in size.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : ndarray, shape (L,)
+    harmonics : ndarray, shape (L, 5)
+        Amplitudes of the mesh harmonics, the first one first.
+    cpu_seconds : float
+        Of the contact, measured.
+    predicted_cpu_seconds : float
+        Of the whole run with nothing in the cache.
+    """
+
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    harmonics: FloatArray
+    cpu_seconds: float
+    predicted_cpu_seconds: float
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "mean_m": self.mean.tolist(),
+            "peak_to_peak_m": self.peak_to_peak.tolist(),
+            "harmonics_m": self.harmonics.tolist(),
+            "cpu_seconds": self.cpu_seconds,
+            "predicted_cpu_seconds": self.predicted_cpu_seconds,
+        }
+
+
+@dataclass(frozen=True)
+class EffectAblation:
+    """One effect switched over.
+
+    Attributes
+    ----------
+    name : str
+    on : bool
+        Whether the case has it on.
+    reason : str
+        Why, from the ledger.
+    with_effect, without_effect : Figures
+        One of them is the case itself.
+    estimate : Worth or None
+        What the ledger estimated that leaving it out changes; None where it has no estimate.
+    """
+
+    name: str
+    on: bool
+    reason: str
+    with_effect: Figures
+    without_effect: Figures
+    estimate: Worth | None
+
+    @property
+    def mean_change(self) -> FloatArray:
+        """Change (L,) of the mean STE by leaving the effect out, m."""
+        return self.without_effect.mean - self.with_effect.mean
+
+    @property
+    def peak_to_peak_change(self) -> FloatArray:
+        """Change (L,) of the peak-to-peak STE by leaving the effect out, m."""
+        return self.without_effect.peak_to_peak - self.with_effect.peak_to_peak
+
+    @property
+    def harmonic_change(self) -> FloatArray:
+        """Change (L, 5) of the amplitudes by leaving the effect out, m."""
+        return self.without_effect.harmonics - self.with_effect.harmonics
+
+    @property
+    def cost_ratio(self) -> float:
+        """Predicted CPU time with the effect over that without, nothing cached."""
+        return self.with_effect.predicted_cpu_seconds / self.without_effect.predicted_cpu_seconds
+
+    def to_json(self) -> Json:
+        """Return plain JSON: changes in m and in parts of the value with the effect."""
+        return {
+            "name": self.name,
+            "on": self.on,
+            "reason": self.reason,
+            "with": self.with_effect.to_json(),
+            "without": self.without_effect.to_json(),
+            "mean_change_m": self.mean_change.tolist(),
+            "peak_to_peak_change_m": self.peak_to_peak_change.tolist(),
+            "harmonic_change_m": self.harmonic_change.tolist(),
+            "relative_mean_change": (self.mean_change / self.with_effect.mean).tolist(),
+            "relative_peak_to_peak_change": (
+                self.peak_to_peak_change / self.with_effect.peak_to_peak
+            ).tolist(),
+            "estimate": None if self.estimate is None else self.estimate.to_json(),
+            "cost_ratio": self.cost_ratio,
+        }
+
+
+@dataclass(frozen=True)
+class Ablation:
+    """All effects of a case, each switched over by itself.
+
+    Attributes
+    ----------
+    torque, normal_force : ndarray, shape (L,)
+        N m on the driving gear, and N.
+    misalignment : float
+        At which the figures are, m.
+    nominal : Figures
+        Of the case.
+    effects : tuple of EffectAblation
+    left_out : dict of str to str
+        Effects that were not switched over, and why.
+    """
+
+    torque: FloatArray
+    normal_force: FloatArray
+    misalignment: float
+    nominal: Figures
+    effects: tuple[EffectAblation, ...]
+    left_out: dict[str, str]
+
+    def to_json(self) -> Json:
+        """Return plain JSON in SI units."""
+        return {
+            "torque_n_m": self.torque.tolist(),
+            "normal_force_n": self.normal_force.tolist(),
+            "misalignment_m": self.misalignment,
+            "nominal": self.nominal.to_json(),
+            "effects": [entry.to_json() for entry in self.effects],
+            "left_out": self.left_out,
+        }
+
+
+def ablate(
+    pair: ParallelAxes,
+    *,
+    torques: Sequence[float] | FloatArray | None = None,
+    normal_forces: Sequence[float] | FloatArray | None = None,
+    tolerance: float | None = None,
+    level: str | None = None,
+    time_budget: float | None = None,
+    model: str = "auto",
+    positions: int | None = None,
+    pitches: int | None = None,
+    misalignments: Sequence[float] = (0.0,),
+    effects: Mapping[str, str] | None = None,
+    only: Sequence[str] | None = None,
+    progress: Progress | None = None,
+    cache: Path | None = None,
+) -> Ablation:
+    """Switch each effect of a case over and report what that changes.
+
+    Parameters
+    ----------
+    pair, torques, normal_forces, tolerance, level, time_budget, model, positions, pitches, misalignments, \
+effects, progress, cache
+        As for `analyze`. With `cache` the gears are condensed once for each body and model.
+    only : sequence of str, optional
+        Effects to switch over; default all.
+
+    Returns
+    -------
+    Ablation
+        Of every effect that the scene holds and that can be switched.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    MeshError, SolveError
+        The case itself cannot be computed.
+    """
+    checked = check_request(
+        pair,
+        torques=torques,
+        normal_forces=normal_forces,
+        tolerance=tolerance,
+        level=level,
+        time_budget=time_budget,
+        model=model,
+        positions=positions,
+        pitches=pitches,
+        misalignments=misalignments,
+        effects=effects,
+        receipt="minimal",
+    )
+    return ablate_checked(checked, _selected(only), progress or _silent, cache)
+
+
+def ablate_checked(
+    checked: Checked, names: Sequence[str], progress: Progress, cache: Path | None
+) -> Ablation:
+    """Switch the named effects of a checked request over; parameters of `ablate`."""
+    nominal = _figures(checked, cache)
+    found, left_out = [], {}
+    for count, entry in enumerate(ledger := [one for one in checked.ledger if one.name in names]):
+        progress("ablation", count / len(ledger))
+        if entry.verdict.neutral:
+            left_out[entry.name] = entry.verdict.reason
+            continue
+        try:
+            found.append(_switched(checked, entry, nominal, cache))
+        except (InputError, MeshError, SolveError) as error:
+            left_out[entry.name] = str(error)
+    progress("ablation", 1.0)
+    request = checked.request
+    return Ablation(
+        request.torque, request.load, _judged_misalignment(checked), nominal, tuple(found), left_out
+    )
+
+
+def _selected(only: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the names asked for, all if None."""
+    known = tuple(effect.name for effect in EFFECTS)
+    for name in only or ():
+        if name not in known:
+            raise InputError("only", name, f"among {', '.join(known)}")
+    return known if only is None else tuple(only)
+
+
+def _switched(checked: Checked, entry: LedgerEntry, nominal: Figures, cache: Path | None) -> EffectAblation:
+    """Compute the case with one effect switched over."""
+    other = _figures(switched_over(checked, entry.name, "off" if entry.on else "on"), cache)
+    pair_of = (nominal, other) if entry.on else (other, nominal)
+    worth = estimate_worth(checked.request.scene, checked.decided, entry.name, EFFECTS)
+    return EffectAblation(entry.name, entry.on, entry.verdict.reason, *pair_of, worth)
+
+
+def switched_over(checked: Checked, name: str, choice: str) -> Checked:
+    """Return the request with one effect on or off and all others as they were decided.
+
+    Raises
+    ------
+    InputError
+        The model cannot be had, as a plane with what acts across the face.
+    """
+    request = checked.request
+    asked = flipped(checked.decided, name, choice)
+    # choices of every effect are explicit now, so that an explicit model has no say about them any more
+    model = "plane_stress" if request.accuracy.model == "plane_stress" else "auto"
+    accuracy = replace(request.accuracy, model=model if asked["face_load_distribution"] == "off" else "auto")
+    return check_asked(replace(request, effects=asked, accuracy=accuracy))
+
+
+def _figures(checked: Checked, cache: Path | None) -> Figures:
+    """Compute the table of a request, without its errors, and read its curves."""
+    request = checked.request
+    table = compute_database(checked, request.to_json(), _silent, cache)
+    table.require_complete()
+    skew = _judged_misalignment(checked)
+    curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
+    plan = planned(request.pair, request.load, request.accuracy, checked.model, request.alignments, cache)
+    predicted = predict_run(request.pair, plan, checked.model, request.alignments, None)
+    return Figures(
+        np.array([curve.mean.value for curve in curves]),
+        np.array([curve.peak_to_peak.value for curve in curves]),
+        np.array([[one.value for one in curve.harmonics[:HARMONICS]] for curve in curves]),
+        float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
+        predicted.cpu_seconds,
+    )
+
+
+def _judged_misalignment(checked: Checked) -> float:
+    """Return the largest misalignment in size."""
+    return float(max(checked.request.misalignment, key=abs))
+
+
+def _silent(stage: str, fraction: float) -> None:
+    """Report no progress."""

@@ -1,0 +1,108 @@
+"""What flipping one effect changes, by the slice model: both states are estimated and compared."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.effects.across_face import across_face
+from fe_contact.effects.composer import compose
+from fe_contact.effects.effect import ContactScene, Effect
+from fe_contact.effects.face_load_distribution import FaceLoadDistribution
+from fe_contact.effects.flipping import flipped
+from fe_contact.effects.worth.slice_model import EstimatedCurve, estimated_curve
+from fe_contact.types import FloatArray, Json
+
+
+@dataclass(frozen=True)
+class Worth:
+    """What leaving an effect out is estimated to change: without it less with it.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : ndarray, shape (L,)
+        Of the static transmission error, m, at each load and the largest misalignment in size.
+    relative_mean, relative_peak_to_peak : float
+        In parts of the estimated value with the effect; the largest in size over all loads and both ends of
+        the misalignments.
+    """
+
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    relative_mean: float
+    relative_peak_to_peak: float
+
+    @property
+    def largest(self) -> float:
+        """Larger relative change of the two, >= 0."""
+        return max(abs(self.relative_mean), abs(self.relative_peak_to_peak))
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "mean_m": self.mean.tolist(),
+            "peak_to_peak_m": self.peak_to_peak.tolist(),
+            "relative_mean": self.relative_mean,
+            "relative_peak_to_peak": self.relative_peak_to_peak,
+        }
+
+
+def estimate_worth(
+    scene: ContactScene, decided: Mapping[str, str], name: str, registry: Sequence[Effect]
+) -> Worth | None:
+    """Estimate what leaving the effect `name` out of the model changes.
+
+    Parameters
+    ----------
+    scene : ContactScene
+    decided : mapping of str to str
+        Every effect "on" or "off"; all but `name` stay so.
+    name : str
+    registry : sequence of Effect
+
+    Returns
+    -------
+    Worth or None
+        None: one of the two states cannot be had, as a plane with what acts across the face.
+    """
+    effect = next(entry for entry in registry if entry.name == name)
+    if name == FaceLoadDistribution.name and across_face(scene):
+        return None
+    if name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
+        # with nothing across the face the corrected plane stands in for three dimensions
+        return Worth(np.zeros(scene.torque.size), np.zeros(scene.torque.size), 0.0, 0.0)
+    with_it, without = (_curves(scene, flipped(decided, name, choice), registry) for choice in ("on", "off"))
+    return _compared(with_it, without)
+
+
+def _curves(
+    scene: ContactScene, choices: Mapping[str, str], registry: Sequence[Effect]
+) -> list[EstimatedCurve]:
+    """Estimate the curves at both ends of the misalignments, the larger one last."""
+    ends = sorted({float(scene.misalignment[0]), float(scene.misalignment[-1])}, key=abs)
+    load = scene.pair.normal_force(scene.torque)
+    found = []
+    for growth in ends:
+        here = replace(scene, misalignment=np.array([growth]))
+        found.append(estimated_curve(scene.pair, compose(here, choices, registry)[0], load))
+    return found
+
+
+def _compared(with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve]) -> Worth:
+    """Take differences of the last curves, and the largest relative ones of all."""
+    means = [b.mean - a.mean for a, b in zip(with_it, without, strict=True)]
+    ripples = [b.peak_to_peak - a.peak_to_peak for a, b in zip(with_it, without, strict=True)]
+    return Worth(
+        means[-1],
+        ripples[-1],
+        _largest([change / curve.mean for change, curve in zip(means, with_it, strict=True)]),
+        _largest([change / curve.peak_to_peak for change, curve in zip(ripples, with_it, strict=True)]),
+    )
+
+
+def _largest(changes: Sequence[FloatArray]) -> float:
+    """Return the largest in size, with its sign."""
+    every = np.concatenate(changes)
+    return float(every[np.argmax(np.abs(every))])

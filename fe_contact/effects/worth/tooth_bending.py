@@ -1,0 +1,80 @@
+"""How far a tooth gives way under a line load, in closed form.
+
+C. Weber, K. Banaschek: Formaenderung und Profilruecknahme bei gerad- und schraegverzahnten Raedern.
+Schriftenreihe Antriebstechnik 11, Vieweg 1953: bending, shear and compression of the tooth over its root, the
+elastic half plane that it is clamped in, and the approach of the contact to the tooth's middle. Against
+finite elements of the transverse section (17 to 60 teeth, loads over the whole flank) it is right within 5 %.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.geometry import Toothing, tooth_profile
+from fe_contact.types import FloatArray
+
+_SAMPLES = 101
+
+
+@dataclass(frozen=True)
+class ToothBending:
+    """Compliance of one tooth in the transverse section, by flank coordinate.
+
+    Attributes
+    ----------
+    s : ndarray, shape (n,)
+        Flank coordinates from root to tip, m.
+    tooth, foundation : ndarray, shape (n,)
+        Displacement along the normal per line load of the tooth itself and of what it is clamped in, m/(N/m).
+    depth : ndarray, shape (n,)
+        Distance in m along the normal from the flank to the tooth's centre line.
+    """
+
+    s: FloatArray
+    tooth: FloatArray
+    foundation: FloatArray
+    depth: FloatArray
+
+    @classmethod
+    def of_gear(cls, gear: Toothing) -> ToothBending:
+        """Integrate over the tooth of `gear`, plane strain."""
+        profile = tooth_profile(gear)
+        s = np.linspace(profile.s_root, profile.s_tip, _SAMPLES)
+        half, height = profile.flank(s).T
+        height = np.abs(height - height[0])
+        normal = profile.normal(s)
+        slope = gear.sign * normal[:, 1] / np.abs(normal[:, 0])
+        cosine = 1.0 / np.sqrt(1.0 + slope**2)
+        # where the line of action crosses the centre line, above the root
+        lever = np.maximum(height - half * slope, 0.0)
+        per_modulus = cosine**2 * (1.0 - gear.material.poissons_ratio**2) / gear.material.youngs_modulus
+        root = 2.0 * half[0]
+        foundation = 5.2 * (lever / root) ** 2 + lever / root + 1.4 * (1.0 + 0.294 * slope**2)
+        tooth = _energy(height, 2.0 * half, lever, slope, gear.material.poissons_ratio)
+        return cls(s, per_modulus * tooth, per_modulus * foundation, half / cosine)
+
+    def at(self, values: FloatArray, s: FloatArray) -> FloatArray:
+        """Interpolate one of the attributes at flank coordinates `s` of any shape."""
+        return np.asarray(np.interp(s, self.s, values))
+
+
+def _energy(
+    height: FloatArray, thickness: FloatArray, lever: FloatArray, slope: FloatArray, ratio: float
+) -> FloatArray:
+    """12 int (h - y)^2/t^3 dy + (2.4/(1 - nu) + tan^2) int dy/t up to the lever h of every load."""
+
+    def below(values: FloatArray) -> FloatArray:
+        steps = 0.5 * (values[1:] + values[:-1]) * np.diff(height)
+        return np.asarray(np.interp(lever, height, np.concatenate([[0.0], np.cumsum(steps)])))
+
+    zeroth, first, second = (below(height**k / thickness**3) for k in range(3))
+    bending = lever**2 * zeroth - 2.0 * lever * first + second
+    return np.asarray(12.0 * bending + (2.4 / (1.0 - ratio) + slope**2) * below(1.0 / thickness))
+
+
+def half_plane(gear: Toothing) -> float:
+    """2 (1 - nu^2)/(pi E), 1/Pa."""
+    return 2.0 * (1.0 - gear.material.poissons_ratio**2) / (math.pi * gear.material.youngs_modulus)
