@@ -1,8 +1,9 @@
-"""The system linearised about its static equilibrium: modes at rest and turning, forced response."""
+"""The system linearised about its static equilibrium: modes at rest and over speed, forced response."""
 
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
 from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
 from dynamics.linearize.modes import Modes, natural_modes
 from dynamics.linearize.whirl import WhirlModes, whirl_modes
 
@@ -10,11 +11,13 @@ __all__ = [
     "CommonPeriod",
     "HarmonicResponse",
     "LinearSystem",
+    "ModalAnalysis",
     "Modes",
     "WhirlModes",
     "common_period",
     "harmonic_response",
     "linearize",
+    "modal_analysis",
     "natural_modes",
     "whirl_modes",
 ]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, null_space
 
+from dynamics.linearize.energy_shares import strain_shares
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.system.assemble import System
 from dynamics.types import FloatArray
@@ -61,9 +62,6 @@ def natural_modes(system: System | LinearSystem, time: float = 0.0) -> Modes:
     damping = np.einsum("ai,ij,aj->a", shape, linear.damping, shape)
     still = omega == 0.0
     ratio = np.where(still, 0.0, damping / np.where(still, 1.0, 2.0 * omega))
-    strain = linear.spring_stiffness * (shape @ linear.strain.T) ** 2
-    total = np.sum(strain, axis=1, keepdims=True)
-    share = np.where(still[:, None], 0.0, strain / np.where(total > 0.0, total, 1.0))
     return Modes(
         omega / (2.0 * math.pi),
         ratio,
@@ -71,7 +69,7 @@ def natural_modes(system: System | LinearSystem, time: float = 0.0) -> Modes:
         linear.freedom,
         linear.scale,
         linear.spring,
-        share,
+        strain_shares(linear, shape, still),
         shape * (shape @ linear.mass),
     )
 

@@ -56,10 +56,13 @@ def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
     SolveError
         If there is no static equilibrium.
     """
-    linear = linearize(system, time)
-    turning, stiffening = speed_terms(system, time)
+    return turning_modes(linearize(system, time), *speed_terms(system, time))
+
+
+def turning_modes(linear: LinearSystem, turning: FloatArray, stiffening: FloatArray) -> WhirlModes:
+    """Return the modes of `linear` with the terms G and S (n, n) of its speeds."""
     eigenvalue, vector = _eigen(linear, linear.damping + turning, linear.stiffness + stiffening)
-    kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue)))
+    kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue), initial=0.0))
     kept = kept[np.argsort(eigenvalue[kept].imag)]
     shape = vector[: linear.scale.size, kept].T
     largest = np.take_along_axis(shape, np.argmax(np.abs(shape), axis=1)[:, None], axis=1)
@@ -82,7 +85,12 @@ def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
     and a ground damper c seen from the frame c W J u. Constant centripetal forces are left out: they move
     the equilibrium, not the modes.
     """
-    speed = system.kinematics.float_ratio @ observe_laws(system.arrays, np.array([time]))[2, :, 0]
+    return terms_at(system, observe_laws(system.arrays, np.array([time]))[2, :, 0])
+
+
+def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return G and S (n, n) of `speed_terms` at the speeds `law_speed` (k,) of the laws, rad/s."""
+    speed = system.kinematics.float_ratio @ law_speed
     size = 6 * len(system.rotors)
     turning, stiffening = np.zeros((size, size)), np.zeros((size, size))
     for index, rotor in enumerate(system.rotors):

@@ -71,7 +71,10 @@ class RunResult:
         every damping value used.
     modes : dict
         Natural modes about the static equilibrium at t = 0: lists `frequency` (Hz), `damping_ratio` and
-        `freedom` (the one with most of the kinetic energy); empty if they were not found.
+        `freedom` (the one with most of the kinetic energy); empty if they were not found. Where gyroscopic
+        terms are on also `over_speed`: whirl modes (a lists of S values each: `frequency` in Hz,
+        `damping_ratio`, `whirl` from -1, backward, to 1, forward) at S speeds of `shaft` (`speed`, rad/s;
+        `mesh_frequency` of every mesh, Hz) from rest to the largest of the run, and `freedom` at the last.
     acceleration : (n, T) array
         Second rate of the deviations, m/s2 and rad/s2; n = 0 if not asked for.
     bearing_acceleration : (b, 3, T) array

@@ -13,16 +13,21 @@ from dynamics.integrators.march import Ending
 from dynamics.integrators.state_sink import States
 from dynamics.integrators.workspace import Count
 from dynamics.linearize import natural_modes
+from dynamics.linearize.campbell import whirl_branches
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.speeds import leading_law, mesh_frequencies
 from dynamics.results import EnergyAudit, StepStatistics
 from dynamics.results.case import resolved_case
 from dynamics.results.histories import histories
 from dynamics.results.run_checks import RunChecks
 from dynamics.system import Integration
 from dynamics.system.assemble import System
+from dynamics.system.effects.gyroscopic import Gyroscopic
 from dynamics.types import FloatArray, Json
 
 ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5
+WHIRL_SPEEDS = 33
 
 
 def documents(
@@ -52,14 +57,36 @@ def series_of(system: System, time: FloatArray, states: States) -> dict[str, Any
 def _modes(system: System) -> Json:
     """Return the natural modes in plain numbers; nothing where there is no equilibrium."""
     try:
-        found = natural_modes(system)
+        linear = linearize(system)
     except SolveError:
         return {}
+    found = natural_modes(linear)
     most = np.argmax(found.kinetic_energy, axis=1) if found.frequency.size else []
+    turning = any(entry.effect == Gyroscopic().name and entry.on for entry in system.ledger.entries)
     return {
         "frequency": [float(value) for value in found.frequency],
         "damping_ratio": [float(value) for value in found.damping_ratio],
         "freedom": [found.freedom[index] for index in most],
+        **({"over_speed": _over_speed(system, linear)} if turning else {}),
+    }
+
+
+def _over_speed(system: System, linear: LinearSystem) -> Json:
+    """Return the whirl modes up to the largest speeds of the run, those that oscillate at all of them."""
+    law = leading_law(system)
+    extreme = system.scene.references[law].speed.extreme
+    speed = np.linspace(0.0, abs(extreme), WHIRL_SPEEDS)
+    found = whirl_branches(system, linear, speed)
+    whole = np.all(np.isfinite(found.frequency), axis=0)
+    most = np.argmax(found.kinetic_energy[-1], axis=1)
+    return {
+        "shaft": system.scene.references[law].shaft,
+        "speed": speed.tolist(),
+        "mesh_frequency": mesh_frequencies(system, speed).tolist(),
+        "frequency": found.frequency[:, whole].T.tolist(),
+        "damping_ratio": found.damping_ratio[:, whole].T.tolist(),
+        "whirl": found.whirl[:, whole].T.tolist(),
+        "freedom": [linear.freedom[index] for index in most[whole]],
     }
 
 

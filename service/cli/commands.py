@@ -29,6 +29,15 @@ app = typer.Typer(
 AsJson = Annotated[bool, typer.Option("--json", help="Print JSON on standard output and nothing else.")]
 Service = Annotated[str, typer.Option("--service", envvar="LOA_SERVICE", help="Address of the service.")]
 
+StudyFile = Annotated[
+    Path | None, typer.Option("-o", "--output", help="File ending in .nc, .json, .png or .html.")
+]
+TableService = Annotated[
+    str | None,
+    typer.Option("--service", help="Take the tables from this service instead of computing them here."),
+]
+_SPEEDS = "Speeds of the first driven shaft in rpm, 100:3000:50 or 300,600,900"
+
 
 def main() -> None:
     """Run the command line."""
@@ -215,10 +224,7 @@ def root_stress(
 def simulate(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Run to write (netCDF).")],
-    service: Annotated[
-        str | None,
-        typer.Option("--service", help="Take the tables from this service instead of computing them here."),
-    ] = None,
+    service: TableService = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with a run that was interrupted or killed.")
     ] = False,
@@ -230,11 +236,30 @@ def simulate(
     run_simulate(scene, output, service, resume=resume, as_json=json)
 
 
+@app.command(epilog="Example: loa modes examples/palermo_scene.toml --speed-rpm 0:15000:250 -o modes.png")
+@guarded
+def modes(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
+    speed_rpm: Annotated[str | None, typer.Option(help=f"{_SPEEDS}; left out: modes at rest only.")] = None,
+    orders: Annotated[int, typer.Option(help="Multiples of the mesh frequencies to cross with modes.")] = 10,
+    output: StudyFile = None,
+    service: TableService = None,
+    json: AsJson = False,
+) -> None:
+    """Find natural modes about the loaded equilibrium, whirl modes over speed, and critical speeds."""
+    from service.cli.dynamic_studies import MODES, run_study  # noqa: PLC0415 (start-up time)
+    from service.cli.speed_list import speed_list  # noqa: PLC0415
+
+    asked = {"speed_rpm": speed_list(speed_rpm), "orders": orders}
+    run_study(MODES, scene, output, service, asked, as_json=json)
+
+
 @app.command(epilog="Example: loa report ste.nc run.nc -o report.html")
 @guarded
 def report(
     files: Annotated[
-        list[Path], typer.Argument(help="STE database, flank results, sensitivity study, run; one of each.")
+        list[Path],
+        typer.Argument(help="STE database, flank results, sensitivity study, modes, run; one of each."),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
@@ -330,7 +355,10 @@ def submit(
         Path | None, typer.Option("-o", "--output", help="Wait, and write the result here.")
     ] = None,
     process: Annotated[
-        str | None, typer.Option(help="What to run on a case: analyze (default), flank or sensitivity.")
+        str | None,
+        typer.Option(
+            help="On a case analyze (default), flank or sensitivity; on a scene simulate (default) or modes."
+        ),
     ] = None,
     inputs: Annotated[
         str | None, typer.Option(help="Further inputs of that process, as a JSON object.")

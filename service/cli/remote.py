@@ -15,8 +15,9 @@ from service.client import JobState, LineOfActionClient, Result
 from service.problems import BadInput, NotFound, ResultNotReady
 from service.schemas import Case, read_table, validated
 
-_KINDS = ("database", "flanks", "run", "sensitivity")
+_KINDS = ("database", "flanks", "run", "sensitivity", "modes")
 _OF_CASES = ("analyze", "flank", "sensitivity")
+_OF_SCENES = ("simulate", "modes")
 
 
 @dataclass(frozen=True)
@@ -47,9 +48,10 @@ def run_submit(
 
 
 def _further(wish: Wish) -> dict[str, Any]:
-    """Return the further inputs of a process of cases."""
-    if wish.process not in (None, *_OF_CASES):
-        raise BadInput.of("--process", wish.process, f"one of {', '.join(_OF_CASES)}", "Or leave it out.")
+    """Return the further inputs of a process."""
+    known = (*_OF_CASES, *_OF_SCENES)
+    if wish.process not in (None, *known):
+        raise BadInput.of("--process", wish.process, f"one of {', '.join(known)}", "Or leave it out.")
     if wish.inputs is None:
         return {}
     example = """For example --inputs '{"misalignment_um": 30}'."""
@@ -59,8 +61,8 @@ def _further(wish: Wish) -> dict[str, Any]:
         found = json.loads(wish.inputs)
     except json.JSONDecodeError:
         found = None
-    if not isinstance(found, dict) or "case" in found:
-        raise BadInput.of("--inputs", wish.inputs, "a JSON object without case", example)
+    if not isinstance(found, dict) or "case" in found or "scene" in found:
+        raise BadInput.of("--inputs", wish.inputs, "a JSON object without case and scene", example)
     return found
 
 
@@ -69,9 +71,9 @@ def _submitted(
 ) -> JobState:
     """Submit a file as what it holds."""
     content = read_table(file)
-    if "shafts" in content and process is None:
-        return client.submit_scene(file)
-    if "pair" in content:
+    if "shafts" in content and process not in _OF_CASES:
+        return client.submit_scene(file, process or "simulate", **further)
+    if "pair" in content and process not in _OF_SCENES:
         case = validated(Case, content).model_dump(mode="json")
         return client.submit(process or "analyze", {"case": case, **further})
     raise BadInput.of(

@@ -31,6 +31,7 @@ _PATHS = {
     "flanks": "/v1/flanks",
     "run": "/v1/runs",
     "sensitivity": "/v1/sensitivities",
+    "modes": "/v1/modes",
 }
 _NETCDF = "application/x-netcdf"
 
@@ -93,10 +94,10 @@ class LineOfActionClient:
         """Enter the analysis of a case: a model, a table of the same shape, or a file."""
         return self.submit("analyze", {"case": case_of(case).model_dump(mode="json")})
 
-    def submit_scene(self, scene: SceneLike) -> JobState:
-        """Enter the simulation of a scene; its case files are written out."""
+    def submit_scene(self, scene: SceneLike, process: str = "simulate", **further: Any) -> JobState:
+        """Enter a process of a scene with its further inputs; case files are written out."""
         ready = portable_scene(*scene_of(scene))
-        return self.submit("simulate", {"scene": ready.model_dump(mode="json")})
+        return self.submit(process, {"scene": ready.model_dump(mode="json"), **further})
 
     def status(self, job: str) -> JobState:
         """Return the state of a job."""
@@ -231,6 +232,35 @@ class LineOfActionClient:
         return self._study(
             "sensitivity", case, progress, {name: list(values) for name, values in deviations.items()}
         )
+
+    def modes_file(
+        self,
+        scene: SceneLike,
+        progress: Watch | None = None,
+        *,
+        speed_rpm: Sequence[float] = (),
+        orders: int = 10,
+    ) -> Path:
+        """Return the file of a scene's modal analysis: submit, wait, fetch.
+
+        Parameters
+        ----------
+        scene : SceneInput, mapping or Path
+        progress : callable, optional
+        speed_rpm : sequence of float
+            Of the first driven shaft, increasing; empty: modes at rest only.
+        orders : int
+            Multiples of the mesh frequencies. Read the file with
+            `dynamics.linearize.ModalAnalysis.from_netcdf`.
+        """
+        return self._scene_study("modes", scene, progress, {"speed_rpm": list(speed_rpm), "orders": orders})
+
+    def _scene_study(
+        self, process: str, scene: SceneLike, progress: Watch | None, further: dict[str, Any]
+    ) -> Path:
+        """Submit a scene with further inputs, wait, fetch the file."""
+        result = self.wait(self.submit_scene(scene, process, **further).id, progress)
+        return self.fetch_file(result.key, result.kind)
 
     def _study(self, process: str, case: CaseLike, progress: Watch | None, further: dict[str, Any]) -> Path:
         """Submit a case with further inputs, wait, fetch the file."""

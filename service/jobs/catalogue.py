@@ -1,4 +1,4 @@
-"""The processes of the service: analyze, flank, sensitivity and simulate."""
+"""The processes of the service: analyze, flank, sensitivity, simulate, and studies of scenes."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ from service.convert.topology import facts_of
 from service.jobs.process import Process, Registry, Stage
 from service.problems import BadInput
 from service.schemas import Case
+from service.schemas.dynamic_studies import ModesInput
 from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
 from service.schemas.scene import MeshInput, SceneInput
@@ -36,6 +37,12 @@ class AnalyzeInputs(BoundaryModel):
 
 class SimulateInputs(BoundaryModel):
     """Inputs of the process simulate."""
+
+    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
+
+
+class ModesInputs(ModesInput):
+    """Inputs of the process modes."""
 
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
 
@@ -79,9 +86,9 @@ def _name_database(inputs: Json) -> str:
     return content_hash(inputs["case"], SOLVER_VERSION, SCHEMA_VERSION)
 
 
-def _prepare_simulate(inputs: BoundaryModel, store: ResultStore) -> Json:
+def _prepare_scene(inputs: BoundaryModel, store: ResultStore) -> Json:
     """Check the scene and the sources of its tables; return it with all defaults."""
-    assert isinstance(inputs, SimulateInputs)
+    assert isinstance(inputs, SimulateInputs | ModesInputs)
     facts = {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in enumerate(inputs.scene.meshes)}
     check_scene(inputs.scene, facts)
     return inputs.model_dump(mode="json")
@@ -157,12 +164,25 @@ SIMULATE = Process(
     inputs=SimulateInputs,
     output="run",
     kind="run",
-    prepare=_prepare_simulate,
+    prepare=_prepare_scene,
     entry="service.jobs.simulation_work:simulate_scene",
     stages=(Stage("analysis", 0.5), Stage("integration", 0.5)),
+)
+MODES = Process(
+    id="modes",
+    title="Modes of a geared system",
+    description="Natural modes about the loaded equilibrium, whirl modes over speed, and the critical speeds "
+    "at which multiples of the mesh frequency meet them.",
+    version="1",
+    inputs=ModesInputs,
+    output="modes",
+    kind="modes",
+    prepare=_prepare_scene,
+    entry="service.jobs.scene_study_work:study_modes",
+    stages=(Stage("analysis", 0.9), Stage("modes", 0.1)),
 )
 
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
-    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE)
+    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE, MODES)

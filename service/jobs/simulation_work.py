@@ -22,14 +22,20 @@ from service.store import stored_results
 
 def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Run a scene; tables come from the store, those missing are computed and kept."""
+    scene, products = ordered_scene(order, progress)
+    file = order.workspace / "run.nc"
+    _run(scene, file, progress)
+    return (*products, Product(order.key, "run", file))
+
+
+def ordered_scene(order: WorkOrder, progress: Progress) -> tuple[Scene, list[Product]]:
+    """Return the scene of an order with its tables, and those of them that had to be computed."""
     scene = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
     for index, mesh in enumerate(scene.meshes):
         databases[mesh.name] = _table(order, index, mesh, products, progress)
-    file = order.workspace / "run.nc"
-    _run(dynamic_scene(scene, databases), file, progress)
-    return (*products, Product(order.key, "run", file))
+    return dynamic_scene(scene, databases), products
 
 
 def _run(scene: Scene, file: Path, progress: Progress) -> None:

@@ -6,7 +6,6 @@ import numpy as np
 
 from dynamics.orders import Waterfall, frequency_waterfall
 from dynamics.results import RunResult
-from service.report import palette
 from service.report.figure import (
     Axis,
     Figure,
@@ -15,13 +14,13 @@ from service.report.figure import (
     Line,
     Panel,
     Reference,
-    Table,
     number,
     unit_of,
 )
+from service.report.mode_lines import CAPTION, ModeLine, mode_lines, mode_table, whirling
 from service.report.run_signal import run_axis, shown_signal
 
-BLOCKS, LINES, ORDERS, SHOWN_MODES, DEPTH = 90, 220, 8, 8, 60.0
+BLOCKS, LINES, ORDERS, DEPTH = 90, 220, 8, 60.0
 ORDER_COLOUR = "#9FB3C8"  # seen on the dark of the map and on paper
 
 
@@ -32,21 +31,20 @@ def campbell(run: RunResult) -> Figure:
     amplitude = signal.of(made.amplitude)
     axis, place = run_axis(run, made.time)
     top = min((ORDERS + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
-    modes = _apart([float(f) for f in run.modes.get("frequency", ()) if 0.0 < f < top], 0.01 * top)
+    modes = mode_lines(run, made.mesh_frequency, top)
     return Figure(
         key="campbell",
         title=f"Campbell diagram of the {signal.name}",
         caption="Colour: amplitude of each block's spectrum (Hann window), in dB below the largest. Dotted: "
-        "multiples of the mesh frequency. Dashed: natural frequencies about the static equilibrium, one for "
-        "those that lie together.",
+        f"multiples of the mesh frequency. {CAPTION[whirling(run)]}, one for those that lie together.",
         alternative=_words(made, amplitude, place, axis, modes),
         content=(_panel(made, amplitude, axis, place, top, modes),),
-        table=_table(run, top),
+        table=mode_table(run, top, ORDERS),
     )
 
 
 def _panel(
-    made: Waterfall, amplitude: FloatArray, axis: Axis, place: FloatArray, top: float, modes: list[float]
+    made: Waterfall, amplitude: FloatArray, axis: Axis, place: FloatArray, top: float, modes: list[ModeLine]
 ) -> Panel:
     """Colours, orders and modes."""
     shade = _shade(made, amplitude, place, top)
@@ -57,20 +55,16 @@ def _panel(
         seen = np.where(height <= top, height, np.nan)
         lines.append(Line("mesh orders", place, seen, ORDER_COLOUR, "dot", 1.0))
     marks = []
+    flat = all(float(np.ptp(mode.frequency)) == 0.0 for mode in modes)
     for index, mode in enumerate(modes):
-        lines.append(Line("natural modes", np.array(ends), np.full(2, mode), palette.ORANGE, "dash", 1.4))
-        marks.append(Reference(f"{number(mode, 4)} Hz", mode, "horizontal", 0.99 if index % 2 else 0.12))
+        lines.append(Line(mode.name, place, mode.frequency, mode.colour, "dash", 1.4))
+        if flat:
+            level = float(mode.frequency[0])
+            marks.append(
+                Reference(f"{number(level, 4)} Hz", level, "horizontal", 0.99 if index % 2 else 0.12)
+            )
     x = Axis(axis.label, limits=ends)
     return Panel(x, Axis("frequency, Hz", limits=(0.0, top)), tuple(lines), tuple(marks), shade=shade)
-
-
-def _apart(modes: list[float], least: float) -> list[float]:
-    """Leave out what would be drawn over another mode."""
-    kept: list[float] = []
-    for mode in sorted(modes):
-        if not kept or mode - kept[-1] > least:
-            kept.append(mode)
-    return kept[:SHOWN_MODES]
 
 
 def _shade(made: Waterfall, amplitude: FloatArray, place: FloatArray, top: float) -> HeatMap:
@@ -89,7 +83,9 @@ def _shade(made: Waterfall, amplitude: FloatArray, place: FloatArray, top: float
     return HeatMap(even, height, z, f"level above −{DEPTH:g} dB of the largest, dB", DEPTH)
 
 
-def _words(made: Waterfall, amplitude: FloatArray, place: FloatArray, axis: Axis, modes: list[float]) -> str:
+def _words(
+    made: Waterfall, amplitude: FloatArray, place: FloatArray, axis: Axis, modes: list[ModeLine]
+) -> str:
     """Say where the largest amplitude is, and by which mode."""
     block, line = np.unravel_index(int(np.argmax(amplitude[:, 1:])), amplitude[:, 1:].shape)
     frequency = float(made.line[line + 1])
@@ -100,24 +96,7 @@ def _words(made: Waterfall, amplitude: FloatArray, place: FloatArray, axis: Axis
     )
     found += f"{where}, mesh order {number(order, 3)}."
     if modes:
-        near = min(modes, key=lambda mode: abs(mode - frequency))
+        there = [float(mode.frequency[block]) for mode in modes]
+        near = min(there, key=lambda value: abs(value - frequency))
         found += f" The nearest natural frequency is {number(near, 4)} Hz."
     return found
-
-
-def _table(run: RunResult, top: float) -> Table | None:
-    """List the natural modes and the mesh frequencies and orders that excite them."""
-    modes = run.modes
-    if not modes:
-        return None
-    low, high = float(run.mesh_frequency[0].min()), float(run.mesh_frequency[0].max())
-    rows = []
-    facts = zip(modes["frequency"], modes["damping_ratio"], modes["freedom"], strict=True)
-    for frequency, ratio, freedom in facts:
-        if not 0.0 < frequency < top:
-            continue
-        met = [k for k in range(1, ORDERS + 1) if low <= frequency / k <= high]
-        orders = ", ".join(f"{k} at {number(frequency / k, 3)} Hz" for k in met)
-        rows.append((number(frequency, 4), number(100.0 * ratio, 2), freedom, orders or "none"))
-    head = ("natural frequency, Hz", "damping ratio, %", "moves most", "met by mesh order at mesh frequency")
-    return Table("Natural modes in the range of the diagram", head, tuple(rows))

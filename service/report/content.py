@@ -8,6 +8,7 @@ from fe_contact.ste import PairFacts
 from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
 from service.report.flank_part import flank_alarms, flank_headlines, flank_making, flank_results_section
 from service.report.inputs import Inputs
+from service.report.modal import modal_figures
 from service.report.page import Headline, Page, Section
 from service.report.sensitivity import sensitivity_figure
 from service.report.static_part import static_alarms, static_headlines, static_making, static_results
@@ -32,6 +33,8 @@ def page_of(read: Inputs) -> Page:
         alarms += flank_alarms(flanks, database)
     if read.studies:
         results.append(Section("Sensitivity", figures=(sensitivity_figure(read.studies),)))
+    if read.modal is not None:
+        results.append(Section("Modes", figures=modal_figures(read.modal)))
     if run is not None:
         headlines += dynamic_headlines(run)
         results += dynamic_results(run)
@@ -51,7 +54,7 @@ def _title(read: Inputs) -> str:
     """Name the pair, or the run."""
     facts = pair_facts(read)
     if facts is None:
-        return "Sensitivity of gear pairs" if read.run is None else "Dynamics of geared shafts"
+        return "Sensitivity of gear pairs" if read.studies else "Dynamics of geared shafts"
     one, other = facts.teeth
     return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
 

@@ -1,4 +1,4 @@
-"""What a report is made from: a database, flank results, a study, a run; the files say which they are."""
+"""What a report is made from: a database, flank results, studies, a run; the files say which they are."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from typing import Any
 import h5netcdf
 
 from dynamics.errors import DynamicsError
+from dynamics.linearize import ModalAnalysis
+from dynamics.linearize.modal_analysis import SCHEMA as MODAL_SCHEMA
 from dynamics.results import RunResult
 from fe_contact.analysis import LoadDistribution
 from fe_contact.errors import FeContactError
@@ -23,15 +25,23 @@ _KINDS = {
     ("format", "lineofaction flank results"): "flank results",
     ("format", "lineofaction sensitivity study"): "sensitivity study",
     ("schema", "lineofaction dynamics run"): "run",
+    ("schema", MODAL_SCHEMA): "modal analysis",
 }
-_BOUND = "an STE database, flank results, a sensitivity study or a run"
+_BOUND = "an STE database, flank results, a sensitivity study, a modal analysis or a run"
 _READERS: dict[str, Callable[[Path], Any]] = {
     "database": SteDatabase.from_netcdf,
     "flank results": LoadDistribution.from_netcdf,
     "sensitivity study": read_studies,
     "run": RunResult.from_netcdf,
+    "modal analysis": ModalAnalysis.from_netcdf,
 }
-_FIELDS = {"database": "database", "flank results": "flanks", "sensitivity study": "studies", "run": "run"}
+_FIELDS = {
+    "database": "database",
+    "flank results": "flanks",
+    "sensitivity study": "studies",
+    "run": "run",
+    "modal analysis": "modal",
+}
 
 
 @dataclass(frozen=True)
@@ -42,6 +52,7 @@ class Inputs:
     flanks: LoadDistribution | None = None
     studies: tuple[PairStudy, ...] = ()
     run: RunResult | None = None
+    modal: ModalAnalysis | None = None
 
 
 def read_inputs(files: Sequence[Path]) -> Inputs:

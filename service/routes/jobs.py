@@ -19,6 +19,7 @@ RESULT_PATHS = {
     "flanks": "/v1/flanks",
     "run": "/v1/runs",
     "sensitivity": "/v1/sensitivities",
+    "modes": "/v1/modes",
 }
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])

@@ -8,9 +8,11 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
+from dynamics.linearize import ModalAnalysis
 from fe_contact.analysis import LoadDistribution
 from service.convert.answers import force_answer, metadata_json
 from service.convert.flanks import flank_json
+from service.convert.modal import modes_json
 from service.convert.runs import run_json
 from service.convert.sensitivity import studies_json
 from service.convert.sensitivity_file import read_studies
@@ -74,6 +76,15 @@ def sensitivity(key: Key, request: Request, context: Ctx, accept: Accept = "appl
     if _wants_file(accept):
         return _file(stored, request)
     return _metadata(stored, request, studies_json(read_studies(stored.path)))
+
+
+@router.get("/modes/{key}", summary="A modal analysis", response_class=Response, responses=_answers())
+def modes(key: Key, request: Request, context: Ctx, accept: Accept = "application/json") -> Response:
+    """Figures or the file, by Accept."""
+    stored = context.store.verified(key, "modes")
+    if _wants_file(accept):
+        return _file(stored, request)
+    return _metadata(stored, request, modes_json(ModalAnalysis.from_netcdf(stored.path)))
 
 
 @router.post("/databases/{key}/query", summary="Mesh forces", responses=documented(400, 404, 413, 422, 500))

@@ -4,10 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planetary_scenes import planetary_scene, published_set
+from planetary_scenes import driven_scene, planetary_scene, published_set
 
+from dynamics.bodies import TimeLaw
+from dynamics.linearize import whirl_modes
 from dynamics.results import RunResult
 from dynamics.simulate import simulate
+from dynamics.system.assemble import assemble
 from service.report.campbell import DEPTH, campbell
 from service.report.dynamic_factor import dynamic_factor_figure
 from service.report.dynamic_part import dynamic_results
@@ -40,6 +43,44 @@ def test_the_campbell_diagram_is_loudest_along_the_second_order(run: RunResult) 
     assert figure.table is not None
     assert figure.table.rows[0][:3] == ("300.0", "5.0", "input.y")
     assert figure.table.rows[0][3].startswith("1 at 300 Hz, 2 at 150 Hz")
+
+
+def test_whirl_modes_follow_the_speed_of_the_run(run: RunResult) -> None:
+    """A mode of 250 Hz that rises by 0.2 Hz per Hz of the mesh, and one that falls."""
+    mesh = np.linspace(0.0, 300.0, 7)
+    over = {
+        "shaft": "input",
+        "speed": (mesh * np.pi / 10.0).tolist(),
+        "mesh_frequency": [mesh.tolist()],
+        "frequency": [(250.0 - 0.2 * mesh).tolist(), (250.0 + 0.2 * mesh).tolist()],
+        "damping_ratio": [[0.05] * 7, [0.04] * 7],
+        "whirl": [[0.0, *[-1.0] * 6], [0.0, *[1.0] * 6]],
+        "freedom": ["input.tilt_x"] * 2,
+    }
+    figure = campbell(replace(run, modes=MODES | {"over_speed": over}))
+    lines = {line.name: line for line in panel(figure).lines if "whirl" in line.name}
+    excited = next(line for line in panel(figure).lines if line.name == "mesh orders")
+    np.testing.assert_allclose(lines["forward whirl"].y, 250.0 + 0.2 * excited.y, rtol=1e-9)
+    np.testing.assert_allclose(lines["backward whirl"].y, 250.0 - 0.2 * excited.y, rtol=1e-9)
+    assert not any(line.name == "natural modes" for line in panel(figure).lines)
+    assert figure.table is not None
+    falls, rises = figure.table.rows
+    assert rises[:4] == ("250.0", "310.0", "4.0", "forward whirl")
+    # 250 + 0.2 f = k f, within 0 to 300 Hz
+    assert rises[5].startswith(f"2 at {250 / 1.8:.0f} Hz, 3 at {250 / 2.8:.1f} Hz")
+    assert falls[5].startswith(f"1 at {250 / 1.2:.0f} Hz, 2 at {250 / 2.2:.0f} Hz")
+
+
+def test_only_runs_with_gyroscopic_terms_hold_modes_over_speed() -> None:
+    scene = driven_scene(published_set(3), speed=TimeLaw.constant(900.0), duration=0.002)
+    plain = simulate(replace(scene, effects={"gyroscopic": "off"}))
+    assert "over_speed" not in plain.modes
+    whole = simulate(replace(scene, effects={"gyroscopic": "on"}))
+    over = whole.modes["over_speed"]
+    assert over["speed"][-1] == pytest.approx(900.0) and over["shaft"] == "sun"
+    assert sorted(row[-1] for row in over["frequency"]) == pytest.approx(
+        whirl_modes(assemble(scene)).frequency, rel=1e-12
+    )
 
 
 def test_order_cuts_are_the_amplitudes_of_the_run(run: RunResult) -> None:

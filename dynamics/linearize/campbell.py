@@ -1,0 +1,165 @@
+"""Campbell diagram: whirl modes over speed, each followed from speed to speed, with their sense of whirl."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from dynamics.linearize.energy_shares import kinetic_shares, strain_shares
+from dynamics.linearize.linear_system import LinearSystem
+from dynamics.linearize.speeds import law_speeds
+from dynamics.linearize.whirl import ComplexArray, WhirlModes, terms_at, turning_modes
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray, IntArray
+
+TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
+SAME = 1e-6  # of a frequency: nearer modes count as repeated
+STILL = 0.1  # share of kinetic energy across the axis below which a mode has no whirl
+
+
+@dataclass(frozen=True)
+class WhirlBranches:
+    """A modes over S speeds, n freedoms, p springs; NaN where a mode does not oscillate.
+
+    Attributes
+    ----------
+    speed : (S,) array
+        Of the leading law, rad/s.
+    frequency, damping_ratio : (S, A) arrays
+        Damped, Hz; -Re/|eigenvalue|.
+    whirl : (S, A) array
+        Of the shaft that moves most across its axis: from -1 (circular, against its rotation) over 0 (in a
+        plane, or no shaft moves much, or it stands) to +1 (circular, in the sense of its rotation).
+    shape : (S, A, n) complex array
+        The largest entry in metres is 1.
+    strain_energy, kinetic_energy : (S, A, p), (S, A, n) arrays
+        Shares, mean over a cycle.
+    """
+
+    speed: FloatArray
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    whirl: FloatArray
+    shape: ComplexArray
+    strain_energy: FloatArray
+    kinetic_energy: FloatArray
+
+
+def modes_at(system: System, linear: LinearSystem, speed: float) -> WhirlModes:
+    """Return the whirl modes where the leading law has `speed` in rad/s."""
+    return turning_modes(linear, *terms_at(system, law_speeds(system, speed)))
+
+
+def whirl_branches(
+    system: System,
+    linear: LinearSystem,
+    speed: FloatArray,
+    progress: Callable[[float], None] | None = None,
+) -> WhirlBranches:
+    """Return the modes at the speeds (S,), rad/s, sorted by frequency at the first and followed from there.
+
+    A mode continues in the one whose shape is most like it (modal assurance criterion weighted with the
+    mass), all assigned together; equal likeness is decided by the nearness of the frequencies.
+    """
+    found: list[WhirlModes] = []
+    places: list[list[int]] = []
+    for index, value in enumerate(speed):
+        modes = modes_at(system, linear, float(value))
+        found.append(modes)
+        fresh = list(range(modes.frequency.size))
+        places.append(_continued(linear, found[-2], places[-1], modes) if index else fresh)
+        if progress is not None:
+            progress((index + 1) / speed.size)
+    count = 1 + max((int(np.max(place, initial=-1)) for place in places), default=-1)
+    return _gathered(system, linear, speed, found, places, count)
+
+
+def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) -> FloatArray:
+    """Modal assurance criterion of shapes (a, n) and (b, n), weighted with the mass, (a, b) in 0 to 1."""
+    product = np.abs(np.conj(first) @ linear.mass @ second.T) ** 2
+    size = [np.real(np.einsum("ai,ij,aj->a", np.conj(s), linear.mass, s)) for s in (first, second)]
+    return np.asarray(product / (size[0][:, None] * size[1]))
+
+
+def _continued(linear: LinearSystem, before: WhirlModes, place: list[int], modes: WhirlModes) -> list[int]:
+    """Return the branch of each mode: that of its predecessor, or a new one."""
+    apart = np.abs(before.frequency[:, None] - modes.frequency)
+    apart = apart / (before.frequency[:, None] + modes.frequency)
+    rows, columns = linear_sum_assignment(TIE * apart - likeness(linear, before.shape, modes.shape))
+    known = dict(zip(columns.tolist(), (place[row] for row in rows), strict=True))
+    fresh = max(place, default=-1)
+    found = []
+    for index in range(modes.frequency.size):
+        if index not in known:
+            fresh += 1
+        found.append(known.get(index, fresh))
+    return found
+
+
+def _gathered(
+    system: System,
+    linear: LinearSystem,
+    speed: FloatArray,
+    found: list[WhirlModes],
+    places: list[list[int]],
+    count: int,
+) -> WhirlBranches:
+    """Put the branches together."""
+    n, p = linear.scale.size, len(linear.spring)
+    frequency, ratio, whirl = (np.full((speed.size, count), np.nan) for _ in range(3))
+    shape = np.full((speed.size, count, n), np.nan + 0j)
+    strain, kinetic = np.full((speed.size, count, p), np.nan), np.full((speed.size, count, n), np.nan)
+    for row, (modes, place) in enumerate(zip(found, places, strict=True)):
+        frequency[row, place], ratio[row, place] = modes.frequency, modes.damping_ratio
+        shape[row, place] = modes.shape
+        strain[row, place] = strain_shares(linear, modes.shape)
+        kinetic[row, place] = kinetic_shares(linear, modes.shape)
+        whirl[row, place] = _whirl(system, linear, float(speed[row]), modes)
+    return WhirlBranches(speed, frequency, ratio, whirl, shape, strain, kinetic)
+
+
+def _whirl(system: System, linear: LinearSystem, speed: float, modes: WhirlModes) -> FloatArray:
+    """Return the sense of whirl of each mode, (a,).
+
+    Modes of one frequency are any combination of each other: they get the mean over an orthonormal basis,
+    which does not depend on the combination.
+    """
+    spin = system.kinematics.float_ratio @ law_speeds(system, speed)
+    found = np.empty(modes.frequency.size)
+    for cluster in _clusters(modes.frequency):
+        basis = _orthonormal(linear, modes.shape[cluster])
+        found[cluster] = np.mean(_senses(system, spin, basis, kinetic_shares(linear, basis)))
+    return found
+
+
+def _clusters(frequency: FloatArray) -> list[IntArray]:
+    """Group modes, sorted by frequency, whose neighbours are alike."""
+    ends = np.flatnonzero(np.diff(frequency) > SAME * frequency[1:]) + 1
+    return [part for part in np.split(np.arange(frequency.size), ends) if part.size]
+
+
+def _orthonormal(linear: LinearSystem, shape: ComplexArray) -> ComplexArray:
+    """Return shapes (c, n) of the same span that the mass makes orthonormal."""
+    if shape.shape[0] == 1:
+        return shape
+    factor = np.linalg.cholesky(linear.mass)
+    return np.asarray(np.linalg.solve(factor.T, np.linalg.qr(factor.T @ shape.T)[0]).T)
+
+
+def _senses(system: System, spin: FloatArray, shape: ComplexArray, kinetic: FloatArray) -> FloatArray:
+    """Return the sense in which the shaft that moves most across its axis goes round, of every mode (a,)."""
+    best, found = np.full(shape.shape[0], STILL), np.zeros(shape.shape[0])
+    for rotor in range(len(system.rotors)):
+        for kinds in ((0, 1), (3, 4)):
+            i, j = (system.freedoms.find(rotor, kind) for kind in kinds)
+            if i < 0 or j < 0:
+                continue
+            turned = np.imag(shape[:, i] * np.conj(shape[:, j]))
+            size = np.abs(shape[:, i]) ** 2 + np.abs(shape[:, j]) ** 2
+            share = kinetic[:, i] + kinetic[:, j]
+            sense = np.sign(spin[rotor]) * 2.0 * turned / np.where(size > 0.0, size, 1.0)
+            found, best = np.where(share > best, sense, found), np.maximum(share, best)
+    return found

@@ -1,0 +1,70 @@
+"""Where the energy of a mode is: strain energy by spring, kinetic energy by freedom."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.linearize.linear_system import LinearSystem
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray
+
+HELD_BY = ("mesh", "bearing", "coupling", "drive", "shaft")
+MOVES = {
+    "x": "lateral",
+    "y": "lateral",
+    "z": "axial",
+    "tilt_x": "tilting",
+    "tilt_y": "tilting",
+    "rotation": "torsional",
+}
+
+
+def strain_shares(
+    linear: LinearSystem, shape: FloatArray | NDArray[np.complex128], still: NDArray[np.bool_] | None = None
+) -> FloatArray:
+    """Return the share of each spring in the strain energy of each mode, (a, p); mean over a cycle.
+
+    `shape` (a, n) holds one mode per row; those that are `still` (a,), motions that nothing resists, get 0.
+    """
+    energy = linear.spring_stiffness * np.abs(shape @ linear.strain.T) ** 2
+    total = np.sum(energy, axis=1, keepdims=True)
+    none = total <= 0.0 if still is None else (total <= 0.0) | still[:, None]
+    return np.asarray(np.where(none, 0.0, energy / np.where(total > 0.0, total, 1.0)))
+
+
+def kinetic_shares(linear: LinearSystem, shape: FloatArray | NDArray[np.complex128]) -> FloatArray:
+    """Return the share of each freedom in the kinetic energy of each mode, (a, n); mean over a cycle."""
+    energy = np.real(np.conj(shape) * (shape @ linear.mass))
+    return np.asarray(energy / np.sum(energy, axis=1, keepdims=True))
+
+
+def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    """Return the part that each of `spring` belongs to and its kind, one of `HELD_BY`.
+
+    The springs of a bearing's directions are one part; what is no mesh, bearing, coupling or drive is of a
+    shaft that bends.
+    """
+    scene = system.scene
+    kinds = dict.fromkeys((*system.supports.name, *(part.name for part in scene.housings)), "bearing")
+    kinds |= {part.name: "coupling" for part in scene.couplings}
+    kinds |= {part.name: "drive" for part in scene.drives}
+    meshes = {mesh.name for mesh in scene.meshes}
+    found = []
+    for place, name in enumerate(spring):
+        part = name
+        if place < len(scene.meshes) and name in meshes:
+            found.append((name, "mesh"))
+            continue
+        if name not in kinds:
+            part = name.rpartition(".")[0]
+        found.append((part or name, kinds.get(part, "shaft")))
+    return tuple(found)
+
+
+def freedom_parts(freedom: Sequence[str]) -> tuple[tuple[str, str], ...]:
+    """Return the shaft of each freedom "shaft.kind" and how it moves along it, one of the `MOVES`."""
+    pairs = [name.rpartition(".")[::2] for name in freedom]
+    return tuple((shaft, MOVES.get(kind, "bending")) for shaft, kind in pairs)

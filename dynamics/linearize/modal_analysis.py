@@ -1,0 +1,269 @@
+"""Modal analysis: natural modes about the loaded equilibrium, whirl modes over speed, critical speeds."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from dynamics.checks import integer
+from dynamics.linearize.campbell import WhirlBranches, whirl_branches
+from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
+from dynamics.linearize.energy_shares import freedom_parts, spring_parts
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.modes import Modes, natural_modes
+from dynamics.linearize.speeds import checked_speeds, leading_law, mesh_frequencies
+from dynamics.linearize.whirl import ComplexArray
+from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray, IntArray, Json
+
+SCHEMA = "lineofaction modal analysis"
+MOST_ORDERS = 100
+LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
+
+_ENERGY = "share of the strain energy", "share of the kinetic energy"
+STORED = {
+    "natural_frequency": Stored(("natural_mode",), "Hz", "undamped natural frequency at rest"),
+    "natural_damping_ratio": Stored(("natural_mode",), "1", "modal damping ratio at rest"),
+    "natural_shape": Stored(("natural_mode", "freedom"), "m or rad", "mode shape of unit modal mass"),
+    "natural_strain_energy": Stored(("natural_mode", "spring"), "1", _ENERGY[0]),
+    "natural_kinetic_energy": Stored(("natural_mode", "freedom"), "1", _ENERGY[1]),
+    "speed": Stored(("speed",), "rad s-1", "speed of the leading shaft"),
+    "mesh_frequency": Stored(("mesh", "speed"), "Hz", "mesh frequency"),
+    "frequency": Stored(("speed", "mode"), "Hz", "damped frequency of a whirl mode"),
+    "damping_ratio": Stored(("speed", "mode"), "1", "damping ratio of a whirl mode"),
+    "whirl": Stored(("speed", "mode"), "1", "-1 backward circular, 0 in a plane, 1 forward circular"),
+    "shape": Stored(("speed", "mode", "freedom"), "m or rad", "mode shape, largest entry in metres 1"),
+    "strain_energy": Stored(("speed", "mode", "spring"), "1", _ENERGY[0]),
+    "kinetic_energy": Stored(("speed", "mode", "freedom"), "1", _ENERGY[1]),
+    "critical_speed": Stored(("crossing",), "rad s-1", "speed of the leading shaft"),
+    "critical_frequency": Stored(("crossing",), "Hz", "frequency of mode and mesh order"),
+    "critical_damping_ratio": Stored(("crossing",), "1", "damping ratio of the mode"),
+    "critical_mode": Stored(("crossing",), "1", "mode, counted from 0"),
+    "critical_mesh": Stored(("crossing",), "1", "mesh, counted from 0"),
+    "critical_order": Stored(("crossing",), "1", "multiple of the mesh frequency"),
+    "critical_residual": Stored(("crossing",), "Hz", "frequency of the mode less that of the order"),
+}
+
+
+@dataclass(frozen=True)
+class ModalAnalysis:
+    """Modes of a system about its static equilibrium.
+
+    n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds.
+
+    Attributes
+    ----------
+    freedom, mesh, shaft : tuples of str
+    spring, spring_part, spring_kind : tuples of str, (p)
+        Name, the mesh, bearing, coupling or drive it belongs to, and which of these that is.
+    natural_frequency, natural_damping_ratio : (n,) arrays
+        At rest: undamped, Hz; modal damping ratio. See `Modes`, also for the next three.
+    natural_shape, natural_kinetic_energy : (n, n) arrays
+    natural_strain_energy : (n, p) array
+    speed : (S,) array
+        Of the leading shaft, rad/s, >= 0.
+    mesh_frequency : (m, S) array
+        Hz.
+    frequency, damping_ratio, whirl : (S, A) arrays
+        See `WhirlBranches`, also for the next three; NaN where a mode does not oscillate.
+    shape : (S, A, n) complex array
+    strain_energy : (S, A, p) array
+    kinetic_energy : (S, A, n) array
+    critical_speed, critical_frequency, critical_damping_ratio, critical_residual : (C,) arrays
+        See `CriticalSpeeds`.
+    critical_mode, critical_mesh, critical_order : (C,) int arrays
+    facts : dict
+        Plain JSON: `leading_shaft`, `time`, `orders`, `equilibrium` (status, residual in N, mesh forces),
+        `seconds` (CPU by stage), `effect_ledger`.
+    """
+
+    freedom: tuple[str, ...]
+    mesh: tuple[str, ...]
+    shaft: tuple[str, ...]
+    spring: tuple[str, ...]
+    spring_part: tuple[str, ...]
+    spring_kind: tuple[str, ...]
+    natural_frequency: FloatArray
+    natural_damping_ratio: FloatArray
+    natural_shape: FloatArray
+    natural_strain_energy: FloatArray
+    natural_kinetic_energy: FloatArray
+    speed: FloatArray
+    mesh_frequency: FloatArray
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    whirl: FloatArray
+    shape: ComplexArray
+    strain_energy: FloatArray
+    kinetic_energy: FloatArray
+    critical_speed: FloatArray
+    critical_frequency: FloatArray
+    critical_damping_ratio: FloatArray
+    critical_mode: IntArray
+    critical_mesh: IntArray
+    critical_order: IntArray
+    critical_residual: FloatArray
+    facts: Json = field(default_factory=dict)
+
+    def held_by(self, strain_energy: FloatArray) -> dict[str, float]:
+        """Sum the shares (p,) of one mode over each mesh, bearing, coupling and drive, the largest first."""
+        return _summed(self.spring_part, strain_energy)
+
+    def moved(self, kinetic_energy: FloatArray) -> dict[str, float]:
+        """Sum the shares (n,) of one mode over the motions of each shaft ("output torsional")."""
+        return _summed([" ".join(part) for part in freedom_parts(self.freedom)], kinetic_energy)
+
+    def kind(self, strain_energy: FloatArray, kinetic_energy: FloatArray) -> str:
+        """Say in words what one mode is: how it moves, and what holds it.
+
+        "torsional on mesh", "lateral-torsional on bearing" ...: whatever has a third of the energy is named;
+        "free" for a motion that nothing resists.
+        """
+        motion = _named(_summed([kind for _, kind in freedom_parts(self.freedom)], kinetic_energy), "-")
+        held = _summed(self.spring_kind, strain_energy)
+        return f"{motion} on {_named(held, ' and ')}" if sum(held.values()) > 0.0 else f"{motion}, free"
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write a netCDF-4 file; it appears whole or not at all."""
+        write_fields(self, Path(path), SCHEMA, STORED)
+
+    @classmethod
+    def from_netcdf(cls, path: str | Path) -> ModalAnalysis:
+        """Read what `to_netcdf` wrote, bit by bit the same.
+
+        Raises
+        ------
+        ResultError
+            If the file is no modal analysis of this schema, or damaged.
+        """
+        return read_fields(cls, Path(path), SCHEMA, STORED)
+
+
+def modal_analysis(
+    system: System,
+    speed: Sequence[float] | FloatArray = (),
+    orders: int = 10,
+    time: float = 0.0,
+    progress: Callable[[float], None] | None = None,
+) -> ModalAnalysis:
+    """Return the natural modes of `system` and, at the speeds given, its whirl modes and critical speeds.
+
+    Parameters
+    ----------
+    system : System
+    speed : (S,) sequence
+        Of the first drive or free rotation that turns, rad/s, increasing, >= 0; empty: none.
+    orders : int
+        Multiples of the mesh frequencies to look for crossings with.
+    time : float
+        When loads are taken, s.
+    progress : callable, optional
+        Called with the fraction done; what it raises ends the analysis.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or nothing turns where speeds are given.
+    SolveError
+        If there is no static equilibrium.
+    """
+    integer("orders", orders, 1, MOST_ORDERS)
+    speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)
+    began = clock.process_time()
+    linear = linearize(system, time)
+    rest = natural_modes(linear)
+    seconds = {"equilibrium_and_rest": clock.process_time() - began}
+    began = clock.process_time()
+    branches = whirl_branches(system, linear, speeds, progress)
+    crossings = critical_speeds(system, linear, branches, orders) if speeds.size else _none()
+    seconds["over_speed"] = clock.process_time() - began
+    facts = _facts(system, linear, time, orders, seconds, speeds.size > 0)
+    return _analysis(system, linear, rest, branches, crossings, facts)
+
+
+def _facts(
+    system: System, linear: LinearSystem, time: float, orders: int, seconds: Json, turning: bool
+) -> Json:
+    """Return what is no array."""
+    scene, start = system.scene, linear.equilibrium
+    return {
+        "leading_shaft": scene.references[leading_law(system)].shaft if turning else "",
+        "time": time,
+        "orders": orders,
+        "equilibrium": {
+            "status": start.status.name,
+            "residual": start.residual,
+            "mesh_force": {
+                mesh.name: float(f) for mesh, f in zip(scene.meshes, start.mesh_force, strict=True)
+            },
+        },
+        "seconds": seconds,
+        "effect_ledger": system.ledger.to_json(),
+    }
+
+
+def _analysis(
+    system: System,
+    linear: LinearSystem,
+    rest: Modes,
+    branches: WhirlBranches,
+    crossings: CriticalSpeeds,
+    facts: Json,
+) -> ModalAnalysis:
+    """Put the result together."""
+    parts = spring_parts(system, linear.spring)
+    meshes = np.empty((len(system.scene.meshes), 0))
+    return ModalAnalysis(
+        linear.freedom,
+        tuple(mesh.name for mesh in system.scene.meshes),
+        tuple(shaft.name for shaft in system.scene.shafts),
+        linear.spring,
+        tuple(part for part, _ in parts),
+        tuple(kind for _, kind in parts),
+        rest.frequency,
+        rest.damping_ratio,
+        rest.shape,
+        rest.strain_energy,
+        rest.kinetic_energy,
+        branches.speed,
+        mesh_frequencies(system, branches.speed) if branches.speed.size else meshes,
+        branches.frequency,
+        branches.damping_ratio,
+        branches.whirl,
+        branches.shape,
+        branches.strain_energy,
+        branches.kinetic_energy,
+        crossings.speed,
+        crossings.frequency,
+        crossings.damping_ratio,
+        crossings.mode,
+        crossings.mesh,
+        crossings.order,
+        crossings.residual,
+        facts,
+    )
+
+
+def _none() -> CriticalSpeeds:
+    """No crossings."""
+    empty, counts = np.empty(0), np.empty(0, dtype=np.int64)
+    return CriticalSpeeds(empty, empty, empty, counts, counts, counts, empty)
+
+
+def _named(shares: dict[str, float], between: str) -> str:
+    """Join the names of the large shares, the largest first."""
+    largest = next(iter(shares))
+    return between.join([largest, *(name for name, s in shares.items() if name != largest and s > LARGE)])
+
+
+def _summed(parts: Sequence[str], share: FloatArray) -> dict[str, float]:
+    """Sum shares by part, the largest first."""
+    total: dict[str, float] = {}
+    for part, value in zip(parts, share, strict=True):
+        total[part] = total.get(part, 0.0) + float(value)
+    return dict(sorted(total.items(), key=lambda item: -item[1]))

@@ -1,0 +1,71 @@
+"""Speeds of all laws in proportion to that of the first that turns."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from dynamics.checks import finite
+from dynamics.errors import InputError
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray
+
+MOST_SPEEDS = 100_000
+
+
+def leading_law(system: System) -> int:
+    """Return the first drive or free rotation that turns.
+
+    Raises
+    ------
+    InputError
+        If all stand.
+    """
+    extreme = [part.speed.extreme for part in system.scene.references]
+    found = next((index for index, speed in enumerate(extreme) if speed != 0.0), None)
+    if found is None:
+        raise InputError("drives", 0.0, "turning, at least one of them", "Give one a speed other than 0.")
+    return found
+
+
+def law_speeds(system: System, speed: float) -> FloatArray:
+    """Return the speeds (k,) of all laws in rad/s where the leading one has `speed`.
+
+    They keep the proportion of their extreme speeds in the scene, and their senses: `speed` is a magnitude.
+    """
+    extreme = np.array([part.speed.extreme for part in system.scene.references])
+    return np.asarray(extreme * (speed / abs(extreme[leading_law(system)])))
+
+
+def mesh_frequencies(system: System, speed: FloatArray) -> FloatArray:
+    """Return the mesh frequency of every mesh in Hz at speeds (S,) of the leading law in rad/s, (m, S)."""
+    rate = np.array([[float(value) for value in row] for row in system.kinematics.mesh_rate])
+    per_unit = np.abs(rate @ law_speeds(system, 1.0)) / (2.0 * math.pi)
+    return np.asarray(per_unit[:, None] * np.abs(speed))
+
+
+def checked_speeds(speed: FloatArray | list[float] | tuple[float, ...], *, above_zero: bool) -> FloatArray:
+    """Return speeds (S,) in rad/s that increase.
+
+    Raises
+    ------
+    InputError
+        If one is not finite, below 0 (or 0), not above the one before, or there are too many.
+    """
+    found = np.atleast_1d(np.asarray(speed, dtype=float))
+    if found.size > MOST_SPEEDS:
+        raise InputError(
+            "speed", f"{found.size} values", f"at most {MOST_SPEEDS} values", "Take wider steps."
+        )
+    for index, value in enumerate(found):
+        finite(f"speed[{index}]", float(value))
+        if value < 0.0 or (above_zero and value == 0.0):
+            bound = "above 0" if above_zero else "0 or above"
+            raise InputError(
+                f"speed[{index}]", float(value), bound, "The scene says in which sense it turns."
+            )
+        if index and value <= found[index - 1]:
+            bound = f"above the one before it, {found[index - 1]:g}"
+            raise InputError(f"speed[{index}]", float(value), bound, "Sort the list and drop repeats.")
+    return found

@@ -1,0 +1,127 @@
+"""``loa modes``: studies of a scene that need no time integration."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from dynamics.system import Scene
+from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
+from service.cli.scene_tables import scene_with_tables
+from service.client.portable import scene_of
+from service.convert.modal import modes_json, modes_of
+from service.problems import BadInput
+from service.report.figure import Figure
+from service.report.image import png
+from service.report.inputs import Inputs
+from service.report.modal import critical_table, modal_figures, modes_table
+from service.report.write import write_page
+from service.schemas import validated
+from service.schemas.dynamic_studies import ModesInput
+from service.schemas.model import BoundaryModel
+
+Json = dict[str, Any]
+ENDINGS = (".nc", ".json", ".png", ".html")
+
+
+@dataclass(frozen=True)
+class Study:
+    """A kind of study on the command line.
+
+    Attributes
+    ----------
+    inputs : type[BoundaryModel]
+        What it varies.
+    run : callable
+        Scene, inputs and progress to the result, which writes itself by ``to_netcdf``.
+    json : callable
+        Figures of a result.
+    picture : callable
+        The figure of ``-o FILE.png``.
+    page : callable
+        The inputs of the page of ``-o FILE.html``.
+    show : callable
+        Prints a result for people.
+    """
+
+    inputs: type[BoundaryModel]
+    run: Callable[[Scene, Any, Report], Any]
+    json: Callable[[Any], Json]
+    picture: Callable[[Any], Figure]
+    page: Callable[[Any], Inputs]
+    show: Callable[[Any], None]
+
+
+def run_study(
+    study: Study, file: Path, output: Path | None, service: str | None, asked: Json, *, as_json: bool
+) -> Any:
+    """Compute, write, print; return the result. `asked` holds the fields of the inputs that were given."""
+    chosen = validated(study.inputs, asked)
+    scene, folder = scene_of(file)
+    if output is not None:
+        _check(output)
+    with progress_bar() as report:
+        found = study.run(scene_with_tables(scene, folder, service, report), chosen, report)
+    if output is not None:
+        _write(study, found, output)
+    if as_json:
+        print_json(({} if output is None else {"file": str(output)}) | study.json(found))
+        return found
+    study.show(found)
+    if output is not None:
+        console().print(f"written to {output}", highlight=False)
+    return found
+
+
+def _check(output: Path) -> None:
+    """Refuse an output of another kind before the work."""
+    if output.suffix not in ENDINGS:
+        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(ENDINGS)}")
+    check_writable(output)
+
+
+def _write(study: Study, found: Any, output: Path) -> None:
+    """Write a result as its ending says."""
+    if output.suffix == ".nc":
+        found.to_netcdf(output)
+    elif output.suffix == ".json":
+        text = json.dumps(study.json(found), allow_nan=False, indent=1)
+        output.write_text(f"{text}\n", encoding="utf-8")
+    elif output.suffix == ".png":
+        output.write_bytes(png(study.picture(found)))
+    else:
+        write_page(study.page(found), output)
+
+
+def _lines(texts: Sequence[str]) -> None:
+    """Print lines for people."""
+    for text in texts:
+        console().print(text, highlight=False)
+
+
+def _show_modes(found: Any) -> None:
+    """Print modes and critical speeds."""
+    out = console()
+    start = found.facts["equilibrium"]
+    forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
+    _lines([f"static equilibrium {start['status'].lower()}, {start['residual']:.1e} N left; {forces}"])
+    modes = modes_table(found)
+    out.print(table(modes.head, modes.rows, modes.caption))
+    if found.speed.size:
+        critical = critical_table(found)
+        out.print()
+        out.print(table(critical.head, critical.rows, critical.caption))
+    _lines([f"cost {sum(found.facts['seconds'].values()):.3g} CPU s"])
+
+
+MODES = Study(
+    ModesInput,
+    modes_of,
+    modes_json,
+    lambda found: modal_figures(found)[0],
+    lambda found: Inputs(modal=found),
+    _show_modes,
+)

@@ -1,0 +1,39 @@
+"""What the studies of a scene without time integration vary: speeds, orders."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Self
+
+from pydantic import Field, Strict, model_validator
+
+from service.schemas.model import BoundaryModel, refuse
+
+MOST_SPEEDS = 10_000
+Speed = Annotated[float, Field(ge=0.0, le=1e7)]
+TurningSpeed = Annotated[float, Field(gt=0.0, le=1e7)]
+Orders = Annotated[int, Field(ge=1, le=100)]
+
+
+class ModesInput(BoundaryModel):
+    """Speeds at which modes are looked for, beside those at rest."""
+
+    speed_rpm: Annotated[tuple[Speed, ...], Strict(False)] = Field(
+        default=(),
+        max_length=MOST_SPEEDS,
+        description="Speeds of the first shaft that is driven, in rpm, increasing; left out: at rest only",
+        examples=[[0.0, 1500.0, 3000.0]],
+    )
+    orders: Orders = Field(default=10, description="Multiples of the mesh frequencies", examples=[10])
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        """Speeds are an axis."""
+        _refuse_unsorted(self.speed_rpm)
+        return self
+
+
+def _refuse_unsorted(values: tuple[float, ...]) -> None:
+    """Refuse speeds that do not increase."""
+    if any(later <= earlier for earlier, later in pairwise(values)):
+        refuse("speed_rpm", list(values)[:8], "strictly increasing", "Sort the list and drop repeats.")

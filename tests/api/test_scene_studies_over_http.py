@@ -1,0 +1,107 @@
+"""Studies of scenes as jobs: the real processes over HTTP, and through the client."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+from scene_files import scene_file
+
+from dynamics.linearize import ModalAnalysis
+from fe_contact.ste import SteDatabase
+from service.app import create_app
+from service.client import JobState, LineOfActionClient
+from service.convert.modal import modes_json, modes_of
+from service.convert.scene import dynamic_scene
+from service.problems import BadInput
+from service.schemas import read_model
+from service.schemas.dynamic_studies import ModesInput
+from service.schemas.scene import SceneInput
+from service.settings import Settings
+from service.store import stored_results
+
+KEY = "ab" * 32
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[LineOfActionClient, TestClient]]:
+    """A client of a running service that holds the table, and the bare HTTP one."""
+    directory = tmp_path_factory.mktemp("service")
+    folder = tmp_path_factory.mktemp("scene")
+    scene_file(folder)
+    app, results = create_app(Settings(data_directory=directory / "data")), directory / "results"
+    with (
+        TestClient(app) as service,
+        LineOfActionClient("http://testserver", cache_dir=results, transport=service._transport) as found,
+    ):
+        stored_results(directory / "data").put(KEY, "database", folder / "ste.nc")
+        yield found, service
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> SceneInput:
+    """The scene with its table by hash."""
+    given = read_model(SceneInput, scene_file(tmp_path))
+    (mesh,) = given.meshes
+    return given.model_copy(
+        update={"meshes": (mesh.model_copy(update={"database_file": None, "database_hash": KEY}),)}
+    )
+
+
+def here(scene: SceneInput, tmp_path: Path) -> Any:
+    """The scene of dynamics."""
+    return dynamic_scene(scene, {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")})
+
+
+def none(_stage: str, _fraction: float) -> None:
+    """Report nothing."""
+
+
+def test_modes_are_those_of_python(
+    served: tuple[LineOfActionClient, TestClient], scene: SceneInput, tmp_path: Path
+) -> None:
+    client, http = served
+    seen: list[JobState] = []
+    file = client.modes_file(scene, seen.append, speed_rpm=[0.0, 3000.0], orders=4)
+    found = ModalAnalysis.from_netcdf(file)
+    python = modes_of(here(scene, tmp_path), ModesInput(speed_rpm=(0.0, 3000.0), orders=4), none)
+    for name in ("natural_frequency", "frequency", "critical_speed", "strain_energy"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(python, name))
+    assert [state.progress for state in seen] == sorted(state.progress for state in seen)
+    answer = http.get(f"/v1/modes/{client.result(seen[-1].id).key}").json()
+    assert {name: answer[name] for name in modes_json(found)} == modes_json(found)
+
+
+@pytest.mark.parametrize(
+    ("process", "further", "field"),
+    [
+        ("modes", {"speed_rpm": [3.0, 2.0]}, "speed_rpm"),
+        ("modes", {"speed_rpm": [-1.0]}, "speed_rpm"),
+        ("modes", {"orders": 0}, "orders"),
+        ("modes", {"speed": [1.0]}, "speed"),
+    ],
+)
+def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
+    served: tuple[LineOfActionClient, TestClient],
+    scene: SceneInput,
+    process: str,
+    further: dict[str, Any],
+    field: str,
+) -> None:
+    client, http = served
+    jobs = len(http.get("/v1/jobs").json()["jobs"])
+    with pytest.raises(BadInput) as caught:
+        client.submit_scene(scene, process, **further)
+    assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
+    assert len(http.get("/v1/jobs").json()["jobs"]) == jobs
+
+
+def test_a_hash_of_another_kind_is_not_found(served: tuple[LineOfActionClient, TestClient]) -> None:
+    _, http = served
+    for path in ("modes",):
+        assert http.get(f"/v1/{path}/{KEY}").status_code == 404
+        assert http.get(f"/v1/{path}/nonsense").status_code == 422

@@ -1,0 +1,181 @@
+"""Whirl modes over speed: closed forms of a disc, branches that cross, critical speeds, files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from geared_scenes import gear_pair_scene, spring_table
+from planetary_scenes import driven_scene, published_set
+
+from dynamics.bodies import Inertia, Shaft, TimeLaw
+from dynamics.errors import InputError, ResultError
+from dynamics.joints import Bushing, Coupling
+from dynamics.linearize import ModalAnalysis, linearize, modal_analysis, natural_modes, whirl_modes
+from dynamics.linearize.campbell import _whirl, likeness, modes_at
+from dynamics.system.assemble import assemble
+
+DISC = Inertia(4.0, 0.02, 0.0104)
+STIFFNESS, LENGTH, TEETH = 1e6, 0.2, 20
+TILT_STIFFNESS = 2.0 * STIFFNESS * (LENGTH / 2.0) ** 2
+SPEEDS = np.linspace(0.0, 400.0, 21)
+
+
+def disc_scene(sense=1.0):
+    """A disc without damping on two bearings, turned by a geared shaft through a soft coupling."""
+    scene = gear_pair_scene(
+        spring_table(4e8),
+        speed=TimeLaw.constant(sense * 300.0),
+        effects={"tilt": "on", "lateral": "on", "gyroscopic": "on"},
+    )
+    disc = Shaft("disc", LENGTH, (0.0, 0.0, 0.4), DISC)
+    ends = tuple(Bushing(f"disc.{z}", "disc", z, STIFFNESS, damping_ratio=0.0) for z in (0.0, LENGTH))
+    joint = Coupling("joint", "input", "disc", 100.0)
+    return replace(scene, shafts=(*scene.shafts, disc), bushings=(*scene.bushings, *ends), couplings=(joint,))
+
+
+def tilting(found: ModalAnalysis) -> np.ndarray:
+    """Branches in which the disc tilts."""
+    columns = [found.freedom.index(f"disc.{kind}") for kind in ("tilt_x", "tilt_y")]
+    return np.flatnonzero(found.kinetic_energy[-1][:, columns].sum(axis=1) > 0.9)
+
+
+@pytest.fixture(scope="module")
+def disc() -> ModalAnalysis:
+    return modal_analysis(assemble(disc_scene()), SPEEDS, orders=3)
+
+
+def test_branches_of_a_tilting_disc_are_the_roots_of_its_closed_form(disc):
+    for index, speed in enumerate(SPEEDS):
+        # I_t a'' - i I_p w a' + k a = 0: forward above, backward below
+        roots = np.roots([DISC.transverse, -1j * DISC.polar * speed, TILT_STIFFNESS]).imag / (2.0 * np.pi)
+        found = np.sort(disc.frequency[index, tilting(disc)])
+        np.testing.assert_allclose(found, np.sort(np.abs(roots)), rtol=1e-9)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_forward_whirl_rises_and_backward_whirl_falls_whatever_the_sense_of_rotation(sense):
+    found = modal_analysis(assemble(disc_scene(sense)), SPEEDS)
+    low, high = sorted(tilting(found), key=lambda mode: found.frequency[-1, mode])
+    np.testing.assert_allclose(found.whirl[1:, high], 1.0, rtol=1e-6)
+    np.testing.assert_allclose(found.whirl[1:, low], -1.0, rtol=1e-6)
+    assert found.frequency[-1, high] > 1.3 * found.frequency[-1, low]
+    # at rest any combination of the two is a mode
+    np.testing.assert_allclose(found.whirl[0, [low, high]], 0.0, atol=1e-6)
+
+
+def test_critical_speeds_are_those_of_the_closed_form(disc):
+    """With w_mode = r w, r = order x teeth: I_t r^2 w^2 -+ I_p r w^2 = k."""
+    for mode in tilting(disc):
+        sense = disc.whirl[-1, mode]
+        for order in (1, 2, 3):
+            r = order * TEETH
+            exact = np.sqrt(TILT_STIFFNESS / (DISC.transverse * r**2 - sense * DISC.polar * r))
+            met = (disc.critical_mode == mode) & (disc.critical_order == order)
+            np.testing.assert_allclose(disc.critical_speed[met], [exact], rtol=1e-8)
+    assert np.all(np.abs(disc.critical_residual) <= 1e-9 * disc.critical_frequency)
+    assert np.all(np.diff(disc.critical_speed) >= 0.0)
+
+
+def test_branches_cross_without_changing_their_shapes(disc):
+    """Sorted by frequency at each speed they would swap."""
+    linear = linearize(assemble(disc_scene()))
+    order = np.argsort(disc.frequency, axis=1)
+    assert np.any(order != order[0])
+    for before, after in zip(disc.shape[1:-1], disc.shape[2:], strict=True):
+        alone = np.diag(likeness(linear, before, after))[tilting(disc)]
+        np.testing.assert_allclose(alone, 1.0, atol=1e-6)
+
+
+def test_shares_of_energy_add_up_and_name_their_parts(disc):
+    np.testing.assert_allclose(disc.strain_energy.sum(axis=-1), 1.0, rtol=1e-9)
+    np.testing.assert_allclose(disc.kinetic_energy.sum(axis=-1), 1.0, rtol=1e-9)
+    mode = tilting(disc)[0]
+    strain, kinetic = disc.strain_energy[-1, mode], disc.kinetic_energy[-1, mode]
+    held = disc.held_by(strain)
+    assert list(held)[:2] == ["disc.0.0", "disc.0.2"] or list(held)[:2] == ["disc.0.2", "disc.0.0"]
+    assert held["disc.0.0"] == pytest.approx(0.5, rel=1e-6)
+    assert disc.moved(kinetic)["disc tilting"] == pytest.approx(1.0, rel=1e-6)
+    assert disc.kind(strain, kinetic) == "tilting on bearing"
+    kinds = dict(zip(disc.spring_part, disc.spring_kind, strict=True))
+    assert (kinds["mesh"], kinds["joint"], kinds["disc.0.0"]) == ("mesh", "coupling", "bearing")
+
+
+def test_without_speed_terms_the_modes_stay_and_meet_every_order():
+    system = assemble(gear_pair_scene(spring_table(4e8)))
+    found = modal_analysis(system, [0.0, 500.0, 1500.0], orders=4)
+    assert np.ptp(found.frequency, axis=0).max() < 1e-9 * found.frequency.max()
+    rate = TEETH / (2.0 * np.pi)
+    np.testing.assert_allclose(
+        found.critical_frequency, found.critical_order * rate * found.critical_speed, rtol=1e-8
+    )
+    inside = sum(int(np.sum(found.frequency[0] <= k * rate * 1500.0)) for k in (1, 2, 3, 4))
+    assert found.critical_speed.size == inside > 4
+    np.testing.assert_array_equal(found.natural_frequency, natural_modes(system).frequency)
+
+
+def test_branches_of_a_planetary_set_are_its_whirl_modes():
+    system = assemble(driven_scene(published_set(3), speed=TimeLaw.constant(800.0)))
+    found = modal_analysis(system, [0.0, 400.0, 800.0], orders=2)
+    np.testing.assert_allclose(np.sort(found.frequency[-1]), whirl_modes(system).frequency, rtol=1e-12)
+    # all six meshes have one mesh frequency: orders count once
+    assert set(found.critical_mesh) == {0}
+
+
+def test_the_whirl_of_repeated_modes_does_not_depend_on_their_combination():
+    """The disc moves across its axis alike in x and y: circles of one sense are no better than lines."""
+    system = assemble(disc_scene())
+    linear = linearize(system)
+    modes = modes_at(system, linear, 100.0)
+    columns = [modes.freedom.index(f"disc.{kind}") for kind in ("x", "y")]
+    pair = np.flatnonzero(np.max(np.abs(modes.shape[:, columns]), axis=1) > 0.9)
+    assert pair.size == 2
+    circles = modes.shape.copy()
+    circles[pair] = 0.0
+    circles[np.ix_(pair, columns)] = [[1.0, -1.0j], [1.0, -0.5j]]
+    np.testing.assert_allclose(
+        _whirl(system, linear, 100.0, replace(modes, shape=circles))[pair], 0.0, atol=1e-9
+    )
+
+
+def test_a_file_gives_back_every_bit(disc, tmp_path):
+    for number, found in enumerate((disc, modal_analysis(assemble(disc_scene())))):
+        path = tmp_path / f"modes_{number}.nc"
+        found.to_netcdf(path)
+        again = ModalAnalysis.from_netcdf(path)
+        for name, value in vars(found).items():
+            other = getattr(again, name)
+            if isinstance(value, np.ndarray):
+                assert value.dtype == other.dtype and np.array_equal(value, other, equal_nan=True), name
+            else:
+                assert value == other, name
+
+
+def test_a_damaged_file_is_refused(disc, tmp_path):
+    path = tmp_path / "modes.nc"
+    disc.to_netcdf(path)
+    data = path.read_bytes()
+    place = data.find(b"critical_speed")
+    path.write_bytes(data[: len(data) // 2])
+    with pytest.raises(ResultError, match="readable"):
+        ModalAnalysis.from_netcdf(path)
+    assert place > 0
+    path.write_bytes(data.replace(b"lineofaction modal analysis", b"lineofaction modal analysiz"))
+    with pytest.raises(ResultError, match="schema"):
+        ModalAnalysis.from_netcdf(path)
+
+
+@pytest.mark.parametrize(
+    ("speed", "orders", "field"),
+    [
+        ([1.0, 1.0], 5, "speed[1]"),
+        ([-1.0, 1.0], 5, "speed[0]"),
+        ([1.0, np.nan], 5, "speed[1]"),
+        ([1.0], 0, "orders"),
+    ],
+)
+def test_what_cannot_be_used_is_named(speed, orders, field):
+    with pytest.raises(InputError) as caught:
+        modal_analysis(assemble(gear_pair_scene()), speed, orders)
+    assert caught.value.field == field
