@@ -27,9 +27,10 @@ class SpringCurve:
     Attributes
     ----------
     bushing : str
-        The bushing in whose place it acts.
+        The bushing or planet bearing in whose place it acts.
     direction : str
-        One of x, y, z, tilt_x, tilt_y; one curve each.
+        One of x, y, z, tilt_x, tilt_y; one curve each. On a planet bearing x points away from the carrier's
+        axis.
     displacement : tuple of floats
         m, rad for a tilt; strictly increasing, at least 2.
     force : tuple of floats

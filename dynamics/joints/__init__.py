@@ -1,5 +1,6 @@
 """What holds bodies: bushings to the ground, pins in a carrier; and what makes them turn."""
 
+from dynamics.joints.bearing_stiffness import BearingStiffness
 from dynamics.joints.bushing import Bushing
 from dynamics.joints.coupling import Coupling
 from dynamics.joints.free_rotation import FreeRotation
@@ -8,6 +9,7 @@ from dynamics.joints.imposed_rotation import ImposedRotation
 from dynamics.joints.planet_bearing import PlanetBearing
 
 __all__ = [
+    "BearingStiffness",
     "Bushing",
     "Coupling",
     "FreeRotation",

@@ -4,20 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from dynamics.checks import finite, not_negative
-from dynamics.errors import InputError
-from dynamics.joints.matrix import Matrix, check_matrix
-from dynamics.types import FloatArray
-
-DEFAULT_DAMPING_RATIO = 0.05
-SEAT = 5
-"""Directions in which a bearing holds a shaft: x, y, z, tilt_x, tilt_y."""
+from dynamics.checks import finite
+from dynamics.joints.matrix import Matrix
+from dynamics.joints.seat import DEFAULT_DAMPING_RATIO, Seat
 
 
 @dataclass(frozen=True)
-class Bushing:
+class Bushing(Seat):
     """A bushing between a shaft and the ground.
 
     The shaft's section at the bushing moves by d = (x, y, z, tilt_x, tilt_y); the bushing pushes the ground
@@ -44,7 +37,8 @@ class Bushing:
         Added, in (x, y, z, tilt_x, tilt_y): tilt stiffness, cross terms; symmetric, positive semidefinite. Of
         a 6 by 6 matrix the row and column of the rotation about the axis are zero: the shaft turns. Without
         a damping matrix a stiffness matrix is damped in proportion, by `damping_ratio` at the frequency at
-        which the bushing's share of the mass bounces on the matrix's largest stiffness.
+        which the bushing's share of the mass bounces on the matrix's largest stiffness; of a matrix that
+        holds tilt alone, at which its share of the transverse inertia tilts.
     preload : five floats or None
         Force and moment of the bushing on the shaft where d = 0, N and N m, in the same order.
     """
@@ -63,56 +57,4 @@ class Bushing:
 
     def __post_init__(self) -> None:
         finite("position", self.position)
-        for name in ("radial_stiffness", "axial_stiffness", "damping_ratio"):
-            not_negative(name, getattr(self, name))
-        for name in ("radial_damping", "axial_damping"):
-            if getattr(self, name) is not None:
-                not_negative(name, getattr(self, name))
-        for name in ("stiffness", "damping"):
-            if getattr(self, name) is not None:
-                _check_seat(name, np.asarray(getattr(self, name), dtype=float))
-        if self.preload is not None:
-            if len(self.preload) != SEAT:
-                raise InputError("preload", self.preload, "five numbers: x, y, z, tilt_x, tilt_y")
-            for index, value in enumerate(self.preload):
-                finite(f"preload[{index}]", value)
-
-    @property
-    def full(self) -> bool:
-        """Whether it is more than three springs and dampers along x, y, z."""
-        return self.stiffness is not None or self.damping is not None or self.preload is not None
-
-    @property
-    def added_stiffness(self) -> FloatArray:
-        """The stiffness matrix alone, (5, 5); zeros without one."""
-        return seat_matrix(self.stiffness)
-
-    @property
-    def seat_stiffness(self) -> FloatArray:
-        """K, (5, 5): all of the stiffness."""
-        return self._isotropic(self.radial_stiffness, self.axial_stiffness) + self.added_stiffness
-
-    @property
-    def seat_damping(self) -> FloatArray:
-        """C, (5, 5); what is left to be filled in from the damping ratio counts 0."""
-        isotropic = self._isotropic(self.radial_damping or 0.0, self.axial_damping or 0.0)
-        return isotropic + seat_matrix(self.damping)
-
-    @staticmethod
-    def _isotropic(radial: float, axial: float) -> FloatArray:
-        return np.diag([radial, radial, axial, 0.0, 0.0])
-
-
-def seat_matrix(matrix: Matrix | None) -> FloatArray:
-    """Return a matrix without its rotation about the axis, (5, 5); zeros for None."""
-    if matrix is None:
-        return np.zeros((SEAT, SEAT))
-    return np.array(matrix, dtype=float)[:SEAT, :SEAT]
-
-
-def _check_seat(field: str, matrix: FloatArray) -> None:
-    """Refuse what is no matrix of a bearing."""
-    check_matrix(field, matrix, (SEAT, SEAT + 1))
-    if np.any(matrix[SEAT:] != 0.0):
-        bound = "zero in the row and column of the rotation about the axis"
-        raise InputError(field, matrix[SEAT:].tolist(), bound, "A bearing lets its shaft turn.")
+        self.check_seat()

@@ -10,8 +10,8 @@ import numpy as np
 
 from dynamics.checks import distinct
 from dynamics.errors import InputError
-from dynamics.joints.bushing import SEAT
 from dynamics.joints.matrix import Matrix, check_matrix
+from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 PER_SEAT = (3, SEAT, SEAT + 1)

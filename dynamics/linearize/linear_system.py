@@ -94,7 +94,7 @@ def _tangents(system: System, tangent: FloatArray) -> list[tuple[str, FloatArray
     first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
     found = []
     for start, at in zip(first, system.bearings, strict=False):
-        rows, size = slice(start, start + len(at.direction)), len(at.direction)
+        rows, size = slice(start, start + at.way.shape[0]), at.way.shape[0]
         matrix = 0.5 * (tangent[rows, :size] + tangent[rows, :size].T)
         found.append((system.supports.name[at.support], system.arrays.direction[rows], matrix))
     return found

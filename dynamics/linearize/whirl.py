@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dynamics.joints.bushing import SEAT
+from dynamics.joints.seat import SEAT
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.system.assemble import System
 from dynamics.system.observation import observe_laws

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.joints.bushing import SEAT
+from dynamics.joints.seat import SEAT
 from dynamics.results.axis_series import axis_series
 from dynamics.system.assemble import System
 from dynamics.system.freedoms import ROTATION
@@ -98,7 +98,7 @@ def _on_the_ground(
 
 def _holds_tilt(system: System) -> bool:
     """Whether any bearing exerts a moment."""
-    if any(kind >= 3 for at in system.bearings for kind in at.direction):
+    if any(at.tilts for at in system.bearings):
         return True
     matrices = (system.bearing_stiffness[:, 3:], system.bearing_damping[:, 3:])
     return any(bool(np.any(matrix)) for matrix in (*matrices, system.seats.preload.reshape(-1, SEAT)[:, 3:]))
@@ -120,8 +120,8 @@ def bearing_force(system: System, local: FloatArray, q: FloatArray, v: FloatArra
         found[seats.place, :SEAT] -= seats.preload.reshape(-1, SEAT)[:, :, None]
     first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
     for start, at in zip(first, system.bearings, strict=False):
-        for row, kind in enumerate(at.direction):
-            found[at.support, kind] += at.lever * local[start + row]
+        rows = np.flatnonzero(np.any(at.way != 0.0, axis=0))
+        found[at.support, rows] += at.way[:, rows].T @ local[start : start + at.way.shape[0]]
     return np.asarray(found)
 
 

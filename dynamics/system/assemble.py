@@ -49,7 +49,7 @@ class System:
     supports : Supports
         Bushings, then planet bearings.
     seats : Seats
-        The bushings that are more than three springs to rigid ground.
+        The bearings that are more than three springs to rigid ground or pin.
     bearings : tuple of BearingElement
         Where the last elements act, those of bearings that are not linear.
     couplings : CouplingRows
@@ -106,14 +106,14 @@ def _with_linear_bearings(system: System) -> Scene:
     """Return the scene with the tangents of its bearings where it rests under the load."""
     mesh_force = system.flanks.nominal_force @ system.arrays.direction[system.driving_rows]
     bearings = [(system.supports.name[at.support], at) for at in system.bearings]
-    bushings = {part.name: part for rotor in system.rotors for part in rotor.bushings}
-    return linear_scene(system.scene, system.arrays, bearings, bushings, -mesh_force)
+    supports = {part.name: part for rotor in system.rotors for part in rotor.supports}
+    return linear_scene(system.scene, system.arrays, bearings, supports, -mesh_force)
 
 
 def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArrays) -> System:
     """Gather all parts; bearings that hold tilt also exert moments."""
     mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
-    tilted = bool(joined.seats.name) or any(kind >= 3 for at in mechanism.bearings for kind in at.direction)
+    tilted = bool(joined.seats.name) or any(at.tilts for at in mechanism.bearings)
     stiffness, damping = forces_on_ground(joined, freedoms, tilted)
     return System(
         mechanism.scene,

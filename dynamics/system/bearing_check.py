@@ -7,21 +7,21 @@ from collections.abc import Sequence
 from dynamics.checks import distinct, one_of
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact, SpringCurve
-from dynamics.joints import Bushing
+from dynamics.joints import Bushing, PlanetBearing
 
 
 def check_bearing_laws(
-    bushings: Sequence[Bushing],
+    bearings: Sequence[Bushing | PlanetBearing],
     contacts: Sequence[RollingContact],
     curves: Sequence[SpringCurve],
     housed: frozenset[str],
     turning: frozenset[str],
 ) -> None:
-    """Every law has its own direction of a bushing that exists, on rigid ground.
+    """Every law has its own direction of a bearing that exists, on rigid ground or on a pin.
 
     `housed` names the bushings in a housing, `turning` those of shafts described in a turning frame.
     """
-    names = [bushing.name for bushing in bushings]
+    names = [bearing.name for bearing in bearings]
     laws: list[tuple[str, Sequence[RollingContact | SpringCurve]]] = [
         ("rolling_contacts", contacts),
         ("spring_curves", curves),

@@ -11,11 +11,12 @@ from dynamics.forces import RollingContact, SpringCurve
 from dynamics.forces.element_laws import Law
 from dynamics.forces.rolling_contact import RollingContactLaws, pack_rolling_contacts
 from dynamics.forces.spring_curve import DIRECTIONS, SpringCurveLaws, pack_spring_curves
-from dynamics.joints.bushing import SEAT
-from dynamics.system.coupling_rows import section
+from dynamics.joints import Bushing, PlanetBearing
+from dynamics.joints.seat import SEAT
 from dynamics.system.elements import Element
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
+from dynamics.system.seat_motion import seat_axes, seat_error, seat_motion
 from dynamics.types import FloatArray
 
 
@@ -27,41 +28,45 @@ class BearingElement:
     ----------
     support : int
         The bearing, among the supports.
-    direction : tuple of int
-        Of each row of the element: 0 to 4 for x, y, z, tilt_x, tilt_y.
-    lever : float
-        Row over displacement: 1, or a radius in m for a tilt.
+    way : (p, 5) array
+        The element's rows per strain of the bearing x, y, z, tilt_x, tilt_y: 1 along a displacement, a radius
+        in m for a tilt.
+    own : (p, 5) array
+        The same per strain in the bearing's own axes.
     typical : float
-        Stiffness at the typical load, N/m or N m/rad.
+        Stiffness of the rows at the typical load, N/m.
     """
 
     support: int
-    direction: tuple[int, ...]
-    lever: float
+    way: FloatArray
+    own: FloatArray
     typical: float
 
     @property
     def seat(self) -> FloatArray:
         """Typical stiffness as a matrix of the bearing, (5, 5)."""
-        return np.diag([self.typical if kind in self.direction else 0.0 for kind in range(SEAT)])
+        return np.asarray(self.typical * self.way.T @ self.way)
+
+    @property
+    def tilts(self) -> bool:
+        """Whether it exerts a moment."""
+        return bool(np.any(self.way[:, 3:] != 0.0))
 
 
 def bearing_loads(scene: Scene, rotors: Sequence[Rotor], forces: FloatArray) -> dict[str, float]:
-    """Return what each bushing typically carries, N: an equal share of its shaft's nominal mesh forces."""
+    """Return what each bearing typically carries, N: an equal share of its shaft's nominal mesh forces."""
     on_shaft = {shaft.name: 0.0 for shaft in scene.shafts}
     for mesh, force in zip(scene.meshes, forces, strict=True):
         for gear in (mesh.driver, mesh.driven):
             on_shaft[scene.gear(gear).shaft] += float(force)
     return {
-        bushing.name: on_shaft[bushing.shaft] / len(rotor.supports)
-        for rotor in rotors
-        for bushing in rotor.bushings
+        part.name: on_shaft[part.shaft] / len(rotor.supports) for rotor in rotors for part in rotor.supports
     }
 
 
 def nonlinear_worths(scene: Scene, loads: dict[str, float]) -> tuple[tuple[str, float], ...]:
     """Return for each law its shaft and what its tangent misses of the displacement under the load, m."""
-    shaft = {bushing.name: bushing.shaft for bushing in scene.bushings}
+    shaft = {part.name: part.shaft for part in (*scene.bushings, *scene.planet_bearings)}
     found = []
     for part in scene.rolling_contacts:
         load = part.typical_load(loads[part.bushing])
@@ -77,19 +82,25 @@ def nonlinear_worths(scene: Scene, loads: dict[str, float]) -> tuple[tuple[str, 
 
 
 def bearing_places(
-    scene: Scene, names: Sequence[str], loads: dict[str, float], radius: float
+    scene: Scene, rotors: Sequence[Rotor], names: Sequence[str], loads: dict[str, float]
 ) -> tuple[BearingElement, ...]:
-    """Return one place per rolling contact, then per curve; `names` are those of all supports."""
+    """Return one place per rolling contact, then per curve; `names` are those of all supports.
+
+    A curve on a planet bearing is along its own axes, away from the carrier's and along z x (away).
+    """
+    radius = tilt_lever(scene)
     place = {name: index for index, name in enumerate(names)}
-    contacts = [
-        BearingElement(place[part.bushing], (0, 1), 1.0, part.tangent(part.typical_load(loads[part.bushing])))
-        for part in scene.rolling_contacts
-    ]
-    curves = []
+    axes = {name: seat_axes(rotors, *at) for name, at in supports_by_name(rotors).items()}
+    contacts, curves = [], []
+    for part in scene.rolling_contacts:
+        across = np.eye(SEAT)[:2]
+        typical = part.tangent(part.typical_load(loads[part.bushing]))
+        contacts.append(BearingElement(place[part.bushing], across, across @ axes[part.bushing].T, typical))
     for curve in scene.spring_curves:
         lever = radius if curve.direction.startswith("tilt") else 1.0
-        kind = DIRECTIONS.index(curve.direction)
-        curves.append(BearingElement(place[curve.bushing], (kind,), lever, curve.slope))
+        own = lever * np.eye(SEAT)[[DIRECTIONS.index(curve.direction)]]
+        way = own @ axes[curve.bushing]
+        curves.append(BearingElement(place[curve.bushing], way, own, curve.slope / lever**2))
     return (*contacts, *curves)
 
 
@@ -97,28 +108,35 @@ def bearing_elements(
     scene: Scene, rotors: Sequence[Rotor], places: Sequence[BearingElement], loads: dict[str, float]
 ) -> tuple[tuple[Element, ...], RollingContactLaws, SpringCurveLaws]:
     """Return the elements at `places`, and their laws."""
-    found = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.bushings}
+    found = supports_by_name(rotors)
     parts: list[RollingContact | SpringCurve] = [*scene.rolling_contacts, *scene.spring_curves]
     first_curve, elements = len(scene.rolling_contacts), []
     for index, (part, at) in enumerate(zip(parts, places, strict=True)):
-        rotor, bushing = found[part.bushing]
-        gradient = np.zeros((len(at.direction), 6 * len(rotors)))
-        moves = section(rotors[rotor], rotors[rotor].shaft.origin[2] + bushing.position)
-        gradient[:, 6 * rotor : 6 * rotor + 6] = at.lever * moves[list(at.direction)]
+        rotor, support = found[part.bushing]
         rolling = index < first_curve
         law = Law.ROLLING_CONTACT if rolling else Law.SPRING_CURVE
-        offset = np.zeros(len(at.direction))
-        typical = np.full(offset.size, at.typical / at.lever**2)
+        gradient = at.way @ seat_motion(rotors, rotor, support)
+        offset = -at.way @ seat_error(rotors, rotor, support)
+        typical = np.full(offset.size, at.typical)
         number = index if rolling else index - first_curve
         elements.append(Element(law, number, -1, gradient, offset, stiffness=typical))
     contacts = scene.rolling_contacts
     share = [_share(rotors[found[part.bushing][0]]) for part in contacts]
-    lever = max((at.lever for at in places[first_curve:]), default=1.0)
     return (
         tuple(elements),
         pack_rolling_contacts(contacts, [loads[part.bushing] for part in contacts], share),
-        pack_spring_curves(scene.spring_curves, lever),
+        pack_spring_curves(scene.spring_curves, tilt_lever(scene)),
     )
+
+
+def tilt_lever(scene: Scene) -> float:
+    """Return the radius that makes lengths of tilts, m."""
+    return max((gear.base_radius for gear in scene.gears), default=1.0)
+
+
+def supports_by_name(rotors: Sequence[Rotor]) -> dict[str, tuple[int, Bushing | PlanetBearing]]:
+    """Return the rotor and the bearing of every name."""
+    return {part.name: (index, part) for index, rotor in enumerate(rotors) for part in rotor.supports}
 
 
 def _share(rotor: Rotor) -> float:

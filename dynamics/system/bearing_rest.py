@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from dynamics.forces.element_laws import Law
-from dynamics.joints import Bushing
-from dynamics.joints.bushing import SEAT, seat_matrix
+from dynamics.joints import Bushing, PlanetBearing
 from dynamics.joints.matrix import Matrix
+from dynamics.joints.seat import SEAT, seat_matrix
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.bearing_elements import BearingElement
 from dynamics.system.observation import local_state
@@ -70,21 +70,21 @@ def linear_scene(
     scene: Scene,
     arrays: SystemArrays,
     bearings: Sequence[tuple[str, BearingElement]],
-    bushings: Mapping[str, Bushing],
+    supports: Mapping[str, Bushing | PlanetBearing],
     push: FloatArray,
 ) -> Scene:
-    """Return the scene with linear bushings in place of bearings that are not.
+    """Return the scene with linear bearings in place of those that are not.
 
     They have the tangent stiffness and damping, and by their preload the force, of where the bodies rest on
     the bearings under the forces `push` (n,) of the meshes and the loads at t = 0. `bearings` are the last
-    elements with the names of their bushings, `bushings` these with their dampings filled in.
+    elements with the names of their bearings, `supports` these with their dampings filled in.
     """
     torque = np.array([float(load.torque(0.0)) for load in scene.loads])
     q = rest_on_bearings(arrays, arrays.stiffness, arrays.constant + torque @ arrays.load.direction + push)
-    local, found = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(bushings)
+    local, found = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(supports)
     first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]
     for start, (name, at) in zip(first, bearings, strict=False):
-        size = len(at.direction)
+        size = at.way.shape[0]
         rows = slice(start, start + size)
         state = (
             local.force[rows],
@@ -93,27 +93,32 @@ def linear_scene(
             local.coordinate[rows],
         )
         found[name] = with_tangent(found[name], at, *state)
-    linear = tuple(found[part.name] for part in scene.bushings)
-    return replace(scene, bushings=linear, rolling_contacts=(), spring_curves=())
+    parts = [found[part.name] for part in (*scene.bushings, *scene.planet_bearings)]
+    return replace(
+        scene,
+        bushings=tuple(part for part in parts if isinstance(part, Bushing)),
+        planet_bearings=tuple(part for part in parts if isinstance(part, PlanetBearing)),
+        rolling_contacts=(),
+        spring_curves=(),
+    )
 
 
 def with_tangent(
-    bushing: Bushing,
+    bearing: Bushing | PlanetBearing,
     at: BearingElement,
     force: FloatArray,
     stiffness: FloatArray,
     damping: FloatArray,
     coordinate: FloatArray,
-) -> Bushing:
-    """Return `bushing` with an element's tangents (p, p) and its `force` (p,) at the `coordinate` (p,)."""
-    spread = np.zeros((len(at.direction), SEAT))
-    spread[np.arange(len(at.direction)), list(at.direction)] = at.lever
-    added = np.zeros(SEAT) if bushing.preload is None else np.array(bushing.preload)
+) -> Bushing | PlanetBearing:
+    """Return `bearing` with an element's tangents (p, p) and its `force` (p,) at the `coordinate` (p,)."""
+    spread = at.own
+    added = np.zeros(SEAT) if bearing.preload is None else np.array(bearing.preload)
     symmetric = 0.5 * (stiffness + stiffness.T)
     return replace(
-        bushing,
-        stiffness=_rows(bushing.added_stiffness + spread.T @ symmetric @ spread),
-        damping=_rows(seat_matrix(bushing.damping) + spread.T @ damping @ spread),
+        bearing,
+        stiffness=_rows(bearing.added_stiffness + spread.T @ symmetric @ spread),
+        damping=_rows(seat_matrix(bearing.damping) + spread.T @ damping @ spread),
         preload=tuple(float(value) for value in added + (symmetric @ coordinate - force) @ spread),
     )
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.joints.bushing import SEAT
+from dynamics.joints.seat import SEAT
 from dynamics.system.coupling_rows import CouplingRows, gather_couplings
 from dynamics.system.freedoms import Freedoms
 from dynamics.system.rotor import Rotor
@@ -26,7 +26,7 @@ class Connections:
     supports : Supports
         Bushings, then planet bearings.
     seats : Seats
-        The bushings that are more than three springs to rigid ground.
+        The bearings that are more than three springs to rigid ground or pin.
     couplings : CouplingRows
     """
 

@@ -46,7 +46,8 @@ def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
         first, second = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
         place = np.add(scene.shafts[first].origin, (0.0, 0.0, coupling.position))
         for shaft, sign in ((first, -1.0), (second, 1.0)):
-            motion[index, :, 6 * shaft : 6 * shaft + 6] = sign * section(rotors[shaft], place[2])
+            here = np.array([*rotors[shaft].center[:2], place[2]])
+            motion[index, :, 6 * shaft : 6 * shaft + 6] = sign * section(rotors[shaft], here)
     stiffness = [_full(c.stiffness, c.torsional_stiffness) for c in scene.couplings]
     damping = [_full(c.damping, c.torsional_damping) for c in scene.couplings]
     return CouplingRows(
@@ -57,9 +58,9 @@ def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
     )
 
 
-def section(rotor: Rotor, z: float) -> FloatArray:
-    """Return the motion of a rotor's section at the height z per freedom, (6, 6)."""
-    moves = rigid_motion(np.array([0.0, 0.0, z - rotor.center[2]]))
+def section(rotor: Rotor, point: FloatArray) -> FloatArray:
+    """Return the motion of a rotor at `point` (3,) per freedom, (6, 6): displacement and rotation."""
+    moves = rigid_motion(point - rotor.center)
     return np.vstack([moves, np.eye(6)[3:]])
 
 

@@ -8,7 +8,7 @@ from dynamics.bodies import Shaft
 from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.joints import Bushing, Housing
-from dynamics.joints.bushing import SEAT
+from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 ISOTROPY = 1e-9  # relative

@@ -6,13 +6,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.errors import InputError
-from dynamics.system.bearing_elements import BearingElement, bearing_loads, bearing_places
+from dynamics.system.bearing_elements import (
+    BearingElement,
+    bearing_loads,
+    bearing_places,
+    supports_by_name,
+)
 from dynamics.system.kinematics import Kinematics, solve_kinematics
 from dynamics.system.line_of_action import LineOfAction, line_of_action
 from dynamics.system.nominal_forces import nominal_forces
 from dynamics.system.planets import kinematic_vectors, turning_inertia
 from dynamics.system.rotor import Rotor, build_rotor
 from dynamics.system.scene import Scene
+from dynamics.system.supports import gather_supports
 from dynamics.types import FloatArray
 
 GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
@@ -33,7 +39,7 @@ class Mechanism:
     nominal_force : (m,) array
         Transverse, N.
     bearing_load : dict of str to float
-        What each bushing typically carries, N.
+        What each bearing typically carries, N.
     bearings : tuple of BearingElement
         Where the laws of bearings act that are not linear.
     """
@@ -84,15 +90,13 @@ def _with_bearings(
     scene: Scene, rotors: tuple[Rotor, ...], loads: dict[str, float]
 ) -> tuple[tuple[BearingElement, ...], tuple[Rotor, ...]]:
     """Return where laws of bearings act, and the rotors with their typical stiffness."""
-    names = [bushing.name for rotor in rotors for bushing in rotor.bushings]
-    radius = max((gear.base_radius for gear in scene.gears), default=1.0)
-    places = bearing_places(scene, names, loads, radius)
-    known = {bushing.name: (i, bushing) for i, rotor in enumerate(rotors) for bushing in rotor.bushings}
-    found = list(rotors)
+    names = gather_supports(rotors, frozenset()).name
+    places = bearing_places(scene, rotors, names, loads)
+    known, found = supports_by_name(rotors), list(rotors)
     for at in places:
-        index, bushing = known[names[at.support]]
+        index, support = known[names[at.support]]
         rotor = found[index]
-        found[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(bushing))))
+        found[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
     return places, tuple(found)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import TypeVar
@@ -11,7 +11,7 @@ from typing import TypeVar
 from dynamics.bodies import GearBody, Shaft
 from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
-from dynamics.forces import GearMesh
+from dynamics.forces import GearMesh, RollingContact, SpringCurve
 from dynamics.joints import PlanetBearing
 from dynamics.system.kinematics import Kinematics, solve_kinematics
 from dynamics.system.scene import Scene, on_axis
@@ -20,6 +20,7 @@ TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit
 
 Turn = Fraction | float
 Part = TypeVar("Part", GearBody, PlanetBearing)
+BearingLaw = TypeVar("BearingLaw", RollingContact, SpringCurve)
 
 
 def with_planets(
@@ -37,7 +38,7 @@ def with_planets(
         With one planet.
     shaft : str
         Its shaft; it stays where it is. The others are called ``"<name> 2"``, ``"<name> 3"`` and so on, and
-        likewise their gears, bearings and meshes.
+        likewise their gears, bearings with their laws, and meshes.
     number : int
         How many in all.
     angles : sequence of floats, optional
@@ -73,6 +74,11 @@ def with_planets(
             for mesh in scene.meshes
             if {mesh.driver, mesh.driven} & of_shaft
         ]
+    copied = {
+        part.name: [_numbered(part.name, index) for index in range(1, number)]
+        for part in scene.planet_bearings
+        if part.shaft == shaft
+    }
     if pin_errors is not None:
         of_pin = {_numbered(shaft, index): pin_errors[index] for index in range(number)}
         bearings = [_with_error(bearing, of_pin.get(bearing.shaft)) for bearing in bearings]
@@ -82,7 +88,17 @@ def with_planets(
         gears=tuple(gears),
         planet_bearings=tuple(bearings),
         meshes=tuple(meshes),
+        rolling_contacts=_on_copies(scene.rolling_contacts, copied),
+        spring_curves=_on_copies(scene.spring_curves, copied),
     )
+
+
+def _on_copies(laws: Sequence[BearingLaw], copied: Mapping[str, Sequence[str]]) -> tuple[BearingLaw, ...]:
+    """Return `laws` and those that the copies of their bearings have."""
+    found = list(laws)
+    for law in laws:
+        found += [replace(law, bushing=name) for name in copied.get(law.bushing, ())]
+    return tuple(found)
 
 
 def _turns(number: int, angles: Sequence[float] | None) -> list[Turn]:

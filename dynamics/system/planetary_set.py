@@ -11,9 +11,12 @@ from dynamics.bodies import GearBody, Inertia, Shaft
 from dynamics.checks import finite, integer, one_of, positive
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, MeshTable
-from dynamics.joints import Bushing, PlanetBearing
+from dynamics.joints import BearingStiffness, Bushing, PlanetBearing
 
 TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit both central gears
+
+
+Stiffness = BearingStiffness | float | None
 
 
 @dataclass(frozen=True)
@@ -55,11 +58,12 @@ class PlanetarySet:
         Of the sun, rad; > 0: right hand.
     sun_inertia, planet_inertia, ring_inertia, carrier_inertia : Inertia
         The carrier's without planets.
-    sun_stiffness, ring_stiffness, carrier_stiffness : float or None
-        Radial stiffness of the central members' bearings, N/m, the same in all directions; None: held in
-        place rigidly. Small: floating.
-    planet_stiffness : float or None
-        Radial stiffness of the planet bearings, N/m; None: rigid.
+    sun_stiffness, ring_stiffness, carrier_stiffness : BearingStiffness, float or None
+        Of the central members' bearings, the same in all directions across the axis; a number: radial alone,
+        N/m. None: held in place rigidly. Small: floating. What resists nothing axially, or no tilt, is held
+        rigidly in that direction.
+    planet_stiffness : BearingStiffness, float or None
+        Of the planet bearings, likewise.
     damping_ratio : float
         Of all bearings and meshes where nothing else is given.
     pin_errors : tuple of (radial, tangential) or None
@@ -91,10 +95,10 @@ class PlanetarySet:
     carrier_inertia: Inertia
     angles: tuple[float, ...] | None = None
     base_helix_angle: float = 0.0
-    sun_stiffness: float | None = None
-    ring_stiffness: float | None = None
-    carrier_stiffness: float | None = None
-    planet_stiffness: float | None = None
+    sun_stiffness: Stiffness = None
+    ring_stiffness: Stiffness = None
+    carrier_stiffness: Stiffness = None
+    planet_stiffness: Stiffness = None
     damping_ratio: float = 0.05
     pin_errors: tuple[tuple[float, float], ...] | None = None
     driver: str = "sun"
@@ -161,18 +165,17 @@ class PlanetarySet:
             *(self._gear(f"planet {i + 1}", 1, self.planet_inertia, -1.0) for i in range(self.planets)),
         ]
         stiffness = (self.sun_stiffness, self.ring_stiffness, self.carrier_stiffness)
-        middle, ratio = self.face_width / 2.0, self.damping_ratio
         bushings = [
-            Bushing(self.called(f"{name} bearing"), self.called(name), middle, k, damping_ratio=ratio)
-            for name, k in zip(names, stiffness, strict=True)
-            if k is not None
+            self._bushing(name, _in_full(given))
+            for name, given in zip(names, stiffness, strict=True)
+            if given is not None
         ]
         pins = range(self.planets if self.planet_stiffness is not None else 0)
         return PlanetaryParts(
             (*central, *planets),
             tuple(gears),
             tuple(bushings),
-            tuple(self._bearing(index, self.planet_stiffness or 0.0) for index in pins),
+            tuple(self._bearing(index, _in_full(self.planet_stiffness)) for index in pins),
             tuple(chain.from_iterable(self._meshes(index) for index in range(self.planets))),
         )
 
@@ -198,7 +201,19 @@ class PlanetarySet:
             internal=member == 2,
         )
 
-    def _bearing(self, index: int, stiffness: float) -> PlanetBearing:
+    def _bushing(self, name: str, stiffness: BearingStiffness) -> Bushing:
+        """Return the bearing of a central member."""
+        return Bushing(
+            self.called(f"{name} bearing"),
+            self.called(name),
+            self.face_width / 2.0,
+            stiffness.radial,
+            stiffness.axial,
+            damping_ratio=self.damping_ratio,
+            stiffness=stiffness.matrix,
+        )
+
+    def _bearing(self, index: int, stiffness: BearingStiffness) -> PlanetBearing:
         """Return a planet's bearing."""
         radial, tangential = self.pin_errors[index] if self.pin_errors is not None else (0.0, 0.0)
         return PlanetBearing(
@@ -206,10 +221,12 @@ class PlanetarySet:
             self.called(f"planet {index + 1}"),
             self.called("carrier"),
             self.face_width / 2.0,
-            stiffness,
+            stiffness.radial,
+            stiffness.axial,
             damping_ratio=self.damping_ratio,
             radial_error=radial,
             tangential_error=tangential,
+            stiffness=stiffness.matrix,
         )
 
     def _meshes(self, index: int) -> tuple[GearMesh, GearMesh]:
@@ -243,6 +260,11 @@ class PlanetarySet:
             for (driver, driven), (central, table, offset) in zip(flow, details, strict=True)
         )
         return first, second
+
+
+def _in_full(stiffness: Stiffness) -> BearingStiffness:
+    """Return the stiffness of a bearing given by a number."""
+    return stiffness if isinstance(stiffness, BearingStiffness) else BearingStiffness(stiffness or 0.0)
 
 
 def ring_phase(

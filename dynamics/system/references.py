@@ -68,12 +68,18 @@ def lay_out_drives(
 ) -> Drives:
     """Lay out what each drive's torque is made of: the balance of its own shaft, or its own spring."""
     scene, kinematics = mechanism.scene, mechanism.kinematics
-    supports, couplings = connections.supports, connections.couplings
+    supports, seats, couplings = connections.supports, connections.seats, connections.couplings
     turned = _turned_alone(mechanism, freedoms)
     strained = np.einsum("bki,ai->bka", supports.motion, turned)
     moves = freedoms.keep(supports.motion)
     stiffness = supports.matrix(supports.stiffness, strained, moves)
     damping = supports.matrix(supports.damping, strained, moves)
+    preloaded = np.zeros(turned.shape[0])
+    if seats.name:  # planet bearings, which a carrier's rotation strains
+        seated = turned @ seats.motion.T
+        stiffness += seated @ seats.stiffness @ freedoms.keep(seats.motion)
+        damping += seated @ seats.damping @ freedoms.keep(seats.motion)
+        preloaded = seated @ seats.preload
     if couplings.name:
         twisted = np.einsum("cki,ai->cka", couplings.motion, turned)
         strains = freedoms.keep(couplings.motion)
@@ -88,7 +94,7 @@ def lay_out_drives(
         np.ascontiguousarray(stiffness),
         np.ascontiguousarray(damping),
         np.ascontiguousarray(turned * mass_diagonal(mechanism.rotors) @ mechanism.vectors.T),
-        np.einsum("bka,bk,bk->a", strained, supports.stiffness, supports.error),
+        np.einsum("bka,bk,bk->a", strained, supports.stiffness, supports.error) + preloaded,
     )
 
 

@@ -35,7 +35,7 @@ class Rotor:
     carrier : int or None
         The same for a planet: a rotor off the carrier's axis, which the carrier takes along.
     curved : tuple of ((5, 5) array, float)
-        Typical stiffness of what bushings do that is not linear, and their levers.
+        Typical stiffness of what bearings do that is not linear, and their levers.
     """
 
     shaft: Shaft
@@ -90,7 +90,7 @@ class Rotor:
     @property
     def _matrices(self) -> list[tuple[FloatArray, float]]:
         """Stiffness on top of the isotropic one, with levers; means of x and y are used."""
-        given = [(b.added_stiffness, self.lever(b)) for b in self.bushings if b.stiffness is not None]
+        given = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
         return [*given, *self.curved]
 
 
@@ -105,15 +105,16 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
     center = np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, along])
     bushings = [bushing for bushing in scene.bushings if bushing.shaft == shaft.name]
     bearings = [bearing for bearing in scene.planet_bearings if bearing.shaft == shaft.name]
-    share = mass / max(len(bushings) + len(bearings), 1)
+    supports = max(len(bushings) + len(bearings), 1)
+    share, tilting = mass / supports, transverse / supports
     frame = scene.frame_index(scene.shaft_index(shaft.name))
     planet = frame is not None and not on_axis(shaft, scene.shafts[frame])
     return Rotor(
         shaft,
         inertia,
         center,
-        tuple(_damped_matrix(_damped(bushing, share), share) for bushing in bushings),
-        tuple(_damped(bearing, share) for bearing in bearings),
+        tuple(_damped_matrix(_damped(bushing, share), share, tilting) for bushing in bushings),
+        tuple(_damped_matrix(_damped(bearing, share), share, tilting) for bearing in bearings),
         frame,
         frame if planet else None,
     )
@@ -132,11 +133,17 @@ def _damped(support: Support, share: float) -> Support:
     )
 
 
-def _damped_matrix(bushing: Bushing, share: float) -> Bushing:
-    """Fill in the damping of a stiffness matrix, in proportion to it."""
-    if bushing.stiffness is None or bushing.damping is not None:
-        return bushing
-    matrix = bushing.added_stiffness
-    largest = float(np.max(np.diag(matrix)[:3]))
-    time = 2.0 * bushing.damping_ratio * float(np.sqrt(share / largest)) if largest > 0.0 else 0.0
-    return replace(bushing, damping=tuple(tuple(float(time * k) for k in row) for row in matrix))
+def _damped_matrix(support: Support, share: float, tilting: float) -> Support:
+    """Fill in the damping of a stiffness matrix, in proportion to it.
+
+    `share` and `tilting` are the support's shares of mass and transverse inertia; the latter sets the time
+    where the matrix holds tilt alone.
+    """
+    if support.stiffness is None or support.damping is not None:
+        return support
+    matrix = support.added_stiffness
+    largest, inertia = float(np.max(np.diag(matrix)[:3])), share
+    if largest == 0.0:
+        largest, inertia = float(np.max(np.diag(matrix)[3:])), tilting
+    time = 2.0 * support.damping_ratio * float(np.sqrt(inertia / largest)) if largest > 0.0 else 0.0
+    return replace(support, damping=tuple(tuple(float(time * k) for k in row) for row in matrix))

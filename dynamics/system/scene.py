@@ -130,7 +130,7 @@ class Scene:
         Parts, each with a name unique among its kind. Drives and free rotations together set the kinematic
         motion of all shafts: as many of them as the gearing leaves independent speeds.
     rolling_contacts, spring_curves : tuples
-        What bushings do that is not linear: they name their bushing.
+        What bearings do that is not linear: they name their bushing or planet bearing.
     duration : float
         s.
     effects : mapping of str to str
@@ -189,7 +189,7 @@ class Scene:
         check_housings(self.shafts, self.bushings, self.housings)
         turning = {shaft.name for shaft in self.shafts if shaft.frame is not None}
         check_bearing_laws(
-            self.bushings,
+            (*self.bushings, *self.planet_bearings),
             self.rolling_contacts,
             self.spring_curves,
             frozenset(name for housing in self.housings for name in housing.bushings),

@@ -1,4 +1,4 @@
-"""Bushings with matrices, preload or a housing: five strains each, coupled by one matrix."""
+"""Bearings with matrices, preload or a housing: five strains each, coupled by one matrix."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.joints import Housing
-from dynamics.joints.bushing import SEAT
-from dynamics.system.coupling_rows import section
+from dynamics.joints import Bushing, Housing, PlanetBearing
+from dynamics.joints.seat import SEAT
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
+from dynamics.system.seat_motion import seat_axes, seat_error, seat_motion
 from dynamics.types import FloatArray, IntArray
 
 QUARTER = np.zeros((SEAT, SEAT))
@@ -21,7 +21,7 @@ QUARTER[0, 1], QUARTER[1, 0], QUARTER[3, 4], QUARTER[4, 3] = -1.0, 1.0, -1.0, 1.
 
 @dataclass(frozen=True)
 class Seats:
-    """s bushings whose forces on the ground are K d + C d' - preload, d their 5 s strains.
+    """s bearings whose forces on ground or pin are K d + C d' - preload, d their 5 s strains.
 
     Attributes
     ----------
@@ -29,15 +29,16 @@ class Seats:
     place : (s,) int array
         Of each among the supports.
     frame : tuple of int or None
-        Rotor of the carrier in whose turning frame each is described.
+        Rotor of the carrier in whose turning frame the ground is seen from each; None in the fixed frame and
+        on planet bearings, whose pins stay in the carrier's.
     group : tuple of (str, slice)
         Parts of the matrix that nothing couples: a bushing or a housing, and its rows.
     motion : (5 s, 6 r) array
-        Strain per freedom: x, y, z, tilt_x, tilt_y of the shaft's section there.
+        Strain per freedom: x, y, z, tilt_x, tilt_y of the shaft's section there, less those of a pin.
     stiffness, damping : (5 s, 5 s) arrays
         Of bearing and housing in series.
     preload : (5 s,) array
-        On the shaft, N and N m.
+        On the shaft where d = 0, N and N m; on a planet also what a pin off its place exerts.
     """
 
     name: tuple[str, ...]
@@ -57,27 +58,29 @@ class Seats:
 
 
 def seated(scene: Scene) -> frozenset[str]:
-    """Return the names of the bushings that are more than three springs to rigid ground."""
+    """Return the names of the bearings that are more than three springs to rigid ground or pin."""
     housed = {name for housing in scene.housings for name in housing.bushings}
-    return frozenset(housed | {bushing.name for bushing in scene.bushings if bushing.full})
+    full = {part.name for part in (*scene.bushings, *scene.planet_bearings) if part.full}
+    return frozenset(housed | full)
 
 
 def gather_seats(scene: Scene, rotors: Sequence[Rotor], names: Sequence[str]) -> Seats:
-    """Lay out the bushings of `scene` that are seats; `names` are those of all supports."""
+    """Lay out the bearings of `scene` that are seats; `names` are those of all supports."""
     chosen = seated(scene)
     housed = [name for housing in scene.housings for name in housing.bushings]
     order = [*housed, *(name for name in names if name in chosen and name not in housed)]
-    found = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.bushings}
+    found = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.supports}
     size = SEAT * len(order)
     motion, preload = np.zeros((size, 6 * len(rotors))), np.zeros(size)
     stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
     for seat, name in enumerate(order):
         index, part = found[name]
         rows = slice(SEAT * seat, SEAT * seat + SEAT)
-        z = rotors[index].shaft.origin[2] + part.position
-        motion[rows, 6 * index : 6 * index + 6] = section(rotors[index], z)[:SEAT]
-        stiffness[rows, rows], damping[rows, rows] = part.seat_stiffness, part.seat_damping
-        preload[rows] = 0.0 if part.preload is None else part.preload
+        motion[rows], turn = seat_motion(rotors, index, part), seat_axes(rotors, index, part)
+        stiffness[rows, rows] = turn.T @ part.seat_stiffness @ turn
+        damping[rows, rows] = turn.T @ part.seat_damping @ turn
+        own = np.zeros(SEAT) if part.preload is None else np.array(part.preload)
+        preload[rows] = turn.T @ own + stiffness[rows, rows] @ seat_error(rotors, index, part)
     first, groups = 0, []
     for housing in scene.housings:
         rows = slice(first, first + SEAT * len(housing.bushings))
@@ -89,13 +92,18 @@ def gather_seats(scene: Scene, rotors: Sequence[Rotor], names: Sequence[str]) ->
     return Seats(
         tuple(order),
         np.array([list(names).index(name) for name in order], dtype=np.int64),
-        tuple(rotors[found[name][0]].frame for name in order),
+        tuple(_frame(rotors, *found[name]) for name in order),
         tuple(groups),
         motion,
         stiffness,
         damping,
         preload,
     )
+
+
+def _frame(rotors: Sequence[Rotor], index: int, part: Bushing | PlanetBearing) -> int | None:
+    """Return the carrier in whose turning frame the ground is seen from a bearing."""
+    return None if isinstance(part, PlanetBearing) else rotors[index].frame
 
 
 def condense_housing(

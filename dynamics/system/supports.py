@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.joints import Bushing, PlanetBearing
-from dynamics.system.planets import rigid_motion
 from dynamics.system.rotor import Rotor
+from dynamics.system.seat_motion import seat_error, seat_motion
 from dynamics.types import FloatArray
 
 
@@ -49,10 +49,10 @@ def gather_supports(rotors: Sequence[Rotor], seated: frozenset[str]) -> Supports
         (i, bushing) for i, rotor in enumerate(rotors) for bushing in rotor.bushings
     ]
     on_pins = [(i, bearing) for i, rotor in enumerate(rotors) for bearing in rotor.planet_bearings]
-    parts: list[Bushing | PlanetBearing] = [*(b for _, b in on_ground), *(b for _, b in on_pins)]
-    rows = [_against_ground(rotors, index, bushing) for index, bushing in on_ground]
-    rows += [_against_pin(rotors, index, bearing) for index, bearing in on_pins]
-    errors = [np.zeros(3)] * len(on_ground) + [_pin_error(rotors, i, bearing) for i, bearing in on_pins]
+    placed: list[tuple[int, Bushing | PlanetBearing]] = [*on_ground, *on_pins]
+    parts = [part for _, part in placed]
+    rows = [seat_motion(rotors, index, part)[:3] for index, part in placed]
+    errors = [seat_error(rotors, index, part)[:3] for index, part in placed]
     stiffness = [[p.radial_stiffness, p.radial_stiffness, p.axial_stiffness] for p in parts]
     damping = [[p.radial_damping or 0.0, p.radial_damping or 0.0, p.axial_damping or 0.0] for p in parts]
     for row, part in enumerate(parts):
@@ -66,32 +66,3 @@ def gather_supports(rotors: Sequence[Rotor], seated: frozenset[str]) -> Supports
         np.array(damping).reshape(-1, 3),
         np.array(errors).reshape(-1, 3),
     )
-
-
-def _against_ground(rotors: Sequence[Rotor], index: int, bushing: Bushing) -> FloatArray:
-    """Displacement of the axis at a bushing per freedom, (3, 6 r); rotation about the axis moves nothing."""
-    row = np.zeros((3, 6 * len(rotors)))
-    row[:, 6 * index : 6 * index + 6] = rigid_motion(np.array([0.0, 0.0, rotors[index].lever(bushing)]))
-    return row
-
-
-def _against_pin(rotors: Sequence[Rotor], index: int, bearing: PlanetBearing) -> FloatArray:
-    """Displacement of the planet's axis less that of the pin, (3, 6 r)."""
-    rotor, carrier = rotors[index], rotors[index].carrier
-    if carrier is None:
-        raise ValueError(f"{bearing.name}: not on a planet")  # the scene's checks come first
-    row = np.zeros((3, 6 * len(rotors)))
-    along = np.array([0.0, 0.0, rotor.lever(bearing)])
-    row[:, 6 * index : 6 * index + 6] = rigid_motion(along)
-    arm = rotor.center + along - rotors[carrier].center
-    row[:, 6 * carrier : 6 * carrier + 6] -= rigid_motion(arm)
-    return row
-
-
-def _pin_error(rotors: Sequence[Rotor], index: int, bearing: PlanetBearing) -> FloatArray:
-    """How far the pin is off its place, x, y, z in the carrier's frame, m."""
-    carrier = rotors[index].carrier
-    away = rotors[index].center - rotors[carrier if carrier is not None else index].center
-    away = away * np.array([1.0, 1.0, 0.0]) / float(np.hypot(away[0], away[1]))
-    across = np.array([-away[1], away[0], 0.0])
-    return np.asarray(bearing.radial_error * away + bearing.tangential_error * across)

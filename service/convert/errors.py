@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 from pydantic import BaseModel
 
@@ -38,6 +39,15 @@ def translated(error: Exception) -> ServiceError | None:
     if isinstance(error, FeContactError | DynamicsError):
         return JobFailed(str(error))
     return None
+
+
+@contextmanager
+def named(part: str) -> Iterator[None]:
+    """Turn input errors of dynamics into the boundary's, named inside `part`."""
+    try:
+        yield
+    except DynamicsInputError as error:
+        raise translated(error.within(part) if part else error) or error from None
 
 
 def _fault(

@@ -2,38 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 
 from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, SpeedCurve, TimeLaw, hollow_cylinder
-from dynamics.errors import InputError
 from dynamics.forces import (
     CoastFlank,
     GearMesh,
     LoadTorque,
     MeshTable,
-    RollingContact,
     SpeedTorque,
-    SpringCurve,
     straight_table,
 )
-from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
+from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.system import Integration, Outputs, Scene, with_planets
 from dynamics.system.kinematics import solve_kinematics
 from dynamics.system.motion_check import check_load_flow, check_motion
 from fe_contact.ste import PairFacts, SteDatabase
+from service.convert.bearings import (
+    bushing_of,
+    planet_bearing_of,
+    rolling_contacts_of,
+    spring_curves_of,
+)
 from service.convert.case import boundary_errors
-from service.convert.errors import translated
+from service.convert.errors import named
 from service.convert.topology import Teeth, check_center_distances, teeth_of
-from service.convert.units import DEGREE, MM, MRAD, NM, RPM, UM
+from service.convert.units import DEGREE, MM, NM, RPM, UM
 from service.schemas.scene import CoastFlankInput, MeshInput, SceneInput
 from service.schemas.scene_bodies import (
-    BushingInput,
     CouplingInput,
     GearBodyInput,
     HousingInput,
     InertiaInput,
-    PlanetBearingInput,
     ShaftInput,
 )
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
@@ -75,10 +75,10 @@ def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[s
         _mesh(i, mesh, tables[mesh.name], facts[mesh.name].base_pitch) for i, mesh in enumerate(scene.meshes)
     )
     one_of_each = _assembled(scene, facts, meshes)
-    with _named(""):
+    with named(""):
         check_motion(one_of_each)
     whole = _with_all_planets(scene, one_of_each)
-    with _named(""):
+    with named(""):
         check_load_flow(whole, solve_kinematics(whole))
     return whole
 
@@ -88,20 +88,20 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
     teeth = teeth_of(scene, facts)
     check_center_distances(scene, facts)
     gears = tuple(_gear(i, gear, teeth[gear.name]) for i, gear in enumerate(scene.gears))
-    with _named(""):
+    with named(""):
         return Scene(
             shafts=tuple(_shaft(i, shaft) for i, shaft in enumerate(scene.shafts)),
             gears=gears,
-            bushings=tuple(_bushing(i, bushing) for i, bushing in enumerate(scene.bushings)),
+            bushings=tuple(bushing_of(i, bushing) for i, bushing in enumerate(scene.bushings)),
             meshes=meshes,
             drives=tuple(_drive(i, drive) for i, drive in enumerate(scene.drives)),
-            planet_bearings=tuple(_planet_bearing(i, b) for i, b in enumerate(scene.planet_bearings)),
+            planet_bearings=tuple(planet_bearing_of(i, b) for i, b in enumerate(scene.planet_bearings)),
             couplings=tuple(_coupling(i, part) for i, part in enumerate(scene.couplings)),
             speed_torques=tuple(_speed_torque(i, part) for i, part in enumerate(scene.speed_torques)),
             free_rotations=tuple(_free_rotation(i, part) for i, part in enumerate(scene.free_rotations)),
             housings=tuple(_housing(i, part) for i, part in enumerate(scene.housings)),
-            rolling_contacts=tuple(_rolling_contacts(scene)),
-            spring_curves=tuple(_spring_curves(scene)),
+            rolling_contacts=tuple(rolling_contacts_of(scene)),
+            spring_curves=tuple(spring_curves_of(scene)),
             loads=tuple(_load(i, load) for i, load in enumerate(scene.loads)),
             duration=scene.run.duration_s,
             effects=dict(scene.effects),
@@ -110,19 +110,10 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
         )
 
 
-@contextmanager
-def _named(part: str) -> Iterator[None]:
-    """Turn input errors of dynamics into the boundary's, named inside `part`."""
-    try:
-        yield
-    except InputError as error:
-        raise translated(error.within(part) if part else error) or error from None
-
-
 def _shaft(index: int, given: ShaftInput) -> Shaft:
     """Return a shaft."""
     x, y, z = given.origin_mm
-    with _named(f"shafts[{index}]"):
+    with named(f"shafts[{index}]"):
         if given.inertia is None:
             inertia = hollow_cylinder((given.diameter_mm or 0.0) * MM, given.length_mm * MM)
         else:
@@ -137,7 +128,7 @@ def _inertia(given: InertiaInput) -> Inertia:
 
 def _gear(index: int, given: GearBodyInput, teeth: Teeth) -> GearBody:
     """Return a gear with the teeth of its mesh."""
-    with _named(f"gears[{index}]"):
+    with named(f"gears[{index}]"):
         if given.inertia is None:
             inertia = hollow_cylinder(teeth.pitch_diameter, teeth.face_width, given.bore_diameter_mm * MM)
         else:
@@ -155,86 +146,15 @@ def _gear(index: int, given: GearBodyInput, teeth: Teeth) -> GearBody:
         )
 
 
-def _bushing(index: int, given: BushingInput) -> Bushing:
-    """Return a bushing."""
-    with _named(f"bushings[{index}]"):
-        return Bushing(
-            name=given.name,
-            shaft=given.shaft,
-            position=given.position_mm * MM,
-            radial_stiffness=given.radial_stiffness_n_per_m,
-            axial_stiffness=given.axial_stiffness_n_per_m,
-            radial_damping=given.radial_damping_n_s_per_m,
-            axial_damping=given.axial_damping_n_s_per_m,
-            damping_ratio=given.damping_ratio,
-            stiffness=given.stiffness_matrix,
-            damping=given.damping_matrix,
-            preload=_preload(given),
-        )
-
-
-def _preload(given: BushingInput) -> tuple[float, ...] | None:
-    """Force and moment on the shaft; None where neither is given."""
-    if given.preload_force_n is None and given.preload_moment_n_m is None:
-        return None
-    return (*(given.preload_force_n or (0.0,) * 3), *(given.preload_moment_n_m or (0.0,) * 2))
-
-
-def _rolling_contacts(scene: SceneInput) -> Iterator[RollingContact]:
-    """Yield the rolling contacts of all bushings."""
-    for index, bushing in enumerate(scene.bushings):
-        given = bushing.rolling_contact
-        if given is not None:
-            with _named(f"bushings[{index}].rolling_contact"):
-                yield RollingContact(
-                    bushing.name,
-                    given.stiffness_n_per_m_n,
-                    given.exponent,
-                    given.radial_clearance_um * UM,
-                    given.damping_n_s_per_m,
-                    given.damping_ratio,
-                )
-
-
-def _spring_curves(scene: SceneInput) -> Iterator[SpringCurve]:
-    """Yield the curves of all bushings."""
-    for index, bushing in enumerate(scene.bushings):
-        for place, given in enumerate(bushing.spring_curves):
-            ways = tuple(value * UM for value in given.displacement_um or ())
-            ways = ways or tuple(value * MRAD for value in given.tilt_mrad or ())
-            with _named(f"bushings[{index}].spring_curves[{place}]"):
-                yield SpringCurve(
-                    bushing.name, given.direction, ways, tuple(given.force_n or given.moment_n_m or ())
-                )
-
-
 def _housing(index: int, given: HousingInput) -> Housing:
     """Return a housing."""
-    with _named(f"housings[{index}]"):
+    with named(f"housings[{index}]"):
         return Housing(given.name, given.bushings, given.stiffness_matrix, given.damping_matrix)
-
-
-def _planet_bearing(index: int, given: PlanetBearingInput) -> PlanetBearing:
-    """Return a planet's bearing."""
-    with _named(f"planet_bearings[{index}]"):
-        return PlanetBearing(
-            name=given.name,
-            shaft=given.shaft,
-            carrier=given.carrier,
-            position=given.position_mm * MM,
-            radial_stiffness=given.radial_stiffness_n_per_m,
-            axial_stiffness=given.axial_stiffness_n_per_m,
-            radial_damping=given.radial_damping_n_s_per_m,
-            axial_damping=given.axial_damping_n_s_per_m,
-            damping_ratio=given.damping_ratio,
-            radial_error=given.radial_error_um * UM,
-            tangential_error=given.tangential_error_um * UM,
-        )
 
 
 def _coupling(index: int, given: CouplingInput) -> Coupling:
     """Return a coupling."""
-    with _named(f"couplings[{index}]"):
+    with named(f"couplings[{index}]"):
         return Coupling(
             given.name,
             given.first,
@@ -256,14 +176,14 @@ def _with_all_planets(given: SceneInput, scene: Scene) -> Scene:
             none = (0.0,) * planets.number
             away, across = planets.radial_errors_um or none, planets.tangential_errors_um or none
             errors = [(r * UM, t * UM) for r, t in zip(away, across, strict=True)]
-        with _named(f"planets[{index}]"):
+        with named(f"planets[{index}]"):
             scene = with_planets(scene, planets.planet, planets.number, angles, errors)
     return scene
 
 
 def _mesh(index: int, given: MeshInput, table: MeshTable, base_pitch: float) -> GearMesh:
     """Return a mesh with its force table."""
-    with _named(f"meshes[{index}]"):
+    with named(f"meshes[{index}]"):
         return GearMesh(
             name=given.name,
             driver=given.driver,
@@ -287,13 +207,13 @@ def _coast_flank(given: CoastFlankInput | None, base_pitch: float) -> CoastFlank
         return None
     backlash = given.backlash_um * UM
     thickness = given.tooth_thickness
-    with _named("coast_flank"):
+    with named("coast_flank"):
         return CoastFlank(backlash, 0.5 * (1.0 - backlash / base_pitch) if thickness is None else thickness)
 
 
 def _drive(index: int, given: DriveInput) -> ImposedRotation:
     """Return a drive."""
-    with _named(f"drives[{index}]"):
+    with named(f"drives[{index}]"):
         law: TimeLaw | AngleLaw
         if given.angle_deg is not None:
             law = AngleLaw(given.time_s, tuple(value * DEGREE for value in given.angle_deg))
@@ -310,19 +230,19 @@ def _drive(index: int, given: DriveInput) -> ImposedRotation:
 
 def _free_rotation(index: int, given: FreeRotationInput) -> FreeRotation:
     """Return a free rotation."""
-    with _named(f"free_rotations[{index}]"):
+    with named(f"free_rotations[{index}]"):
         return FreeRotation(given.name, given.shaft, given.initial_speed_rpm * RPM, given.sense)
 
 
 def _load(index: int, given: LoadTorqueInput) -> LoadTorque:
     """Return a load."""
-    with _named(f"loads[{index}]"):
+    with named(f"loads[{index}]"):
         return LoadTorque(given.name, given.shaft, TimeLaw(given.time_s, given.torque_n_m, given.course))
 
 
 def _speed_torque(index: int, given: SpeedTorqueInput) -> SpeedTorque:
     """Return a torque by speed."""
-    with _named(f"speed_torques[{index}]"):
+    with named(f"speed_torques[{index}]"):
         speed = [value * RPM for value in given.speed_rpm]
         if given.kind == "table":
             curve = SpeedCurve.table(speed, given.torque_n_m)
@@ -336,7 +256,7 @@ def _speed_torque(index: int, given: SpeedTorqueInput) -> SpeedTorque:
 def _outputs(scene: SceneInput) -> Outputs:
     """Return what to store."""
     given = scene.outputs
-    with _named("outputs"):
+    with named("outputs"):
         return Outputs(
             given.sample_rate_hz,
             given.bearing_forces,
@@ -348,7 +268,7 @@ def _outputs(scene: SceneInput) -> Outputs:
 def _integration(scene: SceneInput) -> Integration:
     """Return how to integrate."""
     given = scene.integration
-    with _named("integration"):
+    with named("integration"):
         return Integration(
             method=given.method,
             tolerance=given.tolerance_nm * NM,

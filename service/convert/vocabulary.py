@@ -110,7 +110,7 @@ def scene_field(name: str) -> str:
     if (
         len(parts) == 2
         and head in ("stiffness", "damping")
-        and parts[0].startswith(("bushings", "housings", "couplings"))
+        and parts[0].startswith(("bushings", "planet_bearings", "housings", "couplings"))
     ):
         parts[-1] = f"{head}_matrix"
     elif head == "preload":

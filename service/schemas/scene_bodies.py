@@ -86,35 +86,6 @@ class GearBodyInput(BoundaryModel):
     )
 
 
-class LinearBearingInput(BoundaryModel):
-    """Springs and dampers of a linear bearing."""
-
-    name: Name = Field(description="Name of the bushing", examples=["input left"])
-    shaft: Name = Field(description="The shaft it carries", examples=["input"])
-    position_mm: Coordinate = Field(description="Place along the shaft in mm", examples=[0.0])
-    radial_stiffness_n_per_m: float = Field(
-        ge=0.0, le=1e15, description="Radial stiffness in N/m", examples=[1e8]
-    )
-    axial_stiffness_n_per_m: float = Field(
-        default=0.0, ge=0.0, le=1e15, description="Axial stiffness in N/m", examples=[1e8]
-    )
-    radial_damping_n_s_per_m: float | None = Field(
-        default=None,
-        ge=0.0,
-        le=1e12,
-        description="Radial damping in N s/m; left out: from damping_ratio",
-        examples=[1e3],
-    )
-    axial_damping_n_s_per_m: float | None = Field(
-        default=None,
-        ge=0.0,
-        le=1e12,
-        description="Axial damping in N s/m; left out: from damping_ratio",
-        examples=[1e3],
-    )
-    damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
-
-
 class RollingContactInput(BoundaryModel):
     """The radial force of a rolling bearing with clearance."""
 
@@ -198,9 +169,12 @@ class SpringCurveInput(BoundaryModel):
         return self
 
 
-class BushingInput(LinearBearingInput):
-    """A linear bearing between a shaft and the ground."""
+class BearingInput(BoundaryModel):
+    """Springs and dampers of a bearing, and what it does that is not linear."""
 
+    name: Name = Field(description="Name of the bushing", examples=["input left"])
+    shaft: Name = Field(description="The shaft it carries", examples=["input"])
+    position_mm: Coordinate = Field(description="Place along the shaft in mm", examples=[0.0])
     radial_stiffness_n_per_m: float = Field(
         default=0.0,
         ge=0.0,
@@ -208,6 +182,24 @@ class BushingInput(LinearBearingInput):
         description="Radial stiffness in N/m, beside a stiffness_matrix if there is one",
         examples=[1e8],
     )
+    axial_stiffness_n_per_m: float = Field(
+        default=0.0, ge=0.0, le=1e15, description="Axial stiffness in N/m", examples=[1e8]
+    )
+    radial_damping_n_s_per_m: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=1e12,
+        description="Radial damping in N s/m; left out: from damping_ratio",
+        examples=[1e3],
+    )
+    axial_damping_n_s_per_m: float | None = Field(
+        default=None,
+        ge=0.0,
+        le=1e12,
+        description="Axial damping in N s/m; left out: from damping_ratio",
+        examples=[1e3],
+    )
+    damping_ratio: float = Field(default=0.05, ge=0.0, le=10.0, description="Damping ratio", examples=[0.05])
     stiffness_matrix: MatrixRows | None = Field(
         default=None,
         min_length=5,
@@ -220,21 +212,6 @@ class BushingInput(LinearBearingInput):
         max_length=6,
         description="Added: the same for rates; N, m, rad, s; left out: in proportion, from damping_ratio",
     )
-    preload_force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
-        default=None,
-        min_length=3,
-        max_length=3,
-        description="Force x, y, z on the shaft in N where it is not displaced",
-        examples=[[0.0, 0.0, 500.0]],
-    )
-    preload_moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
-        default=None,
-        min_length=2,
-        max_length=2,
-        description="Moment about x, y on the shaft in N m where it is not displaced",
-        examples=[[0.0, 0.0]],
-    )
-
     rolling_contact: RollingContactInput | None = Field(
         default=None,
         description="Radial force of a rolling bearing with clearance, beside the linear stiffness",
@@ -260,6 +237,25 @@ class BushingInput(LinearBearingInput):
         return self
 
 
+class BushingInput(BearingInput):
+    """A linear bearing between a shaft and the ground."""
+
+    preload_force_n: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=3,
+        max_length=3,
+        description="Force x, y, z on the shaft in N where it is not displaced",
+        examples=[[0.0, 0.0, 500.0]],
+    )
+    preload_moment_n_m: Annotated[tuple[Number, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=2,
+        max_length=2,
+        description="Moment about x, y on the shaft in N m where it is not displaced",
+        examples=[[0.0, 0.0]],
+    )
+
+
 class HousingInput(BoundaryModel):
     """An elastic, massless housing that several bushings share."""
 
@@ -281,7 +277,7 @@ class HousingInput(BoundaryModel):
     )
 
 
-class PlanetBearingInput(LinearBearingInput):
+class PlanetBearingInput(BearingInput):
     """A linear bearing between a planet and its pin in the carrier."""
 
     shaft: Name = Field(description="The planet's shaft", examples=["planet"])

@@ -13,6 +13,7 @@ import pytest
 from small_table import small_table
 
 from dynamics.system import Scene
+from service.convert.bearings import planet_bearing_of, rolling_contacts_of, spring_curves_of
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput
 from service.schemas import read_model, validated
@@ -63,6 +64,31 @@ def test_rolling_contacts_and_curves_are_in_si() -> None:
     assert (line.bushing, line.direction, line.force) == ("input right", "x", (-6e3, 0.0, 5e3))
     np.testing.assert_allclose(line.displacement, [-40e-6, 0.0, 40e-6], rtol=1e-12, atol=0.0)
     np.testing.assert_allclose(tilt.displacement, [-1e-3, 1e-3], rtol=1e-12)
+
+
+def test_planet_bearings_have_all_that_bushings_have() -> None:
+    """Each copy of the planet with its own law; a bearing that states nothing is refused."""
+    table = tomllib.loads((ROOT / "examples" / "planetary_scene.toml").read_text())
+    del table["planet_bearings"][0]["radial_stiffness_n_per_m"]
+    contact = {"stiffness_n_per_m_n": 5e8, "radial_clearance_um": 20.0}
+    curve = {"direction": "tilt_y", "tilt_mrad": [-1.0, 1.0], "moment_n_m": [-50.0, 50.0]}
+    table["planet_bearings"][0] |= {
+        "rolling_contact": contact,
+        "spring_curves": [curve],
+        "stiffness_matrix": MATRIX,
+        "damping_matrix": MATRIX,
+    }
+    given = validated(SceneInput, table)
+    (contact_law,), (curve_law,) = rolling_contacts_of(given), spring_curves_of(given)
+    assert (contact_law.bushing, contact_law.clearance) == ("pin", pytest.approx(20e-6, rel=1e-12, abs=0.0))
+    assert (curve_law.bushing, curve_law.direction) == ("pin", "tilt_y")
+    bearing = planet_bearing_of(0, given.planet_bearings[0])
+    np.testing.assert_array_equal(bearing.stiffness, MATRIX)
+    np.testing.assert_array_equal(bearing.damping, MATRIX)
+    for field in ("rolling_contact", "spring_curves", "stiffness_matrix"):
+        del table["planet_bearings"][0][field]
+    with pytest.raises(BadInput, match=r"planet_bearings\[0\]\.radial_stiffness_n_per_m"):
+        validated(SceneInput, table)
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".npz"])

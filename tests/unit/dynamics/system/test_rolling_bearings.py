@@ -305,3 +305,19 @@ def test_what_is_no_bearing_law_is_named():
         with pytest.raises(InputError) as caught:
             make()
         assert caught.value.field == field
+
+
+def test_a_tilt_curve_is_the_same_beside_a_curve_along_the_axis():
+    """Tilts are lengths inside: on a radius that all curves of tilt share and no other curve uses."""
+    scene = with_bushings(gear_pair_scene(spring_table(4e8), effects=ON), radial_stiffness=1e8)
+    name = scene.bushings[0].name
+    tilt = SpringCurve(name, "tilt_x", (-1e-3, 0.0, 1e-3), (-60.0, 0.0, 60.0))
+    along = SpringCurve(name, "z", (-1e-3, 0.0, 1e-3), (-60.0, 0.0, 60.0))
+    for curves in ((tilt,), (tilt, along)):
+        system = assemble(replace(scene, spring_curves=curves))
+        q = np.zeros(system.arrays.mass.shape[0])
+        q[system.freedoms.name.index("input.tilt_x")] = 5e-4
+        local = local_state(system.arrays, 0.0, q, 0.0 * q)
+        extra = system.arrays.elements.first[len(system.elements) - len(curves)]
+        moment = local.force[extra] * system.bearings[0].own[0, 3]
+        assert moment == pytest.approx(30.0, rel=1e-9)
