@@ -29,7 +29,7 @@ from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import FloatArray, Json
 
 Progress = Callable[[str, float], None]
-SOLVER_VERSION = "3"
+SOLVER_VERSION = "4"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 

@@ -9,9 +9,11 @@ import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
-from fe_contact.geometry import Toothing
+from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.hertz import relative_radius
 
 _ALONG_EDGE = 33
+_ALONG_FLANK = 401
 
 
 @dataclass(frozen=True)
@@ -26,13 +28,13 @@ class CornerContact:
     valid_for: ClassVar[str] = "sharp tip edges; rounding up to the size of the contact length"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """On unless tip relief larger than any deflection keeps the edges apart."""
+        """On unless tip relief keeps the edges and the flanks beside them apart."""
         pair = scene.pair
         deflection = _largest_deflection(scene)
-        relief = min(_least_tip_relief(gear) for gear in (pair.pinion, pair.wheel))
+        relief = _least_tip_gap(pair)
         clear = relief > 2.0 * deflection
         reason = (
-            f"tip relief {1e6 * relief:.1f} um exceeds twice the bending of {1e6 * deflection:.1f} um"
+            f"tip relief leaves {1e6 * relief:.1f} um, over twice the bending of {1e6 * deflection:.1f} um"
             if clear
             else f"deflections up to {1e6 * deflection:.1f} um close the gap at the tip edges"
         )
@@ -44,10 +46,31 @@ class CornerContact:
         return replace(model, corner_contact=True)
 
 
-def _least_tip_relief(gear: Toothing) -> float:
-    """Least material removed at the tip edge, m: the edge must be clear all over the face."""
+def _least_tip_gap(pair: ParallelAxes) -> float:
+    """Least gap in m between flanks whose plain involutes end contact at a tip edge.
+
+    A relief that falls off steeply only moves the touching point away from the edge, to where the gap of the
+    curved flanks and the relief together are least. The edges must be clear all over the face.
+    """
+    path = pair.path_of_contact
+    radii = [_curvature_radius(pair, end) for end in (path.end, path.start)]
+    return min(
+        _gap_at_tip(gear, radius) for gear, radius in zip((pair.pinion, pair.wheel), radii, strict=True)
+    )
+
+
+def _curvature_radius(pair: ParallelAxes, roll_1: float) -> float:
+    """Relative radius of curvature of plain flanks in m, in the transverse plane."""
+    return float(relative_radius(roll_1, pair.wheel.sign * float(pair.mating_roll_length(roll_1))))
+
+
+def _gap_at_tip(gear: Toothing, radius: float) -> float:
+    """Least of material removed and gap of plain flanks beside the tip edge of one gear, m."""
     face = np.linspace(-0.5, 0.5, _ALONG_EDGE) * gear.face_width
-    return float(gear.modification.material_removed(gear, gear.tip_roll_length, face).min())
+    roll = np.linspace(gear.tip_roll_length, gear.form_roll_length, _ALONG_FLANK)[:, None]
+    distance = np.abs(gear.tip_roll_length**2 - roll**2) / (2.0 * gear.base_radius)
+    removed = gear.modification.material_removed(gear, roll, face)
+    return float(np.min(removed + distance**2 / (2.0 * radius)))
 
 
 def _largest_deflection(scene: ContactScene) -> float:

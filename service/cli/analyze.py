@@ -78,6 +78,9 @@ def _cost(receipt: dict[str, Any]) -> str:
     held_out = _held_out(receipt.get("held_out", {}))
     if held_out:
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
+    outgrown = receipt.get("patch_outgrown_points", 0)
+    if outgrown:
+        text += f"\ncontact outgrew its load patch at {outgrown} points: the load is far beyond the usual"
     missing = receipt.get("not_estimated", [])
     if missing:
         text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"

@@ -329,6 +329,23 @@ def frontier(
     run_frontier(case, output, rungs, as_json=json)
 
 
+@app.command(epilog="Example: loa hardcases --only table -o hardcases.html")
+@guarded
+def hardcases(
+    only: Annotated[
+        list[str] | None, typer.Option("--only", help="Names or families of scenes, separated by commas.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Report page to write (HTML).")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Run the hard scenes: cases known to break solvers, each judged by laws of physics."""
+    from service.cli.hardcases import run_hardcases  # noqa: PLC0415 (start-up time)
+
+    run_hardcases(only or [], output, as_json=json)
+
+
 @app.command(epilog="Example: loa serve --port 8321 --workers 2")
 @guarded
 def serve(

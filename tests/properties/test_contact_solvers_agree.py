@@ -8,20 +8,16 @@ any size beside zero, edges of every angle, identical contacts, arms that differ
 from __future__ import annotations
 
 import math
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fe_contact.contact.interior_point import Problem, solve
 from fe_contact.contact.local_law import local_law
 from fe_contact.contact.newton import CONVERGED, PATIENCE, PointProblem, solve_point
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "reference"))
-from contact_oracle import Problem, solve
 
 MODULUS = 115e9
 HALF_PLANE = 1.0 / (math.pi * MODULUS)  # equal bodies

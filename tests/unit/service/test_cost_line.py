@@ -28,5 +28,10 @@ def test_held_out_errors_are_named_by_axis() -> None:
     assert "between the nodes: force 0.02 um, center distance change unknown" in text
 
 
+def test_contacts_that_outgrew_their_patch_are_counted() -> None:
+    assert "outgrew its load patch at 185 points" in _cost(receipt(0.0) | {"patch_outgrown_points": 185})
+    assert "outgrew" not in _cost(receipt(0.0) | {"patch_outgrown_points": 0})
+
+
 def test_the_plane_model_says_what_it_leaves_out() -> None:
     assert "3.3 % more" in _cost(receipt(0.0333))

@@ -124,6 +124,13 @@ def test_corner_contact_is_called_for_unless_relief_outgrows_deflection():
     assert effect.called_for(scene(deep, deep, torque=1e5)).on
 
 
+def test_corner_contact_is_called_for_where_steep_relief_only_moves_the_touching_point():
+    # 200 um at the very edge, but 0.15 mm beside it the flanks are 4 um apart
+    rounding = FlankModification(tip_relief=200e-6, tip_relief_length=0.15e-3, tip_relief_shape="parabolic")
+    verdict = CornerContact().called_for(scene(rounding, rounding))
+    assert verdict.on
+
+
 def test_coupling_is_always_called_for_and_worth_more_with_more_pairs():
     verdict = ToothCoupling().called_for(scene())
     assert verdict.on

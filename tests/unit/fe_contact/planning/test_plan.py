@@ -35,8 +35,15 @@ def test_the_coarse_mesh_is_half_as_fine(pair):
     assert made.coarse_recipes[1].flank_size == pytest.approx(2.0 * made.recipes[1].flank_size)
 
 
+def test_one_overload_does_not_widen_the_patches_of_all_loads(pair):
+    """A patch as wide as the tooth would spoil the curves of the usual loads (docs/theory/contact.md)."""
+    usual, overload = pair.normal_force(100.0), pair.normal_force(1e5)
+    plan = make_plan(pair, np.array([usual, overload]), Accuracy(), ContactModel())
+    assert plan.patch.half_width == pytest.approx(0.375 * pair.pinion.normal_module, rel=1e-12)
+
+
 def test_patches_are_wider_than_the_contact_under_the_largest_load(pair):
-    loads = np.array([1e3, 5e5])
+    loads = np.array([1e3, 1e5])
     strip = half_width(loads[-1] / pair.face_width, relative_radius(*pair.roll_lengths(0.0)), 115e9)
     assert make_plan(pair, loads, Accuracy(), ContactModel()).patch.half_width >= strip / 0.66
 

@@ -1,0 +1,77 @@
+"""Put the outcomes of the hard scenes, and the counts of the sweeps, into docs/stability.md.
+
+Usage: stability_page.py FOLDER PAGE; FOLDER holds scenes.json. What stands between the marks of a part is
+replaced, the text around it is written by hand.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+Json = dict[str, Any]
+
+COMMON = ("failed points", "largest residual", "most iterations", "two solvers apart")
+"""Figures of every contact scene: not shown, since the text names their bounds."""
+HEAD = "| scene | hard because | criterion | figures beside the common ones | s |\n|---|---|---|---|---:|"
+
+
+def with_part(page: str, name: str, text: str) -> str:
+    """Return the page with the text of a part replaced."""
+    begin, end = f"<!-- {name} -->\n", f"<!-- end of {name} -->"
+    before, _, rest = page.partition(begin)
+    _, found, after = rest.partition(end)
+    if not found:
+        raise ValueError(f"the page has no part {name!r}")
+    return f"{before}{begin}{text}{end}{after}"
+
+
+def scenes_part(scenes: list[Json]) -> str:
+    """Return how many passed, and a table per family."""
+    parts = [_summary(scenes)]
+    for family, group in groupby(scenes, key=lambda scene: str(scene["family"])):
+        rows = "\n".join(_row(scene) for scene in group)
+        parts.append(f"### {family.capitalize()}\n\n{HEAD}\n{rows}\n")
+    return "\n".join(parts)
+
+
+def _summary(scenes: list[Json]) -> str:
+    """Say how many passed, and in what time."""
+    passed = sum(scene["passed"] for scene in scenes)
+    slowest = max(scenes, key=lambda scene: float(scene["seconds"]))
+    total = sum(float(scene["seconds"]) for scene in scenes)
+    return (
+        f"{passed} of {len(scenes)} scenes passed, in {total:.0f} s in all; the slowest is "
+        f"`{slowest['name']}` with {slowest['seconds']:.1f} s (elapsed, one process).\n"
+    )
+
+
+def _row(scene: Json) -> str:
+    """Write one scene."""
+    figures = "; ".join(
+        f"{name} {_number(value)}" + (f" ({scene['bounds'][name]})" if name in scene["bounds"] else "")
+        for name, value in scene["figures"].items()
+        if not name.startswith(COMMON)
+    )
+    verdict = "" if scene["passed"] else f"**FAILED**: {scene['failure']}; "
+    cells = (f"`{scene['name']}`", scene["hard_because"], scene["criterion"], verdict + figures)
+    return f"| {' | '.join(cells)} | {scene['seconds']:.1f} |"
+
+
+def _number(value: float | None) -> str:
+    """Write a figure."""
+    return "no number" if value is None else f"{value:.3g}"
+
+
+def main(folder: Path, page: Path) -> None:
+    """Rewrite the page."""
+    scenes = json.loads((folder / "scenes.json").read_text(encoding="utf-8"))["scenes"]
+    text = with_part(page.read_text(encoding="utf-8"), "scenes", scenes_part(scenes))
+    page.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))

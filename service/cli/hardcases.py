@@ -1,0 +1,74 @@
+"""``loa hardcases``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import typer
+
+from service.cli.output import check_writable, console, print_json, progress_bar, table
+from service.hardcases import HARD_SCENES, HardScene, Outcome, run_scenes
+from service.problems import EXIT_FAILED, BadInput
+from service.report.hardcases import hardcases_page
+from service.report.write import write_whole
+
+
+def run_hardcases(only: Sequence[str], output: Path | None, *, as_json: bool) -> None:
+    """Run the scenes, write the page, print."""
+    scenes = chosen_scenes(only)
+    if output is not None:
+        check_writable(output)
+    outcomes: list[Outcome] = []
+    with progress_bar() as report:
+        for outcome in run_scenes(scenes):
+            outcomes.append(outcome)
+            report("hard scenes", len(outcomes) / len(scenes))
+    if output is not None:
+        write_whole(hardcases_page(outcomes), output)
+    if as_json:
+        print_json({"scenes": [outcome.to_json() for outcome in outcomes]})
+    else:
+        _show(outcomes, output)
+    if not all(outcome.passed for outcome in outcomes):
+        raise typer.Exit(EXIT_FAILED)
+
+
+def chosen_scenes(only: Sequence[str]) -> list[HardScene]:
+    """Return the scenes of these names or families, in their own order; all if none are named.
+
+    Raises
+    ------
+    BadInput
+        No such scene.
+    """
+    names = [part.strip() for name in only for part in name.split(",") if part.strip()]
+    known = {scene.name for scene in HARD_SCENES} | {scene.family for scene in HARD_SCENES}
+    for name in names:
+        if name not in known:
+            raise BadInput.of("only", name, f"a scene or a family: {', '.join(sorted(known))}")
+    return [s for s in HARD_SCENES if not names or s.name in names or s.family in names]
+
+
+def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
+    """Print the table for people, and below it what failed."""
+    out = console()
+    rows = [
+        (o.scene.family, o.scene.name, "passed" if o.passed else "FAILED", f"{o.seconds:.2f}", _closest(o))
+        for o in outcomes
+    ]
+    out.print(table(("family", "scene", "", "time, s", "figure closest to its bound"), rows))
+    for outcome in outcomes:
+        if not outcome.passed:
+            out.print(f"{outcome.scene.name}: {outcome.failure}", highlight=False)
+    passed = sum(outcome.passed for outcome in outcomes)
+    seconds = sum(outcome.seconds for outcome in outcomes)
+    out.print(f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s", highlight=False)
+    if output is not None:
+        out.print(f"written to {output}", highlight=False)
+
+
+def _closest(outcome: Outcome) -> str:
+    """Name the figure that uses most of what its bound allows."""
+    bounded = [figure for figure in outcome.figures if figure.use is not None]
+    return str(max(bounded, key=lambda figure: figure.use or 0.0)) if bounded else ""

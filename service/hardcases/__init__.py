@@ -1,0 +1,10 @@
+"""Hard scenes that the libraries must master: named, judged by physics, run by users and by the tests.
+
+A scene is a `HardScene` in the file of its family under `contact/` or `tables/`, and a line in `registry`.
+"""
+
+from service.hardcases.guarded import run_scenes
+from service.hardcases.registry import HARD_SCENES
+from service.hardcases.scene import HardScene, Measured, Outcome
+
+__all__ = ["HARD_SCENES", "HardScene", "Measured", "Outcome", "run_scenes"]

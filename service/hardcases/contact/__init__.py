@@ -1,0 +1,1 @@
+"""Hard scenes of loaded tooth contact, one file per family."""

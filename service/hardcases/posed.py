@@ -1,0 +1,103 @@
+"""Pairs with their compliance at hand, ready to be solved at any position and load."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from fe_contact.analysis.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.request import check_request
+from fe_contact.analysis.table_places import table_places
+from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
+from fe_contact.geometry import Gear, GearPair, ParallelAxes
+from fe_contact.planning import Plan, make_plan
+from fe_contact.types import FloatArray, IntArray
+
+NOMINAL_TORQUE = 100.0
+"""N m on the driving gear of the nominal pair: 0.5 GPa of Hertz pressure."""
+
+CYCLIC = 2e-5
+"""How much STE may differ from tooth to tooth in the plane: the mesh of the body is not the same for all."""
+
+
+@dataclass(frozen=True)
+class Posed:
+    """A pair at one misalignment, its plan and the model its effects compose."""
+
+    contact: PairContact
+    model: ContactModel
+
+    @property
+    def plan(self) -> Plan:
+        """The discretisation."""
+        return self.contact.plan
+
+    @property
+    def pair(self) -> ParallelAxes:
+        """The pair."""
+        return self.contact.pair
+
+    def solve(
+        self, position: FloatArray, load: FloatArray, pitch: IntArray | None = None
+    ) -> tuple[ContactProblem, ContactSolution]:
+        """Solve positions (P,) in base pitches at normal forces (L,) in N."""
+        return self.contact.solve(self.model, position, load, pitch)
+
+    def with_model(self, **changes: object) -> Posed:
+        """Return the same bodies with another contact model."""
+        return replace(self, model=replace(self.model, **changes))  # type: ignore[arg-type]
+
+
+def nominal_gear(**changes: object) -> Gear:
+    """Return a gear of 20 teeth, module 4 mm, 25 mm wide, on a bore of 40 mm."""
+    plain: dict[str, object] = {
+        "teeth": 20,
+        "normal_module": 4e-3,
+        "face_width": 25e-3,
+        "bore_diameter": 40e-3,
+    }
+    return Gear(**(plain | changes))  # type: ignore[arg-type]
+
+
+def nominal_pair(**changes: object) -> GearPair:
+    """Return the pair of two such gears at 80 mm."""
+    gear = nominal_gear(**changes)
+    return GearPair(gear, gear, 80e-3)
+
+
+def posed(
+    pair: ParallelAxes,
+    torques: Sequence[float] | FloatArray = (NOMINAL_TORQUE,),
+    *,
+    model: str = "plane_strain",
+    level: str = "draft",
+    misalignment: float = 0.0,
+    pitches: int | None = None,
+    effects: dict[str, str] | None = None,
+    bodies: PairContact | None = None,
+) -> Posed:
+    """Plan a pair for torques in N m as `analyze` does.
+
+    Its compliances are computed afresh, or taken from `bodies` of the same macro geometry.
+    """
+    checked = check_request(
+        pair, torques=torques, level=level, model=model, misalignments=[misalignment], pitches=pitches,
+        effects=effects,
+    )  # fmt: skip
+    asked = checked.request
+    plan = make_plan(pair, asked.load, asked.accuracy, checked.model)
+    contact = pair_contact(pair, plan, None) if bodies is None else _again(bodies, pair, plan)
+    (place,) = table_places(asked.scene, asked.choices, contact).places
+    return Posed(place.contact, place.model)
+
+
+def even_positions(count: int) -> FloatArray:
+    """Return positions spread evenly over one base pitch."""
+    return np.arange(count) / count
+
+
+def _again(bodies: PairContact, pair: ParallelAxes, plan: Plan) -> PairContact:
+    """Return the same compliances under a pair of other modifications and loads."""
+    return replace(bodies, pair=pair, plan=plan, _problems={})

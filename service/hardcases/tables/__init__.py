@@ -1,0 +1,1 @@
+"""Hard scenes of the STE database, its force extraction and its repair."""

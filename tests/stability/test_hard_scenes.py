@@ -1,0 +1,19 @@
+"""Every hard scene passes, by laws of physics; `loa hardcases` runs the same."""
+
+from __future__ import annotations
+
+import pytest
+
+from service.hardcases import HARD_SCENES, HardScene
+
+
+@pytest.mark.parametrize("scene", HARD_SCENES, ids=lambda scene: scene.name)
+def test_scene(scene: HardScene) -> None:
+    outcome = scene.run()
+    assert outcome.passed, f"{scene.criterion} But: {outcome.failure}"
+
+
+def test_scenes_are_told_apart_and_explained() -> None:
+    assert len({scene.name for scene in HARD_SCENES}) == len(HARD_SCENES)
+    for scene in HARD_SCENES:
+        assert scene.hard_because.endswith(".") and scene.criterion.endswith("."), scene.name

@@ -1,0 +1,65 @@
+"""One scene that breaks does not end the suite, and nothing passes by having run."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+import scenes_that_break as stand_in
+from typer.testing import CliRunner
+
+import service.cli.hardcases as verb
+from service.cli.commands import app as loa
+from service.hardcases import HARD_SCENES, run_scenes
+from service.problems import EXIT_BAD_INPUT, EXIT_FAILED
+
+
+def test_crash_hang_and_exception_each_end_one_scene_only() -> None:
+    scenes = [stand_in.CRASHING, stand_in.GOOD, stand_in.HANGING, stand_in.RAISING, stand_in.GOOD]
+    crashed, good, hung, raised, last = run_scenes(scenes)
+    assert not crashed.passed and "code 7" in crashed.failure
+    assert not hung.passed and "limit of 0.2 s" in hung.failure
+    assert not raised.passed and raised.failure == "ZeroDivisionError: by nothing"
+    assert good.passed and last.passed and good.figures == last.figures
+
+
+@pytest.mark.parametrize(
+    ("scene", "failure"),
+    [
+        (stand_in.OUT_OF_BOUNDS, "two 2 (<= 1)"),
+        (stand_in.NO_NUMBER, "nothing nan"),
+        (stand_in.UNBOUNDED, "nothing was measured"),
+    ],
+)
+def test_a_scene_passes_by_its_figures_alone(scene, failure) -> None:
+    outcome = scene.run()
+    assert not outcome.passed
+    assert outcome.failure == failure
+    json.dumps(outcome.to_json(), allow_nan=False)
+
+
+def test_the_verb_prints_json_and_fails_with_its_scenes(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
+    monkeypatch.setattr(verb, "HARD_SCENES", (stand_in.GOOD, stand_in.OUT_OF_BOUNDS, stand_in.NO_NUMBER))
+    page = tmp_path / "page.html"
+    result = CliRunner().invoke(loa, ["hardcases", "--json", "-o", str(page)])
+    assert result.exit_code == EXIT_FAILED
+    first, second, third = json.loads(result.stdout)["scenes"]
+    assert first["passed"] and not second["passed"] and not third["passed"]
+    assert {"name", "hard_because", "criterion", "passed", "figures", "seconds"} <= set(first)
+    assert first["figures"] == {"one": 1.0, "for information": 5.0}
+    assert third["figures"] == {"nothing": None}
+    assert "out_of_bounds failed: two 2 (&lt;= 1)" in page.read_text()
+
+
+def test_the_verb_ends_well_with_what_is_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(verb, "HARD_SCENES", (stand_in.GOOD, stand_in.OUT_OF_BOUNDS))
+    result = CliRunner().invoke(loa, ["hardcases", "--only", "good"])
+    assert result.exit_code == 0, result.output
+    assert "1 of 1 scenes passed" in result.stdout
+
+
+def test_unknown_scenes_are_refused() -> None:
+    result = CliRunner().invoke(loa, ["hardcases", "--only", "no_such_scene"])
+    assert result.exit_code == EXIT_BAD_INPUT
+    assert result.stderr.startswith("error: only = 'no_such_scene': must be a scene or a family")
+    assert HARD_SCENES[0].name in result.stderr
