@@ -1,6 +1,7 @@
 """The system linearised about its static equilibrium: modes at rest and over speed, forced response."""
 
 from dynamics.linearize.common_period import CommonPeriod, common_period
+from dynamics.linearize.forced_response import ForcedResponse, Peak, forced_response, peaks
 from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.modal_analysis import ModalAnalysis, modal_analysis
@@ -9,15 +10,19 @@ from dynamics.linearize.whirl import WhirlModes, whirl_modes
 
 __all__ = [
     "CommonPeriod",
+    "ForcedResponse",
     "HarmonicResponse",
     "LinearSystem",
     "ModalAnalysis",
     "Modes",
+    "Peak",
     "WhirlModes",
     "common_period",
+    "forced_response",
     "harmonic_response",
     "linearize",
     "modal_analysis",
     "natural_modes",
+    "peaks",
     "whirl_modes",
 ]

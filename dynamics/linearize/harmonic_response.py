@@ -3,26 +3,26 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dynamics.checks import integer, one_of, positive
-from dynamics.forces.table_lookup import table_force
 from dynamics.linearize.common_period import CommonPeriod, common_period
+from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.results.histories import bearing_force
 from dynamics.system.assemble import System
-from dynamics.system.flanks import mean_stiffness
 from dynamics.system.force_balance import block_diagonal
-from dynamics.system.observation import local_state, static_deflections
+from dynamics.system.observation import local_state
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 ComplexArray = NDArray[np.complex128]
 
 EXCITATIONS = ("static_error", "blocked_force")
-SAMPLES = 512  # positions per base pitch in the Fourier sums of the tables
+BLOCK = 1_000_000  # entries of the matrices solved at once
 NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
 
 
@@ -57,6 +57,8 @@ class HarmonicResponse:
         Static mesh force, N, and its tangent stiffness, mean over the positions, N/m.
     least_mesh_force : (m, S) array
         Of mean and all harmonics together, N: where it is negative flanks part, and no linear answer holds.
+    residual : float
+        Largest force left by the linear solves, of the largest exciting force.
     """
 
     mesh: tuple[str, ...]
@@ -73,6 +75,7 @@ class HarmonicResponse:
     mean_force: FloatArray
     mean_stiffness: FloatArray
     least_mesh_force: FloatArray
+    residual: float = 0.0
 
     @property
     def in_contact(self) -> BoolArray:
@@ -81,13 +84,19 @@ class HarmonicResponse:
 
 
 def harmonic_response(
-    system: System, speed: FloatArray, orders: int = 10, time: float = 0.0, excitation: str = "static_error"
+    system: System,
+    speed: FloatArray,
+    orders: int = 10,
+    time: float = 0.0,
+    excitation: str = "static_error",
+    progress: Callable[[float], None] | None = None,
 ) -> HarmonicResponse:
     """Return the linear response of `system` to its transmission errors at the speeds given.
 
     M u'' + C u' + (K + sum k g^T g) u = sum k g STE(t), with k the mean over the positions of the tangent
-    stiffness at the static mesh force; how stiffness varies with position
-    (parametric excitation) is left out.
+    stiffness at the static mesh force, and the tables read at the misalignment and centre distance at which
+    the bodies rest; how stiffness varies with position (parametric excitation) is left out. Where the load
+    moves along the face or there is friction, moment and friction of the static mesh force excite too.
 
     Parameters
     ----------
@@ -101,6 +110,8 @@ def harmonic_response(
     excitation : str
         ``"static_error"``: k times the STE's harmonics. ``"blocked_force"``: the force's harmonics while the
         transmission error is held at the mean of the STE; the same to first order in the STE's variation.
+    progress : callable, optional
+        Called with the fraction of the speeds done; what it raises ends the search.
 
     Raises
     ------
@@ -115,60 +126,41 @@ def harmonic_response(
     for index, value in enumerate(np.abs(speed)):
         positive(f"speed[{index}]", float(value))
     period, linear = common_period(system), linearize(system, time)
+    cycles = flank_cycles(system, linear, time, orders)
+    linear = averaged(system, linear, cycles, time)
     counted = next(pitches for pitches in period.pitches if pitches)
     harmonics: IntArray = np.arange(1, orders * abs(counted) + 1, dtype=np.int64)
-    stiffness = _mean_stiffness(system, linear)
-    static, force = _excitation(system, linear, period, harmonics, stiffness, excitation)
+    static, force = _excitation(system, cycles, period, harmonics, excitation)
     heard = np.max(np.abs(force), axis=0)
     kept = np.flatnonzero(heard > NOTHING * np.max(heard, initial=0.0))
     harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
     omega = 2.0 * math.pi * harmonics / np.array([[period.duration(w)] for w in speed])
-    u = _solve(system, linear, stiffness, force, omega)
-    return _result(system, linear, time, stiffness, speed, harmonics / abs(counted), omega, static, force, u)
-
-
-def _mean_stiffness(system: System, linear: LinearSystem) -> FloatArray:
-    """Tangent stiffness of each driving flank's table at its static force, mean over the positions, (m,)."""
-    table = system.arrays.elements.laws.flank.table
-    return np.array(
-        [
-            mean_stiffness(table, f, max(float(force), 0.0), _positions(mesh.table.period))
-            for f, (mesh, force) in enumerate(
-                zip(system.scene.meshes, linear.equilibrium.mesh_force, strict=True)
-            )
-        ]
-    )
-
-
-def _positions(period: int) -> FloatArray:
-    """Uniform positions over one period of a table."""
-    return np.arange(SAMPLES * period) / SAMPLES
+    u, residual = _solve(system, linear, force, omega, progress)
+    order = harmonics / abs(counted)
+    return _result(system, linear, cycles, time, speed, order, omega, static, force, u, residual)
 
 
 def _excitation(
-    system: System,
-    linear: LinearSystem,
-    period: CommonPeriod,
-    harmonics: IntArray,
-    stiffness: FloatArray,
-    kind: str,
+    system: System, cycles: tuple[FlankCycle, ...], period: CommonPeriod, harmonics: IntArray, kind: str
 ) -> tuple[ComplexArray, ComplexArray]:
-    """STE and exciting force on the line of action, (m, H) complex: what pushes d up where STE is high."""
-    table = system.arrays.elements.laws.flank.table
-    static = np.zeros((len(system.scene.meshes), harmonics.size), dtype=complex)
-    force = np.zeros_like(static)
-    for f, mesh in enumerate(system.scene.meshes):
-        position = _positions(mesh.table.period)
-        error = np.empty_like(position)
-        mean = max(float(linear.equilibrium.mesh_force[f]), 0.0)
-        static_deflections(table, f, position, mean, error)
-        level = float(np.mean(error))
-        static[f] = _harmonics(error, period.pitches[f], mesh.table.period, mesh.position_offset, harmonics)
-        if kind == "static_error":
-            force[f] = stiffness[f] * static[f]
-            continue
-        held = np.array([table_force(table, f, x, level, 0)[0] for x in position])
-        force[f] = -_harmonics(held, period.pitches[f], mesh.table.period, mesh.position_offset, harmonics)
+    """STE (m, H) and exciting force on the driving flanks' rows (R', H): it pushes d up with the STE.
+
+    Where the other forces of a flank (a moment as its load moves along the face, friction) vary while the
+    mesh force is held, they excite too.
+    """
+    static = np.zeros((len(cycles), harmonics.size), dtype=complex)
+    force = np.zeros((cycles[-1].rows.stop, harmonics.size), dtype=complex)
+    for f, (mesh, cycle) in enumerate(zip(system.scene.meshes, cycles, strict=True)):
+        place = period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
+        static[f] = _harmonics(cycle.static_error, *place)
+        for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
+            if kind == "static_error":
+                held = (
+                    _harmonics(cycle.force[:, p], *place) if p else 0.0
+                )  # the first force is the same all along
+                force[row] = cycle.tangent[p, 0] * static[f] - held
+            else:
+                force[row] = -_harmonics(cycle.blocked[:, p], *place)
     return static, force
 
 
@@ -189,38 +181,52 @@ def _harmonics(
 
 
 def _solve(
-    system: System, linear: LinearSystem, stiffness: FloatArray, force: ComplexArray, omega: FloatArray
-) -> ComplexArray:
-    """Displacements, (S, H, n): one solve per speed and harmonic, freedoms in metres."""
-    g = system.arrays.direction[system.driving_rows]
-    tangent = linear.spring_stiffness[: stiffness.size]
-    total = linear.stiffness + np.einsum("fi,f,fj->ij", g, stiffness - tangent, g)
+    system: System,
+    linear: LinearSystem,
+    force: ComplexArray,
+    omega: FloatArray,
+    progress: Callable[[float], None] | None,
+) -> tuple[ComplexArray, float]:
+    """Displacements, (S, H, n), and the relative residual; a block of speeds at a time."""
+    g = system.arrays.direction[: force.shape[0]]
     per_metre = 1.0 / linear.scale
-    mass, damping, total = (per_metre[:, None] * a * per_metre for a in (linear.mass, linear.damping, total))
-    w = omega[:, :, None, None]
-    matrix = total - w * w * mass + 1j * w * damping
+    mass, damping, total = (
+        per_metre[:, None] * a * per_metre for a in (linear.mass, linear.damping, linear.stiffness)
+    )
     pushed = (force.T @ g * per_metre)[None, :, :, None]
-    solved = np.linalg.solve(matrix, np.broadcast_to(pushed, (*omega.shape, g.shape[1], 1)))[..., 0]
-    return np.asarray(solved * per_metre)
+    found = np.empty((*omega.shape, g.shape[1]), dtype=complex)
+    block = max(BLOCK // max(omega.shape[1] * g.shape[1] ** 2, 1), 1)
+    left = 0.0
+    for start in range(0, omega.shape[0], block):
+        part = slice(start, start + block)
+        w = omega[part, :, None, None]
+        matrix = total - w * w * mass + 1j * w * damping
+        right = np.broadcast_to(pushed, (*matrix.shape[:-1], 1))
+        solved = np.linalg.solve(matrix, right)
+        left = max(left, float(np.max(np.abs(matrix @ solved - right), initial=0.0)))
+        found[part] = solved[..., 0] * per_metre
+        if progress is not None:
+            progress(min(start + block, omega.shape[0]) / omega.shape[0])
+    return found, left / max(float(np.max(np.abs(pushed), initial=0.0)), 1e-300)
 
 
 def _result(
     system: System,
     linear: LinearSystem,
+    cycles: tuple[FlankCycle, ...],
     time: float,
-    stiffness: FloatArray,
     speed: FloatArray,
     order: FloatArray,
     omega: FloatArray,
     static: ComplexArray,
     force: ComplexArray,
     u: ComplexArray,
+    residual: float,
 ) -> HarmonicResponse:
     """Put the result together from displacements (S, H, n)."""
-    scene, meshes = system.scene, stiffness.size
+    scene = system.scene
     dte = np.moveaxis(u @ system.arrays.direction[system.driving_rows].T, 2, 0)
-    viscous = system.flanks.law.damping[:meshes, None, None]
-    mesh_force = stiffness[:, None, None] * dte - force[:, None, :] + 1j * omega * viscous * dte
+    mesh_force = _mesh_force(system, linear, cycles, time, omega, force, u)
     mean = linear.equilibrium.mesh_force
     return HarmonicResponse(
         tuple(mesh.name for mesh in scene.meshes),
@@ -235,9 +241,30 @@ def _result(
         _bearing_force(system, linear, time, omega, u),
         np.ascontiguousarray(np.moveaxis(u, 2, 0)),
         mean,
-        stiffness,
+        np.array([cycle.tangent[0, 0] for cycle in cycles]),
         mean[:, None] + _least(mesh_force, order),
+        residual,
     )
+
+
+def _mesh_force(
+    system: System,
+    linear: LinearSystem,
+    cycles: tuple[FlankCycle, ...],
+    time: float,
+    omega: FloatArray,
+    force: ComplexArray,
+    u: ComplexArray,
+) -> ComplexArray:
+    """Transverse mesh forces, (m, S, H): mean tangent and damping on the coordinates, less what excites."""
+    rest = np.zeros(u.shape[2])
+    viscous = local_state(system.arrays, time, linear.equilibrium.displacement, rest).viscous
+    found = np.empty((len(cycles), *omega.shape), dtype=complex)
+    for f, cycle in enumerate(cycles):
+        first, p = cycle.rows.start, cycle.tangent.shape[0]
+        local = u @ system.arrays.direction[cycle.rows].T
+        found[f] = local @ cycle.tangent[0] + 1j * omega * (local @ viscous[first, :p]) - force[first]
+    return found
 
 
 def _bearing_force(

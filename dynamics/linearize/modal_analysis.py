@@ -13,6 +13,7 @@ from dynamics.checks import integer
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
 from dynamics.linearize.energy_shares import freedom_parts, spring_parts
+from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.modes import Modes, natural_modes
 from dynamics.linearize.speeds import checked_speeds, leading_law, mesh_frequencies
@@ -153,6 +154,8 @@ def modal_analysis(
 ) -> ModalAnalysis:
     """Return the natural modes of `system` and, at the speeds given, its whirl modes and critical speeds.
 
+    Every mesh has its tangent stiffness at the static mesh force, mean over the positions.
+
     Parameters
     ----------
     system : System
@@ -176,6 +179,7 @@ def modal_analysis(
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)
     began = clock.process_time()
     linear = linearize(system, time)
+    linear = averaged(system, linear, flank_cycles(system, linear, time), time)
     rest = natural_modes(linear)
     seconds = {"equilibrium_and_rest": clock.process_time() - began}
     began = clock.process_time()

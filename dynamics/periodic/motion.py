@@ -28,7 +28,7 @@ class PeriodicMotion:
     position : (m, T) array
         Base pitches in [0, period of the table).
     dynamic_transmission_error, static_transmission_error : (m, T) arrays
-        m; the static one at the nominal force.
+        m; the static one at the nominal force, misaligned and apart as the bodies rest.
     mesh_force, coast_force : (m, T), (c, T) arrays
         Transverse, of the driving flanks and of the coast flanks in use, N.
     bearing_force : (b, 3, T) array

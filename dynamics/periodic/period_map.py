@@ -18,6 +18,7 @@ from dynamics.periodic.march import HALVINGS, march
 from dynamics.periodic.period_grid import PeriodGrid, period_grid, refined
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
+from dynamics.system.static_reference import with_static_reference
 from dynamics.types import FloatArray
 
 STEPS_PER_CYCLE = 24  # of the highest natural frequency
@@ -85,6 +86,7 @@ def periodic_problem(
     if not start.status.usable:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
     at_constant_speed(system, period, slowest, time)  # checks the speed
+    system = with_static_reference(system, start.displacement, time)
     cycles = float(natural_modes(system, time).frequency[-1]) * period.duration(slowest)
     pitches = max(abs(count) for count in period.pitches)
     rest = start.displacement * system.arrays.scale

@@ -35,7 +35,8 @@ class RunResult:
         m; r_b1 theta_1 - r_b2 theta_2 plus the gears' displacements along the line of action; > 0: the
         driven gear lags.
     static_transmission_error : (m, T) array
-        m; the table's at the nominal force and the same position: the static reference.
+        m; the table's at the nominal force and the same position, misaligned and apart as the bodies rest at
+        t = 0: the static reference.
     mesh_force : (m, T) array
         Transverse force of the driving flank in N, damping included, >= 0.
     coast_force : (m, T) array

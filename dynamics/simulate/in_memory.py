@@ -25,6 +25,7 @@ from dynamics.simulate.documents import (
 )
 from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
+from dynamics.system.static_reference import with_static_reference
 from dynamics.types import FloatArray, Json, RunStatus
 
 
@@ -59,6 +60,7 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
     require_equilibrium(system, start, seconds)
+    system = with_static_reference(system, start.displacement)
     trajectory = integrate(system, start, scene.integration, progress, cancel=cancel)
     seconds["integration"] = trajectory.seconds
     error = _error_estimate(system, start, trajectory, progress)

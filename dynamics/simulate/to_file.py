@@ -32,6 +32,7 @@ from dynamics.simulate.documents import (
 from dynamics.simulate.in_memory import require_equilibrium
 from dynamics.system import Integration, Scene
 from dynamics.system.assemble import System, assemble
+from dynamics.system.static_reference import with_static_reference
 from dynamics.types import Json, RunStatus
 
 CHECKPOINT_EVERY = 5.0  # s of wall time
@@ -89,6 +90,7 @@ def simulate_to_file(
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
     require_equilibrium(system, start, seconds)
+    system = with_static_reference(system, start.displacement)
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
     with ExitStack() as stack:

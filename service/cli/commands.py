@@ -254,12 +254,32 @@ def modes(
     run_study(MODES, scene, output, service, asked, as_json=json)
 
 
+@app.command(
+    epilog="Example: loa response examples/palermo_scene.toml --speed-rpm 100:6000:25 -o response.png"
+)
+@guarded
+def response(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
+    speed_rpm: Annotated[str, typer.Option(help=f"{_SPEEDS}.")],
+    orders: Annotated[int, typer.Option(help="Harmonics of the mesh frequency.")] = 10,
+    output: StudyFile = None,
+    service: TableService = None,
+    json: AsJson = False,
+) -> None:
+    """Find the linear response to the transmission error over speed: mesh and bearing forces by order."""
+    from service.cli.dynamic_studies import RESPONSE, run_study  # noqa: PLC0415 (start-up time)
+    from service.cli.speed_list import speed_list  # noqa: PLC0415
+
+    asked = {"speed_rpm": speed_list(speed_rpm), "orders": orders}
+    run_study(RESPONSE, scene, output, service, asked, as_json=json)
+
+
 @app.command(epilog="Example: loa report ste.nc run.nc -o report.html")
 @guarded
 def report(
     files: Annotated[
         list[Path],
-        typer.Argument(help="STE database, flank results, sensitivity study, modes, run; one of each."),
+        typer.Argument(help="STE database, flank results, studies, run; one of each kind."),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
@@ -374,7 +394,8 @@ def submit(
     process: Annotated[
         str | None,
         typer.Option(
-            help="On a case analyze (default), flank or sensitivity; on a scene simulate (default) or modes."
+            help="On a case analyze (default), flank or sensitivity; on a scene simulate "
+            "(default), modes or response."
         ),
     ] = None,
     inputs: Annotated[

@@ -1,4 +1,4 @@
-"""``loa modes``: studies of a scene that need no time integration."""
+"""``loa modes``, ``loa response``: studies of a scene that need no time integration."""
 
 from __future__ import annotations
 
@@ -13,14 +13,17 @@ from service.cli.output import Report, check_writable, console, print_json, prog
 from service.cli.scene_tables import scene_with_tables
 from service.client.portable import scene_of
 from service.convert.modal import modes_json, modes_of
+from service.convert.response import response_json, response_of
+from service.convert.units import RPM
 from service.problems import BadInput
 from service.report.figure import Figure
 from service.report.image import png
 from service.report.inputs import Inputs
 from service.report.modal import critical_table, modal_figures, modes_table
+from service.report.response import peak_table, response_figure
 from service.report.write import write_page
 from service.schemas import validated
-from service.schemas.dynamic_studies import ModesInput
+from service.schemas.dynamic_studies import ModesInput, ResponseInput
 from service.schemas.model import BoundaryModel
 
 Json = dict[str, Any]
@@ -117,6 +120,34 @@ def _show_modes(found: Any) -> None:
     _lines([f"cost {sum(found.facts['seconds'].values()):.3g} CPU s"])
 
 
+def _show_response(found: Any) -> None:
+    """Print the peaks, and what the linear answer does not hold."""
+    out = console()
+    listed = peak_table(found)
+    out.print(table(listed.head, listed.rows, listed.caption))
+    parting = found.speed[~found.in_contact] / RPM
+    if parting.size:
+        where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
+        _lines([f"flanks part at {parting.size} of {found.speed.size} speeds, {where}: see loa steady"])
+    worst = float(found.excitation_difference.max(initial=0.0))
+    _lines(
+        [
+            "first-order theory: the other excitation changes amplitudes by up to "
+            f"{100.0 * worst:.2g} % of the largest",
+            f"residual of the solves {found.residual:.1e}",
+            f"cost {sum(found.facts['seconds'].values()):.3g} CPU s",
+        ]
+    )
+
+
+RESPONSE = Study(
+    ResponseInput,
+    response_of,
+    response_json,
+    response_figure,
+    lambda found: Inputs(response=found),
+    _show_response,
+)
 MODES = Study(
     ModesInput,
     modes_of,

@@ -32,6 +32,7 @@ _PATHS = {
     "run": "/v1/runs",
     "sensitivity": "/v1/sensitivities",
     "modes": "/v1/modes",
+    "response": "/v1/responses",
 }
 _NETCDF = "application/x-netcdf"
 
@@ -254,6 +255,22 @@ class LineOfActionClient:
             `dynamics.linearize.ModalAnalysis.from_netcdf`.
         """
         return self._scene_study("modes", scene, progress, {"speed_rpm": list(speed_rpm), "orders": orders})
+
+    def response_file(
+        self,
+        scene: SceneLike,
+        progress: Watch | None = None,
+        *,
+        speed_rpm: Sequence[float],
+        orders: int = 10,
+    ) -> Path:
+        """Return the file of a scene's forced response over speeds: submit, wait, fetch.
+
+        As `modes_file`; read it with `dynamics.linearize.ForcedResponse.from_netcdf`.
+        """
+        return self._scene_study(
+            "response", scene, progress, {"speed_rpm": list(speed_rpm), "orders": orders}
+        )
 
     def _scene_study(
         self, process: str, scene: SceneLike, progress: Watch | None, further: dict[str, Any]

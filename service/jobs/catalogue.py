@@ -19,7 +19,7 @@ from service.convert.topology import facts_of
 from service.jobs.process import Process, Registry, Stage
 from service.problems import BadInput
 from service.schemas import Case
-from service.schemas.dynamic_studies import ModesInput
+from service.schemas.dynamic_studies import ModesInput, ResponseInput
 from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
 from service.schemas.scene import MeshInput, SceneInput
@@ -43,6 +43,12 @@ class SimulateInputs(BoundaryModel):
 
 class ModesInputs(ModesInput):
     """Inputs of the process modes."""
+
+    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
+
+
+class ResponseInputs(ResponseInput):
+    """Inputs of the process response."""
 
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
 
@@ -88,7 +94,7 @@ def _name_database(inputs: Json) -> str:
 
 def _prepare_scene(inputs: BoundaryModel, store: ResultStore) -> Json:
     """Check the scene and the sources of its tables; return it with all defaults."""
-    assert isinstance(inputs, SimulateInputs | ModesInputs)
+    assert isinstance(inputs, SimulateInputs | ModesInputs | ResponseInputs)
     facts = {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in enumerate(inputs.scene.meshes)}
     check_scene(inputs.scene, facts)
     return inputs.model_dump(mode="json")
@@ -181,8 +187,21 @@ MODES = Process(
     entry="service.jobs.scene_study_work:study_modes",
     stages=(Stage("analysis", 0.9), Stage("modes", 0.1)),
 )
+RESPONSE = Process(
+    id="response",
+    title="Forced response of a geared system",
+    description="Harmonic response to the static transmission errors over speed: transmission error, mesh "
+    "and bearing forces by mesh order, and their peaks.",
+    version="1",
+    inputs=ResponseInputs,
+    output="response",
+    kind="response",
+    prepare=_prepare_scene,
+    entry="service.jobs.scene_study_work:study_response",
+    stages=(Stage("analysis", 0.9), Stage("response", 0.1)),
+)
 
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
-    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE, MODES)
+    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE, MODES, RESPONSE)

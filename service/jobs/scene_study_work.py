@@ -8,15 +8,21 @@ from typing import Any
 
 from dynamics.system import Scene
 from service.convert.modal import modes_of
+from service.convert.response import response_of
 from service.jobs.order import Product, Progress, WorkOrder
 from service.jobs.simulation_work import ordered_scene
-from service.schemas.dynamic_studies import ModesInput
+from service.schemas.dynamic_studies import ModesInput, ResponseInput
 from service.schemas.model import BoundaryModel
 
 
 def study_modes(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Find the modes of a scene."""
     return _study(order, progress, "modes", ModesInput, modes_of)
+
+
+def study_response(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Find the forced response of a scene."""
+    return _study(order, progress, "response", ResponseInput, response_of)
 
 
 def _study(

@@ -10,6 +10,7 @@ from service.report.flank_part import flank_alarms, flank_headlines, flank_makin
 from service.report.inputs import Inputs
 from service.report.modal import modal_figures
 from service.report.page import Headline, Page, Section
+from service.report.response import response_figure
 from service.report.sensitivity import sensitivity_figure
 from service.report.static_part import static_alarms, static_headlines, static_making, static_results
 
@@ -35,6 +36,8 @@ def page_of(read: Inputs) -> Page:
         results.append(Section("Sensitivity", figures=(sensitivity_figure(read.studies),)))
     if read.modal is not None:
         results.append(Section("Modes", figures=modal_figures(read.modal)))
+    if read.response is not None:
+        results.append(Section("Forced response", figures=(response_figure(read.response),)))
     if run is not None:
         headlines += dynamic_headlines(run)
         results += dynamic_results(run)

@@ -10,7 +10,8 @@ from typing import Any
 import h5netcdf
 
 from dynamics.errors import DynamicsError
-from dynamics.linearize import ModalAnalysis
+from dynamics.linearize import ForcedResponse, ModalAnalysis
+from dynamics.linearize.forced_response import SCHEMA as RESPONSE_SCHEMA
 from dynamics.linearize.modal_analysis import SCHEMA as MODAL_SCHEMA
 from dynamics.results import RunResult
 from fe_contact.analysis import LoadDistribution
@@ -26,14 +27,16 @@ _KINDS = {
     ("format", "lineofaction sensitivity study"): "sensitivity study",
     ("schema", "lineofaction dynamics run"): "run",
     ("schema", MODAL_SCHEMA): "modal analysis",
+    ("schema", RESPONSE_SCHEMA): "forced response",
 }
-_BOUND = "an STE database, flank results, a sensitivity study, a modal analysis or a run"
+_BOUND = "an STE database, flank results, a sensitivity study, a modal analysis, a forced response or a run"
 _READERS: dict[str, Callable[[Path], Any]] = {
     "database": SteDatabase.from_netcdf,
     "flank results": LoadDistribution.from_netcdf,
     "sensitivity study": read_studies,
     "run": RunResult.from_netcdf,
     "modal analysis": ModalAnalysis.from_netcdf,
+    "forced response": ForcedResponse.from_netcdf,
 }
 _FIELDS = {
     "database": "database",
@@ -41,6 +44,7 @@ _FIELDS = {
     "sensitivity study": "studies",
     "run": "run",
     "modal analysis": "modal",
+    "forced response": "response",
 }
 
 
@@ -53,6 +57,7 @@ class Inputs:
     studies: tuple[PairStudy, ...] = ()
     run: RunResult | None = None
     modal: ModalAnalysis | None = None
+    response: ForcedResponse | None = None
 
 
 def read_inputs(files: Sequence[Path]) -> Inputs:

@@ -20,6 +20,7 @@ RESULT_PATHS = {
     "run": "/v1/runs",
     "sensitivity": "/v1/sensitivities",
     "modes": "/v1/modes",
+    "response": "/v1/responses",
 }
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])

@@ -8,11 +8,12 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
-from dynamics.linearize import ModalAnalysis
+from dynamics.linearize import ForcedResponse, ModalAnalysis
 from fe_contact.analysis import LoadDistribution
 from service.convert.answers import force_answer, metadata_json
 from service.convert.flanks import flank_json
 from service.convert.modal import modes_json
+from service.convert.response import response_json
 from service.convert.runs import run_json
 from service.convert.sensitivity import studies_json
 from service.convert.sensitivity_file import read_studies
@@ -85,6 +86,17 @@ def modes(key: Key, request: Request, context: Ctx, accept: Accept = "applicatio
     if _wants_file(accept):
         return _file(stored, request)
     return _metadata(stored, request, modes_json(ModalAnalysis.from_netcdf(stored.path)))
+
+
+@router.get("/responses/{key}", summary="A forced response", response_class=Response, responses=_answers())
+def forced_response(
+    key: Key, request: Request, context: Ctx, accept: Accept = "application/json"
+) -> Response:
+    """Figures or the file, by Accept."""
+    stored = context.store.verified(key, "response")
+    if _wants_file(accept):
+        return _file(stored, request)
+    return _metadata(stored, request, response_json(ForcedResponse.from_netcdf(stored.path)))
 
 
 @router.post("/databases/{key}/query", summary="Mesh forces", responses=documented(400, 404, 413, 422, 500))

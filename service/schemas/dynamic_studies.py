@@ -33,6 +33,24 @@ class ModesInput(BoundaryModel):
         return self
 
 
+class ResponseInput(BoundaryModel):
+    """Speeds at which the forced response is looked for."""
+
+    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
+        min_length=1,
+        max_length=MOST_SPEEDS,
+        description="Speeds of the first shaft that is driven, in rpm, increasing",
+        examples=[[300.0, 600.0, 900.0]],
+    )
+    orders: Orders = Field(default=10, description="Harmonics of the mesh frequency", examples=[10])
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        """Speeds are an axis."""
+        _refuse_unsorted(self.speed_rpm)
+        return self
+
+
 def _refuse_unsorted(values: tuple[float, ...]) -> None:
     """Refuse speeds that do not increase."""
     if any(later <= earlier for earlier, later in pairwise(values)):

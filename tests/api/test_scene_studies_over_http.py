@@ -11,15 +11,16 @@ import pytest
 from fastapi.testclient import TestClient
 from scene_files import scene_file
 
-from dynamics.linearize import ModalAnalysis
+from dynamics.linearize import ForcedResponse, ModalAnalysis
 from fe_contact.ste import SteDatabase
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
 from service.convert.modal import modes_json, modes_of
+from service.convert.response import response_json, response_of
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput
 from service.schemas import read_model
-from service.schemas.dynamic_studies import ModesInput
+from service.schemas.dynamic_studies import ModesInput, ResponseInput
 from service.schemas.scene import SceneInput
 from service.settings import Settings
 from service.store import stored_results
@@ -76,6 +77,19 @@ def test_modes_are_those_of_python(
     assert {name: answer[name] for name in modes_json(found)} == modes_json(found)
 
 
+def test_a_response_is_that_of_python(
+    served: tuple[LineOfActionClient, TestClient], scene: SceneInput, tmp_path: Path
+) -> None:
+    client, http = served
+    seen: list[JobState] = []
+    file = client.response_file(scene, seen.append, speed_rpm=[300.0, 600.0], orders=3)
+    found = ForcedResponse.from_netcdf(file)
+    python = response_of(here(scene, tmp_path), ResponseInput(speed_rpm=(300.0, 600.0), orders=3), none)
+    np.testing.assert_array_equal(found.mesh_force, python.mesh_force)
+    answer = http.get(f"/v1/responses/{client.result(seen[-1].id).key}").json()
+    assert {name: answer[name] for name in response_json(found)} == response_json(found)
+
+
 @pytest.mark.parametrize(
     ("process", "further", "field"),
     [
@@ -83,6 +97,8 @@ def test_modes_are_those_of_python(
         ("modes", {"speed_rpm": [-1.0]}, "speed_rpm"),
         ("modes", {"orders": 0}, "orders"),
         ("modes", {"speed": [1.0]}, "speed"),
+        ("response", {}, "speed_rpm"),
+        ("response", {"speed_rpm": [0.0, 1.0]}, "speed_rpm"),
     ],
 )
 def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
@@ -102,6 +118,6 @@ def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
 
 def test_a_hash_of_another_kind_is_not_found(served: tuple[LineOfActionClient, TestClient]) -> None:
     _, http = served
-    for path in ("modes",):
+    for path in ("modes", "responses"):
         assert http.get(f"/v1/{path}/{KEY}").status_code == 404
         assert http.get(f"/v1/{path}/nonsense").status_code == 422

@@ -112,7 +112,8 @@ def test_without_speed_terms_the_modes_stay_and_meet_every_order():
     )
     inside = sum(int(np.sum(found.frequency[0] <= k * rate * 1500.0)) for k in (1, 2, 3, 4))
     assert found.critical_speed.size == inside > 4
-    np.testing.assert_array_equal(found.natural_frequency, natural_modes(system).frequency)
+    # the same stiffness at every position: the mean is that of one
+    np.testing.assert_allclose(found.natural_frequency, natural_modes(system).frequency, rtol=1e-9)
 
 
 def test_branches_of_a_planetary_set_are_its_whirl_modes():

@@ -1,0 +1,232 @@
+"""Forced response over speed as a study: harmonic response with its peaks, error estimate, cost and file."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.linearize.flank_cycles import averaged, flank_cycles
+from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
+from dynamics.linearize.linear_system import linearize
+from dynamics.linearize.modes import natural_modes
+from dynamics.linearize.speeds import checked_speeds, leading_law
+from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray, Json
+
+SCHEMA = "lineofaction forced response"
+
+STORED = {
+    "speed": Stored(("speed",), "rad s-1", "speed of the leading shaft"),
+    "order": Stored(("order",), "1", "multiple of the frequency of the first mesh that turns"),
+    "frequency": Stored(("speed", "order"), "Hz", "frequency of the harmonic"),
+    "static_transmission_error": Stored(("mesh", "order"), "m", "complex amplitude of the excitation"),
+    "dynamic_transmission_error": Stored(("mesh", "speed", "order"), "m", "complex amplitude"),
+    "mesh_force": Stored(("mesh", "speed", "order"), "N", "complex amplitude, transverse"),
+    "bearing_force": Stored(
+        ("bearing", "direction", "speed", "order"), "N or N m", "complex amplitude on the ground or the pin"
+    ),
+    "displacement": Stored(("freedom", "speed", "order"), "m or rad", "complex amplitude"),
+    "mean_force": Stored(("mesh",), "N", "static mesh force"),
+    "mean_stiffness": Stored(("mesh",), "N m-1", "tangent stiffness, mean over the positions"),
+    "least_mesh_force": Stored(("mesh", "speed"), "N", "least of mean and harmonics together"),
+    "excitation_difference": Stored(
+        ("mesh", "order"), "1", "change of the largest amplitude with the other excitation, relative"
+    ),
+    "natural_frequency": Stored(("mode",), "Hz", "undamped natural frequency"),
+}
+
+
+@dataclass(frozen=True)
+class ForcedResponse(HarmonicResponse):
+    """Harmonic response over S speeds with what tells how far to trust it.
+
+    Attributes
+    ----------
+    excitation_difference : (m, H) array
+        By how much the largest dynamic transmission error over the speeds changes if the blocked force
+        excites instead of the static error, relative to the largest of all harmonics: what a theory of first
+        order in the ripple cannot tell.
+    natural_frequency : (n,) array
+        Undamped, with the mean mesh stiffness, Hz.
+    facts : dict
+        Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`.
+    """
+
+    excitation_difference: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
+    natural_frequency: FloatArray = field(default_factory=lambda: np.empty(0))
+    facts: Json = field(default_factory=dict)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write a netCDF-4 file; it appears whole or not at all."""
+        write_fields(self, Path(path), SCHEMA, STORED)
+
+    @classmethod
+    def from_netcdf(cls, path: str | Path) -> ForcedResponse:
+        """Read what `to_netcdf` wrote, bit by bit the same.
+
+        Raises
+        ------
+        ResultError
+            If the file is no forced response of this schema, or damaged.
+        """
+        return read_fields(cls, Path(path), SCHEMA, STORED)
+
+
+def forced_response(
+    system: System,
+    speed: Sequence[float] | FloatArray,
+    orders: int = 10,
+    time: float = 0.0,
+    progress: Callable[[float], None] | None = None,
+) -> ForcedResponse:
+    """Return `harmonic_response` at the speeds given, by both excitations, with its receipt.
+
+    Parameters
+    ----------
+    system : System
+    speed : (S,) sequence
+        Of the first drive that turns, rad/s, increasing, > 0; its sense is the scene's.
+    orders : int
+        Harmonics of the mesh frequency of the first mesh that turns.
+    time : float
+        When loads are taken, s.
+    progress : callable, optional
+        Called with the fraction done; what it raises ends the study.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, or the meshes have no common period.
+    SolveError
+        If there is no static equilibrium.
+    """
+    speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
+    if not speeds.size:
+        raise InputError("speed", [], "at least one speed")
+    share = _halves(progress)
+    began = clock.process_time()
+    linear = linearize(system, time)
+    frequency = natural_modes(averaged(system, linear, flank_cycles(system, linear, time), time)).frequency
+    seconds = {"equilibrium_and_modes": clock.process_time() - began}
+    began = clock.process_time()
+    found = harmonic_response(system, speeds, orders, time, progress=share(0.0))
+    other = harmonic_response(system, speeds, orders, time, "blocked_force", share(0.5))
+    seconds["response"] = clock.process_time() - began
+    start = linear.equilibrium
+    facts: Json = {
+        "leading_shaft": system.scene.references[leading_law(system)].shaft,
+        "time": time,
+        "equilibrium": {"status": start.status.name, "residual": start.residual},
+        "seconds": seconds,
+        "effect_ledger": system.ledger.to_json(),
+    }
+    plain = {f.name: getattr(found, f.name) for f in fields(found)}
+    return ForcedResponse(
+        **plain, excitation_difference=_difference(found, other), natural_frequency=frequency, facts=facts
+    )
+
+
+def _halves(progress: Callable[[float], None] | None) -> Callable[[float], Callable[[float], None] | None]:
+    """Return what makes the progress of each of the two excitations that of the study."""
+
+    def share(start: float) -> Callable[[float], None] | None:
+        return None if progress is None else lambda fraction: progress(start + 0.5 * fraction)
+
+    return share
+
+
+def _difference(found: HarmonicResponse, other: HarmonicResponse) -> FloatArray:
+    """Return how unlike the largest transmission errors are, (m, H); harmonics that one lacks count whole."""
+    first = np.max(np.abs(found.dynamic_transmission_error), axis=1)
+    second = np.zeros_like(first)
+    place = {order: index for index, order in enumerate(other.order.tolist())}
+    amplitude = np.max(np.abs(other.dynamic_transmission_error), axis=1)
+    for index, order in enumerate(found.order.tolist()):
+        if order in place:
+            second[:, index] = amplitude[:, place[order]]
+    return np.asarray(np.abs(second - first) / np.max(first, initial=1e-300))
+
+
+@dataclass(frozen=True)
+class Peak:
+    """A local maximum over the speeds.
+
+    Attributes
+    ----------
+    quantity : str
+        "mesh_force" or "bearing_force".
+    name : str
+        Of the mesh or bearing.
+    order, speed, frequency : float
+        Multiple of the mesh frequency; rad/s; Hz.
+    amplitude : float
+        N; of a bearing the root of the sum of squares of x, y and z.
+    amplification : float
+        Dynamic over static transmission error there; of a bearing that of the mesh where it is largest.
+    natural_frequency : float
+        The nearest, Hz.
+    """
+
+    quantity: str
+    name: str
+    order: float
+    speed: float
+    frequency: float
+    amplitude: float
+    amplification: float
+    natural_frequency: float
+
+
+def peaks(found: ForcedResponse) -> tuple[Peak, ...]:
+    """Return the peaks of all mesh and bearing forces by order, those of meshes first, the largest first.
+
+    A peak is a speed of the study at which an amplitude is above those at both neighbours.
+    """
+    gain = np.abs(found.dynamic_transmission_error)
+    size = np.abs(found.static_transmission_error)[:, None]
+    gain = gain / np.where(size > 0.0, size, np.inf)
+    force = np.sqrt(np.sum(np.abs(found.bearing_force[:, :3]) ** 2, axis=1))
+    rows = []
+    for quantity, names, amplitude in (
+        ("mesh_force", found.mesh, np.abs(found.mesh_force)),
+        ("bearing_force", found.bearing, force),
+    ):
+        gains = gain if quantity == "mesh_force" else [np.max(gain, axis=0)] * len(names)
+        own = [
+            _peak(found, quantity, name, (s, h), float(amplitude[k, s, h]), gains[k])
+            for k, name in enumerate(names)
+            for s, h in zip(*_maxima(amplitude[k]), strict=True)
+        ]
+        rows += sorted(own, key=lambda peak: -peak.amplitude)
+    return tuple(rows)
+
+
+def _maxima(values: FloatArray) -> tuple[list[int], list[int]]:
+    """Return speeds and harmonics of the inner maxima along the speeds of `values` (S, H)."""
+    inner = values[1:-1]
+    row, column = np.nonzero((inner > values[:-2]) & (inner >= values[2:]))
+    return (row + 1).tolist(), column.tolist()
+
+
+def _peak(
+    found: ForcedResponse, quantity: str, name: str, at: tuple[int, int], amplitude: float, gain: FloatArray
+) -> Peak:
+    """Describe one peak."""
+    frequency = float(found.frequency[at])
+    near = found.natural_frequency[np.argmin(np.abs(found.natural_frequency - frequency))]
+    return Peak(
+        quantity,
+        name,
+        float(found.order[at[1]]),
+        float(found.speed[at[0]]),
+        frequency,
+        amplitude,
+        float(gain[at]),
+        float(near),
+    )

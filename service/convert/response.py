@@ -1,0 +1,81 @@
+"""Forced responses at the boundary: from a scene to amplitudes by order, and their JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from dynamics.linearize import ForcedResponse, Peak, forced_response, peaks
+from dynamics.system import Scene
+from dynamics.system.assemble import assemble
+from service.convert.case import boundary_errors
+from service.convert.units import N_PER_UM, RPM, UM
+from service.schemas.dynamic_studies import ResponseInput
+
+Json = dict[str, Any]
+Progress = Callable[[str, float], None]
+
+
+def response_of(scene: Scene, asked: ResponseInput, progress: Progress) -> ForcedResponse:
+    """Return the forced response of a scene."""
+    with boundary_errors():
+        return forced_response(
+            assemble(scene),
+            [value * RPM for value in asked.speed_rpm],
+            asked.orders,
+            progress=lambda fraction: progress("response", fraction),
+        )
+
+
+def response_json(found: ForcedResponse) -> Json:
+    """Return all amplitudes (lists by order, then by speed) and the peaks."""
+    facts = found.facts
+    return {
+        "leading_shaft": facts["leading_shaft"],
+        "speed_rpm": (found.speed / RPM).tolist(),
+        "order": found.order.tolist(),
+        "meshes": {name: _mesh_json(found, index) for index, name in enumerate(found.mesh)},
+        "bearings": {
+            name: {"force_n": np.sqrt(np.sum(np.abs(found.bearing_force[index, :3]) ** 2, axis=0)).T.tolist()}
+            for index, name in enumerate(found.bearing)
+        },
+        "peaks": [_peak_json(peak) for peak in peaks(found)],
+        "parting_rpm": (found.speed[~found.in_contact] / RPM).tolist(),
+        "natural_frequency_hz": found.natural_frequency.tolist(),
+        "residual": found.residual,
+        "equilibrium": {
+            "status": facts["equilibrium"]["status"].lower(),
+            "residual_n": facts["equilibrium"]["residual"],
+        },
+        "cpu_seconds": facts["seconds"],
+        "effect_ledger": facts["effect_ledger"],
+    }
+
+
+def _mesh_json(found: ForcedResponse, mesh: int) -> Json:
+    """One mesh."""
+    return {
+        "mean_force_n": float(found.mean_force[mesh]),
+        "mean_stiffness_n_per_um": float(found.mean_stiffness[mesh]) / N_PER_UM,
+        "static_transmission_error_um": (np.abs(found.static_transmission_error[mesh]) / UM).tolist(),
+        "dynamic_transmission_error_um": (np.abs(found.dynamic_transmission_error[mesh]).T / UM).tolist(),
+        "mesh_force_n": np.abs(found.mesh_force[mesh]).T.tolist(),
+        "least_mesh_force_n": found.least_mesh_force[mesh].tolist(),
+        "excitation_difference": found.excitation_difference[mesh].tolist(),
+    }
+
+
+def _peak_json(peak: Peak) -> Json:
+    """One peak."""
+    return {
+        "quantity": peak.quantity,
+        "name": peak.name,
+        "order": peak.order,
+        "speed_rpm": peak.speed / RPM,
+        "frequency_hz": peak.frequency,
+        "amplitude_n": peak.amplitude,
+        "amplification": peak.amplification,
+        "natural_frequency_hz": peak.natural_frequency,
+    }

@@ -1,0 +1,139 @@
+"""Forced response as a study: peaks, error estimate, blocks of speeds, where the tables are read, files."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, with_gear, with_mesh
+from sliced_face import sliced_database
+
+from dynamics.bodies import TimeLaw
+from dynamics.errors import InputError
+from dynamics.integrators import static_equilibrium
+from dynamics.linearize import ForcedResponse, forced_response, harmonic_response, modal_analysis, peaks
+from dynamics.simulate import simulate
+from dynamics.system.assemble import assemble
+from dynamics.system.static_reference import places_at, with_static_reference
+
+STIFFNESS, RIPPLE = 4e8, 1e-7
+MASS = 1.1344291072112745e-3 / BASE_RADIUS**2
+NATURAL = np.sqrt(STIFFNESS / MASS)
+EFFECTS = ("dynamic_misalignment", "dynamic_center_distance", "moving_application_point")
+M, A = (-60e-6, -30e-6, -10e-6, 0.0, 10e-6, 30e-6, 60e-6), (-1e-4, 0.0, 1e-4)
+
+
+def one_freedom(ratio=0.05, **changes):
+    """A wheel on the mesh spring alone."""
+    scene = replace(gear_pair_scene(spring_table(STIFFNESS, RIPPLE), **changes), bushings=(), effects={})
+    return with_mesh(scene, damping=2.0 * ratio * MASS * NATURAL)
+
+
+@pytest.fixture(scope="module")
+def table():
+    return sliced_database(M, A, positions=12).force_table()
+
+
+def tilted(table, on, speed=900.0):
+    """The pair off the middle of its shafts, on unlike bushings: loads tilt and part the gears."""
+    effects = {"tilt": "on", **{name: "on" if name in on else "off" for name in EFFECTS}}
+    scene = gear_pair_scene(table, speed=TimeLaw.constant(speed * RPM))
+    scene = with_gear(with_gear(scene, 0, position=0.06), 1, position=0.06)
+    stiffer = replace(scene.bushings[0], radial_stiffness=3e8)
+    return replace(scene, effects=effects, bushings=(stiffer, *scene.bushings[1:]))
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_the_peak_of_one_freedom_is_that_of_its_closed_form(sense):
+    ratio = 0.05
+    scene = one_freedom(ratio, speed=TimeLaw.constant(sense * 100.0))
+    speed = np.linspace(0.9, 1.1, 2001) * NATURAL / 20
+    found = forced_response(assemble(scene), speed, 1)
+    (peak,) = [p for p in peaks(found) if p.quantity == "mesh_force"]
+    # mesh force k e ((1 + 2 z r i)/(1 - r^2 + 2 z r i) - 1) is largest at r^2 = 1/(1 - 2 z^2)
+    r = np.sqrt(1.0 / (1.0 - 2.0 * ratio**2))
+    assert 20 * peak.speed / NATURAL == pytest.approx(r, abs=1e-4)
+    assert peak.amplitude == pytest.approx(
+        STIFFNESS * RIPPLE * r**2 / np.abs(1 - r**2 + 2j * ratio * r), rel=1e-5
+    )
+    assert peak.natural_frequency == pytest.approx(NATURAL / (2 * np.pi), rel=1e-9)
+    assert peak.amplification == pytest.approx(1.0 / np.abs(1 - r**2 + 2j * ratio * r), rel=1e-4)
+
+
+def test_blocks_of_speeds_change_nothing(monkeypatch):
+    system, speed = assemble(gear_pair_scene()), np.linspace(50.0, 500.0, 17)
+    whole = harmonic_response(system, speed, 4)
+    monkeypatch.setitem(harmonic_response.__globals__, "BLOCK", 300)
+    seen: list[float] = []
+    parts = harmonic_response(system, speed, 4, progress=seen.append)
+    np.testing.assert_allclose(parts.displacement, whole.displacement, rtol=1e-13, atol=0.0)
+    assert len(seen) > 2 and seen == sorted(seen) and seen[-1] == 1.0
+    assert 0.0 < parts.residual < 1e-12
+
+
+def test_the_difference_of_the_excitations_grows_with_the_ripple_of_the_stiffness():
+    none = forced_response(assemble(gear_pair_scene(spring_table(STIFFNESS, RIPPLE))), [100.0, 200.0], 1)
+    some = forced_response(assemble(gear_pair_scene()), [100.0, 200.0], 1)
+    assert none.excitation_difference.max() < 1e-6
+    assert 0.01 < some.excitation_difference.max() < 0.2
+
+
+@pytest.mark.parametrize("on", [EFFECTS, EFFECTS[:1], EFFECTS[2:]])
+def test_a_slow_response_is_what_the_static_equilibria_of_a_mesh_cycle_give(table, on):
+    """The equilibria follow every effect: tables read where the bodies rest, moments of a load that moves."""
+    slow, samples = 1e-6 * 900.0, 128
+    scene = tilted(table, on, slow)
+    system = assemble(scene)
+    period = 60.0 / (20 * slow)
+    rest = np.array([static_equilibrium(system, period * k / samples).displacement for k in range(samples)])
+    lines = 2.0 * np.fft.rfft(rest, axis=0) / samples
+    found = harmonic_response(system, [slow * RPM], 2)
+    for h in (0, 1):
+        size = np.max(np.abs(lines[h + 1]) * system.arrays.scale)
+        apart = np.abs(lines[h + 1] - found.displacement[:, 0, h]) * system.arrays.scale
+        assert np.max(apart) < 4e-4 * size
+    if on == EFFECTS:  # at the fixed place of the table the error is another by more than that
+        fixed = harmonic_response(assemble(tilted(table, (), slow)), [slow * RPM], 2)
+        change = found.static_transmission_error[0] / fixed.static_transmission_error[0] - 1.0
+        assert abs(change[0]) > 1e-3
+
+
+def test_the_static_reference_is_the_table_where_the_bodies_rest(table):
+    database = sliced_database(M, A, positions=12)
+    scene = tilted(table, EFFECTS)
+    run = simulate(scene)
+    system = assemble(scene)
+    (place,) = places_at(system, static_equilibrium(system).displacement)
+    assert abs(place[0]) > 5e-7 and abs(place[1]) > 1e-6
+    expected = database.ste(run.position[0, :50], float(run.nominal_force[0]), *place)
+    np.testing.assert_allclose(run.static_transmission_error[0, :50], expected, rtol=1e-9)
+    fixed = assemble(tilted(table, ()))
+    assert with_static_reference(fixed, static_equilibrium(fixed).displacement) is fixed
+
+
+def test_modes_take_the_mean_stiffness_wherever_the_scene_starts():
+    """Its tangents at the two positions differ by 40 %."""
+    one, other = (
+        modal_analysis(assemble(with_mesh(gear_pair_scene(), position_offset=x))).natural_frequency
+        for x in (0.0, 0.5)
+    )
+    np.testing.assert_allclose(one, other, rtol=1e-6)
+
+
+def test_a_file_gives_back_every_bit(tmp_path):
+    found = forced_response(assemble(gear_pair_scene()), [100.0, 200.0], 3)
+    found.to_netcdf(tmp_path / "response.nc")
+    again = ForcedResponse.from_netcdf(tmp_path / "response.nc")
+    for name, value in vars(found).items():
+        assert np.array_equal(getattr(again, name), value), name
+    assert peaks(again) == peaks(found)
+
+
+@pytest.mark.parametrize(
+    ("speed", "field"), [([], "speed"), ([0.0], "speed[0]"), ([2.0, 1.0], "speed[1]"), ([np.inf], "speed[0]")]
+)
+def test_what_cannot_be_used_is_named(speed, field):
+    with pytest.raises(InputError) as caught:
+        forced_response(assemble(gear_pair_scene()), speed)
+    assert caught.value.field == field

@@ -1,0 +1,103 @@
+"""``loa response``: what it prints and writes, and how it refuses."""
+
+from __future__ import annotations
+
+import json
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scene_files import scene_file
+from typer.testing import CliRunner, Result
+
+from dynamics.linearize import ForcedResponse, peaks
+from service.cli.commands import app
+from service.convert.response import response_json
+from service.report import write_report
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, ["response", *(str(argument) for argument in arguments)])
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    return scene_file(tmp_path)
+
+
+def test_json_holds_amplitudes_by_order_and_speed_and_the_peaks(scene: Path) -> None:
+    result = loa(scene, "--speed-rpm", "100:6000:50", "--orders", 4, "--json")
+    assert (result.exit_code, result.stderr) == (0, "")
+    answer = json.loads(result.stdout)
+    assert answer["order"] == [1.0, 2.0, 3.0, 4.0]
+    mesh = answer["meshes"]["mesh"]
+    force = np.array(mesh["mesh_force_n"])
+    assert force.shape == (4, len(answer["speed_rpm"])) == (4, 119)
+    # at a crawl the flanks follow the static error
+    np.testing.assert_allclose(
+        np.array(mesh["dynamic_transmission_error_um"])[:, 0], mesh["static_transmission_error_um"], rtol=0.02
+    )
+    for peak in answer["peaks"]:
+        speed = answer["speed_rpm"].index(peak["speed_rpm"])
+        assert peak["frequency_hz"] == pytest.approx(peak["order"] * 20 / 60 * peak["speed_rpm"])
+        part = mesh["mesh_force_n"] if peak["name"] == "mesh" else answer["bearings"][peak["name"]]["force_n"]
+        values = part[answer["order"].index(peak["order"])]
+        assert peak["amplitude_n"] == values[speed] > max(values[speed - 1], values[speed + 1])
+    largest = answer["peaks"][0]
+    assert largest["quantity"] == "mesh_force"
+    # the nearest mode is met within the step of the speeds
+    assert largest["frequency_hz"] == pytest.approx(largest["natural_frequency_hz"], rel=0.03)
+    assert answer["residual"] < 1e-9 and answer["parting_rpm"] == []
+
+
+def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Path) -> None:
+    files = {ending: tmp_path / f"response.{ending}" for ending in ("nc", "json", "png", "html")}
+    for file in files.values():
+        result = loa(scene, "--speed-rpm", "2000:6000:100", "--orders", 3, "-o", file)
+        assert result.exit_code == 0, result.stderr
+    found = ForcedResponse.from_netcdf(files["nc"])
+    shown = next(peak for peak in peaks(found))
+    assert f"{shown.speed * 30 / np.pi:.1f}"[:5] in result.stdout
+    assert "first-order theory" in result.stdout and str(files["html"]) in result.stdout
+    written = json.loads(files["json"].read_text())
+    written.pop("cpu_seconds")
+    assert written == {k: v for k, v in response_json(found).items() if k != "cpu_seconds"}
+    width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
+    assert width > 1000 and height > 1000
+    page = tmp_path / "page.html"
+    write_report(files["nc"], page)
+    assert "Forced response to the transmission error" in page.read_text()
+
+
+def test_speeds_at_which_flanks_part_are_said(scene: Path) -> None:
+    scene.write_text(scene.read_text().replace("damping_ratio = 0.08", "damping_ratio = 0.005"))
+    result = loa(scene, "--speed-rpm", "13500:14500:50", "--json")
+    parting = json.loads(result.stdout)["parting_rpm"]
+    assert parting and min(parting) > 13500
+    shown = loa(scene, "--speed-rpm", "13500:14500:50")
+    assert f"flanks part at {len(parting)} of 21 speeds" in shown.stdout
+
+
+@pytest.mark.parametrize(
+    ("arguments", "field"),
+    [
+        (["--speed-rpm", "0:100:50"], "speed_rpm[0]"),
+        (["--speed-rpm", "1:x"], "--speed-rpm"),
+        (["--speed-rpm", "100", "--orders", "500"], "orders"),
+        (["--speed-rpm", "100", "-o", "x.csv"], "output"),
+    ],
+)
+def test_bad_input_is_one_clear_error(scene: Path, arguments: list[str], field: str) -> None:
+    result = loa(scene, *arguments)
+    assert (result.exit_code, result.stdout) == (2, "")
+    (line,) = result.stderr.strip().splitlines()
+    assert line.startswith("error: ") and field in line and "must be" in line
+
+
+def test_trains_that_torques_alone_move_are_refused_by_name(scene: Path) -> None:
+    text = scene.read_text().replace("[[drives]]", "[[free_rotations]]")
+    scene.write_text(text.replace("speed_rpm = [900.0]", "initial_speed_rpm = 900.0"))
+    result = loa(scene, "--speed-rpm", "100")
+    assert result.exit_code == 2
+    assert "free_rotations" in result.stderr
