@@ -12,8 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import inner
 from dynamics.forces.flank_force import FlankLaws, flank_force
+from dynamics.forces.local_state import LocalState
 from dynamics.forces.rolling_contact import (
     RollingContactLaws,
     rolling_contact,
@@ -91,42 +93,6 @@ class Elements(NamedTuple):
     laws: ElementLaws
 
 
-class LocalState(NamedTuple):
-    """What laws read and write at one instant; P = the largest p.
-
-    Attributes
-    ----------
-    position : (m,) array
-        Of the meshes, base pitches.
-    pace : (m,) array
-        Their rates in the kinematic motion, base pitches per second.
-    coordinate, rate : (R,) arrays
-        y (m) and y' (m/s), those of the deviations from the kinematic motion.
-    drift : (R,) array
-        What the kinematic motion adds to the rates, m/s.
-    speed : (E, 2) array
-        Spin and speed of the frame in the kinematic motion, rad/s.
-    force, elastic : (R,) arrays
-        f and the part of it that stores energy, N.
-    tangent, viscous : (R, P) arrays
-        Row r: df_r/dy and df_r/dy' in the coordinates of its own element, N/m and N s/m.
-    hint : (E,) int array
-        Where the last look-up ended: the next starts there.
-    """
-
-    position: FloatArray
-    pace: FloatArray
-    coordinate: FloatArray
-    rate: FloatArray
-    drift: FloatArray
-    speed: FloatArray
-    force: FloatArray
-    elastic: FloatArray
-    tangent: FloatArray
-    viscous: FloatArray
-    hint: IntArray
-
-
 def make_local(elements: Elements, meshes: int) -> LocalState:
     """Allocate for `elements` of that many meshes."""
     rows, count = elements.offset.size, elements.law.size
@@ -146,13 +112,32 @@ def make_local(elements: Elements, meshes: int) -> LocalState:
     )
 
 
+ROUTINES = {
+    Law.SPEED_TORQUE: (speed_torque,),
+    Law.ROLLING_CONTACT: (rolling_contact, rolling_contact_energy),
+    Law.SPRING_CURVE: (spring_curve, spring_curve_energy),
+    Law.SPATIAL_FLANK: (spatial_flank, spatial_energy),
+    Law.TURNING: (turning, turning_energy),
+}
+"""What a kind of law is compiled from, when a scene first has it; flanks are compiled into every loop."""
+
+
+def prepare_laws(elements: Elements) -> None:
+    """Compile the routines of the laws that `elements` have."""
+    local = by_address(make_local(elements, 0))
+    for law in map(Law, np.unique(elements.law)):
+        for routine in ROUTINES.get(law, ()):
+            routine.prepare(by_address(getattr(elements.laws, law.name.lower())), local)
+
+
 @inner
 def evaluate(elements: Elements, local: LocalState, e: int) -> None:
     """Write forces and derivatives of element `e` at the coordinates, rates and position in `local`."""
-    row, place = elements.first[e], elements.place[e]
-    if elements.law[e] == FLANK:
+    row, place, laws = elements.first[e], elements.place[e], elements.laws
+    kind = elements.law[e]
+    if kind == FLANK:
         force, elastic, tangent, viscous, hint = flank_force(
-            elements.laws.flank,
+            laws.flank,
             place,
             local.position[elements.mesh[e]],
             local.coordinate[row],
@@ -161,78 +146,35 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
         )
         local.force[row], local.elastic[row], local.hint[e] = force, elastic, hint
         local.tangent[row, 0], local.viscous[row, 0] = tangent, viscous
-    elif elements.law[e] == SPEED_TORQUE:
-        rate = local.rate[row] + local.drift[row]
-        local.force[row], local.viscous[row, 0] = speed_torque(elements.laws.speed_torque, place, rate)
-    elif elements.law[e] == ROLLING_CONTACT:
-        rolling_contact(
-            elements.laws.rolling_contact,
-            place,
-            row,
-            local.coordinate,
-            local.rate,
-            local.force,
-            local.elastic,
-            local.tangent,
-            local.viscous,
-        )
-    elif elements.law[e] == SPRING_CURVE:
-        force, tangent = spring_curve(elements.laws.spring_curve, place, local.coordinate[row])
-        local.force[row], local.elastic[row], local.tangent[row, 0] = force, force, tangent
-    elif elements.law[e] == SPATIAL_FLANK:
-        local.hint[e] = spatial_flank(
-            elements.laws.spatial_flank,
-            place,
-            local.position[elements.mesh[e]],
-            row,
-            local.coordinate,
-            local.rate,
-            local.force,
-            local.elastic,
-            local.tangent,
-            local.viscous,
-            local.hint[e],
-        )
-    elif elements.law[e] == TURNING:
-        turning(
-            elements.laws.turning,
-            place,
-            row,
-            (local.speed[e, 0], local.speed[e, 1]),
-            local.coordinate,
-            local.rate,
-            local.force,
-            local.elastic,
-            local.tangent,
-            local.viscous,
-        )
+    elif kind == SPEED_TORQUE:
+        speed_torque(laws.speed_torque, place, local, row)
+    elif kind == ROLLING_CONTACT:
+        rolling_contact(laws.rolling_contact, place, local, row)
+    elif kind == SPRING_CURVE:
+        spring_curve(laws.spring_curve, place, local, row)
+    elif kind == SPATIAL_FLANK:
+        spatial_flank(laws.spatial_flank, place, local, row, e, elements.mesh[e])
+    elif kind == TURNING:
+        turning(laws.turning, place, local, row, e)
 
 
 @inner
 def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, float]:
     """Return the energy element `e` stores, J, and its derivative in the position, J per base pitch."""
-    row, place = elements.first[e], elements.place[e]
-    if elements.law[e] == FLANK:
-        return table_energy(
-            elements.laws.flank.table,
-            place,
-            local.position[elements.mesh[e]],
-            local.coordinate[row],
-            local.hint[e],
-        )
-    if elements.law[e] == ROLLING_CONTACT:
-        x, y = local.coordinate[row], local.coordinate[row + 1]
-        return rolling_contact_energy(elements.laws.rolling_contact, place, x, y), 0.0
-    if elements.law[e] == SPRING_CURVE:
-        return spring_curve_energy(elements.laws.spring_curve, place, local.coordinate[row]), 0.0
-    if elements.law[e] == SPATIAL_FLANK:
-        energy, slope, _, _ = spatial_energy(
-            elements.laws.spatial_flank, place, local.position[elements.mesh[e]], row, local.coordinate
-        )
+    row, place, laws = elements.first[e], elements.place[e], elements.laws
+    kind = elements.law[e]
+    if kind == FLANK:
+        x = local.position[elements.mesh[e]]
+        return table_energy(laws.flank.table, place, x, local.coordinate[row], local.hint[e])
+    if kind == ROLLING_CONTACT:
+        return rolling_contact_energy(laws.rolling_contact, place, local, row), 0.0
+    if kind == SPRING_CURVE:
+        return spring_curve_energy(laws.spring_curve, place, local, row), 0.0
+    if kind == SPATIAL_FLANK:
+        energy, slope, _, _ = spatial_energy(laws.spatial_flank, place, local, row, elements.mesh[e])
         return energy, slope
-    if elements.law[e] == TURNING:
-        speed = (local.speed[e, 0], local.speed[e, 1])
-        return turning_energy(elements.laws.turning, place, row, speed, local.coordinate), 0.0
+    if kind == TURNING:
+        return turning_energy(laws.turning, place, local, row, e), 0.0
     return 0.0, 0.0
 
 
@@ -246,7 +188,7 @@ def supplied_power(elements: Elements, local: LocalState, e: int, pace: float) -
     if elements.law[e] != SPATIAL_FLANK:
         return potential(elements, local, e)[1] * pace, 0.0
     row, place, laws = elements.first[e], elements.place[e], elements.laws.spatial_flank
-    _, in_x, in_m, in_a = spatial_energy(laws, place, local.position[elements.mesh[e]], row, local.coordinate)
+    _, in_x, in_m, in_a = spatial_energy(laws, place, local, row, elements.mesh[e])
     axes = 0.0
     to_m, to_a = laws.row[place, 0], laws.row[place, 1]
     if to_m > 0:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.forces.by_address import by_address
 from dynamics.forces.mesh_table import MeshTable
 from dynamics.types import FloatArray, IntArray
 
@@ -60,7 +61,7 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
         for f in range(len(tables))
     ]
     period = np.array([float(table.period) for table in tables])
-    return PackedTables(
+    packed = PackedTables(
         np.array(offset, dtype=np.int64).reshape(-1, 6),
         np.array([knot[0] for knot in knots]),
         period,
@@ -70,6 +71,7 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
         np.ascontiguousarray(np.concatenate([*rows, np.empty((0, 8))])),
         np.concatenate([*levels, np.empty(0)]),
     )
+    return by_address(packed)
 
 
 def _closed(table: MeshTable) -> FloatArray:

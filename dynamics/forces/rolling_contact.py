@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.checks import not_negative, positive, within
-from dynamics.forces.compiled import inner
+from dynamics.forces.local_state import LocalState
+from dynamics.forces.routine import routine
 from dynamics.types import FloatArray
 
 ROLLER, BALL = 10.0 / 9.0, 1.5
@@ -107,24 +108,16 @@ def pack_rolling_contacts(
     return RollingContactLaws(*(np.array(values, dtype=float) for values in (*fields, damping, reach)))
 
 
-@inner
-def rolling_contact(
-    laws: RollingContactLaws,
-    place: int,
-    row: int,
-    coordinate: FloatArray,
-    rate: FloatArray,
-    force: FloatArray,
-    elastic: FloatArray,
-    tangent: FloatArray,
-    viscous: FloatArray,
-) -> None:
+@routine
+def rolling_contact(laws: RollingContactLaws, place: int, local: LocalState, row: int) -> None:
     """Write forces and derivatives of a contact into its two rows, the first of which is `row`.
 
     With e = u/r and w = e u': F = max(0, K(r) + c s(K/reach) w), s as for flanks, force F e, and
 
         df/du = F_r e e^T + F/r (1 - e e^T) + F_w e (u' - w e)^T/r,    df/du' = F_w e e^T.
     """
+    coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
+    tangent, viscous = local.tangent, local.viscous
     x, y = coordinate[row], coordinate[row + 1]
     distance = math.sqrt(x * x + y * y)
     press = distance - laws.clearance[place]
@@ -158,9 +151,10 @@ def rolling_contact(
             viscous[row + k, j] = fade * e[k] * e[j]
 
 
-@inner
-def rolling_contact_energy(laws: RollingContactLaws, place: int, x: float, y: float) -> float:
-    """Return the energy stored at the displacement (x, y), J."""
+@routine
+def rolling_contact_energy(laws: RollingContactLaws, place: int, local: LocalState, row: int) -> float:
+    """Return the energy stored at the displacement in `row` and the next, J."""
+    x, y = local.coordinate[row], local.coordinate[row + 1]
     press = math.sqrt(x * x + y * y) - laws.clearance[place]
     if press <= 0.0:
         return 0.0

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from dynamics.forces.compiled import inner, shared
+from dynamics.forces.compiled import inner
 from dynamics.forces.grid_energy import grid_energy
 from dynamics.forces.grid_lookup import (
     Cell,
@@ -23,6 +23,8 @@ from dynamics.forces.grid_lookup import (
     sample,
 )
 from dynamics.forces.grid_tables import GridTables
+from dynamics.forces.local_state import LocalState
+from dynamics.forces.routine import routine
 from dynamics.types import FloatArray, IntArray
 
 CENTROID, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
@@ -114,29 +116,20 @@ def _along_axis(laws: SpatialFlankLaws, place: int, axis: int, coordinate: Float
     return float(coordinate[row + laws.row[place, axis]])
 
 
-@shared
-def spatial_flank(
-    laws: SpatialFlankLaws,
-    place: int,
-    position: float,
-    row: int,
-    coordinate: FloatArray,
-    rate: FloatArray,
-    force: FloatArray,
-    elastic: FloatArray,
-    tangent: FloatArray,
-    viscous: FloatArray,
-    hint: int,
-) -> int:
-    """Write forces and derivatives from `row` on; return the next call's hint.
+@routine
+def spatial_flank(laws: SpatialFlankLaws, place: int, local: LocalState, row: int, e: int, mesh: int) -> None:
+    """Write forces and derivatives of element `e` from `row` on, and its next hint.
 
     f = max(0, F + c s(F/reach) (d' - lambda m')): the damping takes the approach at the centroid, so it only
     dissipates, and the sum never pulls.
     """
+    coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
+    tangent, viscous = local.tangent, local.viscous
     m = _along_axis(laws, place, 0, coordinate, row)
     a = _along_axis(laws, place, 1, coordinate, row)
-    cell = find_cell(laws.grid, place, position, m, a)
-    found = grid_force(laws.grid, place, cell, coordinate[row], hint)
+    cell = find_cell(laws.grid, place, local.position[mesh], m, a)
+    found = grid_force(laws.grid, place, cell, coordinate[row], local.hint[e])
+    local.hint[e] = found.interval
     arm = _centroid(laws, place, cell, found)
     to_m, to_a, to_s = laws.row[place, 0], laws.row[place, 1], laws.row[place, 2]
     rows = 1 + (to_m > 0) + (to_a > 0) + 2 * (to_s > 0)
@@ -154,7 +147,7 @@ def spatial_flank(
         elastic[row + to_m] = -arm.value * found.value
     total = found.value + damping * approach
     if total < 0.0:
-        return found.interval
+        return
     gain, turning = 1.0 + damping_slope * approach, damping * m_rate
     read_m = to_m if laws.follows[place, 0] == 1 else -1
     force[row], tangent[row, 0], viscous[row, 0] = total, found.d * gain - turning * arm.d, damping
@@ -172,7 +165,6 @@ def spatial_flank(
         lever = _friction(laws, place, cell, found, SLIDING_LEVER, laws.radius[place])
         _in_proportion(force, tangent, viscous, row, row + to_s, rows, share, read_m, to_a)
         _in_proportion(force, tangent, viscous, row, row + to_s + 1, rows, lever, read_m, to_a)
-    return found.interval
 
 
 @inner
@@ -208,14 +200,15 @@ def _in_proportion(
         tangent[here, to_a] += factor.a * force[row]
 
 
-@shared
+@routine
 def spatial_energy(
-    laws: SpatialFlankLaws, place: int, position: float, row: int, coordinate: FloatArray
+    laws: SpatialFlankLaws, place: int, local: LocalState, row: int, mesh: int
 ) -> tuple[float, float, float, float]:
     """Return the energy stored, J, and its derivatives in position, m and a; 0 along a fixed axis."""
+    coordinate = local.coordinate
     m = _along_axis(laws, place, 0, coordinate, row)
     a = _along_axis(laws, place, 1, coordinate, row)
-    cell = find_cell(laws.grid, place, position, m, a)
+    cell = find_cell(laws.grid, place, local.position[mesh], m, a)
     found = grid_energy(laws.grid, place, cell, coordinate[row])
     return (
         found.value,

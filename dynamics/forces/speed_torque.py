@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.bodies.speed_curve import SpeedCurve
-from dynamics.forces.compiled import inner
+from dynamics.forces.local_state import LocalState
+from dynamics.forces.routine import routine
 from dynamics.types import FloatArray, IntArray
 
 
@@ -64,15 +65,15 @@ def pack_speed_torques(parts: Sequence[SpeedTorque], radius: float) -> SpeedTorq
     )
 
 
-@inner
-def speed_torque(laws: SpeedTorqueLaws, place: int, rate: float) -> tuple[float, float]:
-    """Return the force (N) at the speed `rate` (m/s) of the law's radius, and its derivative (N s/m)."""
+@routine
+def speed_torque(laws: SpeedTorqueLaws, place: int, local: LocalState, row: int) -> None:
+    """Write force and derivative at the speed that the rate of `row` and the kinematic motion make."""
     radius = laws.radius[place]
-    speed = rate / radius
+    speed = (local.rate[row] + local.drift[row]) / radius
     piece = laws.first[place]
     while piece + 1 < laws.first[place + 1] and speed >= laws.start[piece + 1]:
         piece += 1
     s, c = speed - laws.start[piece], laws.coefficient
     torque = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
     slope = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
-    return torque / radius, slope / (radius * radius)
+    local.force[row], local.viscous[row, 0] = torque / radius, slope / (radius * radius)

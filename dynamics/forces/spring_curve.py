@@ -12,6 +12,8 @@ from scipy.interpolate import PchipInterpolator
 from dynamics.checks import finite, increasing, one_of
 from dynamics.errors import InputError
 from dynamics.forces.compiled import inner
+from dynamics.forces.local_state import LocalState
+from dynamics.forces.routine import routine
 from dynamics.types import FloatArray, IntArray
 
 DIRECTIONS = ("x", "y", "z", "tilt_x", "tilt_y")
@@ -131,22 +133,23 @@ def _piece(laws: SpringCurveLaws, place: int, displacement: float) -> int:
     return int(piece)
 
 
-@inner
-def spring_curve(laws: SpringCurveLaws, place: int, coordinate: float) -> tuple[float, float]:
-    """Return the force (N) at the coordinate (m) and its derivative (N/m)."""
+@routine
+def spring_curve(laws: SpringCurveLaws, place: int, local: LocalState, row: int) -> None:
+    """Write force and derivative at the coordinate of `row`."""
     lever = laws.lever[place]
-    displacement = coordinate / lever
+    displacement = local.coordinate[row] / lever
     piece = _piece(laws, place, displacement)
     s, c = displacement - laws.start[piece], laws.coefficient
     force = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
     slope = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
-    return force / lever, slope / (lever * lever)
+    local.force[row] = local.elastic[row] = force / lever
+    local.tangent[row, 0] = slope / (lever * lever)
 
 
-@inner
-def spring_curve_energy(laws: SpringCurveLaws, place: int, coordinate: float) -> float:
-    """Return the energy at the coordinate (m) less that at 0, J."""
-    displacement = coordinate / laws.lever[place]
+@routine
+def spring_curve_energy(laws: SpringCurveLaws, place: int, local: LocalState, row: int) -> float:
+    """Return the energy at the coordinate of `row` less that at 0, J."""
+    displacement = local.coordinate[row] / laws.lever[place]
     piece = _piece(laws, place, displacement)
     s, c = displacement - laws.start[piece], laws.coefficient
     area = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))

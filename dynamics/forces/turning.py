@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from dynamics.forces.compiled import inner
+from dynamics.forces.local_state import LocalState
+from dynamics.forces.routine import routine
 from dynamics.types import BoolArray, FloatArray
 
 
@@ -29,24 +30,15 @@ class TurningLaws(NamedTuple):
     spinning: BoolArray
 
 
-@inner
-def turning(
-    laws: TurningLaws,
-    place: int,
-    row: int,
-    speed: tuple[float, float],
-    coordinate: FloatArray,
-    rate: FloatArray,
-    force: FloatArray,
-    elastic: FloatArray,
-    tangent: FloatArray,
-    viscous: FloatArray,
-) -> None:
-    """Write forces and derivatives into the rows of an element, the first of which is `row`.
+@routine
+def turning(laws: TurningLaws, place: int, local: LocalState, row: int, e: int) -> None:
+    """Write forces and derivatives into the rows of element `e`, the first of which is `row`.
 
-    `speed` holds spin and speed of the frame in the kinematic motion. The row of the spin carries no force.
+    The row of the spin carries no force.
     """
-    spin, frame = speed
+    coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
+    tangent, viscous = local.tangent, local.viscous
+    spin, frame = local.speed[e, 0], local.speed[e, 1]
     rows = 2
     if laws.spinning[place]:
         rows = 3
@@ -72,10 +64,9 @@ def turning(
         viscous[row + k, 2] = by_spin / laws.lever[place]
 
 
-@inner
-def turning_energy(
-    laws: TurningLaws, place: int, row: int, speed: tuple[float, float], coordinate: FloatArray
-) -> float:
+@routine
+def turning_energy(laws: TurningLaws, place: int, local: LocalState, row: int, e: int) -> float:
     """Return the energy of the terms in y, J; negative where they push outwards."""
-    hold = laws.factor[place, 2] * speed[0] * speed[1] + laws.factor[place, 3] * speed[1] ** 2
-    return float(0.5 * hold * (coordinate[row] ** 2 + coordinate[row + 1] ** 2))
+    spin, frame, y = local.speed[e, 0], local.speed[e, 1], local.coordinate
+    hold = laws.factor[place, 2] * spin * frame + laws.factor[place, 3] * frame**2
+    return float(0.5 * hold * (y[row] ** 2 + y[row + 1] ** 2))

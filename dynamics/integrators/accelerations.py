@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import compiled
 from dynamics.integrators.explicit_step import accelerate
 from dynamics.integrators.state_sink import States
@@ -15,8 +16,9 @@ from dynamics.types import FloatArray
 def accelerations(system: SystemArrays, time: FloatArray, states: States) -> FloatArray:
     """Return q'' (T, n) at `time` (T,): M q'' is what all forces in the state leave."""
     found = np.empty_like(states.q)
-    work = make_workspace(system, np.array([1.0, 0.0]), np.zeros(states.q.shape[1]), 1.0)
-    _accelerations(system, work, time, states, found)
+    work = by_address(make_workspace(system, np.array([1.0, 0.0]), np.zeros(states.q.shape[1]), 1.0))
+    accelerate.prepare(system, work)
+    _accelerations(by_address(system), work, time, by_address(states), found)
     return found
 
 
@@ -28,4 +30,8 @@ def _accelerations(
     for k in range(time.size):
         for law in range(work.moved.size):
             work.moved[law] = states.moved[k, law]
-        accelerate(system, work, time[k], states.q[k], states.v[k], found[k])
+        for i in range(found.shape[1]):
+            work.q_new[i], work.v_new[i] = states.q[k, i], states.v[k, i]
+        accelerate(system, work, time[k], 0)
+        for i in range(found.shape[1]):
+            found[k, i] = work.stage_a[0, i]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dynamics.forces.compiled import compiled, inner
 from dynamics.integrators.explicit_step import accelerate, explicit_step
-from dynamics.integrators.implicit_step import implicit_step
+from dynamics.integrators.implicit_step import implicit_step, solve_stage
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.step_control import Control, next_rung, slow_enough, step_error
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
@@ -17,6 +17,13 @@ COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
 STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
 UNSOLVED = 1e10  # stands for the error of a step in which Newton's method failed
 DIVERGED = 1.0  # m
+
+
+def prepare_steps(system: SystemArrays, work: Workspace, implicit: bool, audit: bool) -> None:
+    """Compile the method that a run takes, and the powers if it audits them."""
+    method = (implicit_step, solve_stage) if implicit else (explicit_step,)
+    for routine in (accelerate, *method, *((write_powers,) if audit else ())):
+        routine.prepare(system, work)
 
 
 @compiled
@@ -77,10 +84,12 @@ def _start(
     moved_out: IntArray,
 ) -> None:
     """Evaluate accelerations and powers at t = 0, and store sample 0."""
-    accelerate(system, work, work.time[0], work.q, work.v, work.a)
     for i in range(work.q.size):
-        work.stage_v[0, i], work.q_new[i] = work.v[i], work.q[i]
+        work.q_new[i], work.v_new[i], work.stage_v[0, i] = work.q[i], work.v[i], work.v[i]
         q_out[0, i], v_out[0, i] = work.q[i], work.v[i]
+    accelerate(system, work, work.time[0], 0)
+    for i in range(work.q.size):
+        work.a[i] = work.stage_a[0, i]
     for k in range(work.moved.size):
         moved_out[0, k] = work.moved[k]
     work.counts[Count.OUTPUT] = 1

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.errors import ResultError
+from dynamics.forces.by_address import by_value
 
 VERSION = 1
 Arrays = dict[str, Any]
@@ -23,6 +24,7 @@ Arrays = dict[str, Any]
 
 def leaves(state: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the dotted names and values of all that nested (named) tuples hold."""
+    state = by_value(state)
     if not isinstance(state, tuple):
         yield name, state
         return

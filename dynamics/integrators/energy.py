@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, Elements, LocalState, potential
+from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, Elements, potential
+from dynamics.forces.local_state import LocalState
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray
@@ -24,7 +26,9 @@ def stored_energy(
     kinetic = (
         0.5 * v @ system.mass @ v - speed @ system.inertial @ v + 0.5 * speed @ system.total_inertia @ speed
     )
-    mesh, bearing = _in_elements(system.elements, local_state(system, time, q, v, moved))
+    mesh, bearing = _in_elements(
+        by_address(system.elements), by_address(local_state(system, time, q, v, moved))
+    )
     linear = 0.5 * q @ system.stiffness @ q - system.constant @ q
     return np.array([kinetic, linear + bearing, mesh])
 

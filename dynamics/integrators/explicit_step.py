@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import evaluate
+from dynamics.forces.routine import routine
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.rung import prepare_rung, row_product
 from dynamics.integrators.stage import finish_step, set_motion
@@ -16,12 +16,11 @@ from dynamics.integrators.tableaus import (
 from dynamics.integrators.workspace import Workspace
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.motion import add_motion
-from dynamics.types import FloatArray
 
 STAGE_COUNT = 7
 
 
-@inner
+@routine
 def explicit_step(system: SystemArrays, work: Workspace, rung: int, audit: bool) -> bool:
     """Try one step from the state in `work`; fill what `implicit_step` fills; return True."""
     step, size = work.ladder[rung], work.q.size
@@ -37,7 +36,7 @@ def explicit_step(system: SystemArrays, work: Workspace, rung: int, audit: bool)
             work.v_new[i] = work.v[i] + step * rate
             work.stage_v[stage, i] = work.v_new[i]
         time = work.time[0] + EXPLICIT_NODES[stage] * step
-        accelerate(system, work, time, work.q_new, work.v_new, work.stage_a[stage])
+        accelerate(system, work, time, stage)
         if audit:
             write_powers(system, work, stage, time)
     for i in range(size):
@@ -46,19 +45,13 @@ def explicit_step(system: SystemArrays, work: Workspace, rung: int, audit: bool)
     return True
 
 
-@inner
-def accelerate(
-    system: SystemArrays,
-    work: Workspace,
-    time: float,
-    q: FloatArray,
-    v: FloatArray,
-    acceleration: FloatArray,
-) -> None:
-    """Write the accelerations (n,) in the state `q`, `v` at `time`, and the local state into `work`.
+@routine
+def accelerate(system: SystemArrays, work: Workspace, time: float, stage: int) -> None:
+    """Write the accelerations in the state ``q_new``, ``v_new`` at `time` into row `stage` of ``stage_a``.
 
-    The last rung's step is 0, so its matrix is M alone.
+    The local state goes into `work`. The last rung's step is 0, so its matrix is M alone.
     """
+    q, v, acceleration = work.q_new, work.v_new, work.stage_a[stage]
     rung = work.ladder.size - 1
     if not work.ready[rung]:
         prepare_rung(system, work, rung, 0.0)

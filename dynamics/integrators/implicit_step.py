@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dynamics.forces.compiled import inner
+from dynamics.forces.routine import routine
 from dynamics.integrators.local_newton import solve_local_forces
 from dynamics.integrators.powers import write_powers
 from dynamics.integrators.rung import prepare_rung, row_product
@@ -21,7 +21,7 @@ from dynamics.system.motion import add_motion
 STAGE_COUNT = 6
 
 
-@inner
+@routine
 def implicit_step(system: SystemArrays, work: Workspace, rung: int, tolerance: float, audit: bool) -> bool:
     """Try one step from the state in `work`; return whether Newton's method converged in every stage.
 
@@ -33,7 +33,7 @@ def implicit_step(system: SystemArrays, work: Workspace, rung: int, tolerance: f
     for i in range(work.q.size):
         work.stage_v[0, i], work.stage_a[0, i] = work.v[i], work.a[i]
     for stage in range(1, STAGE_COUNT):
-        iterations = _stage(system, work, rung, stage, tolerance)
+        iterations = solve_stage(system, work, rung, stage, tolerance)
         if iterations < 0:
             return False
         work.counts[Count.NEWTON_TOTAL] += iterations
@@ -46,8 +46,8 @@ def implicit_step(system: SystemArrays, work: Workspace, rung: int, tolerance: f
     return True
 
 
-@inner
-def _stage(system: SystemArrays, work: Workspace, rung: int, stage: int, tolerance: float) -> int:
+@routine
+def solve_stage(system: SystemArrays, work: Workspace, rung: int, stage: int, tolerance: float) -> int:
     """Solve one stage for its acceleration.
 
     With s = diagonal * step the stage's rates are v = v* + s a and q = q* + s v* + s^2 a, where v* and q*

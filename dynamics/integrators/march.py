@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.integrators.advance import advance
+from dynamics.forces.by_address import by_address
+from dynamics.integrators.advance import advance, prepare_steps
 from dynamics.integrators.energy import stored_energy
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
@@ -16,6 +17,7 @@ from dynamics.integrators.step_control import Control
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
 from dynamics.integrators.workspace import Count, Workspace, make_workspace, step_ladder
 from dynamics.system import Integration
+from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray, RunStatus
 
@@ -52,6 +54,7 @@ class March:
     system: System
     work: Workspace
     control: Control
+    compiled: tuple[SystemArrays, Workspace, Control]
     initial: FloatArray
     samples: int
 
@@ -100,7 +103,10 @@ def start_march(
     scene = system.scene
     samples = int(np.floor(scene.duration * scene.outputs.sample_rate * (1.0 + 1e-12))) + 1
     initial = stored_energy(system.arrays, 0.0, start.displacement, work.v, work.moved)
-    return March(system, work, _control(system, integration), initial, samples)
+    control = _control(system, integration)
+    compiled = (by_address(system.arrays), by_address(work), by_address(control))
+    prepare_steps(*compiled[:2], control.implicit, control.audit)
+    return March(system, work, control, compiled, initial, samples)
 
 
 def march_on(
@@ -133,9 +139,7 @@ def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
     last = int(np.floor((stop + float(march.work.ladder[0])) * rate)) + 2
     room = sink.room(first, max(min(last, march.samples) - first, 1 if first == 0 else 0))
     counts[Count.FIRST_ROW] = first
-    status = RunStatus(
-        advance(march.system.arrays, march.work, march.control, stop, rate, room.q, room.v, room.moved)
-    )
+    status = RunStatus(advance(*march.compiled, stop, rate, room.q, room.v, room.moved))
     sink.keep(first, int(counts[Count.OUTPUT]) - first)
     return status
 

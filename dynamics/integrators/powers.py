@@ -11,6 +11,7 @@ from dynamics.forces.element_laws import (
     slides,
     supplied_power,
 )
+from dynamics.forces.routine import routine
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.system.arrays import SystemArrays
@@ -18,7 +19,7 @@ from dynamics.system.motion import ACCELERATION, SPEED, law_value
 from dynamics.types import FloatArray
 
 
-@inner
+@routine
 def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float) -> None:
     """Write row `stage` of ``work.power`` from the local state at that stage and its rates ``work.stage_v``.
 

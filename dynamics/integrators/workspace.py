@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.forces.element_laws import LocalState, make_local
+from dynamics.forces.element_laws import make_local
+from dynamics.forces.local_state import LocalState
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray

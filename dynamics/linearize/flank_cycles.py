@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.forces.element_laws import LocalState
+from dynamics.forces.local_state import LocalState
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from dynamics.errors import InputError
+from dynamics.forces.by_address import by_address
 from dynamics.linearize.common_period import CommonPeriod
 from dynamics.system.arrays import LawArrays, SystemArrays
 from dynamics.system.assemble import System
@@ -29,10 +30,11 @@ def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: 
     none = np.zeros(period.proportion.size)
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
     arrays = system.arrays
-    return arrays._replace(
+    changed = arrays._replace(
         reference=arrays.reference._replace(speed=laws, whole=none, fraction=none),
         load=arrays.load._replace(torque=_constant(torque)),
     )
+    return by_address(changed)
 
 
 def _constant(values: FloatArray) -> LawArrays:

@@ -34,7 +34,11 @@ def march(
     With `keep`, q, q' and q'' at all times go into `path` (3, N + 1, n). Returns whether all stages were
     solved and the end is finite.
     """
-    accelerate(system, work, time[0], work.q, work.v, work.a)
+    for i in range(work.q.size):
+        work.q_new[i], work.v_new[i] = work.q[i], work.v[i]
+    accelerate(system, work, time[0], 0)
+    for i in range(work.q.size):
+        work.a[i] = work.stage_a[0, i]
     for r in range(touching.size):
         touching[r] = work.local.elastic[r] > 0.0
     for step in range(rung.size):

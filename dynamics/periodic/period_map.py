@@ -9,7 +9,9 @@ import numpy as np
 
 from dynamics.checks import integer
 from dynamics.errors import InputError, SolveError
+from dynamics.forces.by_address import by_address
 from dynamics.integrators import static_equilibrium
+from dynamics.integrators.advance import prepare_steps
 from dynamics.integrators.workspace import Workspace, make_workspace
 from dynamics.linearize import natural_modes
 from dynamics.linearize.common_period import CommonPeriod, common_period
@@ -145,7 +147,10 @@ class PeriodMap:
         sizes = self.problem.grid.size[:-1] * self.problem.period.duration(self.speed)
         ladder = np.append(np.outer(sizes, 0.5 ** np.arange(HALVINGS + 1)).ravel(), 0.0)
         n = self.arrays.mass.shape[0]
-        return make_workspace(self.arrays, ladder, np.zeros(n), float(ladder[0]))
+        work = by_address(make_workspace(self.arrays, ladder, np.zeros(n), float(ladder[0])))
+        implicit = self.problem.system.scene.integration.method == "implicit"
+        prepare_steps(self.arrays, work, implicit, False)
+        return work
 
     def __call__(self, y: FloatArray) -> FloatArray:
         """Return the state `repeat` common periods after `y`, (2n,); NaN where the march failed."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.forces.element_laws import ElementLaws, Elements, Law
+from dynamics.forces.element_laws import ElementLaws, Elements, Law, prepare_laws
 from dynamics.types import FloatArray
 
 
@@ -56,7 +56,7 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
     ]
     speed = [np.zeros((2, motions)) if element.speed is None else element.speed for element in elements]
     sizes = [element.offset.size for element in elements]
-    return Elements(
+    packed = Elements(
         np.array([int(element.law) for element in elements], dtype=np.int64),
         np.array([element.place for element in elements], dtype=np.int64),
         np.cumsum([0, *sizes], dtype=np.int64),
@@ -67,6 +67,8 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
         np.array(speed).reshape(len(elements), 2, motions),
         laws,
     )
+    prepare_laws(packed)
+    return packed
 
 
 def gradients(elements: Sequence[Element], columns: int) -> FloatArray:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.forces.element_laws import Elements, Law, LocalState
+from dynamics.forces.element_laws import Elements, Law
+from dynamics.forces.local_state import LocalState
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.observation import local_state
 from dynamics.types import FloatArray

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import TURNING, Elements, LocalState
+from dynamics.forces.element_laws import TURNING, Elements
+from dynamics.forces.local_state import LocalState
 from dynamics.forces.table_lookup import wrapped
 from dynamics.system.arrays import LawArrays, Reference, SystemArrays
 from dynamics.types import FloatArray, IntArray

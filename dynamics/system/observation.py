@@ -6,8 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import compiled
-from dynamics.forces.element_laws import LocalState, evaluate, make_local
+from dynamics.forces.element_laws import evaluate, make_local
+from dynamics.forces.local_state import LocalState
 from dynamics.forces.packed_tables import PackedTables
 from dynamics.forces.table_lookup import table_deflection, wrapped
 from dynamics.system.arrays import SystemArrays
@@ -38,11 +40,8 @@ def observe(
 
     `time` (T,), `q` and `v` (T, n); `moved` (T, k) counts the quanta of free trains moved into the reference.
     """
-    rows, meshes = system.direction.shape[0], system.turn.shape[0]
-    seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows)))
-    counted = np.zeros((time.size, system.inertial.shape[0]), dtype=np.int64) if moved is None else moved
-    _observe(system, make_local(system.elements, meshes), _motion(system), time, counted, q, v, seen)
-    return seen
+    local = make_local(system.elements, system.turn.shape[0])
+    return _look(system, local, time, moved, q, v)
 
 
 def local_state(
@@ -50,14 +49,26 @@ def local_state(
 ) -> LocalState:
     """Return coordinates, forces and derivatives of the elements in the state `q`, `v` (n,) at `time`."""
     local = make_local(system.elements, system.turn.shape[0])
-    counted = np.zeros(system.inertial.shape[0], dtype=np.int64) if moved is None else moved
-    _evaluate(system, local, _motion(system), time, counted, q, v)
+    counted = None if moved is None else moved[np.newaxis]
+    _look(system, local, np.array([time]), counted, q[np.newaxis], v[np.newaxis])
     return local
 
 
-def _motion(system: SystemArrays) -> FloatArray:
-    """Return room for the motion of the laws."""
-    return np.empty((system.inertial.shape[0], MOTION_COLUMNS))
+def _look(
+    system: SystemArrays,
+    local: LocalState,
+    time: FloatArray,
+    moved: IntArray | None,
+    q: FloatArray,
+    v: FloatArray,
+) -> Observed:
+    """Observe T states, and leave the last one in `local`."""
+    rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
+    seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows)))
+    counted = np.zeros((time.size, laws), dtype=np.int64) if moved is None else moved
+    motion = np.empty((laws, MOTION_COLUMNS))
+    _observe(by_address(system), by_address(local), motion, time, counted, q, v, by_address(seen))
+    return seen
 
 
 @compiled
@@ -73,37 +84,23 @@ def _observe(
 ) -> None:
     """Fill `seen`."""
     for k in range(time.size):
-        _evaluate(system, local, motion, time[k], moved[k], q[k], v[k])
+        write_motion(system.reference, time[k], moved[k], motion)
+        set_phases(system.reference, motion, local.position, local.pace)
+        set_drift(system.elements, motion, local)
+        add_motion(system, q[k], v[k], local.position, local.coordinate, local.rate)
+        for e in range(system.elements.law.size):
+            evaluate(system.elements, local, e)
         for m in range(local.position.size):
             seen.position[m, k] = wrapped(local.position[m], float(system.reference.period[m]))
         for r in range(local.force.size):
             seen.coordinate[r, k], seen.force[r, k] = local.coordinate[r], local.force[r]
 
 
-@compiled
-def _evaluate(
-    system: SystemArrays,
-    local: LocalState,
-    motion: FloatArray,
-    time: float,
-    moved: IntArray,
-    q: FloatArray,
-    v: FloatArray,
-) -> None:
-    """Evaluate all elements in one state."""
-    write_motion(system.reference, time, moved, motion)
-    set_phases(system.reference, motion, local.position, local.pace)
-    set_drift(system.elements, motion, local)
-    add_motion(system, q, v, local.position, local.coordinate, local.rate)
-    for e in range(system.elements.law.size):
-        evaluate(system.elements, local, e)
-
-
 def observe_laws(system: SystemArrays, time: FloatArray) -> FloatArray:
     """Return whole revolutions, fraction, speed (rad/s) and acceleration of every law, (4, k, T)."""
     laws = system.inertial.shape[0]
     observed = np.empty((time.size, laws, MOTION_COLUMNS))
-    _observe_laws(system, time, np.zeros(laws, dtype=np.int64), observed)
+    _observe_laws(by_address(system), time, np.zeros(laws, dtype=np.int64), observed)
     return np.ascontiguousarray(np.moveaxis(observed, (2, 1), (0, 1)))
 
 

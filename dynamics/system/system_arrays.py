@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dynamics.forces.by_address import by_address
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.connections import linear_matrices
@@ -36,7 +37,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
     along = direction[packed.first[: len(scene.meshes)]]
     held = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
     held += packed.stiffness @ direction**2
-    return SystemArrays(
+    arrays = SystemArrays(
         np.ascontiguousarray(mass),
         damping,
         stiffness,
@@ -53,6 +54,7 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         lay_out_reference(scene, kinematics, freedoms, vectors),
         lay_out_loads(scene, kinematics, freedoms),
     )
+    return by_address(arrays)
 
 
 def _add_drive_springs(

@@ -10,8 +10,9 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table, square_wave_table
 
 from dynamics.errors import SolveError
+from dynamics.forces.by_address import by_address
 from dynamics.integrators import static_equilibrium
-from dynamics.integrators.advance import advance
+from dynamics.integrators.advance import advance, prepare_steps
 from dynamics.integrators.step_control import Control
 from dynamics.integrators.workspace import Count, make_workspace, step_ladder
 from dynamics.simulate import simulate
@@ -73,10 +74,11 @@ def test_a_run_that_cannot_go_on_keeps_what_it_has(changes, status):
 def test_cutting_a_run_into_chunks_changes_no_bit():
     system = assemble(replace(SCENE, meshes=SCENE.meshes))
     start = static_equilibrium(system).displacement
-    control = Control(True, True, True, 3, 1e-10, 1e-4, 10**9)
+    control = by_address(Control(True, True, True, 3, 1e-10, 1e-4, 10**9))
 
     def run(stops):
-        work = make_workspace(system.arrays, step_ladder(1e-3, 1e-12), start, 1e-6)
+        work = by_address(make_workspace(system.arrays, step_ladder(1e-3, 1e-12), start, 1e-6))
+        prepare_steps(system.arrays, work, implicit=True, audit=True)
         q, v = np.zeros((401, start.size)), np.zeros((401, start.size))
         moved = np.zeros((401, 1), dtype=np.int64)
         for stop in stops:

@@ -1,0 +1,195 @@
+"""Named tuples of arrays handed to compiled functions by address.
+
+numba passes a tuple by value: address, length and stride of every array in it. A system and its workspace
+hold a hundred arrays, so each call copied a thousand values, or, with all calls inlined to save the copies,
+compiled a thousand values through every function. By address a call passes one pointer, and a function loads
+what it reads. Attributes work alike on the tuple and on its address, in Python and compiled.
+"""
+
+# numba annotates little of what extends it
+# mypy: disable-error-code="no-untyped-call, untyped-decorator, attr-defined, override, misc, unused-ignore"
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from typing import Any, TypeVar, cast
+
+import numpy as np
+from llvmlite import ir
+from numba.core import types
+from numba.core.typing.templates import AttributeTemplate
+from numba.extending import (
+    NativeValue,
+    infer_getattr,
+    lower_getattr_generic,
+    models,
+    register_model,
+    unbox,
+)
+from numba.np.arrayobj import make_array, populate_array
+
+WORD = ir.IntType(64)
+SCALARS = {bool: types.boolean, int: types.int64, float: types.float64}
+ITEMS = {"d": types.float64, "l": types.int64, "q": types.int64, "?": types.boolean}
+
+Tuple = TypeVar("Tuple")
+
+
+class AddressType(types.Type):
+    """The compiled type of an address: the fields of the tuple there, each with its type and first word."""
+
+    def __init__(self, name: str, fields: tuple[tuple[str, Any, int], ...]) -> None:
+        digest = hashlib.sha256(repr(fields).encode()).hexdigest()
+        super().__init__(f"{name}At{digest[:12]}")  # short: it becomes part of every symbol
+        self.fields = fields
+
+    def find(self, name: str) -> tuple[Any, int] | None:
+        """Return type and first word of a field."""
+        return next(((kind, first) for field, kind, first in self.fields if field == name), None)
+
+
+class Addressed:
+    """A named tuple and the words by which compiled functions find its arrays; attributes are the tuple's."""
+
+    def __init__(self, value: Any) -> None:
+        words: list[int] = []
+        self._numba_type_ = _lay_out(value, words)
+        self._words = np.array(words, dtype=np.int64)
+        self._address = self._words.ctypes.data
+        self.value = value
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.value, name)
+
+    def __reduce__(self) -> tuple[Any, tuple[Any]]:
+        return by_address, (self.value,)  # another process has other addresses
+
+
+def by_address(value: Tuple) -> Tuple:
+    """Return `value`, a named tuple of C-contiguous arrays, numbers and such tuples, for compiled functions.
+
+    Numbers are frozen in it; arrays are shared, so what either side writes into them the other sees. All
+    tuples of a class have arrays of the same types and dimensions, or compiled functions would not fit.
+
+    Raises
+    ------
+    TypeError
+        If an array is not C-contiguous, or the class has been seen with another layout.
+    """
+    return value if isinstance(value, Addressed) else cast(Tuple, Addressed(value))
+
+
+def by_value(value: Tuple) -> Tuple:
+    """Return the tuple itself."""
+    return cast(Tuple, value.value) if isinstance(value, Addressed) else value
+
+
+def _lay_out(value: Any, words: list[int]) -> AddressType:
+    """Append the words of a tuple, per array address and lengths, per number its bits; return its type."""
+    kinds: list[Any] = []
+    first: list[int] = []
+    start = len(words)
+    for field in value:
+        part = by_value(field)
+        first.append(len(words) - start)
+        if isinstance(part, np.ndarray):
+            if not part.flags.c_contiguous:
+                raise TypeError(f"compiled functions take C-contiguous arrays, not strides of {part.strides}")
+            kinds.append((part.dtype.char, part.ndim))
+            words.append(part.__array_interface__["data"][0])
+            words.extend(part.shape)
+        elif isinstance(part, tuple):
+            kinds.append(_lay_out(part, words))
+        else:
+            kinds.append(type(part))
+            words.append(int(np.float64(part).view(np.int64) if isinstance(part, float) else part))
+    cls: Any = type(value)
+    kind = _address_type(cls, tuple(kinds), tuple(first))
+    if _seen.setdefault(cls, kind) != kind:
+        raise TypeError(f"{kind} has other arrays than {_seen[cls]}")
+    return kind
+
+
+_seen: dict[type, AddressType] = {}
+
+
+@cache
+def _address_type(cls: Any, kinds: tuple[Any, ...], first: tuple[int, ...]) -> AddressType:
+    """Return the type of a tuple of class `cls`."""
+    fields = zip(cls._fields, (_field_type(kind) for kind in kinds), first, strict=True)
+    return AddressType(cls.__name__, tuple(fields))
+
+
+def _field_type(kind: Any) -> Any:
+    """Return the compiled type of a field."""
+    if isinstance(kind, tuple):
+        return types.Array(ITEMS[kind[0]], kind[1], "C")
+    return kind if isinstance(kind, AddressType) else SCALARS[kind]
+
+
+@register_model(AddressType)
+class _AddressModel(models.PrimitiveModel):
+    """A pointer to words."""
+
+    def __init__(self, manager: Any, kind: AddressType) -> None:
+        super().__init__(manager, kind, WORD.as_pointer())
+
+
+@unbox(AddressType)
+def _unbox(kind: AddressType, value: Any, c: Any) -> NativeValue:
+    """Read the address off the Python object."""
+    number = c.pyapi.object_getattr_string(value, "_address")
+    address = c.builder.inttoptr(c.pyapi.long_as_ulonglong(number), WORD.as_pointer())
+    c.pyapi.decref(number)
+    return NativeValue(address)
+
+
+@infer_getattr
+class _Fields(AttributeTemplate):
+    """Types of the attributes."""
+
+    key = AddressType
+
+    def generic_resolve(self, kind: AddressType, name: str) -> Any:
+        """Return the type of the field `name`."""
+        found = kind.find(name)
+        return None if found is None else found[0]
+
+
+@lower_getattr_generic(AddressType)
+def _read_field(context: Any, builder: Any, kind: AddressType, address: Any, name: str) -> Any:
+    """Return a tuple inside as the address of its own words, arrays and numbers as they are."""
+    found = kind.find(name)
+    assert found is not None  # typing has found it
+    field, first = found
+    place = builder.gep(address, [WORD(first)])
+    if isinstance(field, AddressType):
+        return place
+    if isinstance(field, types.Array):
+        return _array(context, builder, field, place)
+    word = _load(builder, place)
+    if field is types.boolean:
+        return builder.icmp_unsigned("!=", word, WORD(0))
+    return builder.bitcast(word, ir.DoubleType()) if field is types.float64 else word
+
+
+def _array(context: Any, builder: Any, field: Any, place: Any) -> Any:
+    """Return the array whose address and lengths begin at `place`."""
+    array = make_array(field)(context, builder)
+    item = context.get_data_type(field.dtype)
+    data = builder.inttoptr(_load(builder, place), item.as_pointer())
+    shape = [_load(builder, builder.gep(place, [WORD(1 + axis)])) for axis in range(field.ndim)]
+    size = context.get_abi_sizeof(item)
+    strides = [WORD(size)]
+    for length in shape[:0:-1]:
+        strides.insert(0, builder.mul(strides[0], length, flags=["nsw"]))
+    populate_array(array, data, shape, strides, size, None)
+    return array._getvalue()
+
+
+def _load(builder: Any, place: Any) -> Any:
+    """Read a word that never changes, so that the compiler may read it once for a whole loop."""
+    word = builder.load(place)
+    word.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return word

@@ -1,0 +1,43 @@
+"""What force laws read and write at one instant."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from dynamics.types import FloatArray, IntArray
+
+
+class LocalState(NamedTuple):
+    """What laws read and write at one instant; P = the largest p.
+
+    Attributes
+    ----------
+    position : (m,) array
+        Of the meshes, base pitches.
+    pace : (m,) array
+        Their rates in the kinematic motion, base pitches per second.
+    coordinate, rate : (R,) arrays
+        y (m) and y' (m/s), those of the deviations from the kinematic motion.
+    drift : (R,) array
+        What the kinematic motion adds to the rates, m/s.
+    speed : (E, 2) array
+        Spin and speed of the frame in the kinematic motion, rad/s.
+    force, elastic : (R,) arrays
+        f and the part of it that stores energy, N.
+    tangent, viscous : (R, P) arrays
+        Row r: df_r/dy and df_r/dy' in the coordinates of its own element, N/m and N s/m.
+    hint : (E,) int array
+        Where the last look-up ended: the next starts there.
+    """
+
+    position: FloatArray
+    pace: FloatArray
+    coordinate: FloatArray
+    rate: FloatArray
+    drift: FloatArray
+    speed: FloatArray
+    force: FloatArray
+    elastic: FloatArray
+    tangent: FloatArray
+    viscous: FloatArray
+    hint: IntArray
