@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.error_estimate import worst_residual
+from fe_contact.analysis.contact_receipt import contact_receipt
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.position_nodes import PositionNodes
@@ -58,7 +58,9 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
         nodes = table_nodes(fine, plan, measured=full)
         report("contact", 0.3)
         solved = _solved(fine, nodes, plan.load)
-        table = _table(request, fine, nodes, solved, _solved(fine, nodes, plan.support))
+        support = _solved(fine, nodes, plan.support)
+        table = _table(request, fine, nodes, solved, support)
+        found = contact_receipt(solved, support)
         report("contact", 1.0)
     judged = unjudged_table(table, fine, plan)
     if full:
@@ -67,7 +69,7 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
             judged = judged_table(table, fine, coarse, solved, nodes, checked, plan)
         spent = {log_name(prediction.kind, name): seconds for name, seconds in clock.seconds.items()}
         record(cache, prediction.logged, spent)
-    metadata = _metadata(case, plan, checked, clock, judged.to_json(), solved)
+    metadata = _metadata(case, plan, checked, clock, judged.to_json() | found)
     metadata.receipt["prediction"] = _predicted(prediction, plan, request)
     return replace(table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
 
@@ -127,20 +129,10 @@ def _metadata(
     plan: Plan,
     checked: Checked,
     clock: StageClock,
-    errors: Json,
-    solved: list[tuple[ContactProblem, ContactSolution]],
+    found: Json,
 ) -> Metadata:
-    """Everything about the making of the table."""
-    receipt = (
-        clock.to_json()
-        | errors
-        | {
-            "plan": plan.to_json(),
-            "newton_iterations_max": max(int(solution.iterations.max()) for _, solution in solved),
-            "residuals_max": max(worst_residual(solution) for _, solution in solved),
-            "patch_outgrown_points": sum(int(solution.beyond.sum()) for _, solution in solved),
-        }
-    )
+    """Everything about the making of the table; `found` is what was found of its errors and its contact."""
+    receipt = clock.to_json() | found | {"plan": plan.to_json()}
     if checked.cycle is not None:
         receipt["predicted"] = checked.cycle.to_json()
     return Metadata(

@@ -55,7 +55,10 @@ class ErrorSources:
         return self.discretisation + self.slices + self.interpolation + self.contact + self.finite_width
 
     def to_json(self) -> Json:
-        """Return the largest of each source by load, m, and the model's own uncertainty."""
+        """Return the largest of each source by load, m, and the model's own uncertainty.
+
+        Beside a failed point errors are unknown and left out; None where that leaves none.
+        """
         sources = {
             "discretisation_m": self.discretisation,
             "slices_m": self.slices,
@@ -63,8 +66,14 @@ class ErrorSources:
             "contact_solver_m": self.contact,
             "finite_width_m": self.finite_width,
         }
-        worst = {name: values.max(axis=(0, 2, 3)).tolist() for name, values in sources.items()}
+        worst = {name: _largest_known(values) for name, values in sources.items()}
         return worst | {"plane_for_finite_width_relative": self.model}
+
+
+def _largest_known(errors: FloatArray) -> list[float | None]:
+    """Return the largest number of errors (P, F, M, D) at each load; None if there is none."""
+    worst = np.where(np.isnan(errors), -np.inf, errors).max(axis=(0, 2, 3))
+    return [float(value) if np.isfinite(value) else None for value in worst]
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError, SolveError
 from fe_contact.planning import planned
 from fe_contact.stage_clock import StageClock
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, Status
 
 
 @dataclass(frozen=True)
@@ -53,9 +53,17 @@ def solve_place(
         problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
     report("contact", 1.0)
     if not solution.converged:
-        failed = int(np.count_nonzero(solution.status))
-        raise SolveError(f"{failed} of {position.size} positions have no solution", partial=solution)
+        raise SolveError(_failure(position, solution), partial=solution)
     return SolvedPlace(place.contact, problem, solution)
+
+
+def _failure(position: FloatArray, solution: ContactSolution, shown: int = 5) -> str:
+    """Say how many positions failed, which (the first `shown`) and why."""
+    codes = solution.status[:, 0]
+    failed = np.flatnonzero(codes)
+    listed = "; ".join(f"position {position[i]:.6g}: {Status(int(codes[i])).name}" for i in failed[:shown])
+    more = f"; and {failed.size - shown} more" if failed.size > shown else ""
+    return f"{failed.size} of {position.size} positions have no solution ({listed}{more})"
 
 
 def checked_positions(at: ArrayLike) -> FloatArray:

@@ -1,0 +1,21 @@
+"""What the receipt says of the contact solver."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fe_contact.analysis.contact_receipt import condition_numbers
+
+
+def test_condition_numbers_leave_out_what_is_no_candidate() -> None:
+    rng = np.random.default_rng(5)
+    basis = rng.normal(size=(3, 5, 5))
+    real = 1e-9 * (basis @ basis.transpose(0, 2, 1) + 0.1 * np.eye(5))
+    wider = np.zeros((3, 7, 7))
+    wider[:, 1:6, 1:6] = real
+    assert condition_numbers(wider) == pytest.approx(np.linalg.cond(real), rel=1e-9)
+
+
+def test_a_matrix_that_is_not_definite_has_no_condition_number() -> None:
+    assert condition_numbers(np.array([np.diag([1.0, -1.0]), np.diag([1.0, 4.0])])).tolist() == [np.inf, 4.0]
