@@ -1,7 +1,8 @@
-"""Rigid bodies: shafts, the gears on them, their inertia, and laws of time that move or load them."""
+"""Bodies: shafts rigid and elastic, the gears on them, their inertia, laws of time that move or load them."""
 
 from dynamics.bodies.angle_law import AngleLaw
 from dynamics.bodies.craig_bampton import ReducedBody, craig_bampton
+from dynamics.bodies.elastic_shaft import Disc, ElasticShaft, Grip, elastic_shaft
 from dynamics.bodies.gear_body import GearBody
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.shaft import Shaft
@@ -12,7 +13,10 @@ from dynamics.bodies.timoshenko_beam import BeamSection, TimoshenkoBeam, timoshe
 __all__ = [
     "AngleLaw",
     "BeamSection",
+    "Disc",
+    "ElasticShaft",
     "GearBody",
+    "Grip",
     "Inertia",
     "ReducedBody",
     "Shaft",
@@ -20,6 +24,7 @@ __all__ = [
     "TimeLaw",
     "TimoshenkoBeam",
     "craig_bampton",
+    "elastic_shaft",
     "hollow_cylinder",
     "timoshenko_beam",
 ]

@@ -1,16 +1,23 @@
-"""A rigid shaft: one body that carries gears and rests on bearings."""
+"""A shaft: one body that carries gears and rests on bearings, rigid unless its sections say how it bends."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from itertools import accumulate
 
-from dynamics.bodies.inertia import Inertia
-from dynamics.checks import finite, positive
+from dynamics.bodies.inertia import Inertia, hollow_cylinder
+from dynamics.bodies.timoshenko_beam import BeamSection
+from dynamics.checks import finite, not_negative, positive
+from dynamics.errors import InputError
+
+DEFAULT_DAMPING_RATIO = 0.005
+LENGTHS_AGREE = 1e-9  # relative
 
 
 @dataclass(frozen=True)
 class Shaft:
-    """A rigid shaft, its axis parallel to the fixed z axis.
+    """A shaft, its axis parallel to the fixed z axis.
 
     Attributes
     ----------
@@ -25,7 +32,13 @@ class Shaft:
         of all members of a planetary set (sun, ring, planets and the carrier itself, which names itself).
         `origin` is then the place at t = 0. None: the fixed frame.
     inertia : Inertia
-        Of the bare shaft, its centre of mass at mid-length; the gears on it are added.
+        Of the bare shaft, its centre of mass at mid-length; the gears on it are added. Left out where
+        `sections` are given.
+    sections : tuple of BeamSection
+        From the left end, together as long as the shaft: for the effect ``"flexible_shafts"``, and for the
+        inertia. Empty: the shaft is rigid.
+    damping_ratio : float
+        Of the material: of every elastic natural motion of the free shaft.
     """
 
     name: str
@@ -33,8 +46,33 @@ class Shaft:
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     inertia: Inertia = field(default_factory=Inertia)
     frame: str | None = None
+    sections: tuple[BeamSection, ...] = ()
+    damping_ratio: float = DEFAULT_DAMPING_RATIO
 
     def __post_init__(self) -> None:
         positive("length", self.length)
+        not_negative("damping_ratio", self.damping_ratio)
+        if self.sections:
+            self._check_sections()
         for axis, value in zip("xyz", self.origin, strict=True):
             finite(f"origin.{axis}", value)
+
+    def _check_sections(self) -> None:
+        """Sections make up the shaft, and its inertia."""
+        together = math.fsum(section.length for section in self.sections)
+        if abs(together / self.length - 1.0) > LENGTHS_AGREE:
+            bound = f"sections that are together as long as the shaft, {self.length:g} m"
+            raise InputError("sections", f"{together:g} m", bound)
+        if self.inertia != Inertia():
+            raise InputError("inertia", self.inertia.mass, "left out where sections are given")
+
+    @property
+    def cylinders(self) -> tuple[tuple[Inertia, float], ...]:
+        """Parts of the bare shaft: inertia about its own centre, and place of that from the left end, m."""
+        if not self.sections:
+            return ((self.inertia, self.length / 2.0),)
+        ends = [0.0, *accumulate(section.length for section in self.sections)]
+        return tuple(
+            (hollow_cylinder(s.outer_diameter, s.length, s.bore_diameter, s.density), start + s.length / 2.0)
+            for s, start in zip(self.sections, ends, strict=False)
+        )

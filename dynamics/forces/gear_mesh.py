@@ -44,6 +44,8 @@ class GearMesh:
         The backs of the teeth, for the effect ``"backlash"``. None: only the driving flank carries force.
     friction : float or None
         Coefficient of sliding friction, for the effect ``"friction"``. None: none.
+    bent_shafts : bool
+        Whether the table has the bending of the gears' shafts in it: then these are rigid here.
     """
 
     name: str
@@ -59,6 +61,7 @@ class GearMesh:
     center_distance_change: float = 0.0
     coast: CoastFlank | None = None
     friction: float | None = None
+    bent_shafts: bool = False
 
     def __post_init__(self) -> None:
         check_table("table", self.table)

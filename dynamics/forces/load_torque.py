@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from dynamics.bodies.time_law import TimeLaw
+from dynamics.checks import finite
 
 
 @dataclass(frozen=True)
@@ -20,8 +21,14 @@ class LoadTorque:
     torque : TimeLaw
         N m, > 0 against the sense in which the drive turns this shaft. The run starts in static
         equilibrium with its value at t = 0, so a constant load excites nothing.
+    position : float
+        Where along a flexible shaft it acts, m from its left end.
     """
 
     name: str
     shaft: str
     torque: TimeLaw
+    position: float = 0.0
+
+    def __post_init__(self) -> None:
+        finite("position", self.position)

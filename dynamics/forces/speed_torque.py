@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.bodies.speed_curve import SpeedCurve
+from dynamics.checks import finite
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.routine import routine
 from dynamics.types import FloatArray, IntArray
@@ -26,11 +27,17 @@ class SpeedTorque:
         The shaft it acts on.
     curve : SpeedCurve
         Torque against the sense of the shaft's kinematic motion, N m, at the speed in that sense, rad/s.
+    position : float
+        Where along a flexible shaft it acts, m from its left end.
     """
 
     name: str
     shaft: str
     curve: SpeedCurve
+    position: float = 0.0
+
+    def __post_init__(self) -> None:
+        finite("position", self.position)
 
 
 class SpeedTorqueLaws(NamedTuple):

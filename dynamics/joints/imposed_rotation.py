@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from dynamics.bodies.angle_law import AngleLaw
 from dynamics.bodies.time_law import TimeLaw
-from dynamics.checks import not_negative, positive
+from dynamics.checks import finite, not_negative, positive
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,8 @@ class ImposedRotation:
         of a held ring gear. None: rigid.
     damping : float
         N m s/rad beside the spring.
+    position : float
+        Where along a flexible shaft the motion is imposed, m from its left end.
     """
 
     name: str
@@ -34,11 +36,13 @@ class ImposedRotation:
     speed: TimeLaw | AngleLaw
     stiffness: float | None = None
     damping: float = 0.0
+    position: float = 0.0
 
     def __post_init__(self) -> None:
         if self.stiffness is not None:
             positive("stiffness", self.stiffness, "Leave it out for a rigid drive.")
         not_negative("damping", self.damping)
+        finite("position", self.position)
 
     @property
     def rigid(self) -> bool:

@@ -19,6 +19,10 @@ MOVES = {
     "tilt_x": "tilting",
     "tilt_y": "tilting",
     "rotation": "torsional",
+    "bending_x": "bending",
+    "bending_y": "bending",
+    "stretch": "axial",
+    "twist": "torsional",
 }
 
 
@@ -67,4 +71,4 @@ def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str]
 def freedom_parts(freedom: Sequence[str]) -> tuple[tuple[str, str], ...]:
     """Return the shaft of each freedom "shaft.kind" and how it moves along it, one of the `MOVES`."""
     pairs = [name.rpartition(".")[::2] for name in freedom]
-    return tuple((shaft, MOVES.get(kind, "bending")) for shaft, kind in pairs)
+    return tuple((shaft, MOVES[kind.rstrip("_0123456789")]) for shaft, kind in pairs)

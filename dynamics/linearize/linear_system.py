@@ -9,7 +9,9 @@ import numpy as np
 from dynamics.errors import SolveError
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.system.assemble import System
+from dynamics.system.columns import elastic_terms
 from dynamics.system.force_balance import force_balance
+from dynamics.system.references import drive_springs
 from dynamics.types import FloatArray
 
 
@@ -31,7 +33,7 @@ class LinearSystem:
         Motions that nothing resists: those of trains without a drive.
     spring : tuple of str
         Names of all springs: meshes, bearings with direction, bearings with matrices, housings and couplings
-        (once per principal stiffness), elastic drives.
+        (once per principal stiffness), elastic drives, elastic coordinates of shafts.
     strain : (p, n) array
         Strain of each spring per freedom, m or rad.
     spring_stiffness : (p,) array
@@ -118,9 +120,14 @@ def _springs(system: System, tangent: FloatArray) -> tuple[tuple[str, ...], Floa
                 names.append(name)
                 rows.append(np.asarray(vector @ motion)[None, :])
                 stiffness.append(np.array([value]))
-    for shaft, drive in zip(system.kinematics.law_shaft, system.scene.drives, strict=False):
-        if drive.stiffness is not None:
-            names.append(drive.name)
-            rows.append((system.freedoms.place == 6 * shaft + 5).astype(float)[None, :])
-            stiffness.append(np.array([drive.stiffness]))
+    drives = drive_springs(system.scene, system.kinematics, system.rotors, system.freedoms)
+    for _, drive, row in drives:
+        names.append(drive.name)
+        rows.append(row[None, :])
+        stiffness.append(np.array([drive.stiffness]))
+    springs = elastic_terms(system.rotors)[0][system.freedoms.place]
+    bent = np.flatnonzero(springs > 0.0)
+    names += [system.freedoms.name[place] for place in bent]
+    rows.append(np.eye(springs.size)[bent])
+    stiffness.append(springs[bent])
     return tuple(names), np.concatenate(rows), np.concatenate(stiffness)

@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 from dynamics.joints.seat import SEAT
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.system.assemble import System
+from dynamics.system.columns import column_count
 from dynamics.system.observation import observe_laws
+from dynamics.system.spun_shaft import pair_rows, spun_inertia
 from dynamics.types import FloatArray
 
 ComplexArray = NDArray[np.complex128]
@@ -91,7 +93,7 @@ def speed_terms(system: System, time: float) -> tuple[FloatArray, FloatArray]:
 def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return G and S (n, n) of `speed_terms` at the speeds `law_speed` (k,) of the laws, rad/s."""
     speed = system.kinematics.float_ratio @ law_speed
-    size = 6 * len(system.rotors)
+    size = column_count(system.rotors)
     turning, stiffening = np.zeros((size, size)), np.zeros((size, size))
     for index, rotor in enumerate(system.rotors):
         frame = 0.0 if rotor.frame is None else float(speed[rotor.frame])
@@ -117,8 +119,18 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
     if any(carrier is not None for carrier in seats.frame):
         of_frame = [0.0 if carrier is None else float(speed[carrier]) for carrier in seats.frame]
         stiffening += seats.motion.T @ (seats.turned_damping * np.repeat(of_frame, SEAT)) @ seats.motion
+    for index, rotor in enumerate(system.rotors):
+        if rotor.elastic is not None and rotor.elastic.bends:
+            turning += _along_the_shaft(system, index, float(speed[index]))
     motion = system.freedoms.motion
     return motion.T @ turning @ motion, motion.T @ stiffening @ motion
+
+
+def _along_the_shaft(system: System, index: int, spin: float) -> FloatArray:
+    """Gyroscopic terms of a shaft that bends, beyond those of its tilt as a rigid body, (N, N)."""
+    rows, inertia = pair_rows(system.rotors, index), spun_inertia(system.rotors[index])
+    inertia[0, 0] = 0.0
+    return np.asarray(-spin * np.einsum("ij,iap,ab,jbq->pq", inertia, rows, QUARTER_TURN, rows))
 
 
 def _eigen(

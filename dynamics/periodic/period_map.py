@@ -89,7 +89,7 @@ def periodic_problem(
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
     at_constant_speed(system, period, slowest, time)  # checks the speed
     system = with_static_reference(system, start.displacement, time)
-    cycles = float(natural_modes(system, time).frequency[-1]) * period.duration(slowest)
+    cycles = _highest(system, natural_modes(system, time).frequency) * period.duration(slowest)
     pitches = max(abs(count) for count in period.pitches)
     rest = start.displacement * system.arrays.scale
     force = max(float(np.max(np.abs(start.mesh_force))), float(np.max(system.flanks.nominal_force)))
@@ -110,6 +110,18 @@ def periodic_problem(
         size,
         NEWTON_SHARE * max(force, stiff * size),
     )
+
+
+def _highest(system: System, frequency: FloatArray) -> float:
+    """Return the highest natural frequency that steps resolve, Hz.
+
+    Flexible shafts have coordinates far above what is of interest; the implicit method lets them follow as
+    springs do.
+    """
+    interest = [rotor.elastic.highest for rotor in system.rotors if rotor.elastic is not None]
+    if not interest or system.scene.integration.method != "implicit":
+        return float(frequency[-1])
+    return float(np.max(frequency[frequency <= max(interest)], initial=0.0))
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from dataclasses import asdict
 import numpy as np
 
 from dynamics.forces import GearMesh
+from dynamics.results.flexible_shafts import flexible_shafts
 from dynamics.system.assemble import System
 from dynamics.types import Json
 
@@ -33,6 +34,7 @@ def resolved_case(system: System) -> Json:
             for shaft, row in zip(scene.shafts, system.kinematics.ratio, strict=True)
         },
         "loads": [asdict(load) for load in scene.loads],
+        "flexible_shafts": flexible_shafts(system.rotors),
         "duration": scene.duration,
         "effects": dict(scene.effects),
         "outputs": asdict(scene.outputs),

@@ -179,7 +179,7 @@ def _speed(system: System, laws: FloatArray, v: FloatArray) -> FloatArray:
     """Speed of every shaft about +z, (s, T)."""
     speed = system.kinematics.float_ratio @ laws
     for column, place in enumerate(system.freedoms.place):
-        if place % 6 == ROTATION:
+        if place < 6 * len(system.rotors) and place % 6 == ROTATION:
             speed[place // 6] += v[:, column]
     return np.asarray(speed)
 

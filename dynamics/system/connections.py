@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.joints.seat import SEAT
+from dynamics.system.columns import elastic_terms
 from dynamics.system.coupling_rows import CouplingRows, gather_couplings
 from dynamics.system.freedoms import Freedoms
 from dynamics.system.rotor import Rotor
@@ -61,6 +62,13 @@ def linear_matrices(
         damping += strains.T @ seats.damping @ strains
         constant += seats.preload @ strains
     return stiffness, damping, constant
+
+
+def elastic_matrices(rotors: Sequence[Rotor], freedoms: Freedoms) -> tuple[FloatArray, FloatArray]:
+    """Return stiffness and damping (n, n) of the shafts themselves."""
+    springs, dampers = elastic_terms(rotors)
+    motion = freedoms.motion
+    return motion.T @ (springs[:, None] * motion), motion.T @ (dampers[:, None] * motion)
 
 
 def forces_on_ground(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.joints.matrix import Matrix
-from dynamics.system.planets import rigid_motion
+from dynamics.system.columns import column_count, section_rows
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
@@ -23,7 +23,7 @@ class CouplingRows:
     Attributes
     ----------
     name : tuple of str
-    motion : (c, 6, 6 r) array
+    motion : (c, 6, N) array
         Strain per freedom: motion of the second shaft at the coupling less that of the first, m and rad.
     stiffness, damping : (c, 6, 6) arrays
         Force and moment per strain and its rate, N, m, rad, s.
@@ -41,13 +41,12 @@ class CouplingRows:
 
 def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
     """Lay out the couplings of `scene`."""
-    motion = np.zeros((len(scene.couplings), 6, 6 * len(rotors)))
+    motion = np.zeros((len(scene.couplings), 6, column_count(rotors)))
     for index, coupling in enumerate(scene.couplings):
         first, second = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
         place = np.add(scene.shafts[first].origin, (0.0, 0.0, coupling.position))
         for shaft, sign in ((first, -1.0), (second, 1.0)):
-            here = np.array([*rotors[shaft].center[:2], place[2]])
-            motion[index, :, 6 * shaft : 6 * shaft + 6] = sign * section(rotors[shaft], here)
+            motion[index] += sign * section_rows(rotors, shaft, place[2])
     stiffness = [_full(c.stiffness, c.torsional_stiffness) for c in scene.couplings]
     damping = [_full(c.damping, c.torsional_damping) for c in scene.couplings]
     return CouplingRows(
@@ -56,12 +55,6 @@ def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
         np.array(stiffness).reshape(-1, 6, 6),
         np.array(damping).reshape(-1, 6, 6),
     )
-
-
-def section(rotor: Rotor, point: FloatArray) -> FloatArray:
-    """Return the motion of a rotor at `point` (3,) per freedom, (6, 6): displacement and rotation."""
-    moves = rigid_motion(point - rotor.center)
-    return np.vstack([moves, np.eye(6)[3:]])
 
 
 def _full(matrix: Matrix | None, torsional: float) -> FloatArray:

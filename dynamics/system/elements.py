@@ -22,7 +22,7 @@ class Element:
         Its place in the arrays of its law.
     mesh : int
         The mesh whose position it reads; -1: none.
-    gradient : (p, 6 r) array
+    gradient : (p, N) array
         In the six freedoms of all r rotors.
     offset : (p,) array
         m.

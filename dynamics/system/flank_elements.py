@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.forces.element_laws import Law
+from dynamics.system.columns import Wrench, gear_row
 from dynamics.system.elements import Element
 from dynamics.system.flanks import Flanks
 from dynamics.system.line_of_action import LineOfAction, line_of_action
@@ -42,9 +43,10 @@ def flank_elements(
 
 
 def approach(scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction) -> FloatArray:
-    """Return the derivative of the approach along `line` of mesh `index` in all rotors' freedoms, (6 r,)."""
-    mesh, gradient = scene.meshes[index], np.zeros((len(rotors), 6))
-    for name, sign in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
-        rotor = scene.shaft_index(scene.gear(name).shaft)
-        gradient[rotor] += sign * line.gradient(rotors[rotor].center)
-    return gradient.ravel()
+    """Return the derivative of the approach along `line` of mesh `index` in all rotors' freedoms, (N,)."""
+    mesh = scene.meshes[index]
+    sides: list[tuple[str, Wrench]] = [
+        (mesh.driver, line.gradient),
+        (mesh.driven, lambda center: -line.gradient(center)),
+    ]
+    return gear_row(scene, rotors, sides)

@@ -19,7 +19,7 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     senses, vectors, joined = kinematics.mesh_sense, mechanism.vectors, model.connections
     plain = flank_elements(scene, rotors, senses, mechanism.lines, flanks)
     in_space, spatial = spatial_elements(scene, rotors, senses, flanks, plain, ledger, vectors)
-    by_speed, speed = speed_elements(scene, kinematics)
+    by_speed, speed = speed_elements(scene, rotors, kinematics)
     by_turning, turning = turning_elements(
         scene, rotors, kinematics, vectors, model.freedoms, joined.supports, joined.seats, ledger
     )

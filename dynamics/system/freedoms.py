@@ -7,14 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.system.columns import elastic_columns
 from dynamics.system.effects import FREEDOMS
 from dynamics.system.effects.ledger import EffectLedger
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.planets import carried_motion
 from dynamics.system.rotor import Rotor
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import BoolArray, FloatArray, IntArray
 
 ROTATION = FREEDOMS.index("rotation")
+COUPLED = ("x", "tilt_y", "bending_x", "y", "tilt_x", "bending_y", "z", "stretch", "rotation", "twist")
+"""Order of a flexible shaft's freedoms: what bearings couple stays together, in the smallest blocks."""
 
 
 @dataclass(frozen=True)
@@ -26,18 +29,21 @@ class Freedoms:
     name : tuple of str
         "shaft.kind" with kind one of x, y, z (m), tilt_x, tilt_y, rotation (rad).
     place : (n,) int array
-        Of each among the six freedoms of all rotors: 6 rotor + kind.
-    motion : (6 r, n) array
-        The six freedoms of all rotors per freedom: one at its place; planets go with their carrier where
+        Of each among the N freedoms of all rotors: 6 rotor + kind, elastic coordinates after all of these.
+    motion : (N, n) array
+        All freedoms of all rotors per freedom: one at its place; planets go with their carrier where
         nothing lets them move on their own.
+    turns : (n,) bool array
+        Whether each is a rotation or a twist about the axis.
     """
 
     name: tuple[str, ...]
     place: IntArray
     motion: FloatArray
+    turns: BoolArray
 
     def keep(self, matrix: FloatArray) -> FloatArray:
-        """Return a matrix whose last axis holds all 6 freedoms of all rotors as one of the freedoms."""
+        """Return a matrix whose last axis holds all freedoms of all rotors as one of the free ones."""
         return np.ascontiguousarray(np.asarray(matrix, dtype=float) @ self.motion)
 
     def find(self, rotor: int, kind: int) -> int:
@@ -48,25 +54,25 @@ class Freedoms:
 
 def find_freedoms(rotors: Sequence[Rotor], kinematics: Kinematics, ledger: EffectLedger) -> Freedoms:
     """Gather the freedoms that effects add, and the rotation of every shaft without a rigid drive."""
-    names, places = [], []
+    found: list[tuple[str, int, bool]] = []
     for index, rotor in enumerate(rotors):
-        free = set(ledger.freedoms(rotor.shaft.name))
+        free = {*ledger.freedoms(rotor.shaft.name), *rotor.rigid_kinds}
         if index not in kinematics.imposed:
             free.add("rotation")
-        for kind, freedom in enumerate(FREEDOMS):
-            if freedom in free:
-                names.append(f"{rotor.shaft.name}.{freedom}")
-                places.append(6 * index + kind)
-    place = np.array(places, dtype=np.int64)
+        own = [(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free]
+        if rotor.elastic is not None:
+            first, twists = elastic_columns(rotors, index).start, rotor.elastic.twists
+            own += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
+            own.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
+        found += [(f"{rotor.shaft.name}.{kind}", place, turns) for kind, place, turns in own]
+    place = np.array([part[1] for part in found], dtype=np.int64)
     motion = carried_motion(rotors, place)[:, place]
-    return Freedoms(tuple(names), place, np.ascontiguousarray(motion))
-
-
-def mass_diagonal(rotors: Sequence[Rotor]) -> FloatArray:
-    """Return the (6 r,) mass matrix: diagonal, since the freedoms are those of the centres of mass."""
-    inertia = [rotor.inertia for rotor in rotors]
-    diagonal = [[i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar] for i in inertia]
-    return np.array(diagonal, dtype=float).ravel()
+    return Freedoms(
+        tuple(part[0] for part in found),
+        place,
+        np.ascontiguousarray(motion),
+        np.array([part[2] for part in found], dtype=np.bool_),
+    )
 
 
 def shared_blocks(matrices: Sequence[FloatArray]) -> IntArray:

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.forces.gear_mesh import GearMesh
+from dynamics.system.columns import gear_row
+from dynamics.system.connections import elastic_matrices
 from dynamics.system.effects import MeshAxes
 from dynamics.system.flank_elements import approach
 from dynamics.system.flanks import Flanks
@@ -51,51 +53,53 @@ def middle_from_driver(scene: Scene, index: int, line: LineOfAction, sense: int)
 def misalignment_gradient(
     scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction, sense: int
 ) -> FloatArray:
-    """Return the derivative of the misalignment in all rotors' freedoms, (6 r,).
+    """Return the derivative of the misalignment in all rotors' freedoms, (N,).
 
     The table's face position runs against the scene's z for a driving gear that turns in +z, so the gap grows
     with it by m = s b (tilt_1 - tilt_2) (z x n) over the face width b, n the transverse line of action.
     """
-    mesh, gradient = scene.meshes[index], np.zeros((len(rotors), 6))
-    transverse = line.force * np.array([1.0, 1.0, 0.0])
+    mesh, transverse = scene.meshes[index], line.force * np.array([1.0, 1.0, 0.0])
     turn = np.cross(UNIT_Z, transverse) * table_sense(scene, index, sense) * common_face_width(scene, index)
-    for name, sign in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
-        gradient[scene.shaft_index(scene.gear(name).shaft), 3:] += sign * turn
-    return gradient.ravel()
+    moment = np.concatenate([np.zeros(3), turn])
+    return gear_row(scene, rotors, [(mesh.driver, lambda _: moment), (mesh.driven, lambda _: -moment)])
 
 
 def distance_gradient(scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction) -> FloatArray:
-    """Return the derivative of the centre distance at mid-face in all rotors' freedoms, (6 r,)."""
-    mesh, gradient = scene.meshes[index], np.zeros((len(rotors), 6))
+    """Return the derivative of the centre distance at mid-face in all rotors' freedoms, (N,)."""
+    mesh = scene.meshes[index]
     shafts = [scene.shaft_index(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven)]
     apart = np.subtract(scene.shafts[shafts[1]].origin, scene.shafts[shafts[0]].origin)
     apart = apart * np.array([1.0, 1.0, 0.0]) / np.hypot(apart[0], apart[1])
-    for shaft, sign in zip(shafts, (-1.0, 1.0), strict=True):
-        lever = (line.point[2] - rotors[shaft].center[2]) * UNIT_Z
-        gradient[shaft] += sign * np.concatenate([apart, np.cross(lever, apart)])
-    return gradient.ravel()
+
+    def pulled(center: FloatArray) -> FloatArray:
+        return np.concatenate([apart, np.cross((line.point[2] - center[2]) * UNIT_Z, apart)])
+
+    return gear_row(scene, rotors, [(mesh.driver, lambda c: -pulled(c)), (mesh.driven, pulled)])
 
 
 def sliding_gradients(
     scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction, driving: int
 ) -> FloatArray:
-    """Return the derivatives of sliding at the pitch point and of rolling on it, (2, 6 r).
+    """Return the derivatives of sliding at the pitch point and of rolling on it, (2, N).
 
     A contact at y n from the pitch point slides at (w_1 - w_2) y along z x n, whichever flank it is on: the
     first row is the relative displacement along that direction, the second the relative rotation times the
     driver's base radius, each in the sense in which the load slides at the y > 0 of the table. Where a ring
     gear drives, that y runs against n and w_1 - w_2 against the sense `driving` of the driving flank.
     """
-    mesh, gradient = scene.meshes[index], np.zeros((2, len(rotors), 6))
+    mesh = scene.meshes[index]
     sign = table_sense(scene, index, driving)
     across = driving * np.cross(UNIT_Z, line.force * np.array([1.0, 1.0, 0.0]))
     radius = scene.gear(mesh.driver).base_radius
-    for name, side in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
-        shaft = scene.shaft_index(scene.gear(name).shaft)
-        arm = line.point - rotors[shaft].center
-        gradient[0, shaft] += side * np.concatenate([across, np.cross(arm, across)])
-        gradient[1, shaft, ROTATION] += side * sign * radius
-    return gradient.reshape(2, 6 * len(rotors))
+    rolled = np.zeros(6)
+    rolled[ROTATION] = sign * radius
+
+    def slid(center: FloatArray) -> FloatArray:
+        return np.concatenate([across, np.cross(line.point - center, across)])
+
+    sliding = gear_row(scene, rotors, [(mesh.driver, slid), (mesh.driven, lambda c: -slid(c))])
+    rolling = gear_row(scene, rotors, [(mesh.driver, lambda _: rolled), (mesh.driven, lambda _: -rolled)])
+    return np.stack([sliding, rolling])
 
 
 def mesh_axes(
@@ -108,9 +112,10 @@ def mesh_axes(
     flanks: Flanks,
 ) -> list[MeshAxes]:
     """Return each mesh's table axes and how far the nominal force moves along them on the supports."""
-    bends = freedoms.place % 6 != ROTATION
+    bends = ~freedoms.turns
     moves = freedoms.keep(supports.motion)
-    compliance = np.linalg.pinv(supports.matrix(supports.stiffness, moves, moves)[np.ix_(bends, bends)])
+    held = supports.matrix(supports.stiffness, moves, moves) + elastic_matrices(rotors, freedoms)[0]
+    compliance = np.linalg.pinv(held[np.ix_(bends, bends)])
     found = []
     for index, mesh in enumerate(scene.meshes):
         line, sense, force = lines[index], senses[index], float(flanks.nominal_force[index])

@@ -6,14 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from dynamics.errors import InputError
+from dynamics.system.columns import mass_terms
 from dynamics.system.connections import Connections, gather_connections
+from dynamics.system.effects import BendingShaft
+from dynamics.system.effects.flexible_shafts import FlexibleShafts
 from dynamics.system.effects.ledger import EffectLedger, keep_ledger, with_mesh_effects
 from dynamics.system.flanks import Flanks, flank_laws, with_coast_flanks
-from dynamics.system.freedoms import Freedoms, find_freedoms, mass_diagonal
+from dynamics.system.freedoms import Freedoms, find_freedoms
 from dynamics.system.loaded_meshes import loaded_meshes
 from dynamics.system.mechanism import GIVE_INERTIA, Mechanism
 from dynamics.system.mesh_axes import mesh_axes
 from dynamics.system.rotor import Rotor
+from dynamics.system.shaft_bending import bending_shafts, with_elastic
 from dynamics.system.supported_rotors import supported_rotors
 from dynamics.system.turning_rotors import turning_rotors
 
@@ -48,7 +52,9 @@ def decide_model(mechanism: Mechanism) -> Model:
         If a choice is unknown, a free direction has no inertia, or a table does not fit its mesh.
     """
     flanks = _flanks(mechanism)
-    ledger = _on_rotors(mechanism)
+    bending = bending_shafts(mechanism, flanks)
+    ledger = _on_rotors(mechanism, bending)
+    mechanism = _with_flexible_shafts(mechanism, bending, ledger)
     freedoms = find_freedoms(mechanism.rotors, mechanism.kinematics, ledger)
     _check_mass(freedoms, mechanism.rotors)
     connections = gather_connections(mechanism.scene, mechanism.rotors)
@@ -64,12 +70,25 @@ def _flanks(mechanism: Mechanism) -> Flanks:
     return flank_laws(scene, kinematics, mechanism.nominal_force, mechanism.polar_inertia)
 
 
-def _on_rotors(mechanism: Mechanism) -> EffectLedger:
+def _on_rotors(mechanism: Mechanism, bending: Sequence[BendingShaft]) -> EffectLedger:
     """Decide the effects of rotors."""
     scene, rotors = mechanism.scene, mechanism.rotors
     turns = turning_rotors(scene, mechanism.kinematics, rotors)
     forces, loads = mechanism.nominal_force, mechanism.bearing_load
-    return keep_ledger(scene.effects, supported_rotors(scene, rotors, mechanism.lines, forces, loads, turns))
+    found = supported_rotors(scene, rotors, mechanism.lines, forces, loads, turns, bending)
+    return keep_ledger(scene.effects, found)
+
+
+def _with_flexible_shafts(
+    mechanism: Mechanism, bending: Sequence[BendingShaft], ledger: EffectLedger
+) -> Mechanism:
+    """Give the shafts on which it is on their elastic coordinates."""
+    names = [shaft.name for shaft in mechanism.scene.shafts]
+    on = [ledger.on(FlexibleShafts().name, name) for name in names]
+    if not any(on):
+        return mechanism
+    pairs = zip(on, bending, strict=True)
+    return with_elastic(mechanism, [shaft.elastic if flexible else None for flexible, shaft in pairs])
 
 
 def _on_meshes(
@@ -86,6 +105,6 @@ def _on_meshes(
 
 def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:
     """Every free direction needs inertia."""
-    for name, value in zip(freedoms.name, mass_diagonal(rotors)[freedoms.place], strict=True):
+    for name, value in zip(freedoms.name, mass_terms(rotors)[0][freedoms.place], strict=True):
         if value <= 0.0:
             raise InputError(f"inertia of {name}", float(value), "above 0", GIVE_INERTIA)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dynamics.system.columns import column_count, rigid_motion
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.rotor import Rotor
 from dynamics.types import FloatArray, IntArray
@@ -13,22 +14,12 @@ from dynamics.types import FloatArray, IntArray
 PLANET_KINDS = 5  # x, y, z, tilt_x, tilt_y: the carrier takes a planet along in these, not in its rotation
 
 
-def rigid_motion(arm: FloatArray) -> FloatArray:
-    """Return (3, 6): displacement of a point at `arm` (3,) from a body's centre per freedom of the body.
-
-    u_point = u + r x arm for the small rotation r.
-    """
-    x, y, z = arm
-    cross = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
-    return np.hstack([np.eye(3), cross])
-
-
 def carried_motion(rotors: Sequence[Rotor], free: IntArray) -> FloatArray:
-    """Return (6 r, 6 r): what all freedoms do where only the places `free` move on their own.
+    """Return (N, N): what all freedoms do where only the places `free` move on their own.
 
     What is not free goes with the carrier on a planet and with nothing elsewhere.
     """
-    motion = np.eye(6 * len(rotors))
+    motion = np.eye(column_count(rotors))
     for index, rotor in enumerate(rotors):
         if rotor.carrier is None:
             continue
@@ -41,7 +32,7 @@ def carried_motion(rotors: Sequence[Rotor], free: IntArray) -> FloatArray:
 
 
 def kinematic_vectors(rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
-    """Return (k, 6 r): motion of all rotors per radian of each law, planets' centres with their carriers.
+    """Return (k, N): motion of all rotors per radian of each law, planets' centres with their carriers.
 
     In the frame of a carrier its planets stand still in the kinematic motion. These vectors are that motion
     seen from where the frame was: what a little more rotation of the law does to the freedoms, and what an
@@ -55,7 +46,9 @@ def kinematic_vectors(rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatA
             arm = rotor.center - rotors[rotor.carrier].center
             vectors[:, index, 0] = -arm[1] * ratio[rotor.carrier]
             vectors[:, index, 1] = arm[0] * ratio[rotor.carrier]
-    return vectors.reshape(ratio.shape[1], 6 * len(rotors))
+    full = np.zeros((ratio.shape[1], column_count(rotors)))  # elastic coordinates rest
+    full[:, : 6 * len(rotors)] = vectors.reshape(ratio.shape[1], 6 * len(rotors))
+    return full
 
 
 def turning_inertia(rotors: Sequence[Rotor]) -> FloatArray:

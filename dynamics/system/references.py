@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from dynamics.joints import ImposedRotation
 from dynamics.system.arrays import Drives, Loads, Reference
+from dynamics.system.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
 from dynamics.system.connections import Connections
-from dynamics.system.freedoms import ROTATION, Freedoms, mass_diagonal
+from dynamics.system.freedoms import ROTATION, Freedoms
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.law_arrays import pack_laws, revolutions
 from dynamics.system.mechanism import Mechanism
 from dynamics.system.motion_check import check_loads
 from dynamics.system.planets import carried_motion
+from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
 
@@ -21,7 +25,7 @@ from dynamics.types import FloatArray
 def lay_out_reference(
     scene: Scene, kinematics: Kinematics, freedoms: Freedoms, vectors: FloatArray
 ) -> Reference:
-    """Lay out the kinematic motion; `vectors` (k, 6 r) are the laws' kinematic vectors."""
+    """Lay out the kinematic motion; `vectors` (k, N) are the laws' kinematic vectors."""
     laws = [part.speed for part in scene.references]
     turned = [revolutions(law) for law in laws]
     free = [-1] * len(scene.drives) + [
@@ -47,18 +51,20 @@ def lay_out_reference(
     )
 
 
-def lay_out_loads(scene: Scene, kinematics: Kinematics, freedoms: Freedoms) -> Loads:
-    """Lay out the load torques: each against the sense of its shaft."""
+def lay_out_loads(mechanism: Mechanism, freedoms: Freedoms) -> Loads:
+    """Lay out the load torques: each against the sense of its shaft, where it acts along that."""
+    scene, kinematics, rotors = mechanism.scene, mechanism.kinematics, mechanism.rotors
     check_loads(scene, kinematics)
-    direction = np.zeros((len(scene.loads), len(scene.shafts), 6))
+    direction = np.zeros((len(scene.loads), column_count(rotors)))
     for row, load in enumerate(scene.loads):
         shaft = scene.shaft_index(load.shaft)
-        direction[row, shaft, ROTATION] = -kinematics.sense[shaft]
-    on_drive = direction[:, list(kinematics.law_shaft), ROTATION] * np.array(kinematics.rigid)
+        direction[row] -= kinematics.sense[shaft] * turn_row(rotors, shaft, load.position)
+    rotation = direction[:, 6 * np.arange(len(rotors)) + ROTATION]
+    on_drive = direction @ _own_motions(mechanism).T * np.array(kinematics.rigid)
     return Loads(
         pack_laws([load.torque for load in scene.loads]),
-        freedoms.keep(direction.reshape(len(scene.loads), 6 * len(scene.shafts))),
-        np.ascontiguousarray(direction[:, :, ROTATION] @ kinematics.float_ratio),
+        freedoms.keep(direction),
+        np.ascontiguousarray(rotation @ kinematics.float_ratio),
         np.ascontiguousarray(on_drive),
     )
 
@@ -85,25 +91,55 @@ def lay_out_drives(
         strains = freedoms.keep(couplings.motion)
         stiffness += couplings.matrix(couplings.stiffness, twisted, strains)
         damping += couplings.matrix(couplings.damping, twisted, strains)
-    for law, drive in enumerate(scene.drives):
-        if drive.stiffness is not None:
-            column = freedoms.find(kinematics.law_shaft[law], ROTATION)
-            stiffness[law, column], damping[law, column] = -drive.stiffness, -drive.damping
+    springs, dampers = elastic_terms(mechanism.rotors)
+    stiffness += (turned * springs) @ freedoms.motion
+    damping += (turned * dampers) @ freedoms.motion
+    for law, drive, row in drive_springs(scene, kinematics, mechanism.rotors, freedoms):
+        stiffness[law] -= (drive.stiffness or 0.0) * row
+        damping[law] -= drive.damping * row
     return Drives(
         np.ascontiguousarray(turned @ gradient.T),
         np.ascontiguousarray(stiffness),
         np.ascontiguousarray(damping),
-        np.ascontiguousarray(turned * mass_diagonal(mechanism.rotors) @ mechanism.vectors.T),
+        np.ascontiguousarray(times_mass(mechanism.rotors, turned) @ mechanism.vectors.T),
         np.einsum("bka,bk,bk->a", strained, supports.stiffness, supports.error) + preloaded,
     )
 
 
 def _turned_alone(mechanism: Mechanism, freedoms: Freedoms) -> FloatArray:
-    """Motion of all rotors per radian of each rigid drive's shaft alone, (k, 6 r); 0 for other laws."""
+    """Motion of all rotors per radian of each rigid drive's shaft alone, (k, N); 0 for other laws."""
     kinematics = mechanism.kinematics
-    turned = np.zeros((len(kinematics.law_shaft), 6 * len(mechanism.rotors)))
-    own = carried_motion(mechanism.rotors, freedoms.place)
-    for law, shaft in enumerate(kinematics.law_shaft):
+    turned = np.zeros((len(kinematics.law_shaft), column_count(mechanism.rotors)))
+    carried = carried_motion(mechanism.rotors, freedoms.place)
+    for law, motion in enumerate(_own_motions(mechanism)):
         if kinematics.rigid[law]:
-            turned[law] = own[:, 6 * shaft + ROTATION]
+            turned[law] = carried @ motion
     return turned
+
+
+def _own_motions(mechanism: Mechanism) -> FloatArray:
+    """Motion of each law's shaft per radian at the place where its rotation is imposed, (k, N).
+
+    Of all motions of a flexible shaft with that rotation the one that shares no kinetic energy with its
+    elastic coordinates: the work on it leaves out their accelerations.
+    """
+    rotors = mechanism.rotors
+    found = np.zeros((len(mechanism.kinematics.law_shaft), column_count(rotors)))
+    for law, shaft in enumerate(mechanism.kinematics.law_shaft):
+        found[law, 6 * shaft + ROTATION] = 1.0
+        elastic = rotors[shaft].elastic
+        if elastic is not None:
+            found[law, elastic_columns(rotors, shaft)] = -elastic.turned / elastic.mass
+    return found
+
+
+def drive_springs(
+    scene: Scene, kinematics: Kinematics, rotors: Sequence[Rotor], freedoms: Freedoms
+) -> list[tuple[int, ImposedRotation, FloatArray]]:
+    """Return the law of each drive with a spring, the drive, and the rotation it strains per freedom (n,)."""
+    found = []
+    for law, drive in enumerate(scene.drives):
+        if drive.stiffness is not None:
+            shaft = kinematics.law_shaft[law]
+            found.append((law, drive, freedoms.keep(turn_row(rotors, shaft, drive.position))))
+    return found

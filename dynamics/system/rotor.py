@@ -1,4 +1,4 @@
-"""A rotor: a shaft with the gears on it and the bushings under it, as one rigid body."""
+"""A rotor: a shaft with the gears on it and the bushings under it, one body, rigid or elastic."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from dynamics.bodies import Inertia, Shaft
+from dynamics.bodies import ElasticShaft, Inertia, Shaft
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.system.scene import Scene, on_axis
 from dynamics.types import FloatArray
@@ -17,7 +17,7 @@ Support = TypeVar("Support", Bushing, PlanetBearing)
 
 @dataclass(frozen=True)
 class Rotor:
-    """One rigid body.
+    """One body: six rigid freedoms, and the elastic coordinates of its shaft.
 
     Attributes
     ----------
@@ -36,6 +36,8 @@ class Rotor:
         The same for a planet: a rotor off the carrier's axis, which the carrier takes along.
     curved : tuple of ((5, 5) array, float)
         Typical stiffness of what bearings do that is not linear, and their levers.
+    elastic : ElasticShaft or None
+        How its shaft bends and twists; None: rigid.
     """
 
     shaft: Shaft
@@ -46,11 +48,27 @@ class Rotor:
     frame: int | None
     carrier: int | None
     curved: tuple[tuple[FloatArray, float], ...] = ()
+    elastic: ElasticShaft | None = None
 
     @property
     def supports(self) -> tuple[Bushing | PlanetBearing, ...]:
         """All supports."""
         return (*self.bushings, *self.planet_bearings)
+
+    @property
+    def elastic_count(self) -> int:
+        """Number of elastic coordinates."""
+        return 0 if self.elastic is None else self.elastic.mass.size
+
+    @property
+    def rigid_kinds(self) -> tuple[str, ...]:
+        """Rigid freedoms that bending needs: it is measured against them."""
+        bends = self.elastic is not None and self.elastic.bends
+        return ("x", "y", "tilt_x", "tilt_y") if bends else ()
+
+    def on_shaft(self, position: float) -> float:
+        """Return the place on the shaft nearest to `position`, m from its left end."""
+        return min(max(position, 0.0), self.shaft.length)
 
     def lever(self, support: Bushing | PlanetBearing) -> float:
         """Axial distance of `support` from the centre of mass, m."""
@@ -97,7 +115,7 @@ class Rotor:
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
     """Gather what belongs to `shaft`."""
     gears = [gear for gear in scene.gears if gear.shaft == shaft.name]
-    parts = [(shaft.inertia, shaft.length / 2.0), *((gear.inertia, gear.position) for gear in gears)]
+    parts = [*shaft.cylinders, *((gear.inertia, gear.position) for gear in gears)]
     mass = sum(part.mass for part, _ in parts)
     along = sum(part.mass * place for part, place in parts) / mass if mass > 0.0 else shaft.length / 2.0
     transverse = sum(part.transverse + part.mass * (place - along) ** 2 for part, place in parts)

@@ -8,19 +8,19 @@ import numpy as np
 
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.joints.seat import SEAT
-from dynamics.system.coupling_rows import section
+from dynamics.system.columns import section, section_rows
 from dynamics.system.rotor import Rotor
 from dynamics.types import FloatArray
 
 
 def seat_motion(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBearing) -> FloatArray:
-    """Return the strains of a support of rotor `index` per freedom, (5, 6 r): x, y, z, tilt_x, tilt_y.
+    """Return the strains of a support of rotor `index` per freedom, (5, N): x, y, z, tilt_x, tilt_y.
 
     Of a planet bearing: the motion of the planet's section less that of the pin, which goes with the carrier.
     """
-    rotor, row = rotors[index], np.zeros((SEAT, 6 * len(rotors)))
+    rotor = rotors[index]
     z = rotor.shaft.origin[2] + support.position
-    row[:, 6 * index : 6 * index + 6] = section(rotor, np.array([*rotor.center[:2], z]))[:SEAT]
+    row = section_rows(rotors, index, z)[:SEAT]
     if isinstance(support, PlanetBearing):
         carrier = carrier_of(rotor, support)
         pin = section(rotors[carrier], np.array([*rotor.center[:2], z]))[:SEAT]

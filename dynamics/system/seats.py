@@ -9,6 +9,7 @@ import numpy as np
 
 from dynamics.joints import Bushing, Housing, PlanetBearing
 from dynamics.joints.seat import SEAT
+from dynamics.system.columns import column_count
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
 from dynamics.system.seat_motion import seat_axes, seat_error, seat_motion
@@ -33,7 +34,7 @@ class Seats:
         on planet bearings, whose pins stay in the carrier's.
     group : tuple of (str, slice)
         Parts of the matrix that nothing couples: a bushing or a housing, and its rows.
-    motion : (5 s, 6 r) array
+    motion : (5 s, N) array
         Strain per freedom: x, y, z, tilt_x, tilt_y of the shaft's section there, less those of a pin.
     stiffness, damping : (5 s, 5 s) arrays
         Of bearing and housing in series.
@@ -71,7 +72,7 @@ def gather_seats(scene: Scene, rotors: Sequence[Rotor], names: Sequence[str]) ->
     order = [*housed, *(name for name in names if name in chosen and name not in housed)]
     found = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.supports}
     size = SEAT * len(order)
-    motion, preload = np.zeros((size, 6 * len(rotors))), np.zeros(size)
+    motion, preload = np.zeros((size, column_count(rotors))), np.zeros(size)
     stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
     for seat, name in enumerate(order):
         index, part = found[name]

@@ -85,7 +85,7 @@ def spatial_elements(
 ) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
     """Return the elements `plain` with those of such meshes replaced, each at its place, and their laws.
 
-    `vectors` (k, 6 r) are the kinematic ones, along which flanks slide but keep their deflection.
+    `vectors` (k, N) are the kinematic ones, along which flanks slide but keep their deflection.
     """
     elements: list[Element] = []
     found: list[SpatialFlank] = []

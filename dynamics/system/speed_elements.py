@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.forces.element_laws import Law
 from dynamics.forces.speed_torque import SpeedTorqueLaws, pack_speed_torques
+from dynamics.system.columns import column_count, turn_row
 from dynamics.system.elements import Element
 from dynamics.system.kinematics import Kinematics
+from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
 
-ROTATION = 5
 
-
-def speed_elements(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Element, ...], SpeedTorqueLaws]:
+def speed_elements(
+    scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics
+) -> tuple[tuple[Element, ...], SpeedTorqueLaws]:
     """Return one element per speed torque, and their laws.
 
     Its coordinate is the rotation in the shaft's sense times a radius, and its rate in the kinematic motion
@@ -28,8 +32,8 @@ def speed_elements(scene: Scene, kinematics: Kinematics) -> tuple[tuple[Element,
         if sense == 0:
             field = f"speed_torques[{place}].shaft"
             raise InputError(field, part.shaft, "a shaft that turns", "A held shaft needs no load.")
-        gradient = np.zeros((1, 6 * len(scene.shafts)))
-        gradient[0, 6 * shaft + ROTATION] = sense * radius
+        gradient = np.zeros((1, column_count(rotors)))
+        gradient[0] += sense * radius * turn_row(rotors, shaft, part.position)
         drift = sense * radius * kinematics.float_ratio[shaft][None, :]
         found.append(Element(Law.SPEED_TORQUE, place, -1, gradient, np.zeros(1), drift))
     return tuple(found), pack_speed_torques(scene.speed_torques, radius)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.system.bearing_elements import nonlinear_worths
-from dynamics.system.effects import MeshOnRotor, SupportedRotor, TurningRotor
+from dynamics.system.effects import BendingShaft, MeshOnRotor, SupportedRotor, TurningRotor
 from dynamics.system.line_of_action import LineOfAction
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
@@ -22,6 +22,7 @@ def supported_rotors(
     forces: FloatArray,
     loads: dict[str, float],
     turns: Sequence[TurningRotor],
+    bending: Sequence[BendingShaft],
 ) -> list[SupportedRotor]:
     """Gather what the effects decide on; a carrier feels the meshes of its planets at their pins."""
     meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
@@ -50,6 +51,7 @@ def supported_rotors(
             tuple(on_rotor),
             tuple(worth for name, worth in clearances if name == rotor.shaft.name),
             turn,
+            bent,
         )
-        for rotor, on_rotor, turn in zip(rotors, meshes, turns, strict=True)
+        for rotor, on_rotor, turn, bent in zip(rotors, meshes, turns, bending, strict=True)
     ]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.joints import Bushing, PlanetBearing
+from dynamics.system.columns import column_count
 from dynamics.system.rotor import Rotor
 from dynamics.system.seat_motion import seat_error, seat_motion
 from dynamics.types import FloatArray
@@ -23,7 +24,7 @@ class Supports:
     frame : tuple of int or None
         Rotor of the carrier whose turning frame the ground is seen from; None: forces are in the fixed frame
         as they are, or, of a planet bearing, stay in the carrier's.
-    motion : (b, 3, 6 r) array
+    motion : (b, 3, N) array
         Strain per freedom: displacement of the axis there, less that of the pin on a planet bearing.
     stiffness, damping : (b, 3) arrays
         N/m, N s/m.
@@ -61,7 +62,7 @@ def gather_supports(rotors: Sequence[Rotor], seated: frozenset[str]) -> Supports
     return Supports(
         tuple(part.name for part in parts),
         (*(rotors[index].frame for index, _ in on_ground), *(None for _ in on_pins)),
-        np.array(rows).reshape(-1, 3, 6 * len(rotors)),
+        np.array(rows).reshape(-1, 3, column_count(rotors)),
         np.array(stiffness).reshape(-1, 3),
         np.array(damping).reshape(-1, 3),
         np.array(errors).reshape(-1, 3),

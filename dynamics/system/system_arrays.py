@@ -10,28 +10,32 @@ import numpy as np
 from dynamics.forces.by_address import by_address
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.connections import linear_matrices
+from dynamics.system.columns import column_count, times_mass, turn_row
+from dynamics.system.connections import elastic_matrices, linear_matrices
 from dynamics.system.effects import FREEDOMS
 from dynamics.system.elements import Element, gradients, pack_elements
-from dynamics.system.freedoms import ROTATION, Freedoms, mass_diagonal, shared_blocks
+from dynamics.system.freedoms import ROTATION, Freedoms, shared_blocks
 from dynamics.system.kinematics import Kinematics, mesh_shafts
 from dynamics.system.model import Model
-from dynamics.system.references import lay_out_drives, lay_out_loads, lay_out_reference
+from dynamics.system.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
 
 
 def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
-    """Reduce every six-freedom array to the free directions."""
+    """Reduce every array over all freedoms to the free directions."""
     mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
     scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
     vectors = mechanism.vectors
     stiffness, damping, constant = linear_matrices(joined, freedoms)
-    _add_drive_springs(scene, kinematics, freedoms, stiffness, damping)
-    full_mass = mass_diagonal(rotors)
-    mass = freedoms.motion.T @ (full_mass[:, None] * freedoms.motion)
-    gradient = gradients(elements, 6 * len(rotors))
+    own_stiffness, own_damping = elastic_matrices(rotors, freedoms)
+    stiffness, damping = stiffness + own_stiffness, damping + own_damping
+    for _, drive, row in drive_springs(scene, kinematics, rotors, freedoms):
+        stiffness += (drive.stiffness or 0.0) * np.outer(row, row)
+        damping += drive.damping * np.outer(row, row)
+    mass = freedoms.motion.T @ np.ascontiguousarray(times_mass(rotors, freedoms.motion.T).T)
+    gradient = gradients(elements, column_count(rotors))
     scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
     packed = pack_elements(elements, laws, len(scene.references))
     along = direction[packed.first[: len(scene.meshes)]]
@@ -45,39 +49,29 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
         direction,
         freedoms.keep(_turns(scene, rotors, kinematics)),
         constant,
-        freedoms.keep(-full_mass * vectors),
-        np.ascontiguousarray((vectors * full_mass) @ vectors.T),
+        freedoms.keep(-times_mass(rotors, vectors)),
+        np.ascontiguousarray(times_mass(rotors, vectors) @ vectors.T),
         lay_out_drives(mechanism, freedoms, joined, gradient),
         scale,
         scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
         packed,
         lay_out_reference(scene, kinematics, freedoms, vectors),
-        lay_out_loads(scene, kinematics, freedoms),
+        lay_out_loads(mechanism, freedoms),
     )
     return by_address(arrays)
 
 
-def _add_drive_springs(
-    scene: Scene, kinematics: Kinematics, freedoms: Freedoms, stiffness: FloatArray, damping: FloatArray
-) -> None:
-    """Add the springs between drives and their shafts."""
-    for shaft, drive in zip(kinematics.law_shaft, scene.drives, strict=False):
-        if drive.stiffness is not None:
-            place = freedoms.find(shaft, ROTATION)
-            stiffness[place, place] += drive.stiffness
-            damping[place, place] += drive.damping
-
-
 def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
-    """Return the derivatives of each position, (m, 6 r): the driver's rotation against its carrier's."""
-    turn = np.zeros((len(scene.meshes), len(rotors), 6))
+    """Return the derivatives of each position, (m, N): the driver's rotation against its carrier's."""
+    turn = np.zeros((len(scene.meshes), column_count(rotors)))
     for row, mesh in enumerate(scene.meshes):
         driver, _, carrier = mesh_shafts(scene, row)
-        rate = kinematics.mesh_sense[row] * scene.gear(mesh.driver).teeth / (2.0 * math.pi)
-        turn[row, driver, ROTATION] = rate
+        gear = scene.gear(mesh.driver)
+        rate = kinematics.mesh_sense[row] * gear.teeth / (2.0 * math.pi)
+        turn[row] += rate * turn_row(rotors, driver, gear.position)
         if carrier is not None:
-            turn[row, carrier, ROTATION] -= rate
-    return turn.reshape(len(scene.meshes), 6 * len(rotors))
+            turn[row, 6 * carrier + ROTATION] -= rate
+    return turn
 
 
 def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatArray:
@@ -93,4 +87,9 @@ def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatA
             radius[rotor.carrier] = max(radius[rotor.carrier], float(np.hypot(arm[0], arm[1])))
     scale = np.ones((len(rotors), len(FREEDOMS)))
     scale[:, 3:] = np.where(radius > 0.0, radius, largest)[:, None]
-    return np.ascontiguousarray(scale.ravel()[freedoms.place])
+    elastic = [
+        np.where(rotor.elastic.twists, own[ROTATION], 1.0)
+        for rotor, own in zip(rotors, scale, strict=True)
+        if rotor.elastic is not None
+    ]
+    return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic])[freedoms.place])

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from dynamics.forces.element_laws import Law
 from dynamics.forces.turning import TurningLaws
+from dynamics.system.columns import column_count
 from dynamics.system.effects.ledger import EffectLedger
 from dynamics.system.elements import Element
 from dynamics.system.freedoms import ROTATION, Freedoms
@@ -15,13 +17,15 @@ from dynamics.system.kinematics import Kinematics
 from dynamics.system.rotor import Rotor
 from dynamics.system.scene import Scene
 from dynamics.system.seats import Seats
+from dynamics.system.spun_shaft import spun_pairs
 from dynamics.system.supports import Supports
+from dynamics.system.turning_rotors import largest_speeds
 from dynamics.types import FloatArray
 
 LATERAL, TILT = (0, 1), (3, 4)
 Factors = tuple[float, float, float, float, float]
 Part = tuple[FloatArray, Factors, int]
-"""Rows (2, 6 r) across the axis, factors of the law, rotor."""
+"""Rows (2, N) across the axis, factors of the law, rotor."""
 
 
 def turning_elements(
@@ -36,7 +40,7 @@ def turning_elements(
 ) -> tuple[tuple[Element, ...], TurningLaws]:
     """Return the elements of all rotors whose effect is on, and their laws.
 
-    `vectors` (k, 6 r) are the laws' kinematic vectors; a radius makes lengths of angles. A shaft of spin
+    `vectors` (k, N) are the laws' kinematic vectors; a radius makes lengths of angles. A shaft of spin
     w in a frame of speed W (0: fixed) feels, with J = z x,
 
         lateral:  m (2 W J u' - W^2 u),     tilt:  (2 I_t W - I_p w) J a' + (I_p w W - I_t W^2) a,
@@ -45,18 +49,23 @@ def turning_elements(
     """
     lever = max((gear.base_radius for gear in scene.gears), default=1.0)
     found: list[Part] = []
+    free = np.any(kinematics.float_ratio[:, len(scene.drives) :] != 0.0, axis=1)
+    speed = largest_speeds(scene, kinematics)
     for index, rotor in enumerate(rotors):
         if not ledger.on("gyroscopic", rotor.shaft.name):
             continue
         mass, polar, across = rotor.inertia.mass, rotor.inertia.polar, rotor.inertia.transverse
-        own = np.eye(6 * len(rotors))[6 * index : 6 * index + 6]
+        own = np.eye(column_count(rotors))[6 * index : 6 * index + 6]
         if rotor.frame is not None:
             found.append((own[list(LATERAL)], (0.0, 2.0 * mass, 0.0, -mass, 0.0), index))
+        if rotor.elastic is not None and rotor.elastic.bends:
+            fastest = math.inf if free[index] else float(speed[index])
+            found += _along_the_shaft(rotors, index, lever, fastest)
+            continue
         tilt = np.array((-polar, 2.0 * across, polar, -across, 0.0)) / lever**2
         found.append((lever * own[list(TILT)], _five(tilt), index))
         found += [(rows, (0.0,) * 4 + (c,), index) for rows, c in _dampers(index, supports, seats, lever)]
     merged = _merged([part for part in found if np.any(freedoms.keep(part[0]))], freedoms)
-    free = np.any(kinematics.float_ratio[:, len(scene.drives) :] != 0.0, axis=1)
     elements = tuple(
         _element(place, rows, rotors[index], index, kinematics, vectors, lever if free[index] else 0.0)
         for place, (rows, _, index) in enumerate(merged)
@@ -66,6 +75,14 @@ def turning_elements(
         np.full(len(merged), lever),
         np.array([free[index] for _, _, index in merged], dtype=np.bool_),
     )
+
+
+def _along_the_shaft(rotors: Sequence[Rotor], index: int, lever: float, speed: float) -> list[Part]:
+    """Return the parts of a shaft in the fixed frame whose tilt differs along it."""
+    return [
+        (lever * rows, (-polar / lever**2, 0.0, 0.0, 0.0, 0.0), index)
+        for rows, polar in spun_pairs(rotors, index, speed)
+    ]
 
 
 def _merged(parts: Sequence[Part], freedoms: Freedoms) -> list[Part]:
@@ -96,7 +113,7 @@ def _element(
     vectors: FloatArray,
     lever: float,
 ) -> Element:
-    """Return an element with its rows `across` (2, 6 r), and with a `lever` a row of the shaft's rotation."""
+    """Return an element with its rows `across` (2, N), and with a `lever` a row of the shaft's rotation."""
     ratio = kinematics.float_ratio
     rows, drift = across, across @ vectors.T
     if lever > 0.0:
@@ -109,7 +126,7 @@ def _element(
 
 
 def _dampers(index: int, supports: Supports, seats: Seats, lever: float) -> list[tuple[FloatArray, float]]:
-    """Rows (2, 6 r) and dampings of what ground dampers of a rotor in a turning frame are.
+    """Rows (2, N) and dampings of what ground dampers of a rotor in a turning frame are.
 
     A bushing's damping matrix, alike in all directions, is a damper at a point of the axis and one of tilt.
     """

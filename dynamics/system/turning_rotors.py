@@ -16,9 +16,7 @@ from dynamics.types import FloatArray
 
 def turning_rotors(scene: Scene, kinematics: Kinematics, rotors: Sequence[Rotor]) -> tuple[TurningRotor, ...]:
     """Return what turning does to each rotor, at the largest speeds of the run."""
-    ratio = kinematics.float_ratio
-    extreme = np.array([abs(part.speed.extreme) for part in scene.references])
-    speed = np.abs(ratio) @ extreme
+    ratio, speed = kinematics.float_ratio, largest_speeds(scene, kinematics)
     free = np.any(ratio[:, len(scene.drives) :] != 0.0, axis=1)
     lateral = [_over_lateral(rotor, speed) for rotor in rotors]
     found = []
@@ -36,6 +34,12 @@ def turning_rotors(scene: Scene, kinematics: Kinematics, rotors: Sequence[Rotor]
             )
         )
     return tuple(found)
+
+
+def largest_speeds(scene: Scene, kinematics: Kinematics) -> FloatArray:
+    """Return the largest speed of each shaft in the kinematic motion, (s,), rad/s."""
+    extreme = np.array([abs(part.speed.extreme) for part in scene.references])
+    return np.asarray(np.abs(kinematics.float_ratio) @ extreme)
 
 
 def _over_lateral(rotor: Rotor, speed: FloatArray) -> float:

@@ -2,6 +2,7 @@
 
 from dynamics.system.effects.effect import (
     FREEDOMS,
+    BendingShaft,
     Effect,
     LoadedMesh,
     MeshAxes,
@@ -18,6 +19,7 @@ __all__ = [
     "FREEDOMS",
     "LEFT_OUT",
     "MESH_EFFECTS",
+    "BendingShaft",
     "Effect",
     "LoadedMesh",
     "MeshAxes",

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
+from dynamics.bodies import ElasticShaft
+
 FREEDOMS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
 
 
@@ -51,6 +53,31 @@ class TurningRotor:
 
 
 @dataclass(frozen=True)
+class BendingShaft:
+    """What a shaft does beside its motion as a rigid body under the nominal forces.
+
+    Attributes
+    ----------
+    refusal : str
+        Why it is rigid; empty: it can bend.
+    elastic : ElasticShaft or None
+        Its elastic coordinates; None: it is rigid.
+    moved : float
+        Largest displacement at a mesh along the line of action that its elasticity adds, m.
+    share : float
+        That over what the mesh itself yields.
+    misaligned : float
+        Largest misalignment that it adds, over the face, m.
+    """
+
+    refusal: str = "the shaft has no sections: its elasticity is not known"
+    elastic: ElasticShaft | None = None
+    moved: float = 0.0
+    share: float = 0.0
+    misaligned: float = 0.0
+
+
+@dataclass(frozen=True)
 class SupportedRotor:
     """What effects decide on: stiffness of a rotor's supports, and the meshes it carries.
 
@@ -68,6 +95,7 @@ class SupportedRotor:
     nonlinear : tuple of float
         For each law of its bearings that is not linear, what its tangent misses of the displacement, m.
     turning : TurningRotor
+    bending : BendingShaft
     """
 
     name: str
@@ -79,6 +107,7 @@ class SupportedRotor:
     meshes: tuple[MeshOnRotor, ...]
     nonlinear: tuple[float, ...] = ()
     turning: TurningRotor = TurningRotor()
+    bending: BendingShaft = BendingShaft()
 
 
 @dataclass(frozen=True)

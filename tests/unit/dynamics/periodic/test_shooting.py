@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, repeated, spring_table, square_wave_table, with_bushings
 from planetary_scenes import MESH_STIFFNESS, driven_scene, planetary_scene, published_set
 
@@ -41,10 +42,14 @@ def on_rolling_bearings(scene):
     return replace(scene, rolling_contacts=contacts)
 
 
-@pytest.mark.parametrize("bearings", ["springs", "rolling"])
+@pytest.mark.parametrize("bearings", ["springs", "rolling", "springs under flexible shafts"])
 def test_a_small_ripple_gives_the_harmonic_response(bearings):
     """The same phases, through all bearings."""
     scene = gear_pair_scene(spring_table(4e8, 1e-8 if bearings == "rolling" else 1e-7))
+    if bearings.endswith("flexible shafts"):
+        scene = flexible_pair(gear=0.07, table=spring_table(4e8, 1e-7))
+        drive = replace(scene.drives[0], position=0.07)  # a shaft that winds up moves the position a little
+        scene = replace(scene, drives=(drive,))
     system = assemble(on_rolling_bearings(scene) if bearings == "rolling" else scene)
     problem = periodic_problem(system, SPEED)
     found = motion(problem, find_orbit(problem, SPEED))

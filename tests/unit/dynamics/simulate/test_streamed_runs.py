@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene
 from planetary_scenes import planetary_scene, published_set
 
@@ -52,6 +53,7 @@ SCENES = {
     "run-up": lambda: replace(run_up(), outputs=Outputs(displacements=True)),
     "free planets": free_planets,
     "backlash": with_backlash,
+    "flexible shafts": lambda: flexible_pair(gear=0.07, duration=0.05, outputs=Outputs(displacements=True)),
     "explicit": lambda: replace(run_up(0.05), integration=Integration(method="explicit")),
     "measured error": lambda: replace(run_up(0.05), integration=Integration(estimate_error=True)),
 }
@@ -119,6 +121,7 @@ def test_a_run_in_memory_can_be_cancelled():
 _CHILD = """
 import sys, time
 sys.path.insert(0, {stand_ins!r})
+from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene
 from dynamics.bodies import TimeLaw
 from dynamics.simulate import simulate_to_file

@@ -1,0 +1,147 @@
+"""One family of elastic motions of a shaft (bending in a plane, torsion, extension), reduced."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh, null_space
+
+from dynamics.bodies.craig_bampton import craig_bampton
+from dynamics.types import FloatArray, IntArray
+
+CUT_OFFS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+"""Up to which multiple of the frequency of interest modes with the interface held may be kept."""
+TRUNCATION = 0.01
+"""Relative error of the frequencies of interest at which enough of them are kept."""
+
+
+@dataclass(frozen=True)
+class ElasticModes:
+    """Coordinates e_j of b uncoupled elastic motions: m_j e_j'' + k_j e_j = what forces do on their shapes.
+
+    Attributes
+    ----------
+    shape : (n, b) array
+        Freedoms of the family per coordinate; the largest displacement (rotation) is 1.
+    mass, stiffness : (b,) arrays
+        Modal: kg and N/m, of torsion kg m^2 and N m/rad.
+    inertial : (b, k) array
+        Coupling in the mass matrix with the k rigid motions: zero unless the rigid motion is that of a
+        held freedom.
+    fixed : int
+        Number of modes with the interface held among what they are made of.
+    limit : float
+        The frequency up to which these were kept, Hz.
+    truncation : float
+        Estimate of the largest relative error of frequencies up to the one of interest: that of the free
+        body against the whole beam. Attached to others it may have somewhat more.
+    """
+
+    shape: FloatArray
+    mass: FloatArray
+    stiffness: FloatArray
+    inertial: FloatArray
+    fixed: int
+    limit: float
+    truncation: float
+
+    @property
+    def frequency(self) -> FloatArray:
+        """Of the free body, or of that with its held freedom at rest, Hz."""
+        return _hertz(self.stiffness / self.mass)
+
+
+def elastic_modes(
+    mass: FloatArray,
+    stiffness: FloatArray,
+    rigid: FloatArray,
+    interface: IntArray,
+    highest: float,
+    held: int = -1,
+) -> ElasticModes:
+    """Reduce a family and split it into its rigid motions and elastic coordinates.
+
+    A Craig-Bampton reduction to the freedoms `interface`, diagonalised: its motions that are orthogonal in
+    mass to the rigid ones, so that rigid motions stay those of the centre of mass. With a freedom `held`,
+    whose motion is imposed, the motions that leave it at rest.
+
+    Parameters
+    ----------
+    mass, stiffness : (n, n) arrays
+    rigid : (n, k) array
+        Motions without strain.
+    interface : (a,) int array
+        Freedoms where forces act.
+    highest : float
+        Frequency of interest, Hz.
+    held : int
+        One of the interface, or -1.
+    """
+    whole = free_frequencies(mass, stiffness, rigid.shape[1], held)
+    place = int(np.flatnonzero(interface == held)[0]) if held >= 0 else -1
+    for cut_off in CUT_OFFS:
+        reduced = craig_bampton(mass, stiffness, interface, cut_off * highest)
+        none = np.zeros((reduced.frequency.size, rigid.shape[1]))
+        motions = np.concatenate([rigid[interface], none])
+        square, vectors = _split(reduced.mass, reduced.stiffness, motions, place)
+        truncation = worst_error(_hertz(square), whole, highest)
+        if truncation <= TRUNCATION:
+            break
+    shape = reduced.motion @ vectors
+    shape = shape / _largest(shape)
+    modal = np.einsum("ij,ik,kj->j", shape, mass, shape)
+    return ElasticModes(
+        shape,
+        modal,
+        modal * square,
+        shape.T @ mass @ rigid if held >= 0 else np.zeros((square.size, rigid.shape[1])),
+        reduced.frequency.size,
+        cut_off * highest,
+        truncation,
+    )
+
+
+def free_frequencies(mass: FloatArray, stiffness: FloatArray, rigid: int, held: int = -1) -> FloatArray:
+    """Return the elastic natural frequencies of a whole family of `rigid` motions without strain, Hz."""
+    kept = np.delete(np.arange(mass.shape[0]), held) if held >= 0 else np.arange(mass.shape[0])
+    own = np.ix_(kept, kept)
+    square = eigh(stiffness[own], mass[own], eigvals_only=True)
+    return _hertz(square if held >= 0 else square[rigid:])
+
+
+def worst_error(found: FloatArray, exact: FloatArray, highest: float) -> float:
+    """Return the largest relative error of the rising frequencies `found` up to `highest`.
+
+    The next one counts too, by the square of how far it is above: errors rise at least so with frequency,
+    and on its bearings a shaft has other frequencies than free.
+    """
+    count = min(int(np.searchsorted(exact, highest, side="right")) + 1, found.size)
+    if count == 0:
+        return 0.0
+    error = np.abs(found[:count] / exact[:count] - 1.0)
+    return float(np.max(error * np.minimum(highest / exact[:count], 1.0) ** 2))
+
+
+def _split(
+    mass: FloatArray, stiffness: FloatArray, rigid: FloatArray, held: int
+) -> tuple[FloatArray, FloatArray]:
+    """Squared circular frequencies and shapes of unit modal mass of the elastic motions."""
+    basis = np.delete(np.eye(mass.shape[0]), held, axis=1) if held >= 0 else null_space(rigid.T @ mass)
+    if basis.shape[1] == 0:
+        return np.zeros(0), basis
+    square, vectors = eigh(basis.T @ stiffness @ basis, basis.T @ mass @ basis)
+    return square, np.asarray(basis @ vectors)
+
+
+def _largest(shape: FloatArray) -> FloatArray:
+    """Return the entry of largest size of each column, with its sign."""
+    if shape.shape[1] == 0:
+        return np.ones(0)
+    return np.asarray(np.take_along_axis(shape, np.argmax(np.abs(shape), axis=0)[None], axis=0)[0])
+
+
+def _hertz(square: FloatArray) -> FloatArray:
+    """Return frequencies from squared circular ones."""
+    return np.asarray(np.sqrt(square) / (2.0 * math.pi))
