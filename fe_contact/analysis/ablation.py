@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.compute_database import Progress, compute_database
-from fe_contact.analysis.request import Checked, check_asked, check_request
+from fe_contact.analysis.compute_database import compute_database
+from fe_contact.analysis.effect_ledger import switched_over
+from fe_contact.analysis.request import Checked, check_request
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import EFFECTS, LedgerEntry
-from fe_contact.effects.flipping import flipped
 from fe_contact.effects.worth import Worth, estimate_worth
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
@@ -206,6 +207,7 @@ effects, progress, cache
         misalignments=misalignments,
         effects=effects,
         receipt="minimal",
+        on_violation="report",
     )
     return ablate_checked(checked, _selected(only), progress or _silent, cache)
 
@@ -245,24 +247,8 @@ def _switched(checked: Checked, entry: LedgerEntry, nominal: Figures, cache: Pat
     """Compute the case with one effect switched over."""
     other = _figures(switched_over(checked, entry.name, "off" if entry.on else "on"), cache)
     pair_of = (nominal, other) if entry.on else (other, nominal)
-    worth = estimate_worth(checked.request.scene, checked.decided, entry.name, EFFECTS)
+    worth = estimate_worth(*checked.judging(entry.name), entry.name, EFFECTS)
     return EffectAblation(entry.name, entry.on, entry.verdict.reason, *pair_of, worth)
-
-
-def switched_over(checked: Checked, name: str, choice: str) -> Checked:
-    """Return the request with one effect on or off and all others as they were decided.
-
-    Raises
-    ------
-    InputError
-        The model cannot be had, as a plane with what acts across the face.
-    """
-    request = checked.request
-    asked = flipped(checked.decided, name, choice)
-    # choices of every effect are explicit now, so that an explicit model has no say about them any more
-    model = "plane_stress" if request.accuracy.model == "plane_stress" else "auto"
-    accuracy = replace(request.accuracy, model=model if asked["face_load_distribution"] == "off" else "auto")
-    return check_asked(replace(request, effects=asked, accuracy=accuracy))
 
 
 def _figures(checked: Checked, cache: Path | None) -> Figures:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from fe_contact.analysis.compute_database import Progress, compute_database
+from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.request import check_request
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
@@ -27,6 +28,7 @@ def analyze(
     center_distance_changes: Sequence[float] = (0.0,),
     effects: Mapping[str, str] | None = None,
     receipt: str = "full",
+    on_violation: str = "repeat",
     case: Json | None = None,
     progress: Progress | None = None,
     cache: Path | None = None,
@@ -58,6 +60,9 @@ def analyze(
     receipt : str
         "full" measures the error of the result by source; "minimal" solves nothing for it: errors are then
         NaN, not estimated, and the receipt says so.
+    on_violation : str
+        What to do where an assumption turns out wrong on the solution (`receipt["assumptions"]`): "repeat"
+        switches the automatic effect on that is needed and solves again, "fail" raises, "report" says so.
     case : dict, optional
         The case as the caller phrased it, echoed into the result and hashed; default: the request in SI
         units.
@@ -76,7 +81,8 @@ def analyze(
     InputError
         A value that cannot be used, by field name.
     MeshError, SolveError
-        No acceptable mesh, or a linear system that cannot be solved.
+        No acceptable mesh, a linear system that cannot be solved, or an assumption that does not hold where
+        `on_violation` is "fail".
     """
     checked = check_request(
         pair,
@@ -92,6 +98,7 @@ def analyze(
         center_distance_changes=center_distance_changes,
         effects=effects,
         receipt=receipt,
+        on_violation=on_violation,
     )
     return compute_database(checked, case or checked.request.to_json(), progress or _silent, cache)
 

@@ -3,33 +3,28 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 
-import numpy as np
-
+from fe_contact.analysis.assumptions import Assumption, check_assumptions, violated
 from fe_contact.analysis.contact_receipt import contact_receipt
+from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
-from fe_contact.analysis.pair_contact import pair_contact
-from fe_contact.analysis.position_nodes import PositionNodes
-from fe_contact.analysis.request import Checked, Request
-from fe_contact.analysis.table_nodes import table_nodes
-from fe_contact.analysis.table_places import Places, table_places
-from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
-from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.planning import Plan, Prediction, expected_error, planned, predict_run
+from fe_contact.analysis.request import Checked, check_asked
+from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, solve_table
+from fe_contact.errors import SolveError
+from fe_contact.planning import expected_error
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import Json
 
-Progress = Callable[[str, float], None]
-SOLVER_VERSION = "4"
+SOLVER_VERSION = "5"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 
@@ -45,99 +40,81 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
         Called as report(stage, fraction).
     cache : Path, optional
         Directory of flank compliances.
+
+    Raises
+    ------
+    SolveError
+        An assumption of the run does not hold and `on_violation` is "fail".
     """
     clock = StageClock()
-    request = checked.request
-    full = request.accuracy.receipt == "full"
-    with clock.stage("planning"):
-        wish = request.pair, request.load, request.accuracy, checked.model
-        plan = planned(*wish, request.alignments, cache)
-        prediction = predict_run(request.pair, plan, checked.model, request.alignments, cache)
-    fine = _places(request, plan, clock, report, cache, coarse=False)
+    full = checked.request.accuracy.receipt == "full"
+    run, found, repeated = _assumed(solve_table(checked, clock, report, cache), clock, report, cache)
     with clock.stage("contact"):
-        nodes = table_nodes(fine, plan, measured=full)
-        report("contact", 0.3)
-        solved = _solved(fine, nodes, plan.load)
-        support = _solved(fine, nodes, plan.support)
-        table = _table(request, fine, nodes, solved, support)
-        found = contact_receipt(solved, support)
-        report("contact", 1.0)
-    judged = unjudged_table(table, fine, plan)
+        contact = contact_receipt(run.solved, run.support)
+    judged = unjudged_table(run.table, run.places, run.plan)
     if full:
-        coarse = _places(request, plan, clock, report, cache, coarse=True)
+        coarse = laid_out(run.checked, run.plan, clock, report, cache, coarse=True)
         with clock.stage("error estimate"):
-            judged = judged_table(table, fine, coarse, solved, nodes, checked, plan)
-        spent = {log_name(prediction.kind, name): seconds for name, seconds in clock.seconds.items()}
-        record(cache, prediction.logged, spent)
-    metadata = _metadata(case, plan, checked, clock, judged.to_json() | found)
-    metadata.receipt["prediction"] = _predicted(prediction, plan, request)
-    return replace(table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+            judged = judged_table(run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan)
+        if not repeated:
+            spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
+            record(cache, run.prediction.logged, spent)
+    with clock.stage("effect ledger"):
+        ledger = effect_ledger(run.checked, cache, found, estimates=full)
+    metadata = _metadata(case, run, clock, judged.to_json() | contact, ledger)
+    metadata.receipt["assumptions"] = [one.to_json() for one in found]
+    metadata.receipt["repeated"] = repeated
+    return replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
 
 
-def _table(
-    request: Request,
-    places: Places,
-    nodes: PositionNodes,
-    solved: list[tuple[ContactProblem, ContactSolution]],
-    support: list[tuple[ContactProblem, ContactSolution]],
-) -> SteDatabase:
-    """Assemble the table, its errors not yet estimated."""
-    position = (np.arange(places.period)[:, None] + nodes.position).ravel()
-    return SteDatabase(
-        position=position,
-        force=request.load,
-        torque=request.torque,
-        misalignment=request.misalignment,
-        center_distance_change=request.center_distance_change,
-        facts=pair_facts(request.pair),
-        period=places.period,
-        error_estimate=np.full((position.size, request.load.size, *places.shape), np.nan),
-        metadata=Metadata(),
-        **table_fields(places, solved),
-        **table_support(places, support),
-    )
+def _assumed(
+    run: SolvedTable, clock: StageClock, report: Progress, cache: Path | None
+) -> tuple[SolvedTable, tuple[Assumption, ...], list[Json]]:
+    """Check what the run took for granted; where that is wrong, do as the caller chose.
+
+    An automatic effect that turns out to be needed is switched on and the table solved again, over the same
+    compliance if the bodies are the same. What was asked for by name is only reported.
+    """
+    repeated: list[Json] = []
+    while True:
+        with clock.stage("assumptions"):
+            found = check_assumptions(run)
+        wrong = violated(found)
+        request = run.checked.request
+        if wrong and request.on_violation == "fail":
+            said = "; ".join(f"{one.what}: {one.reason}" for one in wrong)
+            raise SolveError(f"assumptions that do not hold: {said}")
+        automatic = {entry.name for entry in run.checked.ledger if entry.choice == "auto" and not entry.on}
+        needed = {one.effect: f"{one.what}: {one.reason}" for one in wrong if one.effect in automatic}
+        if not needed or request.on_violation != "repeat":
+            return run, found, repeated
+        before = sum(clock.seconds.values())
+        run = solve_table(_with(run.checked, needed), clock, report, cache, run)
+        repeated.append({"turned_on": needed, "cpu_seconds": sum(clock.seconds.values()) - before})
 
 
-def _predicted(prediction: Prediction, plan: Plan, request: Request) -> Json:
+def _with(checked: Checked, needed: Mapping[str, str]) -> Checked:
+    """Return the request with effects switched on that a run showed to be needed."""
+    request = checked.request
+    reasons = {name: f"on after a run without it: {reason}" for name, reason in needed.items()}
+    spared = {name: reason for name, reason in request.spared.items() if name not in needed}
+    return check_asked(replace(request, spared=spared, turned_on={**request.turned_on, **reasons}))
+
+
+def _predicted(run: SolvedTable) -> Json:
     """Return what was expected of the run before it began, to stand beside what happened."""
-    error = expected_error(request.pair, plan.discretisation, plan.level)
-    return prediction.to_json() | {"error": error.to_json()}
+    error = expected_error(run.checked.request.pair, run.plan.discretisation, run.plan.level)
+    return run.prediction.to_json() | {"error": error.to_json()}
 
 
-def _solved(
-    places: Places, nodes: PositionNodes, load: FloatArray
-) -> list[tuple[ContactProblem, ContactSolution]]:
-    """Solve every place at the positions of all base pitches."""
-    pitches = np.arange(places.period)
-    return [place.solve_pitches(nodes.position, load, pitches) for place in places.places]
-
-
-def _places(
-    request: Request, plan: Plan, clock: StageClock, report: Progress, cache: Path | None, *, coarse: bool
-) -> Places:
-    """Compute or fetch the compliances of both gears, and lay out the table over them."""
-    stage = "error estimate" if coarse else "compliance"
-    report(stage, 0.0)
-    with clock.stage(stage):
-        nominal = pair_contact(request.pair, plan, cache, coarse)
-    report(stage, 1.0)
-    return table_places(request.scene, request.choices, nominal)
-
-
-def _metadata(
-    case: Json,
-    plan: Plan,
-    checked: Checked,
-    clock: StageClock,
-    found: Json,
-) -> Metadata:
+def _metadata(case: Json, run: SolvedTable, clock: StageClock, found: Json, ledger: list[Json]) -> Metadata:
     """Everything about the making of the table; `found` is what was found of its errors and its contact."""
-    receipt = clock.to_json() | found | {"plan": plan.to_json()}
-    if checked.cycle is not None:
-        receipt["predicted"] = checked.cycle.to_json()
+    receipt = clock.to_json() | found | {"plan": run.plan.to_json(), "prediction": _predicted(run)}
+    if run.checked.cycle is not None:
+        receipt["predicted"] = run.checked.cycle.to_json()
     return Metadata(
         case=case,
-        effect_ledger=[entry.to_json() for entry in checked.ledger],
+        effect_ledger=ledger,
         receipt=receipt,
         content_hash=content_hash(case, SOLVER_VERSION, SCHEMA_VERSION),
         software_versions=software_versions(),

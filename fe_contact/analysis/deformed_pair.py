@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.analysis.compute_database import Progress
 from fe_contact.analysis.request import check_one_load
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.checks import integer
 from fe_contact.compliance.deformation_2d import deformed_sections
 from fe_contact.compliance.deformation_3d import deformed_solids

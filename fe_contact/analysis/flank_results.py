@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.analysis.compute_database import SOLVER_VERSION, Progress, software_versions
+from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versions
 from fe_contact.analysis.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.request import Checked, check_one_load
 from fe_contact.analysis.solved_place import checked_positions, solve_place
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata

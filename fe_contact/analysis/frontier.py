@@ -8,11 +8,11 @@ from itertools import product
 
 import numpy as np
 
-from fe_contact.analysis.compute_database import Progress
 from fe_contact.analysis.ladder import RUNGS, Rung
 from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
 from fe_contact.analysis.pareto import knee_of
 from fe_contact.analysis.request import Checked, check_request
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.warm_up import warm_up
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes

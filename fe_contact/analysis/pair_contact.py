@@ -70,12 +70,19 @@ class PairContact:
         With `pitch` (R,), R a multiple of P, there are R rows: position r modulo P in whole pitch `pitch[r]`.
         Rows of one position share its compliance.
         """
+        problem = self.problem(model, position, pitch)
+        return problem, solve_contact(problem, load)
+
+    def problem(
+        self, model: ContactModel, position: FloatArray, pitch: IntArray | None = None
+    ) -> ContactProblem:
+        """Assemble what `solve` solves."""
         problem = self._problem(model, position)
         problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
-        if pitch is not None or model.tooth_gaps:
-            first = np.zeros(position.size, dtype=np.int64)
-            problem = in_pitches(problem, model, first if pitch is None else pitch)
-        return problem, solve_contact(problem, load)
+        if pitch is None and not model.tooth_gaps:
+            return problem
+        first = np.zeros(position.size, dtype=np.int64)
+        return in_pitches(problem, model, first if pitch is None else pitch)
 
     @property
     def in_plane_strain(self) -> PairContact:

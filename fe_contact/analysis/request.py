@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 
+from fe_contact.analysis.spared_effects import spared_effects
 from fe_contact.checks import increasing, integer, positive, within
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth, LedgerEntry, compose
+from fe_contact.effects.sparing import WITHOUT
 from fe_contact.errors import InputError
 from fe_contact.geometry import CLAMPED, ParallelAxes
 from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
@@ -18,6 +20,7 @@ from fe_contact.types import FloatArray, Json
 LARGEST_DEVIATION = 0.01
 """m; larger values of an axis are micrometres given as metres."""
 LARGEST_PERIOD = 1_000_000
+ON_VIOLATION = ("repeat", "fail", "report")
 
 
 @dataclass(frozen=True)
@@ -32,10 +35,15 @@ class Request:
     accuracy : Accuracy
     misalignment, center_distance_change : ndarray
         Table axes, m.
-    pitches : int, optional
-        Base pitches that the table shall cover where teeth differ; None: until all repeats.
     effects : mapping
         Effect name to "on", "off" or "auto".
+    pitches : int, optional
+        Base pitches that the table shall cover where teeth differ; None: until all repeats.
+    on_violation : str
+        What to do where an assumption of the run turns out wrong: "repeat", "fail" or "report".
+    spared, turned_on : mapping of str to str
+        Automatic effects that are left off because the asked accuracy does not need them, or on because a run
+        without them showed that it does, and why.
     """
 
     pair: ParallelAxes
@@ -45,6 +53,13 @@ class Request:
     center_distance_change: FloatArray
     effects: Mapping[str, str] = field(default_factory=dict)
     pitches: int | None = None
+    on_violation: str = "repeat"
+    spared: Mapping[str, str] = field(default_factory=dict)
+    turned_on: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.on_violation not in ON_VIOLATION:
+            raise InputError("on_violation", self.on_violation, f"one of {', '.join(ON_VIOLATION)}")
 
     @property
     def torque(self) -> FloatArray:
@@ -57,13 +72,21 @@ class Request:
         return self.misalignment.size, self.center_distance_change.size
 
     @property
-    def scene(self) -> ContactScene:
-        """What the effects judge by."""
+    def whole_scene(self) -> ContactScene:
+        """What the effects judge by, before any was spared."""
         alignments = self.misalignment, self.center_distance_change
         return ContactScene(self.pair, self.torque, *alignments, pitches=self.pitches)
 
     @property
-    def choices(self) -> dict[str, str]:
+    def scene(self) -> ContactScene:
+        """What the effects judge by: what is spared is not in it."""
+        scene = self.whole_scene
+        for name in self.spared:
+            scene = WITHOUT[name](scene)
+        return scene
+
+    @property
+    def asked_choices(self) -> dict[str, str]:
         """Choice of each effect; an explicit model decides about the face and its finite width."""
         asked = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.accuracy.model)
         if asked is not None:
@@ -71,6 +94,12 @@ class Request:
         if self.effects.get(FaceLoadDistribution.name) == "on":
             return dict(self.effects) | {FiniteWidth.name: "off"}
         return dict(self.effects)
+
+    @property
+    def choices(self) -> dict[str, str]:
+        """Choice of each effect, those that are spared or turned on included."""
+        decided = dict.fromkeys(self.spared, "off") | dict.fromkeys(self.turned_on, "on")
+        return self.asked_choices | decided
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units: what decides the result."""
@@ -82,6 +111,7 @@ class Request:
             "center_distance_change": self.center_distance_change.tolist(),
             "effects": dict(sorted(self.effects.items())),
             "pitches": self.pitches,
+            "on_violation": self.on_violation,
         }
 
 
@@ -102,6 +132,18 @@ class Checked:
         """Every effect "on" or "off", as the whole request decides it."""
         return {entry.name: "on" if entry.on else "off" for entry in self.ledger}
 
+    def judging(self, name: str) -> tuple[ContactScene, dict[str, str]]:
+        """Return the scene and the decisions by which the worth of an effect is estimated.
+
+        Those of a spared effect are of the scene with everything in it: without it there may be no model
+        left that can show it.
+        """
+        request = self.request
+        if name not in request.spared:
+            return request.scene, self.decided
+        _, ledger = compose(request.whole_scene, request.asked_choices, EFFECTS)
+        return request.whole_scene, {entry.name: "on" if entry.on else "off" for entry in ledger}
+
 
 def check_request(
     pair: ParallelAxes,
@@ -119,10 +161,13 @@ def check_request(
     effects: Mapping[str, str] | None = None,
     whole_table: bool = True,
     receipt: str = "full",
+    on_violation: str = "repeat",
+    spare: bool = True,
 ) -> Checked:
     """Check everything that `analyze` is given, without computing anything.
 
-    Parameters are its; `whole_table` = False leaves out the limit on the size of a table.
+    Parameters are its; `whole_table` = False leaves out the limit on the size of a table, `spare` = False the
+    decision about effects that a tolerance does not need, which takes some milliseconds of solving.
 
     Raises
     ------
@@ -137,8 +182,9 @@ def check_request(
         axis("center_distance_changes", center_distance_changes),
         dict(effects or {}),
         None if pitches is None else integer("pitches", pitches, 1, LARGEST_PERIOD),
+        on_violation,
     )
-    return check_asked(request, whole_table=whole_table)
+    return check_asked(request, whole_table=whole_table, spare=spare)
 
 
 def check_one_load(
@@ -167,22 +213,51 @@ def check_one_load(
         center_distance_changes=[center_distance_change],
         effects=effects,
         whole_table=False,
+        spare=False,  # what does not show in the transmission error may show in pressures and stresses
     )
 
 
-def check_asked(request: Request, *, whole_table: bool = True) -> Checked:
-    """Compose the model of a request and refuse what it cannot hold; parameters of `check_request`."""
-    composed, ledger = compose(request.scene, request.choices, EFFECTS)
-    if not composed.across_face:
-        refuse_beyond_plane(request.scene)
-        if composed.thin_rim:
-            refuse_web_off_center(request.scene)
-        if composed.bore_seat:
-            refuse_seats(request.scene)
+def check_asked(request: Request, *, whole_table: bool = True, spare: bool = True) -> Checked:
+    """Compose the model of a request and refuse what it cannot hold; parameters of `check_request`.
+
+    With a tolerance, automatic effects that it does not need are then spared.
+    """
+    composed, ledger = _composed(request)
+    _refuse_plane(request, composed)
+    if spare and not (request.spared or request.turned_on):
+        request = replace(request, spared=spared_effects(request.scene, ledger, request.accuracy.tolerance))
+        composed, ledger = _composed(request) if request.spared else (composed, ledger)
     _refuse_distances(request)
     _refuse_idle_pitches(request)
     cycle = _cycle_cost(request, composed) if whole_table and composed.period > 1 else None
     return Checked(request, composed, ledger, cycle)
+
+
+def _refuse_plane(request: Request, composed: ContactModel) -> None:
+    """Refuse what acts across the face where a plane is asked for."""
+    if composed.across_face:
+        return
+    refuse_beyond_plane(request.scene)
+    if composed.thin_rim:
+        refuse_web_off_center(request.scene)
+    if composed.bore_seat:
+        refuse_seats(request.scene)
+
+
+def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
+    """Compose the model; the ledger says what was asked for, and of what is spared what the scene held."""
+    composed, ledger = compose(request.scene, request.choices, EFFECTS)
+    asked, overrides = request.asked_choices, {**request.spared, **request.turned_on}
+    whole = {effect.name: effect.called_for(request.whole_scene) for effect in EFFECTS}
+    return composed, tuple(
+        replace(
+            entry,
+            choice=asked.get(entry.name, "auto"),
+            verdict=whole[entry.name] if entry.name in request.spared else entry.verdict,
+            override=overrides.get(entry.name, ""),
+        )
+        for entry in ledger
+    )
 
 
 def _refuse_idle_pitches(request: Request) -> None:

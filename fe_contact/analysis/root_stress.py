@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.analysis.compute_database import Progress
 from fe_contact.analysis.flank_results import POSITIONS
 from fe_contact.analysis.request import check_one_load
 from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.contact.patch import Patches

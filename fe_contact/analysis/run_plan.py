@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.request import Checked, check_request
 from fe_contact.checks import positive
 from fe_contact.geometry import ParallelAxes
@@ -52,6 +53,8 @@ class RunPlan:
         All mesh levels of the same model.
     conflict : str
         Why tolerance and time cannot both be had; empty if they can, or if not both were given.
+    cache : Path, optional
+        Of the prediction.
     """
 
     checked: Checked
@@ -59,6 +62,7 @@ class RunPlan:
     plan: Plan
     levels: tuple[PlannedLevel, ...]
     conflict: str
+    cache: Path | None = None
 
     @property
     def chosen(self) -> PlannedLevel:
@@ -74,7 +78,7 @@ class RunPlan:
             "levels": [entry.to_json() for entry in self.levels],
             "conflict": self.conflict,
             "plan": self.plan.to_json(),
-            "effect_ledger": [entry.to_json() for entry in self.checked.ledger],
+            "effect_ledger": effect_ledger(self.checked, self.cache),
         }
 
 
@@ -127,7 +131,7 @@ def plan_run(
     conflict = ""
     if both and time_budget is not None:
         conflict = _conflict(choice, levels, tolerance, positive("time_budget", time_budget, "Seconds."))
-    return RunPlan(checked, choice, plan, levels, conflict)
+    return RunPlan(checked, choice, plan, levels, conflict, cache)
 
 
 def _planned(checked: Checked, level: str, cache: Path | None) -> PlannedLevel:

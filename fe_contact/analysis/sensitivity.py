@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis.analyze import analyze
-from fe_contact.analysis.compute_database import Progress
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.analysis.compute_database import Progress
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request import Checked
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.table_places import table_places
 from fe_contact.checks import finite
 from fe_contact.contact import ContactProblem, ContactSolution

@@ -58,6 +58,7 @@ class SectorSizes(NamedTuple):
     matrices: int
 
 
+@lru_cache(maxsize=64)
 def predict_cost(
     gear: Toothing, recipe: SectorRecipe | None = None, reach: int | None = None
 ) -> PredictedCost:

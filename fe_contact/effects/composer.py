@@ -27,6 +27,8 @@ class LedgerEntry:
     verdict : Verdict
         What the scene calls for; its reason and worth stand even when the caller decided otherwise.
     cost : str
+    override : str
+        Why it is not as the verdict has it, though the choice is "auto"; empty if it is.
     """
 
     name: str
@@ -34,6 +36,19 @@ class LedgerEntry:
     choice: str
     verdict: Verdict
     cost: str
+    override: str = ""
+
+    @property
+    def decision(self) -> str:
+        """Why it is on or off, in words."""
+        if self.override:
+            return self.override
+        called = "the scene calls for it" if self.verdict.on else "the scene does not call for it"
+        if self.choice == "auto":
+            return called
+        if self.on == self.verdict.on:
+            return f"as asked; {called}"
+        return f"as asked, though {called}"
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -45,6 +60,7 @@ class LedgerEntry:
             "called_for": self.verdict.on,
             "reason": self.verdict.reason,
             "worth": self.verdict.worth,
+            "decision": self.decision,
         }
 
 

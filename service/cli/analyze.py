@@ -7,6 +7,7 @@ from typing import Any
 
 from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
+from service.cli.effects import assumption_lines, ledger_lines
 from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
@@ -57,9 +58,8 @@ def _show(summary: dict[str, Any]) -> None:
         table(["torque N m", "force N", "mean um", "peak-to-peak um", *names], rows, "Transmission error")
     )
     out.print()
-    for entry in summary["effect_ledger"]:
-        state = "on " if entry["on"] else "off"
-        out.print(f"effect {entry['name']}: {state} ({entry['choice']}); {entry['reason']}", highlight=False)
+    for line in (*ledger_lines(summary["effect_ledger"]), *assumption_lines(summary["receipt"])):
+        out.print(line, highlight=False)
     out.print(_cost(summary["receipt"]), highlight=False)
     out.print(f"points {summary['points']}, failed {summary['failed_points']}", highlight=False)
     out.print(f"content hash {summary['content_hash']}", highlight=False)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fe_contact.analysis.run_plan import RunPlan
 from fe_contact.planning.cost_model import STAGES
+from service.cli.effects import ledger_lines
 from service.cli.output import console, print_json, table
 from service.convert.plan import plan_of
 from service.schemas import Case, read_model
@@ -46,7 +47,5 @@ def _show(found: RunPlan) -> None:
     )
     if found.conflict or not found.choice.met:
         out.print(f"cannot be had: {found.conflict or found.choice.reason}", highlight=False)
-    for entry in found.checked.ledger:
-        state = "on " if entry.on else "off"
-        out.print(f"effect {entry.name}: {state} ({entry.choice}); {entry.verdict.reason}", highlight=False)
-        out.print(f"       worth {entry.verdict.worth}; cost {entry.cost}", highlight=False)
+    for line in ledger_lines(found.to_json()["effect_ledger"]):
+        out.print(line, highlight=False)

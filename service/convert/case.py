@@ -227,6 +227,7 @@ def analysis_arguments(case: Case) -> Json:
         "positions": accuracy.positions,
         "pitches": accuracy.pitches,
         "receipt": accuracy.receipt,
+        "on_violation": accuracy.on_violation,
         "effects": dict(case.effects),
     }
 

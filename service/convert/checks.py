@@ -18,5 +18,5 @@ def check_case(case: Case, *, whole_table: bool = True) -> ParallelAxes:
     """
     pair = gear_pair(case)
     with boundary_errors():
-        check_request(pair, **analysis_arguments(case), whole_table=whole_table)
+        check_request(pair, **analysis_arguments(case), whole_table=whole_table, spare=False)
     return pair

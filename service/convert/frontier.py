@@ -8,7 +8,7 @@ from fe_contact.analysis.frontier import Frontier, frontier
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.schemas import Case
 
-_LEFT_ASIDE = ("pitches", "receipt")
+_LEFT_ASIDE = ("pitches", "receipt", "on_violation")
 
 
 def frontier_of(

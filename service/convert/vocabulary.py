@@ -21,6 +21,7 @@ _CASE = {
     "positions": "accuracy.positions",
     "pitches": "accuracy.pitches",
     "receipt": "accuracy.receipt",
+    "on_violation": "accuracy.on_violation",
 }
 
 _LAST = {

@@ -27,6 +27,9 @@ _LEDGER = (
     ("reason", "because"),
     ("worth", "worth"),
     ("cost", "cost"),
+    ("decision", "decision"),
+    ("price", "price of the choice"),
+    ("checked", "checked"),
 )
 
 

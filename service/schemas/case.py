@@ -119,6 +119,12 @@ class AccuracyInput(BoundaryModel):
         description="full: errors by source; minimal: nothing is solved to estimate errors",
         examples=["full"],
     )
+    on_violation: Literal["repeat", "fail", "report"] = Field(
+        default="repeat",
+        description="Where an assumption turns out wrong on the solution: repeat with the effect it needs, "
+        "fail, or report",
+        examples=["repeat"],
+    )
     positions: int | None = Field(
         default=None,
         ge=8,

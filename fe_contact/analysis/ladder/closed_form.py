@@ -17,9 +17,10 @@ from pathlib import Path
 
 import numpy as np
 
-from fe_contact.analysis.compute_database import SOLVER_VERSION, Progress, software_versions
+from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versions
 from fe_contact.analysis.ladder.slice_springs import SliceLaw, SpringContact
 from fe_contact.analysis.request import Checked
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import Candidates, ContactSolution

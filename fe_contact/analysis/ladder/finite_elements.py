@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from fe_contact.analysis.compute_database import Progress, compute_database
+from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.request import Checked, check_asked
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.errors import InputError
 from fe_contact.planning import Accuracy

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Protocol
 
-from fe_contact.analysis.compute_database import Progress
 from fe_contact.analysis.request import Checked
+from fe_contact.analysis.solved_table import Progress
 from fe_contact.ste import SteDatabase
 
 

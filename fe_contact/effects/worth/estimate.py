@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.effects.across_face import across_face
+from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.effects.composer import compose
 from fe_contact.effects.effect import ContactScene, Effect
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
@@ -65,16 +66,45 @@ def estimate_worth(
     Returns
     -------
     Worth or None
-        None: one of the two states cannot be had, as a plane with what acts across the face.
+        None: one of the two states cannot be had, as a plane with what acts across the face, or the springs
+        do not know it.
     """
-    effect = next(entry for entry in registry if entry.name == name)
-    if name == FaceLoadDistribution.name and across_face(scene):
-        return None
-    if name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
-        # with nothing across the face the corrected plane stands in for three dimensions
-        return Worth(np.zeros(scene.torque.size), np.zeros(scene.torque.size), 0.0, 0.0)
-    with_it, without = (_curves(scene, flipped(decided, name, choice), registry) for choice in ("on", "off"))
-    return _compared(with_it, without)
+    return estimate_worths(scene, decided, [name], registry)[name]
+
+
+def estimate_worths(
+    scene: ContactScene, decided: Mapping[str, str], names: Sequence[str], registry: Sequence[Effect]
+) -> dict[str, Worth | None]:
+    """Estimate several effects; parameters of `estimate_worth`."""
+    known: dict[tuple[tuple[str, str], ...], list[EstimatedCurve]] = {}
+
+    def curves(choices: Mapping[str, str]) -> list[EstimatedCurve]:
+        key = tuple(sorted(choices.items()))
+        if key not in known:
+            known[key] = _curves(scene, choices, registry)
+        return known[key]
+
+    def worth(effect: Effect) -> Worth | None:
+        if _unknown(scene, effect.name):
+            return None
+        if effect.name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
+            # with nothing across the face the corrected plane stands in for three dimensions
+            return Worth(np.zeros(scene.torque.size), np.zeros(scene.torque.size), 0.0, 0.0)
+        with_it, without = (
+            curves(decided if decided[effect.name] == choice else flipped(decided, effect.name, choice))
+            for choice in ("on", "off")
+        )
+        return _compared(with_it, without)
+
+    return {effect.name: worth(effect) for effect in registry if effect.name in names}
+
+
+def _unknown(scene: ContactScene, name: str) -> bool:
+    """Whether the springs cannot tell: a plane for what acts across the face, a seat on part of it."""
+    if name == FaceLoadDistribution.name:
+        return bool(across_face(scene))
+    gears = (scene.pair.pinion, scene.pair.wheel)
+    return name == BoreSeatElasticity.name and any(gear.seat.width is not None for gear in gears)
 
 
 def _curves(

@@ -1,6 +1,6 @@
 """Compliance between contact candidates without finite elements: springs that know of each other.
 
-A slice bends its own tooth (`ToothBending`) and, less and less, the slices beside it: exponentially over a
+A slice bends its own tooth (`tooth_bending`) and, less and less, the slices beside it: exponentially over a
 decay length, as a beam on an elastic foundation, reflected at the free ends of the face, so that an even load
 is met evenly. All teeth of a gear twist and shift its body, and the surface of the body sinks with the
 logarithm of the distance, as that of a half plane:
@@ -17,7 +17,7 @@ import math
 import numpy as np
 
 from fe_contact.contact import Candidates, ContactModel
-from fe_contact.effects.worth.tooth_bending import ToothBending, half_plane
+from fe_contact.effects.worth.tooth_bending import half_plane, tooth_bending
 from fe_contact.geometry import ParallelAxes, Toothing, blank_factor, seat_compliance, web_compliance
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.geometry.web_compliance import shift_compliance, torsion_compliance
@@ -62,7 +62,7 @@ def _of_gear(
     gear: Toothing, candidates: Candidates, model: ContactModel, s: FloatArray, patch: FloatArray
 ) -> FloatArray:
     """One gear's share, transverse."""
-    bending = ToothBending.of_gear(gear)
+    bending = tooth_bending(gear)
     blank = blank_factor(gear) if model.thin_rim else 1.0
     root = np.sqrt(bending.at(bending.tooth, s) + bending.at(bending.foundation, s) / blank)
     apart = np.abs(candidates.pair[:, None] - candidates.pair)

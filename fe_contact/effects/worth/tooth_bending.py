@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -38,27 +39,28 @@ class ToothBending:
     foundation: FloatArray
     depth: FloatArray
 
-    @classmethod
-    def of_gear(cls, gear: Toothing) -> ToothBending:
-        """Integrate over the tooth of `gear`, plane strain."""
-        profile = tooth_profile(gear)
-        s = np.linspace(profile.s_root, profile.s_tip, _SAMPLES)
-        half, height = profile.flank(s).T
-        height = np.abs(height - height[0])
-        normal = profile.normal(s)
-        slope = gear.sign * normal[:, 1] / np.abs(normal[:, 0])
-        cosine = 1.0 / np.sqrt(1.0 + slope**2)
-        # where the line of action crosses the centre line, above the root
-        lever = np.maximum(height - half * slope, 0.0)
-        per_modulus = cosine**2 * (1.0 - gear.material.poissons_ratio**2) / gear.material.youngs_modulus
-        root = 2.0 * half[0]
-        foundation = 5.2 * (lever / root) ** 2 + lever / root + 1.4 * (1.0 + 0.294 * slope**2)
-        tooth = _energy(height, 2.0 * half, lever, slope, gear.material.poissons_ratio)
-        return cls(s, per_modulus * tooth, per_modulus * foundation, half / cosine)
-
     def at(self, values: FloatArray, s: FloatArray) -> FloatArray:
         """Interpolate one of the attributes at flank coordinates `s` of any shape."""
         return np.asarray(np.interp(s, self.s, values))
+
+
+@lru_cache(maxsize=64)
+def tooth_bending(gear: Toothing) -> ToothBending:
+    """Integrate over the tooth of `gear`, plane strain."""
+    profile = tooth_profile(gear)
+    s = np.linspace(profile.s_root, profile.s_tip, _SAMPLES)
+    half, height = profile.flank(s).T
+    height = np.abs(height - height[0])
+    normal = profile.normal(s)
+    slope = gear.sign * normal[:, 1] / np.abs(normal[:, 0])
+    cosine = 1.0 / np.sqrt(1.0 + slope**2)
+    # where the line of action crosses the centre line, above the root
+    lever = np.maximum(height - half * slope, 0.0)
+    per_modulus = cosine**2 * (1.0 - gear.material.poissons_ratio**2) / gear.material.youngs_modulus
+    root = 2.0 * half[0]
+    foundation = 5.2 * (lever / root) ** 2 + lever / root + 1.4 * (1.0 + 0.294 * slope**2)
+    tooth = _energy(height, 2.0 * half, lever, slope, gear.material.poissons_ratio)
+    return ToothBending(s, per_modulus * tooth, per_modulus * foundation, half / cosine)
 
 
 def _energy(

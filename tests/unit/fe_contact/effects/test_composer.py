@@ -117,12 +117,13 @@ def test_the_ledger_says_why_and_what_it_is_worth(choices):
     for entry, effect in zip(ledger, EFFECTS, strict=True):
         page = entry.to_json()
         assert json.loads(json.dumps(page)) == page
-        assert set(page) == {"name", "on", "choice", "cost", "reason", "worth", "called_for"}
+        assert set(page) == {"name", "on", "choice", "cost", "reason", "worth", "called_for", "decision"}
         assert page["name"] == effect.name
         assert page["on"] == entry.on
         assert page["called_for"] == entry.verdict.on
         assert page["reason"]
         assert page["worth"]
+        assert page["decision"]
 
 
 @pytest.mark.parametrize("effect", EFFECTS, ids=NAMES)

@@ -43,8 +43,9 @@ def test_the_case_is_told_in_full(database: SteDatabase) -> None:
 
 def test_the_ledger_says_what_is_simulated_and_why(database: SteDatabase) -> None:
     table = ledger_table(database.metadata.effect_ledger)
-    assert table.head == ("effect", "simulated", "because", "worth", "cost")
-    assert table.rows == (("corner_contact", "yes", "tips touch", "2 %", "none"),)
+    assert table.head[:5] == ("effect", "simulated", "because", "worth", "cost")
+    assert table.head[5:] == ("decision", "price of the choice", "checked")
+    assert table.rows == (("corner_contact", "yes", "tips touch", "2 %", *["none"] * 4),)
 
 
 def test_headlines_are_those_of_the_load_asked_for(database: SteDatabase) -> None:

@@ -1,0 +1,221 @@
+"""What a run took for granted, checked on its solution: effects that are off, ranges of its models."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from fe_contact.analysis.error_estimate import left_out
+from fe_contact.analysis.solved_table import SolvedTable
+from fe_contact.analysis.table_places import Place
+from fe_contact.contact import Candidates, ContactProblem, ContactSolution
+from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
+from fe_contact.effects.across_face import across_face
+from fe_contact.effects.corner_contact import CornerContact
+from fe_contact.effects.misalignment import MisalignmentGap
+from fe_contact.effects.worth import Worth, estimate_worth
+from fe_contact.types import FloatArray, Json
+
+LEAST_BACKLASH = 1e-9
+"""m; teeth without a thickness allowance have none but rounding."""
+USUAL_TOLERANCE = 0.01
+"""Relative change that an assumption may make where no tolerance was asked for."""
+
+
+@dataclass(frozen=True)
+class Assumption:
+    """One thing that a run took for granted.
+
+    Attributes
+    ----------
+    effect : str
+        The effect that would not need it; empty if there is none.
+    what : str
+        The assumption.
+    holds : bool or None
+        None: it could not be judged.
+    change : float
+        Largest relative change of mean or peak-to-peak that it can make, as far as that is known; NaN else.
+    reason : str
+        What was found.
+    """
+
+    effect: str
+    what: str
+    holds: bool | None
+    change: float
+    reason: str
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        known = {"change": self.change} if np.isfinite(self.change) else {}
+        return {
+            "effect": self.effect,
+            "assumption": self.what,
+            "holds": self.holds,
+            "reason": self.reason,
+            **known,
+        }
+
+
+def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
+    """Check everything that a run took for granted on what it computed."""
+    return (
+        *_tip_edges(run),
+        *_spared(run),
+        *_plane(run),
+        *_coast_flanks(run),
+        _load_patches(run),
+        _support_loads(run),
+    )
+
+
+def allowed_change(run: SolvedTable) -> float:
+    """Return the relative change of mean or peak-to-peak that an assumption may make."""
+    return run.checked.request.accuracy.tolerance or USUAL_TOLERANCE
+
+
+def _tip_edges(run: SolvedTable) -> Iterator[Assumption]:
+    """Without corner contact: no tip edge comes to the mating flank before A and after E.
+
+    A contact that is left out can carry at most until the deflection has fallen to its gap: the change of STE
+    is at most how far the deflection exceeds the gap.
+    """
+    request = run.checked.request
+    if run.checked.model.corner_contact or CornerContact.name in request.spared:
+        return
+    pairs = zip(run.places.places, run.solved, strict=True)
+    depth = np.stack([_edge_depth(place, *solved) for place, solved in pairs], axis=1)
+    change = float(np.max(depth / np.maximum(_ripples(run), 1e-12 * np.abs(_means(run)))))
+    deepest = 1e6 * float(depth.max())
+    reason = "the gaps at the tip edges stay open"
+    if deepest > 0.0:
+        reason = f"teeth bend {deepest:.2g} um beyond the gap at a tip edge"
+    yield Assumption(
+        CornerContact.name, "tip edges stay clear", change <= allowed_change(run), change, reason
+    )
+
+
+def _edge_depth(place: Place, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+    """How far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
+
+    Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
+    """
+    where = problem.candidates.position
+    phase, pitch = where[: len(problem.compliance)] % 1.0, np.floor(where).astype(np.int64)
+    model = replace(place.model, corner_contact=True)
+    edges = place.contact.problem(model, phase, pitch if model.tooth_gaps else None)
+    touch = edges.candidates.touch
+    off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
+    force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
+    rows = np.arange(where.size) % len(edges.compliance)
+    moved = np.einsum("pij,plj->pli", edges.compliance[rows], force)
+    closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
+    gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
+    return np.asarray(np.max(closing - moved - gap[:, None, :], axis=(0, 2), initial=0.0))
+
+
+def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:
+    """Return forces (P, L, n) of some candidates on others, of which they are a part."""
+    place = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
+    found = np.zeros((*force.shape[:2], those.pair.size))
+    keys = zip(these.pair.tolist(), these.face_position, strict=True)
+    found[:, :, [place[key] for key in keys]] = force
+    return found
+
+
+def _spared(run: SolvedTable) -> Iterator[Assumption]:
+    """Effects left off for the tolerance: their worth beside what was computed."""
+    request = run.checked.request
+    for name in request.spared:
+        worth = estimate_worth(*run.checked.judging(name), name, EFFECTS)
+        if worth is not None:
+            change = _relative(worth, run)
+            reason = f"estimated at {100 * change:.2g} % of the computed mean or peak-to-peak"
+            holds = change <= allowed_change(run)
+            yield Assumption(name, "too small to be seen", holds, change, reason)
+
+
+def _relative(worth: Worth, run: SolvedTable) -> float:
+    """Return the larger of both estimated changes over the computed values, at the worst load and place."""
+    mean = np.abs(worth.mean)[:, None] / np.abs(_means(run))
+    ripple = np.abs(worth.peak_to_peak)[:, None] / _ripples(run)
+    return float(np.max(np.maximum(mean, ripple)))
+
+
+def _plane(run: SolvedTable) -> Iterator[Assumption]:
+    """In the plane: loads even over the face, and the finite width in the correction."""
+    request, model = run.checked.request, run.checked.model
+    if model.across_face:
+        return
+    reasons = across_face(request.scene)
+    found = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
+    name = FaceLoadDistribution.name
+    yield Assumption(name, "load even over the face", not reasons, float("nan"), found)
+    missing = left_out(run.plan, run.places.places[0].contact.pair)
+    if missing:
+        reason = f"the finite width adds about {100 * missing:.2g} % to the mean"
+        holds = missing <= allowed_change(run)
+        yield Assumption(FiniteWidth.name, "plane strain stands for the whole face", holds, missing, reason)
+
+
+def _coast_flanks(run: SolvedTable) -> Iterator[Assumption]:
+    """Between the coast flanks there is room: the contact analysis has the driving flanks alone."""
+    room = []
+    for place, (_, solution) in zip(run.places.places, run.solved, strict=True):
+        pair = place.contact.pair
+        if pair.transverse_base_backlash <= LEAST_BACKLASH:
+            reason = "the teeth as given have no backlash: coast flanks were not judged"
+            yield Assumption("", "coast flanks stay apart", None, float("nan"), reason)
+            return
+        room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(place))
+    least = 1e6 * min(room)
+    reason = f"the least room is {least:.3g} um" if least > 0 else f"the teeth jam by {-least:.3g} um"
+    yield Assumption("", "coast flanks stay apart", least > 0, float("nan"), reason)
+
+
+def _closing(place: Place) -> float:
+    """How much deviations and misalignment close the coast side beside what the driving side opens, m."""
+    skew = sum(abs(term.growth) for term in place.model.gaps if isinstance(term, MisalignmentGap))
+    meeting = np.arange(place.model.period)
+    teeth = sum(float(np.max(term(meeting))) for term in place.model.tooth_gaps)
+    return 0.5 * skew + teeth
+
+
+def _load_patches(run: SolvedTable) -> Assumption:
+    """Contact strips stay within the load patches of the finite elements."""
+    grown = sum(int(solution.beyond.sum()) for _, solution in run.solved)
+    reason = f"strips outgrew them at {grown} points" if grown else "all strips are narrower"
+    return Assumption("", "contact strips within the load patches", grown == 0, float("nan"), reason)
+
+
+def _support_loads(run: SolvedTable) -> Assumption:
+    """From lift-off to twice the largest load the forces for dynamics are solved."""
+    failed = sum(int(np.count_nonzero(solution.status)) for _, solution in run.support)
+    reason = f"{failed} points have no solution" if failed else "all points beyond the asked loads are solved"
+    return Assumption("", "forces solved from lift-off to overload", failed == 0, float("nan"), reason)
+
+
+def _means(run: SolvedTable) -> FloatArray:
+    """Mean STE (L, places), m, over the nodes that have a solution; infinite where none has."""
+    return _over_nodes(run, np.mean)
+
+
+def _ripples(run: SolvedTable) -> FloatArray:
+    """Peak-to-peak STE (L, places), m; as `_means`."""
+    return _over_nodes(run, np.ptp)
+
+
+def _over_nodes(run: SolvedTable, figure: Callable[..., Any]) -> FloatArray:
+    """Take a figure of every curve, its failed points left out: failures are told by themselves."""
+    curves = [[column[np.isfinite(column)] for column in one.deflection.T] for _, one in run.solved]
+    found = [[float(figure(curve)) if curve.size else np.inf for curve in place] for place in curves]
+    return np.array(found).T
+
+
+def violated(found: Sequence[Assumption]) -> tuple[Assumption, ...]:
+    """Return those that do not hold."""
+    return tuple(one for one in found if one.holds is False)

@@ -1,0 +1,119 @@
+"""The effect ledger of a run: what is on, why, what it is worth, what it costs, and what was checked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from fe_contact.analysis.assumptions import Assumption
+from fe_contact.analysis.request import Checked, check_asked
+from fe_contact.effects import EFFECTS, LedgerEntry
+from fe_contact.effects.flipping import flipped
+from fe_contact.effects.worth import Worth, estimate_worth, estimate_worths
+from fe_contact.errors import InputError
+from fe_contact.planning import planned, predict_run
+from fe_contact.types import Json
+
+NOT_CHECKED = "no; switching it over measures it (ablation)"
+
+
+def effect_ledger(
+    checked: Checked, cache: Path | None, assumptions: Sequence[Assumption] = (), *, estimates: bool = True
+) -> list[Json]:
+    """Return one entry per effect as plain JSON.
+
+    Parameters
+    ----------
+    checked : Checked
+    cache : Path, optional
+        Directory of compliances and of what is known of the host, for predicted times.
+    assumptions : sequence of Assumption
+        What was checked after the run.
+    estimates : bool
+        Whether worth and cost are estimated, in milliseconds; without it they are None.
+    """
+    request = checked.request
+    worths: dict[str, Worth | None] = {}
+    if estimates:
+        own = [effect.name for effect in EFFECTS if effect.name not in request.spared]
+        worths = estimate_worths(request.scene, checked.decided, own, EFFECTS)
+        for name in request.spared:
+            worths[name] = estimate_worth(*checked.judging(name), name, EFFECTS)
+    return [
+        _entry(checked, entry, worths.get(entry.name), cache, assumptions, estimates)
+        for entry in checked.ledger
+    ]
+
+
+def _entry(
+    checked: Checked,
+    entry: LedgerEntry,
+    worth: Worth | None,
+    cache: Path | None,
+    assumptions: Sequence[Assumption],
+    estimates: bool,
+) -> Json:
+    """One effect."""
+    seconds = _cost(checked, entry, cache) if estimates else None
+    found = [one for one in assumptions if one.effect == entry.name]
+    return entry.to_json() | {
+        "worth_estimate": None if worth is None else worth.to_json(),
+        "cost_cpu_seconds": seconds,
+        "price": _price(entry, worth, seconds),
+        "checked": "; ".join(f"{one.what}: {one.reason}" for one in found) or NOT_CHECKED,
+        "holds": all(one.holds is not False for one in found) if found else None,
+    }
+
+
+def _cost(checked: Checked, entry: LedgerEntry, cache: Path | None) -> float | None:
+    """Predict the CPU seconds that the effect adds to the run.
+
+    None if it cannot be switched over, and where it is off without having been called for: nothing was saved.
+    """
+    if not (entry.on or entry.verdict.on):
+        return None
+    try:
+        other = switched_over(checked, entry.name, "off" if entry.on else "on")
+    except InputError:
+        return None
+    here, there = (_predicted(one, cache) for one in (checked, other))
+    return here - there if entry.on else there - here
+
+
+def _predicted(checked: Checked, cache: Path | None) -> float:
+    """CPU seconds of a request."""
+    request = checked.request
+    plan = planned(request.pair, request.load, request.accuracy, checked.model, request.alignments, cache)
+    return predict_run(request.pair, plan, checked.model, request.alignments, cache).cpu_seconds
+
+
+def _price(entry: LedgerEntry, worth: Worth | None, seconds: float | None) -> str:
+    """Say what a choice against the scene costs; empty where it does not."""
+    if entry.on == entry.verdict.on:
+        return ""
+    if entry.on:
+        return f"about {seconds:.2g} CPU s" if seconds is not None else "time"
+    if worth is None:
+        return entry.verdict.worth
+    return (
+        f"{100 * worth.relative_mean:+.2g} % of mean, "
+        f"{100 * worth.relative_peak_to_peak:+.2g} % of peak-to-peak STE"
+    )
+
+
+def switched_over(checked: Checked, name: str, choice: str) -> Checked:
+    """Return the request with one effect on or off and all others as they were decided.
+
+    Raises
+    ------
+    InputError
+        The model cannot be had, as a plane with what acts across the face.
+    """
+    request = checked.request
+    asked = flipped(checked.decided, name, choice)
+    # choices of every effect are explicit now, so that an explicit model has no say about them any more
+    model = "plane_stress" if request.accuracy.model == "plane_stress" else "auto"
+    accuracy = replace(request.accuracy, model=model if asked["face_load_distribution"] == "off" else "auto")
+    spared = {one: reason for one, reason in request.spared.items() if one != name}
+    return check_asked(replace(request, effects=asked, accuracy=accuracy, spared=spared, turned_on={}))

@@ -1,0 +1,139 @@
+"""A table as solved, before its errors are known: plan, places, positions, solutions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.position_nodes import PositionNodes
+from fe_contact.analysis.request import Checked, Request
+from fe_contact.analysis.table_nodes import table_nodes
+from fe_contact.analysis.table_places import Places, table_places
+from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
+from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.planning import Plan, Prediction, planned, predict_run
+from fe_contact.stage_clock import StageClock
+from fe_contact.ste import Metadata, SteDatabase
+from fe_contact.types import FloatArray
+
+Progress = Callable[[str, float], None]
+Solved = list[tuple[ContactProblem, ContactSolution]]
+
+
+@dataclass(frozen=True)
+class SolvedTable:
+    """One run up to its table.
+
+    Attributes
+    ----------
+    checked : Checked
+    plan : Plan
+    prediction : Prediction
+        What it was expected to cost.
+    places : Places
+    nodes : PositionNodes
+    solved, support : list of (ContactProblem, ContactSolution)
+        Of every place, at the requested and at the support loads.
+    table : SteDatabase
+        Its errors not yet estimated.
+    """
+
+    checked: Checked
+    plan: Plan
+    prediction: Prediction
+    places: Places
+    nodes: PositionNodes
+    solved: Solved
+    support: Solved
+    table: SteDatabase
+
+
+def solve_table(
+    checked: Checked,
+    clock: StageClock,
+    report: Progress,
+    cache: Path | None,
+    before: SolvedTable | None = None,
+) -> SolvedTable:
+    """Plan and solve a request.
+
+    Parameters
+    ----------
+    checked : Checked
+    clock : StageClock
+    report : callable
+        Called as report(stage, fraction).
+    cache : Path, optional
+        Directory of flank compliances.
+    before : SolvedTable, optional
+        The same pair with other effects: its compliance is taken if the bodies are the same.
+    """
+    request = checked.request
+    with clock.stage("planning"):
+        wish = request.pair, request.load, request.accuracy, checked.model
+        plan = planned(*wish, request.alignments, cache)
+        prediction = predict_run(request.pair, plan, checked.model, request.alignments, cache)
+    known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
+    places = laid_out(checked, plan, clock, report, cache, known=known)
+    with clock.stage("contact"):
+        nodes = table_nodes(places, plan, measured=request.accuracy.receipt == "full")
+        report("contact", 0.3)
+        solved, support = (_solved(places, nodes, load) for load in (plan.load, plan.support))
+        table = _table(request, places, nodes, solved, support)
+        report("contact", 1.0)
+    return SolvedTable(checked, plan, prediction, places, nodes, solved, support, table)
+
+
+def laid_out(
+    checked: Checked,
+    plan: Plan,
+    clock: StageClock,
+    report: Progress,
+    cache: Path | None,
+    *,
+    coarse: bool = False,
+    known: PairContact | None = None,
+) -> Places:
+    """Compute or fetch the compliances of both gears, and lay out the table over them."""
+    request, stage = checked.request, "error estimate" if coarse else "compliance"
+    report(stage, 0.0)
+    with clock.stage(stage):
+        nominal = known or pair_contact(request.pair, plan, cache, coarse)
+    report(stage, 1.0)
+    return table_places(request.scene, request.choices, nominal)
+
+
+def _same_bodies(one: Plan, other: Plan) -> bool:
+    """Whether two plans of one pair have the same finite elements."""
+    first, second = ((plan.discretisation, plan.thin_rim, plan.bore_seat) for plan in (one, other))
+    return first == second
+
+
+def _solved(places: Places, nodes: PositionNodes, load: FloatArray) -> Solved:
+    """Solve every place at the positions of all base pitches."""
+    pitches = np.arange(places.period)
+    return [place.solve_pitches(nodes.position, load, pitches) for place in places.places]
+
+
+def _table(
+    request: Request, places: Places, nodes: PositionNodes, solved: Solved, support: Solved
+) -> SteDatabase:
+    """Assemble the table, its errors not yet estimated."""
+    position = (np.arange(places.period)[:, None] + nodes.position).ravel()
+    return SteDatabase(
+        position=position,
+        force=request.load,
+        torque=request.torque,
+        misalignment=request.misalignment,
+        center_distance_change=request.center_distance_change,
+        facts=pair_facts(request.pair),
+        period=places.period,
+        error_estimate=np.full((position.size, request.load.size, *places.shape), np.nan),
+        metadata=Metadata(),
+        **table_fields(places, solved),
+        **table_support(places, support),
+    )

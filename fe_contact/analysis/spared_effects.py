@@ -1,0 +1,53 @@
+"""Which automatic effects an asked tolerance does not need."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fe_contact.effects import EFFECTS, ContactScene, LedgerEntry
+from fe_contact.effects.sparing import WITHOUT
+from fe_contact.effects.worth import Worth, estimate_worths
+
+SHARE = 0.1
+"""Part of the tolerance that all spared effects together may be worth by their estimates, which are right
+within a factor of two in most cases (docs/effects/worth.md): what is left out stays below the tolerance."""
+
+
+def spared_effects(
+    scene: ContactScene, ledger: Sequence[LedgerEntry], tolerance: float | None
+) -> dict[str, str]:
+    """Return the automatic effects whose estimated worth is below the tolerance's share, and why.
+
+    Parameters
+    ----------
+    scene : ContactScene
+    ledger : sequence of LedgerEntry
+        As the scene alone decides.
+    tolerance : float or None
+        Relative error asked of mean and peak-to-peak; None: nothing is spared.
+
+    Returns
+    -------
+    dict of str to str
+        The smallest first, until their sum would exceed the share.
+    """
+    if tolerance is None:
+        return {}
+    able = [entry.name for entry in ledger if entry.on and entry.choice == "auto" and entry.name in WITHOUT]
+    decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
+    found = estimate_worths(scene, decided, able, EFFECTS)
+    spared: dict[str, str] = {}
+    total = 0.0
+    worths = [(name, worth) for name, worth in found.items() if worth is not None]
+    for name, worth in sorted(worths, key=lambda one: one[1].largest):
+        total += worth.largest
+        if total > SHARE * tolerance:
+            break
+        spared[name] = _reason(worth, tolerance)
+    return spared
+
+
+def _reason(worth: Worth, tolerance: float) -> str:
+    """Say why an effect is left off."""
+    parts = f"{100 * worth.relative_mean:+.2g} % of the mean, {100 * worth.relative_peak_to_peak:+.2g} %"
+    return f"left off: worth {parts} of peak-to-peak, and {100 * tolerance:.3g} % are asked for"

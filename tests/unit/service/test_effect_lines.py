@@ -1,0 +1,29 @@
+"""The ledger in lines for people."""
+
+from __future__ import annotations
+
+from fe_contact import FlankModification, Gear, GearPair, analyze
+from service.cli.effects import assumption_lines, ledger_lines
+
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+
+
+def test_decisions_worth_price_and_what_does_not_hold_are_told() -> None:
+    relieved = Gear(
+        teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3,
+        modification=FlankModification(tip_relief=0.05e-6, tip_relief_length=1e-3),
+    )  # fmt: skip
+    table = analyze(
+        GearPair(relieved, GEAR), torques=[100.0], tolerance=0.05, positions=64,
+        effects={"corner_contact": "off"},
+    )  # fmt: skip
+    lines = "\n".join(ledger_lines(table.metadata.effect_ledger))
+    assert "effect tooth_coupling: on  (auto); contact ratio 1.557" in lines
+    assert "left off: worth" in lines
+    assert "price of the choice: +2." in lines
+    told = list(assumption_lines(table.metadata.receipt))
+    assert told == [line for line in told if line.startswith("DOES NOT HOLD: tip edges stay clear")]
+    assert len(told) == 1
+    again = {"turned_on": {"misalignment": "too small to be seen: 3 %"}, "cpu_seconds": 0.5}
+    (line,) = assumption_lines({"repeated": [again], "assumptions": []})
+    assert line == "repeated with misalignment: too small to be seen: 3 % (0.5 CPU s)"
