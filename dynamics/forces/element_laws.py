@@ -179,23 +179,17 @@ def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, flo
 
 
 @inner
-def supplied_power(elements: Elements, local: LocalState, e: int, pace: float) -> tuple[float, float]:
-    """Return what element `e` stores as its position moves on at `pace` and as its axes move, W.
-
-    A table V(x, d; m, a) exerts dV/dd on the bodies, and stores V_x x' + V_m m' + V_a a' besides what they
-    give it; of the last two, forces along the axes take their part: -lambda F m' if it acts at its centroid.
-    """
+def given_along_axes(elements: Elements, local: LocalState, e: int) -> float:
+    """Return the power that the elastic forces along a table's axes give to the bodies, W."""
     if elements.law[e] != SPATIAL_FLANK:
-        return potential(elements, local, e)[1] * pace, 0.0
+        return 0.0
     row, place, laws = elements.first[e], elements.place[e], elements.laws.spatial_flank
-    _, in_x, in_m, in_a = spatial_energy(laws, place, local, row, elements.mesh[e])
-    axes = 0.0
-    to_m, to_a = laws.row[place, 0], laws.row[place, 1]
-    if to_m > 0:
-        axes += (in_m - local.elastic[row + to_m]) * local.rate[row + to_m]
-    if to_a > 0:
-        axes += (in_a - local.elastic[row + to_a]) * local.rate[row + to_a]
-    return in_x * pace, axes
+    power = 0.0
+    for axis in range(2):
+        to = laws.row[place, axis]
+        if to > 0:
+            power += local.elastic[row + to] * local.rate[row + to]
+    return power
 
 
 @inner

@@ -29,10 +29,7 @@ def table_energy(
     k, low, high = level_interval(table, flank, row, u, deflection, hint)
     if deflection < low:
         return 0.0, 0.0
-    energy, slope = 0.0, 0.0
-    for j in range(k):
-        whole, change = _interval_energy(table, flank, row, j, u, 1.0, 0.0)
-        energy, slope = energy + whole, slope + change
+    energy, slope = _whole_intervals(table, flank, row, k, u)
     low_slope = cubic_slope(table.row, row + k, 0, u)
     high_slope = cubic_slope(table.row, row + k + 1, 0, u)
     span, span_slope = high - low, high_slope - low_slope
@@ -47,6 +44,23 @@ def table_energy(
         slope += 0.5 * cubic_slope(table.row, row + k + 1, 4, u) * beyond**2
         slope -= high_slope * (force + stiffness * beyond)
     return energy, slope * per_width
+
+
+@inner
+def _whole_intervals(table: PackedTables, flank: int, row: int, count: int, u: float) -> tuple[float, float]:
+    """Energy and its derivative in u of the first `count` level intervals."""
+    energy, slope, level = 0.0, 0.0, table.offset[flank, 4]
+    low, low_slope = cubic(table.row, row, 0, u), cubic_slope(table.row, row, 0, u)
+    stiff, stiff_slope = cubic(table.row, row, 4, u), cubic_slope(table.row, row, 4, u)
+    for j in range(count):
+        high, high_slope = cubic(table.row, row + j + 1, 0, u), cubic_slope(table.row, row + j + 1, 0, u)
+        end, end_slope = cubic(table.row, row + j + 1, 4, u), cubic_slope(table.row, row + j + 1, 4, u)
+        span, span_slope = high - low, high_slope - low_slope
+        mean, bend = 0.5 * (table.level[level + j] + table.level[level + j + 1]), (stiff - end) / 12.0
+        energy += span * (mean + span * bend)
+        slope += span_slope * (mean + 2.0 * span * bend) + span * span * (stiff_slope - end_slope) / 12.0
+        low, low_slope, stiff, stiff_slope = high, high_slope, end, end_slope
+    return energy, slope
 
 
 @inner

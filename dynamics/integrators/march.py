@@ -169,7 +169,7 @@ def now() -> float:
 def _ladder(integration: Integration) -> FloatArray:
     """Step sizes: a ladder, or the one fixed step."""
     if integration.fixed_step is not None:
-        return np.array([integration.fixed_step, 0.0])
+        return np.array([integration.fixed_step, 0.0, 0.0])
     return step_ladder(integration.largest_step, integration.smallest_step)
 
 

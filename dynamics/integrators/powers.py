@@ -8,8 +8,8 @@ from dynamics.forces.element_laws import (
     SPATIAL_FLANK,
     SPEED_TORQUE,
     TURNING,
+    given_along_axes,
     slides,
-    supplied_power,
 )
 from dynamics.forces.routine import routine
 from dynamics.integrators.rung import row_product
@@ -41,24 +41,17 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
             rate += system.load.direction[load, i] * velocity[i]
         loads += value * rate
     lost_in_bearings, mesh, friction, supplied, kept = _in_elements(system, work)
-    bushing, position = lost_in_bearings, 0.0
+    bushing = lost_in_bearings
     loads += supplied
     drives -= kept
     for i in range(velocity.size):
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
     axes = 0.0
     for e in range(system.elements.law.size):
-        m = system.elements.mesh[e]
-        if m >= 0:
-            rate = work.local.pace[m]
-            for i in range(velocity.size):
-                rate += system.turn[m, i] * velocity[i]
-            by_position, by_axes = supplied_power(system.elements, work.local, e, rate)
-            position += by_position
-            axes += by_axes
+        axes -= given_along_axes(system.elements, work.local, e)
     work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
-    work.power[stage, Power.POSITION] = position
+    work.power[stage, Power.POSITION] = 0.0
     work.power[stage, Power.BUSHING] = bushing
     work.power[stage, Power.MESH] = mesh
     work.power[stage, Power.AXES] = axes
@@ -93,11 +86,15 @@ def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, f
 def _drive_torque(
     system: SystemArrays, work: Workspace, law: int, velocity: FloatArray, time: float
 ) -> float:
-    """Return the torque that imposes the motion of one law, N m; 0 for a free rotation."""
+    """Return the torque that imposes the motion of one law, N m; 0 for a free rotation.
+
+    Without the symmetric part of the inertia, whose work `add_drive_work` knows in closed form.
+    """
     drive = system.drive
     torque = -drive.constant[law]
     for k in range(work.motion.shape[0]):
-        torque += drive.inertia[law, k] * work.motion[k, ACCELERATION]
+        skew = 0.5 * (drive.inertia[law, k] - drive.inertia[k, law])
+        torque += skew * work.motion[k, ACCELERATION]
     for load in range(system.load.direction.shape[0]):
         if system.load.drive[load, law] != 0.0:
             torque -= system.load.drive[load, law] * law_value(system.load.torque, load, time)
@@ -106,3 +103,16 @@ def _drive_torque(
     for r in range(work.force.size):
         torque += drive.direction[law, r] * work.force[r]
     return float(torque)
+
+
+@inner
+def add_drive_work(system: SystemArrays, work: Workspace) -> None:
+    """Add what drives gave to the inertia of their own shafts over the step that ends in ``work.motion``.
+
+    It is the kinetic energy gained, W I W/2: where a law has a kink, no stages' weights integrate its power.
+    """
+    inertia, speed = system.drive.inertia, work.before.speed
+    for k in range(speed.size):
+        for j in range(speed.size):
+            gained = work.motion[k, SPEED] * work.motion[j, SPEED] - speed[k] * speed[j]
+            work.work[Power.DRIVE] += 0.25 * (inertia[k, j] + inertia[j, k]) * gained

@@ -17,6 +17,7 @@ def prepare_rung(system: SystemArrays, work: Workspace, rung: int, diagonal: flo
     for i in range(size):
         for j in range(size):
             matrix[i, j] = system.mass[i, j] + span * (system.damping[i, j] + span * system.stiffness[i, j])
+            work.inverse[rung, i, j] = 0.0
     invert_blocks(matrix, system.block, work.inverse[rung])
     for r in range(rows):
         for i in range(size):
@@ -25,6 +26,10 @@ def prepare_rung(system: SystemArrays, work: Workspace, rung: int, diagonal: flo
                 total += work.inverse[rung, i, j] * system.direction[r, j]
             work.response[rung, r, i] = total
     for r in range(rows):
+        for k in range(rows):
+            work.approach[rung, k, r] = 0.0
+        for m in range(system.turn.shape[0]):
+            work.turning[rung, m, r] = 0.0
         for i in range(size):
             for k in range(rows):
                 work.approach[rung, k, r] += system.direction[k, i] * work.response[rung, r, i]

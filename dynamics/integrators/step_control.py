@@ -78,7 +78,7 @@ def slow_enough(system: SystemArrays, work: Workspace, rung: int) -> int:
             per_turn = reference.numerator[m, k] / reference.denominator[m, k]
             moving += law_speed(reference, k, work.motion, work.v) / (2.0 * math.pi) * per_turn
         rate = max(rate, abs(moving))
-    while rate * work.ladder[rung] > POSITION_LIMIT and rung < work.ladder.size - 2:
+    while rate * work.ladder[rung] > POSITION_LIMIT and rung < work.ladder.size - 3:
         rung += 1
     return rung
 
@@ -100,7 +100,7 @@ def next_rung(work: Workspace, control: Control, error: float, accepted: bool) -
     factor = min(max(factor, FALL_LIMIT), RISE_LIMIT)
     rise = math.floor(RUNGS_PER_OCTAVE * math.log2(factor))
     rung = work.counts[Count.RUNG] - int(rise)
-    smallest = work.ladder.size - 2
+    smallest = work.ladder.size - 3
     if not accepted:
         rung = max(rung, work.counts[Count.RUNG] + 1)
         smallest += 1  # below the ladder: the caller ends there

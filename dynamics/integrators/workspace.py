@@ -44,6 +44,26 @@ class Count(IntEnum):
     FIRST_ROW = 9  # output sample that the first row of the output arrays is for
 
 
+class StepEnd(NamedTuple):
+    """Motion at one end of a step: m meshes, R local coordinates, k laws.
+
+    Attributes
+    ----------
+    position, pace : (m,) arrays
+        Of the meshes, base pitches, and per second with the driving gear's own rate.
+    coordinate, rate : (R,) arrays
+        m and m/s.
+    speed : (k,) array
+        Of the laws, rad/s.
+    """
+
+    position: FloatArray
+    pace: FloatArray
+    coordinate: FloatArray
+    rate: FloatArray
+    speed: FloatArray
+
+
 class Workspace(NamedTuple):
     """State and scratch of a run with n freedoms, m meshes and R local coordinates of elements.
 
@@ -52,10 +72,11 @@ class Workspace(NamedTuple):
 
     Attributes
     ----------
-    time, error : (1,) arrays
-        Current time, s; error of the last accepted step over the tolerance.
-    q, v, a : (n,) arrays
-        State at `time`: deviations from the kinematic motion, their rates and accelerations.
+    time, time_rest, error : (1,) arrays
+        Current time, s, and what its rounding leaves; error of the last accepted step over the tolerance.
+    q, v, v_rest, a : (n,) arrays
+        State at `time`: deviations from the kinematic motion, their rates, what rounding leaves of these, and
+        accelerations.
     q_new, v_new, a_new, q_error, v_error : (n,) arrays
         At the end of the step tried.
     external, linear : (n,) arrays
@@ -65,6 +86,8 @@ class Workspace(NamedTuple):
         Local forces at the current stage, as Newton's method found them, N.
     local : LocalState
         Of the elements at the current stage.
+    before, after : StepEnd
+        Motion at the start and the end of the step accepted, for the audit.
     free, free_rate : (R,) arrays
         Local coordinates and their rates without the elements' forces.
     free_position : (m,) array
@@ -82,7 +105,8 @@ class Workspace(NamedTuple):
     counts : int array
         See `Count`.
     ladder : (r,) array
-        Step sizes, falling, s; the last is 0, for the matrices of an explicit evaluation.
+        Step sizes, falling, s; then the one that lands on a law's knot, and 0, for the matrices of an
+        explicit evaluation.
     matrix : (n, n) array
         Scratch: the matrix to invert.
     ready : (r,) bool array
@@ -98,9 +122,11 @@ class Workspace(NamedTuple):
     """
 
     time: FloatArray
+    time_rest: FloatArray
     error: FloatArray
     q: FloatArray
     v: FloatArray
+    v_rest: FloatArray
     a: FloatArray
     q_new: FloatArray
     v_new: FloatArray
@@ -113,6 +139,8 @@ class Workspace(NamedTuple):
     stage_a: FloatArray
     force: FloatArray
     local: LocalState
+    before: StepEnd
+    after: StepEnd
     free: FloatArray
     free_rate: FloatArray
     free_position: FloatArray
@@ -132,20 +160,25 @@ class Workspace(NamedTuple):
 
 
 def step_ladder(largest: float, smallest: float) -> FloatArray:
-    """Return step sizes falling from `largest` to at most `smallest` by equal factors, and 0."""
+    """Return step sizes falling from `largest` to at most `smallest` by equal factors, and two more places.
+
+    See ``Workspace.ladder``.
+    """
     rungs = int(np.ceil(RUNGS_PER_OCTAVE * np.log2(largest / smallest))) + 1
-    return np.append(largest * 2.0 ** (-np.arange(rungs) / RUNGS_PER_OCTAVE), 0.0)
+    return np.append(largest * 2.0 ** (-np.arange(rungs) / RUNGS_PER_OCTAVE), [0.0, 0.0])
 
 
 def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, first_step: float) -> Workspace:
     """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
     n, rows, meshes, r = q.size, system.direction.shape[0], system.turn.shape[0], ladder.size
+    laws = system.inertial.shape[0]
     counts = np.zeros(len(Count), dtype=np.int64)
-    counts[Count.RUNG] = min(int(np.searchsorted(-ladder, -first_step)), r - 2)
+    counts[Count.RUNG] = min(int(np.searchsorted(-ladder, -first_step)), r - 3)
     counts[Count.SMALLEST_RUNG] = r - 1
-    per_freedom = ("v", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "linear")
+    per_freedom = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "linear")
     return Workspace(
         time=np.zeros(1),
+        time_rest=np.zeros(1),
         error=np.ones(1),
         q=np.array(q, dtype=float),
         **{name: np.zeros(n) for name in per_freedom},
@@ -153,9 +186,11 @@ def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, firs
         stage_a=np.zeros((STAGES, n)),
         **{name: np.zeros(rows) for name in ("force", "free", "free_rate")},
         local=make_local(system.elements, meshes),
+        before=_step_end(meshes, rows, laws),
+        after=_step_end(meshes, rows, laws),
         free_position=np.zeros(meshes),
-        motion=np.zeros((system.inertial.shape[0], MOTION_COLUMNS)),
-        moved=np.zeros(system.inertial.shape[0], dtype=np.int64),
+        motion=np.zeros((laws, MOTION_COLUMNS)),
+        moved=np.zeros(laws, dtype=np.int64),
         jacobian=np.zeros((rows, rows + 1)),
         power=np.zeros((STAGES, len(Power))),
         work=np.zeros(len(Power)),
@@ -168,3 +203,8 @@ def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, firs
         approach=np.zeros((r, rows, rows)),
         turning=np.zeros((r, meshes, rows)),
     )
+
+
+def _step_end(meshes: int, rows: int, laws: int) -> StepEnd:
+    """Allocate one end of a step."""
+    return StepEnd(*(np.zeros(size) for size in (meshes, meshes, rows, rows, laws)))

@@ -39,6 +39,36 @@ def test_the_audit_of_a_run_up_closes(method, technique, record_figure):
     )
 
 
+def handover_table(width=0.01):
+    """Two deflections with handovers of `width` base pitches, as between two and one pair of stiff teeth."""
+    table = square_wave_table(64)
+    edges = np.array([0.22, 0.22 + width, 0.78 - width, 0.78])
+    position = np.sort(np.concatenate([table.position, edges]))
+    shape = np.interp(position, [0.0, *edges, 1.0], [1.5, 1.5, 1.0, 1.0, 1.5, 1.5])
+    fields = {
+        name: getattr(table, name)[:, :, :1] / (shape[:, None] if name == "stiffness" else 1.0)
+        for name in ("deflection", "stiffness")
+    }
+    fields["deflection"] = fields["deflection"] * shape[:, None]
+    flat = np.zeros_like(fields["deflection"])
+    return replace(table, position=position, **fields, deflection_slope=flat, stiffness_slope=flat)
+
+
+@pytest.mark.parametrize("method", ["implicit", "explicit"])
+@pytest.mark.parametrize("technique", ["variable_torque", "constant_torque"])
+def test_steep_handovers_cost_no_energy(method, technique, record_figure):
+    """What tables supply changes within a part of a step there; the balance gets better with the steps."""
+    scene = gear_pair_scene(handover_table(), speed=TimeLaw.constant(60.0), duration=0.2, technique=technique)
+    missing = []
+    for tolerance in (1e-9, 1e-11):
+        result = simulate(replace(scene, integration=Integration(method, tolerance)))
+        missing.append(result.energy.relative)
+    name = f"energy balance over steep handovers, {method}, {technique}"
+    record_figure(name, 100 * missing[0], "below 0.1 %", "%", "own target")
+    assert missing[0] < 1e-3
+    assert missing[1] < 0.1 * missing[0]
+
+
 def test_the_audit_closes_through_loss_of_contact_and_a_helical_mesh():
     scene = gear_pair_scene(
         spring_table(4e8, 20e-6), speed=TimeLaw.constant(6000.0 * RPM), duration=0.05, torque=5.0

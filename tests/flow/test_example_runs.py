@@ -1,0 +1,41 @@
+"""Every example scene runs, and its energy balance closes at the tolerance it asks for."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from dynamics.simulate import simulate
+from fe_contact import analyze
+from service.client.portable import case_of_mesh, scene_of
+from service.convert.case import analysis_arguments, gear_pair
+from service.convert.scene import dynamic_scene
+
+SCENES = sorted((Path(__file__).parents[2] / "examples").glob("*_scene.toml"))
+LIMIT = 1e-3
+PART = 0.2
+"""Of the duration: the first revolutions, in which least is lost beside what tables take and give back."""
+
+
+def example(file: Path):
+    """The scene of a file on tables of its cases, from coarse meshes and all positions."""
+    given, folder = scene_of(file)
+    tables = {}
+    for index, mesh in enumerate(given.meshes):
+        case = case_of_mesh(mesh, f"meshes[{index}]", folder)
+        assert case is not None
+        asked = analysis_arguments(case) | {"tolerance": None, "level": "draft", "receipt": "minimal"}
+        tables[mesh.name] = analyze(gear_pair(case), **asked)
+    return dynamic_scene(given, tables)
+
+
+@pytest.mark.parametrize("file", SCENES, ids=[file.stem for file in SCENES])
+def test_the_energy_balance_of_every_example_closes(file, record_figure):
+    whole = example(file)
+    run = simulate(replace(whole, duration=PART * whole.duration))
+    assert run.energy.relative < LIMIT
+    strict = abs(run.energy.residual) / (run.energy.turnover - run.energy.held)
+    record_figure(f"energy balance, {file.stem}", 100 * strict, "below 0.1 %", "%", "own target")
+    assert strict < LIMIT  # also beside what was lost, supplied and gained alone
