@@ -5,6 +5,7 @@ from dynamics.periodic.floquet import Instability, floquet_multipliers
 from dynamics.periodic.motion import PeriodicMotion, motion, spectrum
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap, periodic_problem
 from dynamics.periodic.shooting import Orbit, OrbitStatus, find_orbit
+from dynamics.periodic.steady_states import SteadyStates, steady_states
 from dynamics.periodic.sweep import settled, sweep
 
 __all__ = [
@@ -17,6 +18,7 @@ __all__ = [
     "PeriodMap",
     "PeriodicMotion",
     "PeriodicProblem",
+    "SteadyStates",
     "find_orbit",
     "floquet_multipliers",
     "follow_branch",
@@ -24,5 +26,6 @@ __all__ = [
     "periodic_problem",
     "settled",
     "spectrum",
+    "steady_states",
     "sweep",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -97,6 +98,7 @@ def follow_branch(
     largest_step: float = 0.02,
     guess: FloatArray | None = None,
     points: int = 500,
+    progress: Callable[[float], None] | None = None,
 ) -> Branch:
     """Follow the periodic motions from the speed `first` until they leave the range `first` to `last`.
 
@@ -115,6 +117,8 @@ def follow_branch(
         State in metres to find the first motion from.
     points : int
         Most motions.
+    progress : callable, optional
+        Called with the part of the range reached so far; what it raises ends the search.
 
     Returns
     -------
@@ -150,6 +154,8 @@ def follow_branch(
             continue
         found += _passed(problem, scale, trail[-1], arrived, step, len(trail) - 1)
         trail.append(arrived)
+        if progress is not None:
+            progress(min(max(abs(p.orbit.speed - first) for p in trail) / abs(last - first), 1.0))
         if arrived.orbit.iterations < EASY:
             step = min(1.5 * step, largest_step)
         if not low <= arrived.orbit.speed <= high:

@@ -65,31 +65,34 @@ def spectrum(values: FloatArray) -> ComplexArray:
     return np.asarray(lines)
 
 
-def motion(problem: PeriodicProblem, orbit: Orbit) -> PeriodicMotion:
-    """Return the series of `orbit`, a motion that `problem` has."""
+def motion(
+    problem: PeriodicProblem, orbit: Orbit, samples_per_pitch: int = SAMPLES_PER_PITCH
+) -> PeriodicMotion:
+    """Return the series of `orbit`, a motion that `problem` has, at least so many samples per base pitch."""
     over_period = PeriodMap(problem, orbit.speed)
     path = over_period.path(orbit.state)
     once = over_period.times
     step_end = np.concatenate([once[:-1] + k * once[-1] for k in range(problem.repeat)] + [[orbit.duration]])
     pitches = problem.repeat * next(abs(count) for count in problem.period.pitches if count)
-    finest = max((step_end.size - 1) / pitches, SAMPLES_PER_PITCH)
+    finest = max((step_end.size - 1) / pitches, samples_per_pitch)
     samples = pitches * 2 ** int(np.ceil(np.log2(finest)))
     time = orbit.duration * np.arange(samples) / samples
     q = np.ascontiguousarray(CubicHermiteSpline(step_end, path[0], path[1])(time))
     v = np.ascontiguousarray(CubicHermiteSpline(step_end, path[1], path[2])(time))
     system, arrays = problem.system, over_period.arrays
     seen = observe(arrays, time, q, v)
-    meshes, coast = len(system.scene.meshes), len(system.flanks.coast)
+    meshes, driving = len(system.scene.meshes), system.driving_rows
+    coast = arrays.elements.first[meshes : meshes + len(system.flanks.coast)]
     static = np.empty((meshes, samples))
     for f, force in enumerate(system.flanks.nominal_force):
         static_deflections(system.flanks.static, f, seen.position[f], float(force), static[f])
     return PeriodicMotion(
         time,
         seen.position,
-        seen.coordinate[:meshes],
+        seen.coordinate[driving],
         static,
-        seen.force[:meshes],
-        seen.force[meshes : meshes + coast],
+        seen.force[driving],
+        seen.force[coast],
         bearing_force(system, seen.force, q, v),
         np.ascontiguousarray(q.T),
         np.ascontiguousarray(v.T),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -30,13 +30,17 @@ def settled(
 
 
 def sweep(
-    problem: PeriodicProblem, speeds: Sequence[float] | FloatArray, periods: int = SETTLING
+    problem: PeriodicProblem,
+    speeds: Sequence[float] | FloatArray,
+    periods: int = SETTLING,
+    progress: Callable[[float], None] | None = None,
 ) -> tuple[Orbit, ...]:
     """Return the motion at each of `speeds` (rad/s) in turn, each settled from the one before.
 
     It stays on its branch up to the fold and jumps there, as a slow run does: rising and falling speeds give
     the two sides of a hysteresis. Where it settles on no motion of the period sought (a longer period, chaos)
-    the status says so, and the sweep goes on from there.
+    the status says so, and the sweep goes on from there. `progress` is called with the fraction done; what
+    it raises ends the sweep.
 
     Raises
     ------
@@ -49,4 +53,6 @@ def sweep(
         orbits.append(find_orbit(problem, float(speed), state))
         if orbits[-1].status.usable and orbits[-1].stable:
             state = orbits[-1].state
+        if progress is not None:
+            progress(len(orbits) / len(speeds))
     return tuple(orbits)

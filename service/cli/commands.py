@@ -274,6 +274,31 @@ def response(
     run_study(RESPONSE, scene, output, service, asked, as_json=json)
 
 
+@app.command(epilog="Example: loa steady scene.toml --speed-rpm 11000:13500:100 -o steady.png")
+@guarded
+def steady(
+    scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
+    speed_rpm: Annotated[str, typer.Option(help=f"{_SPEEDS}.")],
+    branch: Annotated[
+        bool, typer.Option(help="Follow the branch between the ends, with its unstable parts.")
+    ] = True,
+    repeat: Annotated[
+        int, typer.Option(help="Periods after which motions repeat; 2 finds what period doubling leads to.")
+    ] = 1,
+    settling_periods: Annotated[int, typer.Option(help="Periods a sweep settles for at each speed.")] = 64,
+    output: StudyFile = None,
+    service: TableService = None,
+    json: AsJson = False,
+) -> None:
+    """Find periodic steady states at rising and falling speeds by shooting: stability, jumps, contact."""
+    from service.cli.dynamic_studies import STEADY, run_study  # noqa: PLC0415 (start-up time)
+    from service.cli.speed_list import speed_list  # noqa: PLC0415
+
+    asked = {"speed_rpm": speed_list(speed_rpm), "branch": branch, "repeat": repeat}
+    asked |= {"settling_periods": settling_periods}
+    run_study(STEADY, scene, output, service, asked, as_json=json)
+
+
 @app.command(epilog="Example: loa report ste.nc run.nc -o report.html")
 @guarded
 def report(
@@ -395,7 +420,7 @@ def submit(
         str | None,
         typer.Option(
             help="On a case analyze (default), flank or sensitivity; on a scene simulate "
-            "(default), modes or response."
+            "(default), modes, response or steady."
         ),
     ] = None,
     inputs: Annotated[

@@ -1,4 +1,4 @@
-"""``loa modes``, ``loa response``: studies of a scene that need no time integration."""
+"""``loa modes``, ``loa response``, ``loa steady``: studies of a scene that need no time integration."""
 
 from __future__ import annotations
 
@@ -8,22 +8,25 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from dynamics.periodic.steady_states import BRANCH
 from dynamics.system import Scene
 from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.cli.scene_tables import scene_with_tables
 from service.client.portable import scene_of
 from service.convert.modal import modes_json, modes_of
 from service.convert.response import response_json, response_of
+from service.convert.steady import steady_json, steady_of
 from service.convert.units import RPM
-from service.problems import BadInput
+from service.problems import BadInput, JobFailed
 from service.report.figure import Figure
 from service.report.image import png
 from service.report.inputs import Inputs
 from service.report.modal import critical_table, modal_figures, modes_table
 from service.report.response import peak_table, response_figure
+from service.report.steady import steady_figure, steady_table
 from service.report.write import write_page
 from service.schemas import validated
-from service.schemas.dynamic_studies import ModesInput, ResponseInput
+from service.schemas.dynamic_studies import ModesInput, ResponseInput, SteadyInput
 from service.schemas.model import BoundaryModel
 
 Json = dict[str, Any]
@@ -48,6 +51,8 @@ class Study:
         The inputs of the page of ``-o FILE.html``.
     show : callable
         Prints a result for people.
+    failure : callable
+        Says what of a result was not found, if anything.
     """
 
     inputs: type[BoundaryModel]
@@ -56,12 +61,13 @@ class Study:
     picture: Callable[[Any], Figure]
     page: Callable[[Any], Inputs]
     show: Callable[[Any], None]
+    failure: Callable[[Any], str] = lambda _found: ""
 
 
 def run_study(
     study: Study, file: Path, output: Path | None, service: str | None, asked: Json, *, as_json: bool
-) -> Any:
-    """Compute, write, print; return the result. `asked` holds the fields of the inputs that were given."""
+) -> None:
+    """Compute, write, print. `asked` holds the fields of the inputs that were given."""
     chosen = validated(study.inputs, asked)
     scene, folder = scene_of(file)
     if output is not None:
@@ -72,11 +78,12 @@ def run_study(
         _write(study, found, output)
     if as_json:
         print_json(({} if output is None else {"file": str(output)}) | study.json(found))
-        return found
-    study.show(found)
-    if output is not None:
-        console().print(f"written to {output}", highlight=False)
-    return found
+    else:
+        study.show(found)
+        if output is not None:
+            console().print(f"written to {output}", highlight=False)
+    if failure := study.failure(found):
+        raise JobFailed(failure)
 
 
 def _check(output: Path) -> None:
@@ -140,6 +147,45 @@ def _show_response(found: Any) -> None:
     )
 
 
+def _show_steady(found: Any) -> None:
+    """Print both sweeps, jumps and what the branch came to."""
+    out = console()
+    listed = steady_table(found)
+    out.print(table(listed.head, listed.rows, listed.caption))
+    answer = steady_json(found)
+    for jump in answer["jumps"]:
+        before, behind = jump["between_rpm"]
+        sense = "rising" if jump["sweep"] == "up" else "falling"
+        _lines([f"{sense} speeds jump between {before:.6g} and {behind:.6g} rpm"])
+    if answer["branch"]["status"] != "none":
+        branch, places = answer["branch"], answer["bifurcations"]
+        turns = ", ".join(f"{place['kind']} at {place['speed_rpm']:.6g} rpm" for place in places)
+        _lines([f"branch {branch['status']}, {len(branch['points'])} motions; {turns or 'no bifurcation'}"])
+    _lines([f"cost {sum(found.facts['seconds'].values()):.3g} CPU s"])
+
+
+def _not_found(found: Any) -> str:
+    """Say at how many speeds a sweep found no motion."""
+    missing = (found.status != 0) & (found.curve != BRANCH)
+    if not missing.any():
+        return ""
+    speeds = sorted({f"{speed / RPM:.6g}" for speed in found.speed[missing]})
+    shown = ", ".join(speeds[:5]) + (" ..." if len(speeds) > 5 else "")
+    return (
+        f"{int(missing.sum())} of {int((found.curve != BRANCH).sum())} motions were not found, at {shown} "
+        "rpm. They may repeat after more periods (--repeat 2), or never."
+    )
+
+
+STEADY = Study(
+    SteadyInput,
+    steady_of,
+    steady_json,
+    steady_figure,
+    lambda found: Inputs(steady=found),
+    _show_steady,
+    _not_found,
+)
 RESPONSE = Study(
     ResponseInput,
     response_of,

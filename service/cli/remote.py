@@ -15,9 +15,9 @@ from service.client import JobState, LineOfActionClient, Result
 from service.problems import BadInput, NotFound, ResultNotReady
 from service.schemas import Case, read_table, validated
 
-_KINDS = ("database", "flanks", "run", "sensitivity", "modes", "response")
+_KINDS = ("database", "flanks", "run", "sensitivity", "modes", "response", "steady")
 _OF_CASES = ("analyze", "flank", "sensitivity")
-_OF_SCENES = ("simulate", "modes", "response")
+_OF_SCENES = ("simulate", "modes", "response", "steady")
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@ _PATHS = {
     "sensitivity": "/v1/sensitivities",
     "modes": "/v1/modes",
     "response": "/v1/responses",
+    "steady": "/v1/steadies",
 }
 _NETCDF = "application/x-netcdf"
 
@@ -271,6 +272,23 @@ class LineOfActionClient:
         return self._scene_study(
             "response", scene, progress, {"speed_rpm": list(speed_rpm), "orders": orders}
         )
+
+    def steady_file(
+        self,
+        scene: SceneLike,
+        progress: Watch | None = None,
+        *,
+        speed_rpm: Sequence[float],
+        branch: bool = True,
+        repeat: int = 1,
+        settling_periods: int = 64,
+    ) -> Path:
+        """Return the file of a scene's periodic steady states over speeds: submit, wait, fetch.
+
+        As `modes_file`; read it with `dynamics.periodic.SteadyStates.from_netcdf`.
+        """
+        further = {"speed_rpm": list(speed_rpm), "branch": branch, "repeat": repeat}
+        return self._scene_study("steady", scene, progress, further | {"settling_periods": settling_periods})
 
     def _scene_study(
         self, process: str, scene: SceneLike, progress: Watch | None, further: dict[str, Any]

@@ -19,7 +19,7 @@ from service.convert.topology import facts_of
 from service.jobs.process import Process, Registry, Stage
 from service.problems import BadInput
 from service.schemas import Case
-from service.schemas.dynamic_studies import ModesInput, ResponseInput
+from service.schemas.dynamic_studies import ModesInput, ResponseInput, SteadyInput
 from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
 from service.schemas.scene import MeshInput, SceneInput
@@ -49,6 +49,12 @@ class ModesInputs(ModesInput):
 
 class ResponseInputs(ResponseInput):
     """Inputs of the process response."""
+
+    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
+
+
+class SteadyInputs(SteadyInput):
+    """Inputs of the process steady."""
 
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
 
@@ -94,7 +100,7 @@ def _name_database(inputs: Json) -> str:
 
 def _prepare_scene(inputs: BoundaryModel, store: ResultStore) -> Json:
     """Check the scene and the sources of its tables; return it with all defaults."""
-    assert isinstance(inputs, SimulateInputs | ModesInputs | ResponseInputs)
+    assert isinstance(inputs, SimulateInputs | ModesInputs | ResponseInputs | SteadyInputs)
     facts = {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in enumerate(inputs.scene.meshes)}
     check_scene(inputs.scene, facts)
     return inputs.model_dump(mode="json")
@@ -200,8 +206,21 @@ RESPONSE = Process(
     entry="service.jobs.scene_study_work:study_response",
     stages=(Stage("analysis", 0.9), Stage("response", 0.1)),
 )
+STEADY = Process(
+    id="steady",
+    title="Periodic steady states of a geared system",
+    description="What a system settles on at constant speeds, rising and falling, by shooting, with Floquet "
+    "stability, jumps, and the branch through its folds.",
+    version="1",
+    inputs=SteadyInputs,
+    output="steady",
+    kind="steady",
+    prepare=_prepare_scene,
+    entry="service.jobs.scene_study_work:study_steady",
+    stages=(Stage("analysis", 0.4), Stage("up", 0.2), Stage("down", 0.2), Stage("branch", 0.2)),
+)
 
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
-    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE, MODES, RESPONSE)
+    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE, MODES, RESPONSE, STEADY)

@@ -9,9 +9,10 @@ from typing import Any
 from dynamics.system import Scene
 from service.convert.modal import modes_of
 from service.convert.response import response_of
+from service.convert.steady import steady_of
 from service.jobs.order import Product, Progress, WorkOrder
 from service.jobs.simulation_work import ordered_scene
-from service.schemas.dynamic_studies import ModesInput, ResponseInput
+from service.schemas.dynamic_studies import ModesInput, ResponseInput, SteadyInput
 from service.schemas.model import BoundaryModel
 
 
@@ -23,6 +24,11 @@ def study_modes(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 def study_response(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Find the forced response of a scene."""
     return _study(order, progress, "response", ResponseInput, response_of)
+
+
+def study_steady(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Find the periodic steady states of a scene."""
+    return _study(order, progress, "steady", SteadyInput, steady_of)
 
 
 def _study(

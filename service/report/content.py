@@ -13,6 +13,7 @@ from service.report.page import Headline, Page, Section
 from service.report.response import response_figure
 from service.report.sensitivity import sensitivity_figure
 from service.report.static_part import static_alarms, static_headlines, static_making, static_results
+from service.report.steady import steady_figure
 
 
 def page_of(read: Inputs) -> Page:
@@ -38,6 +39,8 @@ def page_of(read: Inputs) -> Page:
         results.append(Section("Modes", figures=modal_figures(read.modal)))
     if read.response is not None:
         results.append(Section("Forced response", figures=(response_figure(read.response),)))
+    if read.steady is not None:
+        results.append(Section("Steady states", figures=(steady_figure(read.steady),)))
     if run is not None:
         headlines += dynamic_headlines(run)
         results += dynamic_results(run)

@@ -13,6 +13,8 @@ from dynamics.errors import DynamicsError
 from dynamics.linearize import ForcedResponse, ModalAnalysis
 from dynamics.linearize.forced_response import SCHEMA as RESPONSE_SCHEMA
 from dynamics.linearize.modal_analysis import SCHEMA as MODAL_SCHEMA
+from dynamics.periodic import SteadyStates
+from dynamics.periodic.steady_states import SCHEMA as STEADY_SCHEMA
 from dynamics.results import RunResult
 from fe_contact.analysis import LoadDistribution
 from fe_contact.errors import FeContactError
@@ -28,8 +30,9 @@ _KINDS = {
     ("schema", "lineofaction dynamics run"): "run",
     ("schema", MODAL_SCHEMA): "modal analysis",
     ("schema", RESPONSE_SCHEMA): "forced response",
+    ("schema", STEADY_SCHEMA): "steady states",
 }
-_BOUND = "an STE database, flank results, a sensitivity study, a modal analysis, a forced response or a run"
+_BOUND = "an STE database, flank results, a study (sensitivity, modes, response, steady states) or a run"
 _READERS: dict[str, Callable[[Path], Any]] = {
     "database": SteDatabase.from_netcdf,
     "flank results": LoadDistribution.from_netcdf,
@@ -37,6 +40,7 @@ _READERS: dict[str, Callable[[Path], Any]] = {
     "run": RunResult.from_netcdf,
     "modal analysis": ModalAnalysis.from_netcdf,
     "forced response": ForcedResponse.from_netcdf,
+    "steady states": SteadyStates.from_netcdf,
 }
 _FIELDS = {
     "database": "database",
@@ -45,6 +49,7 @@ _FIELDS = {
     "run": "run",
     "modal analysis": "modal",
     "forced response": "response",
+    "steady states": "steady",
 }
 
 
@@ -58,6 +63,7 @@ class Inputs:
     run: RunResult | None = None
     modal: ModalAnalysis | None = None
     response: ForcedResponse | None = None
+    steady: SteadyStates | None = None
 
 
 def read_inputs(files: Sequence[Path]) -> Inputs:

@@ -21,6 +21,7 @@ RESULT_PATHS = {
     "sensitivity": "/v1/sensitivities",
     "modes": "/v1/modes",
     "response": "/v1/responses",
+    "steady": "/v1/steadies",
 }
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])

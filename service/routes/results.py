@@ -9,6 +9,7 @@ from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
 from dynamics.linearize import ForcedResponse, ModalAnalysis
+from dynamics.periodic import SteadyStates
 from fe_contact.analysis import LoadDistribution
 from service.convert.answers import force_answer, metadata_json
 from service.convert.flanks import flank_json
@@ -17,6 +18,7 @@ from service.convert.response import response_json
 from service.convert.runs import run_json
 from service.convert.sensitivity import studies_json
 from service.convert.sensitivity_file import read_studies
+from service.convert.steady import steady_json
 from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.schemas.query import QueryInput, QueryOutput
@@ -97,6 +99,15 @@ def forced_response(
     if _wants_file(accept):
         return _file(stored, request)
     return _metadata(stored, request, response_json(ForcedResponse.from_netcdf(stored.path)))
+
+
+@router.get("/steadies/{key}", summary="Steady states", response_class=Response, responses=_answers())
+def steady(key: Key, request: Request, context: Ctx, accept: Accept = "application/json") -> Response:
+    """Figures or the file, by Accept."""
+    stored = context.store.verified(key, "steady")
+    if _wants_file(accept):
+        return _file(stored, request)
+    return _metadata(stored, request, steady_json(SteadyStates.from_netcdf(stored.path)))
 
 
 @router.post("/databases/{key}/query", summary="Mesh forces", responses=documented(400, 404, 413, 422, 500))

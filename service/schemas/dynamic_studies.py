@@ -51,6 +51,34 @@ class ResponseInput(BoundaryModel):
         return self
 
 
+class SteadyInput(BoundaryModel):
+    """Speeds at which steady states are looked for."""
+
+    speed_rpm: Annotated[tuple[TurningSpeed, ...], Strict(False)] = Field(
+        min_length=1,
+        max_length=MOST_SPEEDS,
+        description="Speeds of the first shaft that is driven, in rpm, increasing",
+        examples=[[11000.0, 12000.0, 13000.0]],
+    )
+    branch: bool = Field(
+        default=True,
+        description="Follow the branch from the lowest to the highest speed, with its unstable parts",
+        examples=[True],
+    )
+    repeat: Annotated[int, Field(ge=1, le=16)] = Field(
+        default=1, description="Common periods of the meshes after which motions repeat", examples=[1]
+    )
+    settling_periods: Annotated[int, Field(ge=0, le=100_000)] = Field(
+        default=64, description="Periods that a sweep settles for at each speed", examples=[64]
+    )
+
+    @model_validator(mode="after")
+    def _increasing(self) -> Self:
+        """Speeds are an axis."""
+        _refuse_unsorted(self.speed_rpm)
+        return self
+
+
 def _refuse_unsorted(values: tuple[float, ...]) -> None:
     """Refuse speeds that do not increase."""
     if any(later <= earlier for earlier, later in pairwise(values)):

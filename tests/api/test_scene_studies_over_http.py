@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import importlib
+import json
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +14,20 @@ from fastapi.testclient import TestClient
 from scene_files import scene_file
 
 from dynamics.linearize import ForcedResponse, ModalAnalysis
+from dynamics.periodic import SteadyStates
 from fe_contact.ste import SteDatabase
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
 from service.convert.modal import modes_json, modes_of
-from service.convert.response import response_json, response_of
+from service.convert.response import response_json
 from service.convert.scene import dynamic_scene
+from service.convert.steady import steady_json
+from service.jobs.catalogue import RESPONSE, STEADY
+from service.jobs.order import WorkOrder
+from service.jobs.process import Process
 from service.problems import BadInput
 from service.schemas import read_model
-from service.schemas.dynamic_studies import ModesInput, ResponseInput
+from service.schemas.dynamic_studies import ModesInput
 from service.schemas.scene import SceneInput
 from service.settings import Settings
 from service.store import stored_results
@@ -77,17 +84,48 @@ def test_modes_are_those_of_python(
     assert {name: answer[name] for name in modes_json(found)} == modes_json(found)
 
 
-def test_a_response_is_that_of_python(
-    served: tuple[LineOfActionClient, TestClient], scene: SceneInput, tmp_path: Path
+@pytest.mark.parametrize(
+    ("process", "further", "path", "result", "figures"),
+    [
+        (RESPONSE, {"speed_rpm": [300.0, 600.0], "orders": 3}, "responses", ForcedResponse, response_json),
+        (
+            STEADY,
+            {"speed_rpm": [3000.0, 3200.0], "settling_periods": 2},
+            "steadies",
+            SteadyStates,
+            steady_json,
+        ),
+    ],
+)
+def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
+    served: tuple[LineOfActionClient, TestClient],
+    scene: SceneInput,
+    tmp_path: Path,
+    process: Process,
+    further: dict[str, Any],
+    path: str,
+    result: Any,
+    figures: Callable[[Any], dict[str, Any]],
 ) -> None:
+    """The work itself, in this process: a child is a matter of the jobs, which the modes go through."""
     client, http = served
-    seen: list[JobState] = []
-    file = client.response_file(scene, seen.append, speed_rpm=[300.0, 600.0], orders=3)
-    found = ForcedResponse.from_netcdf(file)
-    python = response_of(here(scene, tmp_path), ResponseInput(speed_rpm=(300.0, 600.0), orders=3), none)
-    np.testing.assert_array_equal(found.mesh_force, python.mesh_force)
-    answer = http.get(f"/v1/responses/{client.result(seen[-1].id).key}").json()
-    assert {name: answer[name] for name in response_json(found)} == response_json(found)
+    data = http.app.state.context.settings.data_directory  # type: ignore[attr-defined]
+    inputs = {"scene": scene.model_dump(mode="json"), **further}
+    given = process.inputs.model_validate_json(json.dumps(inputs))
+    inputs = process.prepare(given, stored_results(data))
+    seen: list[tuple[str, float]] = []
+    module, _, function = process.entry.partition(":")
+    order = WorkOrder(process.entry, inputs, process.key(inputs), tmp_path, data)
+    work = getattr(importlib.import_module(module), function)
+    (product,) = work(order, lambda *step: seen.append(step))
+    overall = [process.overall(*step) for step in seen]
+    assert None not in overall and overall == sorted(overall)  # type: ignore[type-var]
+    stored_results(data).put(product.key, product.kind, product.file)
+    job = client.submit_scene(scene, process.id, **further)
+    assert job.status == "successful"
+    found = result.from_netcdf(client.fetch_file(client.result(job.id).key, process.kind))
+    answer = http.get(f"/v1/{path}/{product.key}").json()
+    assert {name: answer[name] for name in figures(found)} == figures(found)
 
 
 @pytest.mark.parametrize(
@@ -98,6 +136,8 @@ def test_a_response_is_that_of_python(
         ("modes", {"orders": 0}, "orders"),
         ("modes", {"speed": [1.0]}, "speed"),
         ("response", {}, "speed_rpm"),
+        ("steady", {"speed_rpm": [5.0, 5.0]}, "speed_rpm"),
+        ("steady", {"speed_rpm": [5.0], "repeat": 99}, "repeat"),
         ("response", {"speed_rpm": [0.0, 1.0]}, "speed_rpm"),
     ],
 )
@@ -118,6 +158,6 @@ def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
 
 def test_a_hash_of_another_kind_is_not_found(served: tuple[LineOfActionClient, TestClient]) -> None:
     _, http = served
-    for path in ("modes", "responses"):
+    for path in ("modes", "responses", "steadies"):
         assert http.get(f"/v1/{path}/{KEY}").status_code == 404
         assert http.get(f"/v1/{path}/nonsense").status_code == 422

@@ -1,0 +1,243 @@
+"""Periodic steady states over speed as a study: both sweeps, the branch between them, jumps, and its file."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.linearize.speeds import checked_speeds, leading_law
+from dynamics.periodic.continuation import Branch, follow_branch
+from dynamics.periodic.floquet import ComplexArray
+from dynamics.periodic.period_map import PeriodicProblem, periodic_problem
+from dynamics.periodic.shooting import Orbit
+from dynamics.periodic.steady_figures import KINDS, MotionFigures, figures_of
+from dynamics.periodic.sweep import SETTLING, sweep
+from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray, IntArray, Json
+
+SCHEMA = "lineofaction steady states"
+UP, DOWN, BRANCH = 0, 1, 2
+CURVES = ("up", "down", "branch")
+SAME = 0.02  # of the rms of the transmission error: motions nearer than that are one
+
+_MESH, _POINT = ("point", "mesh"), ("point",)
+STORED = {
+    "curve": Stored(_POINT, "1", "0 rising speeds, 1 falling speeds, 2 along the branch"),
+    "speed": Stored(_POINT, "rad s-1", "speed of the leading shaft"),
+    "status": Stored(_POINT, "1", "how the search ended: 0 converged, see OrbitStatus"),
+    "residual": Stored(_POINT, "m", "largest change of the state over the period"),
+    "iterations": Stored(_POINT, "1", "Newton iterations"),
+    "step_error": Stored(_POINT, "m", "estimate of what the steps' errors move the motion by"),
+    "instability": Stored(_POINT, "1", "0 stable, 1 fold, 2 period doubling, 3 Neimark-Sacker"),
+    "multiplier": Stored(("point", "state"), "1", "Floquet multipliers by falling size"),
+    "mean_error": Stored(_MESH, "m", "mean dynamic transmission error"),
+    "rms_error": Stored(_MESH, "m", "root mean square of its alternating part"),
+    "peak_to_peak_error": Stored(_MESH, "m", "its peak-to-peak"),
+    "least_force": Stored(_MESH, "N", "least mesh force of the driving flank"),
+    "largest_force": Stored(_MESH, "N", "largest mesh force of the driving flank"),
+    "parted": Stored(_MESH, "1", "share of the period that the driving flank is out of contact"),
+    "coasting": Stored(_MESH, "1", "share of the period that the coast flank is in contact"),
+    "rms_bearing_force": Stored(("point", "bearing"), "N", "root mean square of the alternating force"),
+    "bifurcation_speed": Stored(("bifurcation",), "rad s-1", "speed of the leading shaft"),
+    "bifurcation_kind": Stored(("bifurcation",), "1", "1 fold, 2 period doubling, 3 Neimark-Sacker"),
+    "jump_curve": Stored(("jump",), "1", "0 at rising speeds, 1 at falling ones"),
+    "jump_speed": Stored(("jump", "side"), "rad s-1", "last speed before and first after the jump"),
+}
+
+
+@dataclass(frozen=True)
+class SteadyStates:
+    """P periodic motions on three curves: at rising speeds, at falling ones, and along the branch.
+
+    m meshes, b bearings, n freedoms. Figures of motions that were not found are NaN; their status says why.
+
+    Attributes
+    ----------
+    mesh, bearing : tuples of str
+    curve : (P,) int array
+        0 rising speeds, 1 falling ones, 2 along the branch from the lowest to the highest speed.
+    speed, residual, step_error : (P,) arrays
+        Of the leading shaft, rad/s, > 0; m; m, see `Orbit`.
+    status, iterations, instability : (P,) int arrays
+        `OrbitStatus`; of Newton's method; 0 stable, 1 fold, 2 period doubling, 3 Neimark-Sacker.
+    multiplier : (P, 2n) complex array
+        Floquet's, by falling size.
+    mean_error, rms_error, peak_to_peak_error : (P, m) arrays
+        Of the dynamic transmission error: mean, rms of the rest, m.
+    least_force, largest_force : (P, m) arrays
+        Of the driving flank, N.
+    parted, coasting : (P, m) arrays
+        Shares of the period in which the driving flank does not touch, and the coast flank does.
+    rms_bearing_force : (P, b) array
+        Alternating part, root of the sum of squares of x, y and z, N.
+    bifurcation_speed, bifurcation_kind : (B,) arrays
+        Along the branch, as `instability`.
+    jump_curve, jump_speed : (J,) int and (J, 2) arrays
+        Sweep (0 up, 1 down), last speed before and first after each jump onto another motion.
+    facts : dict
+        Plain JSON: `leading_shaft`, `branch` (status; "none" without), `repeat`, `period_pitches`,
+        `freedoms`, `seconds` (CPU by stage), `effect_ledger`.
+    """
+
+    mesh: tuple[str, ...]
+    bearing: tuple[str, ...]
+    curve: IntArray
+    speed: FloatArray
+    status: IntArray
+    residual: FloatArray
+    iterations: IntArray
+    step_error: FloatArray
+    instability: IntArray
+    multiplier: ComplexArray
+    mean_error: FloatArray
+    rms_error: FloatArray
+    peak_to_peak_error: FloatArray
+    least_force: FloatArray
+    largest_force: FloatArray
+    parted: FloatArray
+    coasting: FloatArray
+    rms_bearing_force: FloatArray
+    bifurcation_speed: FloatArray
+    bifurcation_kind: IntArray
+    jump_curve: IntArray
+    jump_speed: FloatArray
+    facts: Json = field(default_factory=dict)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write a netCDF-4 file; it appears whole or not at all."""
+        write_fields(self, Path(path), SCHEMA, STORED)
+
+    @classmethod
+    def from_netcdf(cls, path: str | Path) -> SteadyStates:
+        """Read what `to_netcdf` wrote, bit by bit the same.
+
+        Raises
+        ------
+        ResultError
+            If the file holds no steady states of this schema, or is damaged.
+        """
+        return read_fields(cls, Path(path), SCHEMA, STORED)
+
+
+def steady_states(
+    system: System,
+    speed: Sequence[float] | FloatArray,
+    *,
+    branch: bool = True,
+    repeat: int = 1,
+    periods: int = SETTLING,
+    time: float = 0.0,
+    progress: Callable[[str, float], None] | None = None,
+) -> SteadyStates:
+    """Return what `system` settles on at constant speeds, rising and falling, and the branch between them.
+
+    Parameters
+    ----------
+    system : System
+    speed : (S,) sequence
+        Of the first drive that turns, rad/s, increasing, > 0; its sense is the scene's.
+    branch : bool
+        Whether to follow the branch from the lowest to the highest speed, through folds and unstable parts.
+    repeat : int
+        Common periods after which motions are to repeat.
+    periods : int
+        Periods that a sweep settles for at each speed before Newton's method.
+    time : float
+        When loads are taken, s.
+    progress : callable, optional
+        Called with the curve (`CURVES`) and the fraction of it done; what it raises ends the study.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, there is nothing to vibrate, or the meshes have no common period.
+    SolveError
+        If there is no static equilibrium.
+    """
+    speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
+    if not speeds.size:
+        raise InputError("speed", [], "at least one speed")
+    sense = float(np.sign(system.scene.references[leading_law(system)].speed.extreme))
+    seconds: dict[str, float] = {}
+
+    def stage(name: str) -> Callable[[float], None]:
+        return lambda fraction: None if progress is None else progress(name, fraction)
+
+    began = clock.process_time()
+    problem = periodic_problem(system, sense * speeds[0], repeat, time)
+    up = sweep(problem, sense * speeds, periods, stage(CURVES[UP]))
+    down = sweep(problem, sense * speeds[::-1], periods, stage(CURVES[DOWN])) if speeds.size > 1 else ()
+    seconds["sweeps"] = clock.process_time() - began
+    began = clock.process_time()
+    followed = None
+    if branch and speeds.size > 1:
+        start = up[0].state if up[0].status.usable else None
+        ends = sense * speeds[0], sense * speeds[-1]
+        followed = follow_branch(problem, *ends, guess=start, progress=stage(CURVES[BRANCH]))
+    seconds["branch"] = clock.process_time() - began
+    began = clock.process_time()
+    curves = (up, down, followed.orbits if followed is not None else ())
+    figures = figures_of(problem, [orbit for orbits in curves for orbit in orbits])
+    seconds["figures"] = clock.process_time() - began
+    return _study(problem, curves, followed, figures, seconds)
+
+
+def _study(
+    problem: PeriodicProblem,
+    curves: tuple[tuple[Orbit, ...], ...],
+    branch: Branch | None,
+    figures: MotionFigures,
+    seconds: Json,
+) -> SteadyStates:
+    """Put the study together."""
+    found = branch.bifurcations if branch is not None else ()
+    jumps = _jumps(figures, len(curves[UP])) if curves[DOWN] else []
+    scene = problem.system.scene
+    facts: Json = {
+        "leading_shaft": scene.references[leading_law(problem.system)].shaft,
+        "branch": branch.status.name if branch is not None else "none",
+        "repeat": problem.repeat,
+        "period_pitches": {
+            mesh.name: problem.repeat * abs(count)
+            for mesh, count in zip(scene.meshes, problem.period.pitches, strict=True)
+        },
+        "freedoms": list(problem.system.freedoms.name),
+        "steps_per_period": int(problem.grid.rung.size) * problem.repeat,
+        "seconds": seconds,
+        "effect_ledger": problem.system.ledger.to_json(),
+    }
+    return SteadyStates(
+        tuple(mesh.name for mesh in scene.meshes),
+        problem.system.supports.name,
+        np.repeat(np.arange(len(curves)), [len(orbits) for orbits in curves]),
+        **vars(figures),
+        bifurcation_speed=np.array([abs(b.speed) for b in found]),
+        bifurcation_kind=np.array([KINDS.index(b.kind) for b in found], dtype=np.int64),
+        jump_curve=np.array([curve for curve, _ in jumps], dtype=np.int64),
+        jump_speed=np.array([ends for _, ends in jumps], dtype=float).reshape(-1, 2),
+        facts=facts,
+    )
+
+
+def _jumps(figures: MotionFigures, speeds: int) -> list[tuple[int, tuple[float, float]]]:
+    """Return where a sweep leaves its motion for that of the other: beside the speeds that have two.
+
+    The first `speeds` figures are of rising speeds, as many after them of falling ones.
+    """
+    one, other = figures.rms_error[:speeds], figures.rms_error[speeds : 2 * speeds][::-1]
+    apart = np.abs(one - other) > SAME * np.maximum(one, other)  # False where one was not found
+    two = np.any(apart, axis=1)
+    found = []
+    for index in range(len(two) - 1):
+        low, high = (float(value) for value in figures.speed[index : index + 2])
+        if two[index] and not two[index + 1]:
+            found.append((UP, (low, high)))
+        if two[index + 1] and not two[index]:
+            found.append((DOWN, (high, low)))
+    return found
