@@ -16,6 +16,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 
 class FeContactError(Exception):
     """Anything this package raises on purpose."""
@@ -37,6 +39,7 @@ class InputError(FeContactError):
     """
 
     def __init__(self, field: str, value: object, bound: str, suggestion: str = "") -> None:
+        value = value.item() if isinstance(value, np.generic) else value  # a number, to whoever reads it
         self.field, self.value, self.bound, self.suggestion = field, value, bound, suggestion
         text = f"{field} = {value!r}: must be {bound}"
         super().__init__(f"{text}. {suggestion}" if suggestion else text)

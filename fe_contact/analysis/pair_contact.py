@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -32,6 +31,7 @@ from fe_contact.contact import (
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe
 from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation
+from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.types import FloatArray, IntArray
 
 KEPT_PROBLEMS = 2
@@ -120,7 +120,13 @@ class PairContact:
         raise ValueError("a pair contact needs the compliance of its gears")
 
 
-def pair_contact(pair: ParallelAxes, plan: Plan, cache: Path | None, coarse: bool = False) -> PairContact:
+def pair_contact(
+    pair: ParallelAxes,
+    plan: Plan,
+    cache: Path | None,
+    coarse: bool = False,
+    distance_changes: FloatArray | None = None,
+) -> PairContact:
     """Compute or fetch the compliance of both gears; identical gears are computed once.
 
     Parameters
@@ -132,6 +138,8 @@ def pair_contact(pair: ParallelAxes, plan: Plan, cache: Path | None, coarse: boo
     coarse : bool
         Take the coarse meshes, which serve the error estimate; in the plane without the correction for the
         finite width, which has an error of its own.
+    distance_changes : ndarray, optional
+        Changes of the centre distance in m at which the same compliance will be used.
     """
     made = plan.discretisation
     gears = plan.bodies(pair)
@@ -141,7 +149,8 @@ def pair_contact(pair: ParallelAxes, plan: Plan, cache: Path | None, coarse: boo
         )
         # a ring's right flank is the loaded one as seen from the other side: its z runs against the pinion's
         return PairContact(pair, plan, face=(first, second.mirrored() if pair.internal else second))
-    flat = _plane_flanks(pair, gears, made, made.coarse_recipes if coarse else made.recipes, cache)
+    recipes = made.coarse_recipes if coarse else made.recipes
+    flat = _plane_flanks(gears, made, recipes, _teeth(pair, distance_changes), cache)
     if made.finite_width is None or coarse:
         return PairContact(pair, plan, plane=flat)
     ends = finite_width_compliances(gears, made.finite_width, flat[0].teeth.size, cache=cache)
@@ -149,16 +158,20 @@ def pair_contact(pair: ParallelAxes, plan: Plan, cache: Path | None, coarse: boo
     return PairContact(pair, plan, plane=corrected, uncorrected=flat)
 
 
+def _teeth(pair: ParallelAxes, distance_changes: FloatArray | None) -> int:
+    """Return the number of teeth that can touch at once, at any of the centre distances."""
+    changes = () if distance_changes is None else distance_changes.tolist()
+    others = [pair.at_center_distance(pair.center_distance + change) for change in changes if change]
+    return max(condensed_teeth(each) for each in (pair, *others))
+
+
 def _plane_flanks(
-    pair: ParallelAxes,
     gears: tuple[Toothing, Toothing],
     made: PlaneDiscretisation,
     recipes: tuple[MeshRecipe, MeshRecipe],
+    teeth: int,
     cache: Path | None,
 ) -> PlaneFlanks:
-    """Condense all teeth that can touch at once."""
-    reach = 2 * math.ceil(pair.transverse_contact_ratio) + 1
-    fits = min(pair.pinion.teeth, pair.wheel.teeth)
-    teeth = min(reach, fits - 1 + fits % 2)
+    """Condense the teeth that can touch at once."""
     first, second = flank_compliances(gears, recipes, made.hypothesis, teeth=teeth, cache=cache)
     return first, second

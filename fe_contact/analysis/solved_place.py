@@ -45,7 +45,7 @@ def solve_place(
     plan = planned(request.pair, request.load, request.accuracy, checked.model, cache=cache)
     report("compliance", 0.0)
     with clock.stage("compliance"):
-        nominal = pair_contact(request.pair, plan, cache)
+        nominal = pair_contact(request.pair, plan, cache, distance_changes=request.center_distance_change)
     report("compliance", 1.0)
     with clock.stage("contact"):
         (place,) = table_places(request.scene, request.choices, nominal).places

@@ -102,7 +102,8 @@ def laid_out(
     request, stage = checked.request, "error estimate" if coarse else "compliance"
     report(stage, 0.0)
     with clock.stage(stage):
-        nominal = known or pair_contact(request.pair, plan, cache, coarse)
+        changes = request.center_distance_change
+        nominal = known or pair_contact(request.pair, plan, cache, coarse, changes)
     report(stage, 1.0)
     return table_places(request.scene, request.choices, nominal)
 

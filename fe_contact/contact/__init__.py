@@ -2,7 +2,7 @@
 
 from fe_contact.contact.added_compliance import with_compliances
 from fe_contact.contact.assembly import contact_problem
-from fe_contact.contact.candidates import PatchRule, contact_candidates, with_gaps
+from fe_contact.contact.candidates import PatchRule, contact_candidates, teeth_in_reach, with_gaps
 from fe_contact.contact.face_assembly import face_contact_problem
 from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_forces
 from fe_contact.contact.model import ComplianceTerm, ContactModel, GapTerm, ToothGap
@@ -29,6 +29,7 @@ __all__ = [
     "in_pitches",
     "plane_flank_forces",
     "solve_contact",
+    "teeth_in_reach",
     "with_compliances",
     "with_gaps",
 ]

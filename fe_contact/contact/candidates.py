@@ -75,13 +75,30 @@ def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -
     return candidates.touching(touch)
 
 
+def teeth_in_reach(pair: ParallelAxes) -> int:
+    """Return how many teeth, odd and centred on tooth 0, hold every contact of a plane pair in a pitch.
+
+    Where the path of contact lies off the pitch point, as with unlike profile shifts, pairs run further to
+    one side than to the other.
+    """
+    first, last = _pair_range(pair, 0.0, 1.0, (0.0, 0.0))
+    return 2 * max(math.ceil(pair.transverse_contact_ratio), -first, last) + 1
+
+
 def _pair_indices(pair: ParallelAxes, position: FloatArray, slices: Slices) -> IntArray:
     """Return all pairs between A and E in any slice, and one more beyond either end."""
-    path = pair.path_of_contact
     lead = slices.center * math.tan(pair.base_helix_angle)
-    first = np.floor((path.start - path.pitch_point + lead.min()) / path.base_pitch - position.max())
-    last = np.ceil((path.end - path.pitch_point + lead.max()) / path.base_pitch - position.min())
-    return np.arange(int(first), int(last) + 1)
+    ends = float(lead.min()), float(lead.max())
+    first, last = _pair_range(pair, float(position.min()), float(position.max()), ends)
+    return np.arange(first, last + 1)
+
+
+def _pair_range(pair: ParallelAxes, low: float, high: float, lead: tuple[float, float]) -> tuple[int, int]:
+    """Return the first and the last pair from position `low` to `high`; `lead` of the outer slices, m."""
+    path = pair.path_of_contact
+    first = np.floor((path.start - path.pitch_point + lead[0]) / path.base_pitch - high)
+    last = np.ceil((path.end - path.pitch_point + lead[1]) / path.base_pitch - low)
+    return int(first), int(last)
 
 
 def _candidates(

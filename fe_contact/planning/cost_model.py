@@ -14,7 +14,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from fe_contact.compliance import PlaneHypothesis, free_ends_are_kept, is_kept, plane_is_kept, predict_cost
-from fe_contact.contact import ContactModel
+from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
@@ -192,10 +192,9 @@ def _section(
 
 
 def condensed_teeth(pair: ParallelAxes) -> int:
-    """Return the number of teeth in the plane that can touch at once."""
-    reach = 2 * math.ceil(pair.transverse_contact_ratio) + 1
+    """Return the number of teeth in the plane that can touch at once, as many as both gears have."""
     fits = min(pair.pinion.teeth, pair.wheel.teeth)
-    return min(reach, fits - 1 + fits % 2)
+    return min(teeth_in_reach(pair), fits - 1 + fits % 2)
 
 
 def _positions(plan: Plan, kind: str) -> int:
