@@ -52,6 +52,7 @@ class AxisChecks:
             reason = f"{WHAT[axis]} beyond the axis: {span}; the last value was held. Compute a wider axis"
         return {
             "effect": EFFECTS[axis],
+            "assumption": f"{WHAT[axis]} inside the table",
             "part": self._system.scene.meshes[mesh].name,
             "holds": farthest <= 0.0,
             "beyond": self._beyond[axis, mesh] / self._samples,

@@ -46,6 +46,7 @@ class ContactChecks:
         room = mesh.coast.backlash if mesh.coast is not None else 0.0
         return {
             "effect": "backlash",
+            "assumption": "coast flanks are not reached",
             "part": mesh.name,
             "holds": bool(gap <= room),
             "parted": float(self._parted[index] / max(self._samples, 1)),

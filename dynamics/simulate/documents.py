@@ -18,8 +18,10 @@ from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.speeds import leading_law, mesh_frequencies
 from dynamics.results import EnergyAudit, StepStatistics
 from dynamics.results.case import resolved_case
+from dynamics.results.effect_ledger import effect_ledger
 from dynamics.results.histories import histories
 from dynamics.results.run_checks import RunChecks
+from dynamics.simulate.violations import FIRST, EarlierRun
 from dynamics.system import Integration
 from dynamics.system.assemble import System
 from dynamics.system.effects.gyroscopic import Gyroscopic
@@ -31,16 +33,21 @@ WHIRL_SPEEDS = 33
 
 
 def documents(
-    system: System, end: Ending, checks: RunChecks, seconds: dict[str, float], error: Json
+    system: System,
+    end: Ending,
+    checks: RunChecks,
+    seconds: dict[str, float],
+    error: Json,
+    before: EarlierRun = FIRST,
 ) -> dict[str, Any]:
-    """Return the fields of `RunResult` that are no series."""
+    """Return the fields of `RunResult` that are no series; `before` is the run that this one repeats."""
     audit = EnergyAudit.from_arrays(end.work, end.stored)
     return {
         "status": end.status,
         "statistics": _statistics(system, end),
         "energy": audit if system.scene.outputs.energy_audit else None,
-        "effect_ledger": {**system.ledger.to_json(), "checks": checks.found()},
-        "receipt": {"seconds": seconds, "error": error},
+        "effect_ledger": effect_ledger(system, checks.found(), before.turned_on),
+        "receipt": {"seconds": seconds, "error": error} | before.to_json(),
         "case": resolved_case(system),
         "modes": _modes(system),
     }

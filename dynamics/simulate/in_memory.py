@@ -23,6 +23,7 @@ from dynamics.simulate.documents import (
     series_of,
     squared_difference,
 )
+from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said
 from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
 from dynamics.system.static_reference import with_static_reference
@@ -52,9 +53,25 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
     InputError
         If the scene's parts do not fit each other.
     SolveError
-        If there is no equilibrium to start from, or the run stopped early or was cancelled; ``partial`` is
-        the result up to there.
+        If there is no equilibrium to start from, the run stopped early or was cancelled, or something that
+        it took for granted is wrong and the scene's ``on_violation`` is "fail"; ``partial`` is the result up
+        to there.
     """
+    result = _run(scene, FIRST, progress, cancel)
+    wrong = said(result.effect_ledger)
+    if wrong and scene.on_violation == "fail":
+        raise SolveError(f"assumptions of the run that do not hold: {wrong}", result)
+    needed = needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
+    if needed:
+        before = EarlierRun(needed, sum(result.receipt["seconds"].values()))
+        result = _run(before.of(scene), before, progress, cancel)
+    if progress is not None:
+        progress(1.0, "done")
+    return result
+
+
+def _run(scene: Scene, before: EarlierRun, progress: Progress | None, cancel: Cancel | None) -> RunResult:
+    """Run a scene once; `before` is the run that this one repeats."""
     began = clock.perf_counter()
     system = assemble(scene)
     start = static_equilibrium(system)
@@ -64,12 +81,10 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
     trajectory = integrate(system, start, scene.integration, progress, cancel=cancel)
     seconds["integration"] = trajectory.seconds
     error = _error_estimate(system, start, trajectory, progress)
-    result = _result(system, trajectory, seconds, error)
+    result = _result(system, trajectory, seconds, error, before)
     if not trajectory.status.usable:
         reached = f"at {trajectory.end:.6g} s of {scene.duration:g} s"
         raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
-    if progress is not None:
-        progress(1.0, "done")
     return result
 
 
@@ -86,7 +101,13 @@ def require_equilibrium(system: System, start: StaticSolution, seconds: dict[str
         raise SolveError(message, _result(system, _no_trajectory(system, start), seconds, {}))
 
 
-def _result(system: System, trajectory: Trajectory, seconds: dict[str, float], error: Json) -> RunResult:
+def _result(
+    system: System,
+    trajectory: Trajectory,
+    seconds: dict[str, float],
+    error: Json,
+    before: EarlierRun = FIRST,
+) -> RunResult:
     """Put the result together."""
     began = clock.perf_counter()
     checks = RunChecks(system)
@@ -97,7 +118,7 @@ def _result(system: System, trajectory: Trajectory, seconds: dict[str, float], e
         parts.append(series_of(system, trajectory.time[part], states))
         see(checks, parts[-1])
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
-    return RunResult(**_joined(parts), **documents(system, trajectory, checks, seconds, error))
+    return RunResult(**_joined(parts), **documents(system, trajectory, checks, seconds, error, before))
 
 
 def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:

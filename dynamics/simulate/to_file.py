@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import time as clock
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from dynamics.errors import ResultError
+from dynamics.errors import ResultError, SolveError
 from dynamics.integrators import Cancel, Progress, StaticSolution, static_equilibrium
 from dynamics.integrators.checkpoint import fingerprint, restore
 from dynamics.integrators.march import Ending, March, ending, march_on, start_march
@@ -30,12 +31,15 @@ from dynamics.simulate.documents import (
     squared_difference,
 )
 from dynamics.simulate.in_memory import require_equilibrium
+from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said
 from dynamics.system import Integration, Scene
 from dynamics.system.assemble import System, assemble
 from dynamics.system.static_reference import with_static_reference
 from dynamics.types import Json, RunStatus
 
 CHECKPOINT_EVERY = 5.0  # s of wall time
+REPEATED = "repeated.json"
+"""In the folder of a run that repeats another: which effects are on because of that, and what it took."""
 
 
 def interrupted_run(path: str | Path) -> Path:
@@ -81,34 +85,76 @@ def simulate_to_file(
     InputError
         If the scene's parts do not fit each other, or another process runs to the same file.
     SolveError
-        If there is no equilibrium to start from.
+        If there is no equilibrium to start from, or something that the run took for granted is wrong and the
+        scene's ``on_violation`` is "fail"; the file is then complete.
     ResultError
         If the checkpoint is damaged, or that of another scene.
     """
-    path, began = Path(path), clock.perf_counter()
-    system = assemble(scene)
+    path = Path(path)
+    folder = interrupted_run(path)
+    how = _How(resume, progress, cancel, checkpoint_every)
+    before = _read_earlier(folder) if resume else FIRST
+    status, ledger, seconds = _run_to_file(scene, path, before, how)
+    wrong = said(ledger) if status.usable else ""
+    if wrong and scene.on_violation == "fail":
+        raise SolveError(f"assumptions of the run that do not hold: {wrong}. It is in {path}")
+    needed = needed_effects(ledger) if wrong and scene.on_violation == "repeat" else {}
+    if needed and status.usable:
+        again = EarlierRun(needed, seconds)
+        folder.mkdir(exist_ok=True)
+        (folder / REPEATED).write_text(json.dumps(again.to_json()), encoding="utf-8")
+        status, _, _ = _run_to_file(scene, path, again, replace(how, resume=False))
+    if progress is not None:
+        progress(1.0, "done" if status.usable else status.name.lower())
+    return status
+
+
+@dataclass(frozen=True)
+class _How:
+    """What the caller wants of a run to a file; parameters of `simulate_to_file`."""
+
+    resume: bool
+    progress: Progress | None
+    cancel: Cancel | None
+    checkpoint_every: float
+
+
+def _run_to_file(scene: Scene, path: Path, before: EarlierRun, how: _How) -> tuple[RunStatus, Json, float]:
+    """Run once, `before` being the run that this one repeats; return status, ledger and wall time, s."""
+    began = clock.perf_counter()
+    system = assemble(before.of(scene))
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
     require_equilibrium(system, start, seconds)
     system = with_static_reference(system, start.displacement)
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
+    going = (how.progress, how.cancel, how.checkpoint_every)
     with ExitStack() as stack:
-        leg = _Leg(stack, folder / "run", system, start, scene.integration, resume)
-        end = leg.go(progress, cancel, checkpoint_every)
+        leg = _Leg(stack, folder / "run", system, start, scene.integration, how.resume)
+        end = leg.go(*going)
         error = asked_error(scene.integration)
         if scene.integration.estimate_error and end.status.usable:
-            check = _Leg(stack, folder / "check", system, start, finer(scene.integration), resume)
-            other = check.go(progress, cancel, checkpoint_every)
+            check = _Leg(stack, folder / "check", system, start, finer(scene.integration), how.resume)
+            other = check.go(*going)
             end = replace(end, status=other.status)
             error = _difference(system, leg, check, other) if other.status.usable else error
         seconds["integration"] = end.seconds
-        _write(path, system, leg, end, seconds, error)
+        ledger = _write(path, system, leg, end, seconds, error, before)
     if end.status is not RunStatus.CANCELLED:
         _remove(folder)
-    if progress is not None:
-        progress(1.0, "done" if end.status.usable else end.status.name.lower())
-    return end.status
+    return end.status, ledger, sum(seconds.values())
+
+
+def _read_earlier(folder: Path) -> EarlierRun:
+    """Return the run that an interrupted one repeats; the first run if it repeats none."""
+    try:
+        found = json.loads((folder / REPEATED).read_text(encoding="utf-8"))["repeated"]
+        return EarlierRun({str(k): str(v) for k, v in found["turned_on"].items()}, float(found["seconds"]))
+    except FileNotFoundError:
+        return FIRST
+    except (OSError, ValueError, KeyError, AttributeError) as error:
+        raise ResultError(f"{folder / REPEATED}: not readable: {error}. Start the run anew.") from error
 
 
 class _Leg:
@@ -183,9 +229,15 @@ def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
 
 
 def _write(
-    path: Path, system: System, leg: _Leg, end: Ending, seconds: dict[str, float], error: Json
-) -> None:
-    """Make the series from the states, block by block, into the file."""
+    path: Path,
+    system: System,
+    leg: _Leg,
+    end: Ending,
+    seconds: dict[str, float],
+    error: Json,
+    before: EarlierRun,
+) -> Json:
+    """Make the series from the states, block by block, into the file; return the effect ledger."""
     began = clock.perf_counter()
     checks = RunChecks(system)
     with RunFile(path) as file:
@@ -193,7 +245,9 @@ def _write(
             see(checks, series)
             file.append(series)
         seconds["outputs"] = clock.perf_counter() - began
-        file.publish(attributes(documents(system, end, checks, seconds, error)))
+        about = documents(system, end, checks, seconds, error, before)
+        file.publish(attributes(about))
+    return dict(about["effect_ledger"])
 
 
 def _series(system: System, leg: _Leg, samples: int) -> Iterator[dict[str, Any]]:

@@ -16,6 +16,7 @@ from dynamics.system.bearing_check import check_bearing_laws
 from dynamics.system.housing_check import check_housings
 
 METHODS = ("implicit", "explicit")
+ON_VIOLATION = ("repeat", "fail", "report")
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
 AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
 
@@ -137,6 +138,9 @@ class Scene:
         Effect name to ``"auto"``, ``"on"`` or ``"off"``; what is not named is ``"auto"``.
     outputs : Outputs
     integration : Integration
+    on_violation : str
+        Where a run shows that something it took for granted is wrong: ``"repeat"`` runs again with the
+        automatic effect that it needs, ``"fail"`` raises, ``"report"`` says so in the ledger's checks.
     """
 
     shafts: tuple[Shaft, ...]
@@ -156,9 +160,11 @@ class Scene:
     effects: Mapping[str, str] = field(default_factory=dict)
     outputs: Outputs = Outputs()
     integration: Integration = Integration()
+    on_violation: str = "repeat"
 
     def __post_init__(self) -> None:
         not_negative("duration", self.duration)
+        one_of("on_violation", self.on_violation, ON_VIOLATION)
         if self.duration * self.outputs.sample_rate > SAMPLE_LIMIT:
             bound = f"at most {SAMPLE_LIMIT:g} samples at {self.outputs.sample_rate:g} Hz"
             raise InputError("duration", self.duration, bound, "Shorten the run or lower the sample rate.")

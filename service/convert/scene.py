@@ -107,6 +107,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             effects=dict(scene.effects),
             outputs=_outputs(scene),
             integration=_integration(scene),
+            on_violation=scene.run.on_violation,
         )
 
 

@@ -127,6 +127,12 @@ class RunInput(BoundaryModel):
     """How long."""
 
     duration_s: float = Field(ge=0.0, le=1e6, description="Duration in s", examples=[5.0])
+    on_violation: Literal["repeat", "fail", "report"] = Field(
+        default="repeat",
+        description="Where an assumption of the run turns out wrong: repeat with the effect it needs, fail, "
+        "or report",
+        examples=["repeat"],
+    )
 
 
 class OutputsInput(BoundaryModel):

@@ -29,6 +29,10 @@ class LedgerEntry:
         Why.
     worth : float
         Static displacement along the line of action that the effect is worth at the nominal force, m.
+    called_for, possible : bool
+        What the scene calls for, and whether it has the freedom or the data at all.
+    cost : str
+        In words.
     """
 
     effect: str
@@ -37,6 +41,16 @@ class LedgerEntry:
     on: bool
     reason: str
     worth: float
+    called_for: bool
+    possible: bool
+    cost: str
+
+    @property
+    def price(self) -> str:
+        """What a choice against the scene costs; empty where it does not."""
+        if self.on == self.called_for:
+            return ""
+        return self.cost if self.on else f"{1e6 * self.worth:.3g} um of static displacement left out"
 
 
 @dataclass(frozen=True)
@@ -56,7 +70,8 @@ class EffectLedger:
 
     def to_json(self) -> Json:
         """Return plain lists and dictionaries."""
-        return {"entries": [asdict(entry) for entry in self.entries], "left_out": dict(LEFT_OUT)}
+        entries = [asdict(entry) | {"price": entry.price} for entry in self.entries]
+        return {"entries": entries, "left_out": dict(LEFT_OUT)}
 
 
 def keep_ledger(choices: Mapping[str, str], rotors: Sequence[SupportedRotor]) -> EffectLedger:
@@ -101,4 +116,5 @@ def _decide(
         on = choice == "on"
         if on != verdict.on:
             reason = f"asked for; else: {verdict.reason}" if on else f"switched off, though: {verdict.reason}"
-    return LedgerEntry(effect.name, part, choice, on, reason, verdict.worth)
+    decided = (effect.name, part, choice, on, reason, verdict.worth)
+    return LedgerEntry(*decided, called_for=verdict.on, possible=verdict.possible, cost=effect.cost)

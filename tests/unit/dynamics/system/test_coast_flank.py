@@ -162,7 +162,8 @@ def test_a_run_without_it_says_whether_the_flanks_parted():
     assert simulate(wide).effect_ledger["checks"][0]["holds"]
     narrow = with_coast(scene, effect="off", backlash=0.5 * check["widest_gap"])
     assert not simulate(narrow).effect_ledger["checks"][0]["holds"]
-    assert simulate(with_coast(scene)).effect_ledger["checks"] == []
+    checks = simulate(with_coast(scene)).effect_ledger["checks"]
+    assert "backlash" not in {one["effect"] for one in checks}
     # a backlash that is not reached changes nothing but round-off
     reached = simulate(with_coast(scene, backlash=2.0 * check["widest_gap"]))
     np.testing.assert_allclose(reached.mesh_force, blind.mesh_force, rtol=0.0, atol=1e-6 * FORCE)

@@ -1,0 +1,80 @@
+"""What runs are compared by: mean, peak-to-peak and mesh orders of transmission errors and bearing forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.orders import order_track
+from dynamics.results import RunResult
+from dynamics.types import FloatArray, Json
+
+HIGHEST = 5
+"""Mesh orders that are compared."""
+PITCHES = 16
+SETTLED = 0.5
+"""Part of the run after which start-up transients are taken to have died out."""
+
+
+@dataclass(frozen=True)
+class RunFigures:
+    """Figures of the settled part of a run.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : (m,) arrays
+        Of the dynamic transmission error of every mesh, m.
+    orders : (m, 5) array
+        Largest amplitude along the run of the mesh orders 1 to 5 of the transmission error, m.
+    bearing_orders : (b, 5) array
+        Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored.
+    seconds : float
+        Of the integration, s.
+    """
+
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    orders: FloatArray
+    bearing_orders: FloatArray
+    seconds: float
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "mean_m": self.mean.tolist(),
+            "peak_to_peak_m": self.peak_to_peak.tolist(),
+            "orders_m": self.orders.tolist(),
+            "bearing_orders_n": self.bearing_orders.tolist(),
+            "seconds": self.seconds,
+        }
+
+
+def run_figures(result: RunResult) -> RunFigures:
+    """Return the figures of a run; raises `InputError` where it is shorter than a few base pitches."""
+    settled = slice(int(SETTLED * result.time.size), None)
+    error = result.dynamic_transmission_error[:, settled]
+    pitches = max(1, min(PITCHES, int(_travel(result) / 4.0)))
+    transmission = _largest(result, "dynamic_transmission_error", pitches)
+    bearings = np.empty((0, HIGHEST))
+    if result.bearing_force.size:
+        bearings = np.sqrt(np.sum(_largest(result, "bearing_force", pitches) ** 2, axis=1))
+    return RunFigures(
+        np.mean(error, axis=1),
+        np.ptp(error, axis=1),
+        transmission,
+        bearings,
+        float(result.receipt["seconds"]["integration"]),
+    )
+
+
+def _travel(result: RunResult) -> float:
+    """Return the base pitches that the first mesh runs through."""
+    return float(np.abs(np.sum(np.diff(np.unwrap(result.position[0], period=1.0)))))
+
+
+def _largest(result: RunResult, series: str, pitches: int) -> FloatArray:
+    """Largest amplitudes (..., 5) of the orders 1 to 5 over the settled blocks."""
+    amplitude = order_track(result, series, pitches, HIGHEST).amplitude
+    first = int(SETTLED * amplitude.shape[-2])
+    return np.asarray(np.max(amplitude[..., first:, 1:], axis=-2))

@@ -1,0 +1,72 @@
+"""Whether linear bearings stayed loaded: a real one has clearance and lets an unloaded shaft float."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from dynamics.system.assemble import System
+from dynamics.system.effects.bearing_clearance import BearingClearance
+from dynamics.types import FloatArray, Json
+
+LIGHT = 1e-3
+"""Part of the largest bearing force at the start below which a bearing counts as unloaded from the start."""
+
+
+class BearingLoadChecks:
+    """Gathers, block by block, how long radial forces pointed away from the static load."""
+
+    def __init__(self, system: System) -> None:
+        scene = system.scene
+        laws = {law.bushing for law in scene.rolling_contacts} | {c.bushing for c in scene.spring_curves}
+        off = scene.effects.get(BearingClearance().name) == "off"
+        self._name = system.supports.name
+        self._watched = [i for i, name in enumerate(self._name) if off or name not in laws]
+        self._given = [self._name[i] in laws for i in self._watched]
+        self._direction: FloatArray | None = None
+        self._samples = 0
+        self._unloaded = np.zeros(len(self._watched), dtype=np.int64)
+
+    def see(self, force: FloatArray) -> None:
+        """Take the bearing forces (b, 3, T), N; none where they are not stored."""
+        if force.shape[0] != len(self._name) or force.shape[2] == 0:
+            return
+        radial = force[self._watched, :2]
+        if self._direction is None:
+            self._direction = _directions(radial[:, :, 0])
+        along = np.einsum("bct,bc->bt", radial, self._direction)
+        loaded = np.any(self._direction != 0.0, axis=1)
+        self._unloaded += np.where(loaded, np.count_nonzero(along <= 0.0, axis=1), 0)
+        self._samples += force.shape[2]
+
+    def found(self) -> list[Json]:
+        """Return one entry per linear bearing that carries load at the start.
+
+        ``unloaded`` is the share of the samples in which the force along the static load was not positive.
+        """
+        if self._direction is None:
+            return []
+        loaded = np.any(self._direction != 0.0, axis=1)
+        return [self._entry(row, index) for row, index in enumerate(self._watched) if loaded[row]]
+
+    def _entry(self, row: int, index: int) -> Json:
+        """One bearing."""
+        share = float(self._unloaded[row] / max(self._samples, 1))
+        reason = "the bearing stayed loaded"
+        if share > 0.0:
+            advice = "switch the effect on" if self._given[row] else "give the bearing its clearance"
+            reason = f"the load reversed in {100.0 * share:.3g} % of the run: {advice}"
+        return {
+            "effect": BearingClearance().name,
+            "assumption": "linear bearing stays loaded",
+            "part": self._name[index],
+            "holds": share == 0.0,
+            "unloaded": share,
+            "reason": reason,
+        }
+
+
+def _directions(force: FloatArray) -> FloatArray:
+    """Return unit vectors (b, 2) of the forces at the start, zero where a bearing hardly carries."""
+    size = np.linalg.norm(force, axis=1)
+    carries = size > LIGHT * np.max(size, initial=0.0)
+    return np.asarray(np.where(carries[:, None], force / np.where(carries, size, 1.0)[:, None], 0.0))
