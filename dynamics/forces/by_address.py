@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import hashlib
 from functools import cache
+from numbers import Integral
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -102,8 +103,10 @@ def _lay_out(value: Any, words: list[int]) -> AddressType:
         elif isinstance(part, tuple):
             kinds.append(_lay_out(part, words))
         else:
-            kinds.append(type(part))
-            words.append(int(np.float64(part).view(np.int64) if isinstance(part, float) else part))
+            kinds.append(
+                bool if isinstance(part, bool | np.bool_) else int if isinstance(part, Integral) else float
+            )
+            words.append(int(np.float64(part).view(np.int64)) if kinds[-1] is float else int(part))
     cls: Any = type(value)
     kind = _address_type(cls, tuple(kinds), tuple(first))
     if _seen.setdefault(cls, kind) != kind:

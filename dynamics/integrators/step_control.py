@@ -10,9 +10,9 @@ from dynamics.integrators.workspace import RUNGS_PER_OCTAVE, Count, Workspace
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.motion import law_speed, write_motion
 
-SAFETY = 0.9
-RISE_LIMIT = 2.0
-FALL_LIMIT = 0.2
+SAFETY = math.log2(0.9)  # octaves of the step size, like the limits of its change
+RISE_LIMIT = math.log2(2.0)
+FALL_LIMIT = math.log2(0.2)
 POSITION_LIMIT = 1.0 / 64.0  # base pitches
 
 
@@ -92,13 +92,11 @@ def next_rung(work: Workspace, control: Control, error: float, accepted: bool) -
     no accepted one rises by less than a whole rung, so the step stays put unless it pays. After an accepted
     step the rung is on the ladder; after a rejected one it may be the one below it, which has no step.
     """
-    exponent = 1.0 / (control.order + 1)
-    error = max(error, 1e-10)
-    factor = SAFETY * error ** (-0.7 * exponent) * work.error[0] ** (0.4 * exponent)
+    exponent, level = 1.0 / (control.order + 1), math.log2(max(error, 1e-10))
+    octaves = SAFETY - 0.7 * exponent * level + 0.4 * exponent * math.log2(work.error[0])
     if not accepted:
-        factor = min(SAFETY * error ** (-exponent), 1.0)
-    factor = min(max(factor, FALL_LIMIT), RISE_LIMIT)
-    rise = math.floor(RUNGS_PER_OCTAVE * math.log2(factor))
+        octaves = min(SAFETY - exponent * level, 0.0)
+    rise = math.floor(RUNGS_PER_OCTAVE * min(max(octaves, FALL_LIMIT), RISE_LIMIT))
     rung = work.counts[Count.RUNG] - int(rise)
     smallest = work.ladder.size - 3
     if not accepted:

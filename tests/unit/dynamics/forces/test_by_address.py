@@ -78,6 +78,15 @@ def test_compiled_functions_read_the_same_and_write_into_the_same_arrays(on):
     assert by_address(given) is given
 
 
+def test_numbers_of_numpy_are_numbers():
+    value, found = whole(), np.zeros((2, 13))
+    read(by_address(value), found[0])
+    read(
+        by_address(value._replace(rate=np.float64(-2.5e-3), count=np.int32(-7), on=np.bool_(True))), found[1]
+    )
+    np.testing.assert_array_equal(found[0, :12], found[1, :12])
+
+
 def test_an_address_does_not_outlive_its_process():
     given = pickle.loads(pickle.dumps(by_address(whole())))
     found = np.zeros(13)
