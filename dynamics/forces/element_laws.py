@@ -15,6 +15,11 @@ import numpy as np
 from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import inner
 from dynamics.forces.flank_force import FlankLaws, flank_force
+from dynamics.forces.frame_coupling import (
+    FrameCouplingLaws,
+    frame_coupling,
+    frame_coupling_energy,
+)
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.rolling_contact import (
     RollingContactLaws,
@@ -38,12 +43,13 @@ class Law(IntEnum):
     SPRING_CURVE = 3  # p = 1: a bearing's force by displacement in one direction
     SPATIAL_FLANK = 4  # p = 1 to 5: a flank that feels misalignment, centre distance, friction
     TURNING = 5  # p = 2 or 3: gyroscopic moments, Coriolis and centripetal terms
+    FRAME_COUPLING = 6  # p = 4 or 8: a coupling of shafts in frames that turn against each other
 
 
 FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
 ROLLING_CONTACT, SPRING_CURVE = int(Law.ROLLING_CONTACT), int(Law.SPRING_CURVE)
 SPATIAL_FLANK = int(Law.SPATIAL_FLANK)
-TURNING = int(Law.TURNING)
+TURNING, FRAME_COUPLING = int(Law.TURNING), int(Law.FRAME_COUPLING)
 
 
 class ElementLaws(NamedTuple):
@@ -55,6 +61,7 @@ class ElementLaws(NamedTuple):
     spring_curve: SpringCurveLaws
     spatial_flank: SpatialFlankLaws
     turning: TurningLaws
+    frame_coupling: FrameCouplingLaws
 
 
 class Elements(NamedTuple):
@@ -69,7 +76,7 @@ class Elements(NamedTuple):
     first : (E + 1,) int array
         First row of each element, and R.
     mesh : (E,) int array
-        The mesh whose position it reads; -1: none.
+        The mesh whose position it reads, or from m on the turn of frames it reads; -1: none.
     offset : (R,) array
         y0: local coordinates at q = 0, m.
     drift : (R, k) array
@@ -118,6 +125,7 @@ ROUTINES = {
     Law.SPRING_CURVE: (spring_curve, spring_curve_energy),
     Law.SPATIAL_FLANK: (spatial_flank, spatial_energy),
     Law.TURNING: (turning, turning_energy),
+    Law.FRAME_COUPLING: (frame_coupling, frame_coupling_energy),
 }
 """What a kind of law is compiled from, when a scene first has it; flanks are compiled into every loop."""
 
@@ -156,6 +164,8 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
         spatial_flank(laws.spatial_flank, place, local, row, e, elements.mesh[e])
     elif kind == TURNING:
         turning(laws.turning, place, local, row, e)
+    elif kind == FRAME_COUPLING:
+        frame_coupling(laws.frame_coupling, place, local, row, elements.mesh[e])
 
 
 @inner
@@ -173,9 +183,12 @@ def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, flo
     if kind == SPATIAL_FLANK:
         energy, slope, _, _ = spatial_energy(laws.spatial_flank, place, local, row, elements.mesh[e])
         return energy, slope
+    energy, slope = 0.0, 0.0
     if kind == TURNING:
-        return turning_energy(laws.turning, place, local, row, e), 0.0
-    return 0.0, 0.0
+        energy = turning_energy(laws.turning, place, local, row, e)
+    elif kind == FRAME_COUPLING:
+        energy, slope = frame_coupling_energy(laws.frame_coupling, place, local, row, elements.mesh[e])
+    return energy, slope
 
 
 @inner
@@ -190,6 +203,14 @@ def given_along_axes(elements: Elements, local: LocalState, e: int) -> float:
         if to > 0:
             power += local.elastic[row + to] * local.rate[row + to]
     return power
+
+
+@inner
+def given_by_frames(elements: Elements, local: LocalState, e: int) -> float:
+    """Return what the turning of frames against each other stores in a coupling across them, W."""
+    if elements.law[e] != FRAME_COUPLING:
+        return 0.0
+    return potential(elements, local, e)[1] * float(local.pace[elements.mesh[e]])
 
 
 @inner

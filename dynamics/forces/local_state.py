@@ -12,10 +12,10 @@ class LocalState(NamedTuple):
 
     Attributes
     ----------
-    position : (m,) array
-        Of the meshes, base pitches.
-    pace : (m,) array
-        Their rates in the kinematic motion, base pitches per second.
+    position : (m + f,) array
+        Of the meshes, base pitches; then how far frames have turned against each other, revolutions.
+    pace : (m + f,) array
+        Their rates in the kinematic motion, per second.
     coordinate, rate : (R,) arrays
         y (m) and y' (m/s), those of the deviations from the kinematic motion.
     drift : (R,) array

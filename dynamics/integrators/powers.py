@@ -9,6 +9,7 @@ from dynamics.forces.element_laws import (
     SPEED_TORQUE,
     TURNING,
     given_along_axes,
+    given_by_frames,
     slides,
 )
 from dynamics.forces.routine import routine
@@ -25,7 +26,8 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 
     Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
     the line of action; what dV/dx stores as the position moves on is counted as supplied by the position,
-    and likewise along the table's other axes, less the work of forces along them.
+    and likewise along the table's other axes, less the work of forces along them. The turning of frames
+    counts with the position.
     """
     velocity = work.stage_v[stage]
     laws = work.motion.shape[0]
@@ -46,12 +48,13 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
     drives -= kept
     for i in range(velocity.size):
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
-    axes = 0.0
+    axes, position = 0.0, 0.0
     for e in range(system.elements.law.size):
         axes -= given_along_axes(system.elements, work.local, e)
+        position += given_by_frames(system.elements, work.local, e)
     work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
-    work.power[stage, Power.POSITION] = 0.0
+    work.power[stage, Power.POSITION] = position
     work.power[stage, Power.BUSHING] = bushing
     work.power[stage, Power.MESH] = mesh
     work.power[stage, Power.AXES] = axes

@@ -10,8 +10,9 @@ from dynamics.forces.element_laws import Law
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
-from dynamics.system.bearing_rest import rest_on_bearings
+from dynamics.system.bearing_rest import bearing_rows, rest_on_bearings
 from dynamics.system.force_balance import ForceBalance, force_balance
+from dynamics.system.frame_couplings import stiffness_across
 from dynamics.system.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray, StaticStatus
 
@@ -125,10 +126,11 @@ def _on_springs(
     touching = np.array([table_deflection(table, flank, position[f], 0.0) for f, flank in flanks])
     deflection = np.array([table_deflection(table, flank, position[f], force[f]) for f, flank in flanks])
     secant, rows = force / (deflection - touching), arrays.direction[first]
-    matrix = arrays.stiffness + np.einsum("fi,f,fj->ij", rows, secant, rows)
+    matrix = arrays.stiffness + stiffness_across(arrays, time)
+    matrix += np.einsum("fi,f,fj->ij", rows, secant, rows)
     pushed = external + (secant * (touching - offset)) @ rows
     q = _solve(arrays, matrix, pushed, np.zeros(n))
-    if np.any(arrays.elements.stiffness > 0.0):
+    if bearing_rows(arrays).size:
         q = rest_on_bearings(arrays, matrix, pushed)
     return q, secant * (rows @ q + offset - touching)
 
@@ -147,8 +149,9 @@ def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: Float
 
 def _per_mesh(arrays: SystemArrays, values: FloatArray) -> FloatArray:
     """Return the sum of `values` (R,) over the flanks of each mesh, (m,)."""
-    elements, total = arrays.elements, np.zeros(arrays.turn.shape[0])
-    flank = elements.mesh >= 0
+    elements = arrays.elements
+    flank = np.isin(elements.law, (Law.FLANK, Law.SPATIAL_FLANK))
+    total = np.zeros(int(np.max(elements.mesh[flank], initial=-1)) + 1)
     np.add.at(total, elements.mesh[flank], values[elements.first[:-1][flank]])
     return total
 

@@ -29,9 +29,9 @@ class Coupling:
     position : float
         Of the coupling along the first shaft, m from its left end; for the matrices.
     stiffness, damping : 6 by 6 matrices or None
-        Added to the torsional ones: symmetric, positive semidefinite, in N, m, rad, s; for coaxial shafts
-        described in the same frame. In a carrier's frame they must be the same in all directions across the
-        axis.
+        Added to the torsional ones: symmetric, positive semidefinite, in N, m, rad, s; for coaxial shafts. In
+        a carrier's frame, and between shafts of different frames, they must be the same in all directions
+        across the axis. Rates across frames are those seen in the fixed one, or in that of `first`.
     """
 
     name: str

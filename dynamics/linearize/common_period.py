@@ -10,6 +10,7 @@ import numpy as np
 
 from dynamics.errors import InputError
 from dynamics.system.assemble import System
+from dynamics.system.frame_couplings import frame_turns
 from dynamics.types import FloatArray
 
 LARGEST_DENOMINATOR = 10_000
@@ -19,6 +20,8 @@ AGREEMENT = 1e-12
 @dataclass(frozen=True)
 class CommonPeriod:
     """After how many base pitches all meshes stand as before, with the laws' speeds in fixed proportion.
+
+    Frames that a coupling crosses have turned by whole revolutions then, too.
 
     Attributes
     ----------
@@ -69,6 +72,11 @@ def common_period(system: System) -> CommonPeriod:
         for mesh, rate in zip(scene.meshes, rates, strict=True)
         if rate
     ]
+    frames = [
+        sum((turn * part for turn, part in zip(row, proportion, strict=True)), Fraction(0))
+        for row in frame_turns(scene, system.kinematics)
+    ]
+    turns += [1 / abs(rate) for rate in frames if rate]
     if not turns:
         raise InputError("meshes", len(scene.meshes), "at least one that turns")
     revolutions = Fraction(

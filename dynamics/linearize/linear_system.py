@@ -11,6 +11,8 @@ from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.system.assemble import System
 from dynamics.system.columns import elastic_terms
 from dynamics.system.force_balance import force_balance
+from dynamics.system.frame_couplings import frame_couplings, frame_joint
+from dynamics.system.observation import local_state
 from dynamics.system.references import drive_springs
 from dynamics.types import FloatArray
 
@@ -68,7 +70,7 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     rest = np.zeros(start.displacement.size)
     balance = force_balance(arrays, time, start.displacement, rest, rest, turning=False)
     free = arrays.reference.freedom >= 0
-    names, strain, coefficient = _springs(system, balance.local.tangent)
+    names, strain, coefficient = _springs(system, time, balance.local.tangent)
     return LinearSystem(
         system.freedoms.name,
         arrays.scale,
@@ -83,12 +85,18 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
     )
 
 
-def _matrices(system: System) -> list[tuple[str, FloatArray, FloatArray]]:
-    """Names, strains per freedom, and stiffness matrices of bearings and couplings."""
+def _matrices(system: System, time: float) -> list[tuple[str, FloatArray, FloatArray]]:
+    """Names, strains per freedom, and stiffness matrices of bearings and couplings at `time`."""
     seats, couplings, keep = system.seats, system.couplings, system.freedoms.keep
     bearings = [(name, keep(seats.motion[at]), seats.stiffness[at, at]) for name, at in seats.group]
     joints = zip(couplings.name, couplings.motion, couplings.stiffness, strict=True)
-    return [*bearings, *((name, keep(motion), matrix) for name, motion, matrix in joints)]
+    found = [*bearings, *((name, keep(motion), matrix) for name, motion, matrix in joints)]
+    n = system.arrays.mass.shape[0]
+    turned = local_state(system.arrays, time, np.zeros(n), np.zeros(n)).position[len(system.scene.meshes) :]
+    for part, turn in zip(frame_couplings(system.scene), turned, strict=True):
+        motion, matrix = frame_joint(system.scene, system.rotors, part, 2.0 * np.pi * float(turn))
+        found.append((system.couplings.name[part.coupling], keep(motion), matrix))
+    return found
 
 
 def _tangents(system: System, tangent: FloatArray) -> list[tuple[str, FloatArray, FloatArray]]:
@@ -102,7 +110,9 @@ def _tangents(system: System, tangent: FloatArray) -> list[tuple[str, FloatArray
     return found
 
 
-def _springs(system: System, tangent: FloatArray) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
+def _springs(
+    system: System, time: float, tangent: FloatArray
+) -> tuple[tuple[str, ...], FloatArray, FloatArray]:
     """Names, strains per freedom and stiffnesses of all springs."""
     names = [mesh.name for mesh in system.scene.meshes]
     first = system.driving_rows
@@ -113,7 +123,7 @@ def _springs(system: System, tangent: FloatArray) -> tuple[tuple[str, ...], Floa
     names += [f"{supports.name[index]}.{axis}" for index in plain for axis in "xyz"]
     rows.append(moves[plain].reshape(-1, moves.shape[-1]))
     stiffness.append(supports.stiffness[plain].ravel())
-    for name, motion, matrix in [*_matrices(system), *_tangents(system, tangent)]:
+    for name, motion, matrix in [*_matrices(system, time), *_tangents(system, tangent)]:
         values, vectors = np.linalg.eigh(matrix)
         for value, vector in zip(values, vectors.T, strict=True):
             if value > 0.0:

@@ -12,7 +12,8 @@ from dynamics.joints.seat import SEAT
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.system.assemble import System
 from dynamics.system.columns import column_count
-from dynamics.system.observation import observe_laws
+from dynamics.system.force_balance import block_diagonal, swept_by_frames
+from dynamics.system.observation import local_state, observe_laws
 from dynamics.system.spun_shaft import pair_rows, spun_inertia
 from dynamics.types import FloatArray
 
@@ -123,7 +124,15 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
         if rotor.elastic is not None and rotor.elastic.bends:
             turning += _along_the_shaft(system, index, float(speed[index]))
     motion = system.freedoms.motion
-    return motion.T @ turning @ motion, motion.T @ stiffening @ motion
+    return motion.T @ turning @ motion, motion.T @ stiffening @ motion + _across_frames(system, law_speed)
+
+
+def _across_frames(system: System, law_speed: FloatArray) -> FloatArray:
+    """Return what dampers across frames add to the stiffness, (n, n), as the frames stand at t = 0."""
+    arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
+    local, pace = local_state(arrays, 0.0, rest, rest), arrays.reference.per_radian @ law_speed
+    swept = block_diagonal(arrays.elements, swept_by_frames(arrays.elements, local, pace))
+    return np.asarray(arrays.direction.T @ swept @ arrays.direction)
 
 
 def _along_the_shaft(system: System, index: int, spin: float) -> FloatArray:

@@ -88,7 +88,7 @@ def motion(
         static_deflections(system.flanks.static, f, seen.position[f], float(force), static[f])
     return PeriodicMotion(
         time,
-        seen.position,
+        seen.position[:meshes],
         seen.coordinate[driving],
         static,
         seen.force[driving],

@@ -32,6 +32,7 @@ def histories(
     laws = observe_laws(arrays, time)
     seen = observe(arrays, time, q, v, moved)
     wanted = scene.outputs
+    position = seen.position[: len(scene.meshes)]
     force, moment = _on_the_ground(system, laws, seen.force, q, v, moved)
     return {
         "time": time,
@@ -41,10 +42,10 @@ def histories(
         "freedom": system.freedoms.name if wanted.displacements else (),
         "drive": tuple(drive.name for drive in scene.drives),
         "coupling": system.couplings.name,
-        "position": seen.position,
+        "position": position,
         "mesh_frequency": _mesh_frequency(system, laws[SPEED], v),
         "dynamic_transmission_error": seen.coordinate[system.driving_rows],
-        "static_transmission_error": _static(system, seen.position),
+        "static_transmission_error": _static(system, position),
         "mesh_force": seen.force[system.driving_rows],
         "coast_force": _coast_force(system, seen.force),
         **axis_series(system, seen.coordinate, seen.force),

@@ -35,14 +35,15 @@ class Reference(NamedTuple):
         Speed of each law, rad/s.
     whole, fraction : (S,) arrays
         Revolutions of the law at the start of each piece, integer and remainder.
-    numerator, denominator : (m, k) int arrays
-        Base pitches per revolution of each law for each mesh, exact fractions.
-    per_radian : (m, k) array
-        Base pitches per radian of each law: the same, rounded.
-    offset : (m,) array
-        Position of each mesh at t = 0, base pitches.
-    period : (m,) int array
-        Base pitches after which the mesh's table repeats.
+    numerator, denominator : (m + f, k) int arrays
+        Base pitches per revolution of each law for each mesh, then revolutions of each of f frames against
+        another, exact fractions.
+    per_radian : (m + f, k) array
+        The same per radian of each law, rounded.
+    offset : (m + f,) array
+        Position of each mesh at t = 0, base pitches; 0.
+    period : (m + f,) int array
+        Base pitches after which the mesh's table repeats; 1.
     freedom : (k,) int array
         For the law of a free train the place of its shaft's rotation in q; -1 for a drive.
     vector : (k, n) array
@@ -121,8 +122,8 @@ class SystemArrays(NamedTuple):
     direction : (R, n) array
         G: derivative of the elements' local coordinates in q. The first m elements are the driving flanks,
         whose first coordinate is the transmission error.
-    turn : (m, n) array
-        Derivative of the meshes' positions in q, base pitches.
+    turn : (m + f, n) array
+        Derivative of the meshes' positions in q, base pitches; 0.
     constant : (n,) array
         External force that never changes: of pins off their place, of preloaded bearings.
     inertial : (k, n) array

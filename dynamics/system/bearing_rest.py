@@ -13,6 +13,7 @@ from dynamics.joints.matrix import Matrix
 from dynamics.joints.seat import SEAT, seat_matrix
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.bearing_elements import BearingElement
+from dynamics.system.frame_couplings import stiffness_across
 from dynamics.system.observation import local_state
 from dynamics.system.scene import Scene
 from dynamics.types import FloatArray, IntArray
@@ -27,7 +28,7 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
     Rolling contacts count as springs of the secant that their force so far has, which is right at once where
     statics alone fixes the forces; curves as their tangents. Motions that nothing resists stay zero.
     """
-    rows = np.flatnonzero(arrays.elements.stiffness > 0.0)
+    rows = bearing_rows(arrays)
     gradient = arrays.direction[rows]
     stiffness, offset = arrays.elements.stiffness[rows], np.zeros(rows.size)
     q = np.zeros(force.size)
@@ -39,6 +40,12 @@ def rest_on_bearings(arrays: SystemArrays, matrix: FloatArray, force: FloatArray
         q = found
         stiffness, offset = _springs(arrays, q, rows, stiffness * (gradient @ q) + offset)
     return q
+
+
+def bearing_rows(arrays: SystemArrays) -> IntArray:
+    """Return the rows of bearings that are not linear."""
+    bearing = np.isin(arrays.elements.law, (Law.ROLLING_CONTACT, Law.SPRING_CURVE))
+    return np.flatnonzero(np.repeat(bearing, np.diff(arrays.elements.first)))
 
 
 def _springs(
@@ -80,7 +87,8 @@ def linear_scene(
     elements with the names of their bearings, `supports` these with their dampings filled in.
     """
     torque = np.array([float(load.torque(0.0)) for load in scene.loads])
-    q = rest_on_bearings(arrays, arrays.stiffness, arrays.constant + torque @ arrays.load.direction + push)
+    matrix = arrays.stiffness + stiffness_across(arrays, 0.0)
+    q = rest_on_bearings(arrays, matrix, arrays.constant + torque @ arrays.load.direction + push)
     local, found = local_state(arrays, 0.0, q, np.zeros(q.size)), dict(supports)
     first = arrays.elements.first[arrays.elements.law.size - len(bearings) :]
     for start, (name, at) in zip(first, bearings, strict=False):

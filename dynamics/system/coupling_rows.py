@@ -7,13 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.joints import Coupling
 from dynamics.joints.matrix import Matrix
 from dynamics.system.columns import column_count, section_rows
 from dynamics.system.rotor import Rotor
-from dynamics.system.scene import Scene
+from dynamics.system.scene import Scene, crosses_frames
 from dynamics.types import FloatArray
 
 ROTATION = 5
+ACROSS = (0, 1, 3, 4)
+"""Strains that a turning frame mixes: x, y, tilt_x, tilt_y."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +29,8 @@ class CouplingRows:
     motion : (c, 6, N) array
         Strain per freedom: motion of the second shaft at the coupling less that of the first, m and rad.
     stiffness, damping : (c, 6, 6) arrays
-        Force and moment per strain and its rate, N, m, rad, s.
+        Force and moment per strain and its rate, N, m, rad, s; across frames only those along the axis and
+        about it.
     """
 
     name: tuple[str, ...]
@@ -47,8 +51,10 @@ def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
         place = np.add(scene.shafts[first].origin, (0.0, 0.0, coupling.position))
         for shaft, sign in ((first, -1.0), (second, 1.0)):
             motion[index] += sign * section_rows(rotors, shaft, place[2])
-    stiffness = [_full(c.stiffness, c.torsional_stiffness) for c in scene.couplings]
-    damping = [_full(c.damping, c.torsional_damping) for c in scene.couplings]
+    stiffness = [
+        _constant(scene, c, full_matrix(c.stiffness, c.torsional_stiffness)) for c in scene.couplings
+    ]
+    damping = [_constant(scene, c, full_matrix(c.damping, c.torsional_damping)) for c in scene.couplings]
     return CouplingRows(
         tuple(coupling.name for coupling in scene.couplings),
         motion,
@@ -57,7 +63,17 @@ def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
     )
 
 
-def _full(matrix: Matrix | None, torsional: float) -> FloatArray:
+def _constant(scene: Scene, coupling: Coupling, matrix: FloatArray) -> FloatArray:
+    """Return what of a coupling's `matrix` (6, 6) no frame turns: all, or axial motion and rotation."""
+    first, second = (scene.shafts[scene.shaft_index(name)] for name in (coupling.first, coupling.second))
+    if not crosses_frames(first, second, coupling):
+        return matrix
+    kept = matrix.copy()
+    kept[list(ACROSS)], kept[:, list(ACROSS)] = 0.0, 0.0
+    return kept
+
+
+def full_matrix(matrix: Matrix | None, torsional: float) -> FloatArray:
     """Return the whole 6 by 6 matrix."""
     full = np.zeros((6, 6)) if matrix is None else np.array(matrix, dtype=float)
     full[ROTATION, ROTATION] += torsional

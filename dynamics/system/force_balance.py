@@ -44,18 +44,38 @@ def force_balance(
 ) -> ForceBalance:
     """Return the balance of `external` (n,), supports and elements in the state `q`, `v` (n,) at `time`.
 
-    Without `turning` the derivatives leave out gyroscopic, Coriolis and centripetal terms.
+    Without `turning` the derivatives leave out gyroscopic, Coriolis and centripetal terms, and what dampers
+    across frames have from the turning of these.
     """
     local = local_state(arrays, time, q, v)
     force = external - arrays.damping @ v - arrays.stiffness @ q - local.force @ arrays.direction
     rows = np.repeat(arrays.elements.law == Law.TURNING, np.diff(arrays.elements.first))
     kept = np.where(rows & (not turning), 0.0, 1.0)[:, None]
+    tangent = kept * local.tangent
+    if not turning:
+        tangent = tangent - swept_by_frames(arrays.elements, local, local.pace)
     return ForceBalance(
         force,
-        arrays.stiffness + _on_freedoms(arrays, kept * local.tangent),
+        arrays.stiffness + _on_freedoms(arrays, tangent),
         arrays.damping + _on_freedoms(arrays, kept * local.viscous),
         local,
     )
+
+
+def swept_by_frames(elements: Elements, local: LocalState, pace: FloatArray) -> FloatArray:
+    """Return the part of the tangents (R, P) that dampers across frames have from the turning of these.
+
+    The second frame turns at psi' against the first and carries b along, which takes psi' J R b from the rate
+    of the strain. `pace` (m + f,) holds psi' per second behind that of the meshes.
+    """
+    swept = np.zeros_like(local.tangent)
+    for e in np.flatnonzero(elements.law == Law.FRAME_COUPLING):
+        rows = slice(elements.first[e], elements.first[e + 1])
+        n = (rows.stop - rows.start) // 2
+        quarter = np.kron(np.eye(n // 2), [[0.0, -1.0], [1.0, 0.0]])
+        turn = 2.0 * np.pi * pace[elements.mesh[e]]
+        swept[rows, n : 2 * n] = turn * local.viscous[rows, n : 2 * n] @ quarter
+    return swept
 
 
 def _on_freedoms(arrays: SystemArrays, derivative: FloatArray) -> FloatArray:

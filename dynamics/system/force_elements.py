@@ -1,11 +1,12 @@
-"""All force elements of a model, in their order: flanks, torques by speed, turning, bearings."""
+"""All force elements of a model, in their order: flanks, torques by speed, turning, frames, bearings."""
 
 from __future__ import annotations
 
 from dynamics.forces.element_laws import ElementLaws
-from dynamics.system.bearing_elements import bearing_elements
+from dynamics.system.bearing_elements import bearing_elements, tilt_lever
 from dynamics.system.elements import Element
 from dynamics.system.flank_elements import flank_elements
+from dynamics.system.frame_couplings import frame_coupling_elements
 from dynamics.system.model import Model
 from dynamics.system.spatial_elements import spatial_elements
 from dynamics.system.speed_elements import speed_elements
@@ -24,5 +25,6 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
         scene, rotors, kinematics, vectors, model.freedoms, joined.supports, joined.seats, ledger
     )
     on_bearings, contact, curve = bearing_elements(scene, rotors, mechanism.bearings, mechanism.bearing_load)
-    laws = ElementLaws(flanks.law, speed, contact, curve, spatial, turning)
-    return (*in_space, *by_speed, *by_turning, *on_bearings), laws
+    across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
+    laws = ElementLaws(flanks.law, speed, contact, curve, spatial, turning, frame)
+    return (*in_space, *by_speed, *by_turning, *across, *on_bearings), laws

@@ -8,10 +8,10 @@ from dynamics.bodies import Shaft
 from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.joints import Bushing, Housing
-from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 ISOTROPY = 1e-9  # relative
+IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
 
 
 def check_housings(
@@ -39,7 +39,7 @@ def check_housings(
 def _check_isotropic(field: str, bushing: Bushing) -> None:
     """Refuse a bushing seen from a turning frame unless all directions across the axis are alike."""
     for name, matrix in (("stiffness", bushing.seat_stiffness), ("damping", bushing.seat_damping)):
-        if np.any(np.abs(_quarter_turned(matrix) - matrix) > ISOTROPY * np.max(np.abs(matrix), initial=0.0)):
+        if not alike_across(matrix):
             bound = "the same in all directions across the axis"
             raise InputError(f"{field}.{name}", bushing.name, bound, "The carrier's frame turns against it.")
     if bushing.preload is not None and any(bushing.preload[kind] != 0.0 for kind in (0, 1, 3, 4)):
@@ -47,8 +47,10 @@ def _check_isotropic(field: str, bushing: Bushing) -> None:
         raise InputError(f"{field}.preload", bushing.preload, bound)
 
 
-def _quarter_turned(matrix: FloatArray) -> FloatArray:
-    """Return the matrix of the bushing turned by a quarter about z."""
-    turn = np.zeros((SEAT, SEAT))
-    turn[0, 1], turn[1, 0], turn[3, 4], turn[4, 3], turn[2, 2] = -1.0, 1.0, -1.0, 1.0, 1.0
-    return np.asarray(turn @ matrix @ turn.T)
+def alike_across(matrix: FloatArray) -> bool:
+    """Whether a matrix in x, y, z, tilt_x, tilt_y (and rotation) is the same turned by any angle about z."""
+    turn = np.eye(matrix.shape[0])
+    c, s = np.cos(IRRATIONAL), np.sin(IRRATIONAL)
+    turn[:2, :2] = turn[3:5, 3:5] = [[c, -s], [s, c]]
+    off = np.abs(turn @ matrix @ turn.T - matrix)
+    return bool(np.all(off <= ISOTROPY * np.max(np.abs(matrix), initial=0.0)))

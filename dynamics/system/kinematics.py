@@ -107,8 +107,13 @@ def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
     if a == b:
         raise InputError(field, mesh.driven, "on another shaft than the driver")
     if scene.frame_index(b) != carrier:
-        suggestion = "Describe both shafts in the frame of the same carrier, or neither."
-        raise InputError(field, mesh.driven, "in the same frame as the driver", suggestion)
+        shaft = scene.shafts[a if carrier is not None else b].name
+        suggestion = (
+            "Describe both shafts in the frame of the same carrier, or neither. Where shaft "
+            f"{shaft} carries gears inside and outside of a planetary set, part it in two and join them by a "
+            "coupling with its stiffness matrix."
+        )
+        raise InputError(field, mesh.driven, "on a shaft in the same frame as the driver's", suggestion)
     ratio = Fraction(driver.teeth, driven.teeth) * (1 if driver.internal or driven.internal else -1)
     found = speeds.ratio(a, b, carrier)
     if found is not None and found != ratio:

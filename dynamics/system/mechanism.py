@@ -12,6 +12,7 @@ from dynamics.system.bearing_elements import (
     bearing_places,
     supports_by_name,
 )
+from dynamics.system.coupled_rotors import with_couplings
 from dynamics.system.kinematics import Kinematics, solve_kinematics
 from dynamics.system.line_of_action import LineOfAction, line_of_action
 from dynamics.system.nominal_forces import nominal_forces
@@ -82,6 +83,7 @@ def gather_mechanism(scene: Scene) -> Mechanism:
     forces = nominal_forces(scene, kinematics, turning_inertia(rotors))
     loads = bearing_loads(scene, rotors, forces)
     bearings, rotors = _with_bearings(scene, rotors, loads)
+    rotors = with_couplings(scene, rotors)
     _check_rotation(rotors, kinematics)
     return Mechanism(scene, kinematics, rotors, lines, forces, loads, bearings)
 

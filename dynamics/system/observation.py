@@ -22,8 +22,8 @@ class Observed(NamedTuple):
 
     Attributes
     ----------
-    position : (m, T) array
-        Base pitches in [0, period).
+    position : (m + f, T) array
+        Base pitches in [0, period); then turns of frames against each other, revolutions in [0, 1).
     coordinate, force : (R, T) arrays
         Local coordinates, m, and local forces, N.
     """

@@ -11,6 +11,7 @@ from dynamics.joints import ImposedRotation
 from dynamics.system.arrays import Drives, Loads, Reference
 from dynamics.system.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
 from dynamics.system.connections import Connections
+from dynamics.system.frame_couplings import frame_turns
 from dynamics.system.freedoms import ROTATION, Freedoms
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.law_arrays import pack_laws, revolutions
@@ -25,27 +26,27 @@ from dynamics.types import FloatArray
 def lay_out_reference(
     scene: Scene, kinematics: Kinematics, freedoms: Freedoms, vectors: FloatArray
 ) -> Reference:
-    """Lay out the kinematic motion; `vectors` (k, N) are the laws' kinematic vectors."""
+    """Lay out the kinematic motion; `vectors` (k, N) are the laws' kinematic vectors.
+
+    Behind the positions of the meshes come the turns of frames that couplings cross, in revolutions.
+    """
     laws = [part.speed for part in scene.references]
     turned = [revolutions(law) for law in laws]
     free = [-1] * len(scene.drives) + [
         freedoms.find(shaft, ROTATION) for shaft in kinematics.law_shaft[len(scene.drives) :]
     ]
-    shape = (len(scene.meshes), len(laws))
+    frames = frame_turns(scene, kinematics)
+    rates, none = (*kinematics.mesh_rate, *frames), len(frames)
+    shape = (len(rates), len(laws))
     return Reference(
         pack_laws(laws),
         np.concatenate([whole for whole, _ in turned]),
         np.concatenate([fraction for _, fraction in turned]),
-        np.array([[rate.numerator for rate in row] for row in kinematics.mesh_rate], dtype=np.int64).reshape(
-            shape
-        ),
-        np.array(
-            [[rate.denominator for rate in row] for row in kinematics.mesh_rate], dtype=np.int64
-        ).reshape(shape),
-        np.array([[float(rate) for rate in row] for row in kinematics.mesh_rate]).reshape(shape)
-        / (2.0 * math.pi),
-        np.array([mesh.position_offset for mesh in scene.meshes], dtype=float),
-        np.array([mesh.table.period for mesh in scene.meshes], dtype=np.int64),
+        np.array([[rate.numerator for rate in row] for row in rates], dtype=np.int64).reshape(shape),
+        np.array([[rate.denominator for rate in row] for row in rates], dtype=np.int64).reshape(shape),
+        np.array([[float(rate) for rate in row] for row in rates]).reshape(shape) / (2.0 * math.pi),
+        np.array([*(mesh.position_offset for mesh in scene.meshes), *[0.0] * none], dtype=float),
+        np.array([*(mesh.table.period for mesh in scene.meshes), *[1] * none], dtype=np.int64),
         np.array(free, dtype=np.int64),
         np.ascontiguousarray(vectors[:, freedoms.place]),
     )

@@ -35,7 +35,8 @@ class Rotor:
     carrier : int or None
         The same for a planet: a rotor off the carrier's axis, which the carrier takes along.
     curved : tuple of ((5, 5) array, float)
-        Typical stiffness of what bearings do that is not linear, and their levers.
+        Typical stiffness of what bearings do that is not linear, and of couplings that hold the rotor where
+        no bearing does, with their levers.
     elastic : ElasticShaft or None
         How its shaft bends and twists; None: rigid.
     """

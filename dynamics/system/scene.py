@@ -7,13 +7,15 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+import numpy as np
+
 from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, integer, not_negative, one_of, positive
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
 from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
 from dynamics.system.bearing_check import check_bearing_laws
-from dynamics.system.housing_check import check_housings
+from dynamics.system.housing_check import alike_across, check_housings
 
 METHODS = ("implicit", "explicit")
 ON_VIOLATION = ("repeat", "fail", "report")
@@ -259,16 +261,31 @@ def check_frames(
 
 
 def check_couplings(shafts: tuple[Shaft, ...], couplings: tuple[Coupling, ...]) -> None:
-    """Couplings with matrices join coaxial shafts described in the same frame."""
+    """Couplings with matrices join coaxial shafts, those across frames alike in all directions."""
     by_name = {shaft.name: shaft for shaft in shafts}
     for index, coupling in enumerate(couplings):
         first, second = by_name[coupling.first], by_name[coupling.second]
         if coupling.stiffness is None and coupling.damping is None:
             continue
-        if first.frame != second.frame or not on_axis(first, second):
+        if not on_axis(first, second):
             suggestion = "Leave the matrices out: torsion alone joins any two shafts."
-            field = f"couplings[{index}].second"
-            raise InputError(field, second.name, "coaxial with the first, in the same frame", suggestion)
+            raise InputError(f"couplings[{index}].second", second.name, "coaxial with the first", suggestion)
+        if not crosses_frames(first, second, coupling):
+            continue
+        for side, shaft in (("first", first), ("second", second)):
+            if shaft.frame is not None and not on_axis(shaft, by_name[shaft.frame]):
+                bound = f"on the axis of its carrier {shaft.frame}, as it joins shafts of different frames"
+                raise InputError(f"couplings[{index}].{side}", shaft.name, bound)
+        for name, matrix in (("stiffness", coupling.stiffness), ("damping", coupling.damping)):
+            if matrix is not None and not alike_across(np.asarray(matrix, dtype=float)):
+                bound = "the same in all directions across the axis, without terms between these and the axis"
+                suggestion = "The frames of its shafts turn against each other."
+                raise InputError(f"couplings[{index}].{name}", coupling.name, bound, suggestion)
+
+
+def crosses_frames(first: Shaft, second: Shaft, coupling: Coupling) -> bool:
+    """Whether a coupling has matrices and joins shafts of different frames."""
+    return first.frame != second.frame and (coupling.stiffness is not None or coupling.damping is not None)
 
 
 def on_axis(shaft: Shaft, carrier: Shaft) -> bool:

@@ -14,6 +14,7 @@ from dynamics.system.columns import column_count, times_mass, turn_row
 from dynamics.system.connections import elastic_matrices, linear_matrices
 from dynamics.system.effects import FREEDOMS
 from dynamics.system.elements import Element, gradients, pack_elements
+from dynamics.system.frame_couplings import frame_turns
 from dynamics.system.freedoms import ROTATION, Freedoms, shared_blocks
 from dynamics.system.kinematics import Kinematics, mesh_shafts
 from dynamics.system.model import Model
@@ -62,8 +63,12 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
 
 
 def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
-    """Return the derivatives of each position, (m, N): the driver's rotation against its carrier's."""
-    turn = np.zeros((len(scene.meshes), column_count(rotors)))
+    """Return the derivatives of each position, (m + f, N): the driver's rotation against its carrier's.
+
+    Frames turn with the kinematic motion alone.
+    """
+    frames = len(frame_turns(scene, kinematics))
+    turn = np.zeros((len(scene.meshes) + frames, column_count(rotors)))
     for row, mesh in enumerate(scene.meshes):
         driver, _, carrier = mesh_shafts(scene, row)
         gear = scene.gear(mesh.driver)

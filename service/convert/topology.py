@@ -47,7 +47,11 @@ def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Tee
     """Teeth of every gear, by name; a gear in two meshes must be the same in both."""
     found: dict[str, Teeth] = {}
     for index, mesh in enumerate(scene.meshes):
-        for side, role in enumerate(("driver", "driven")):
+        if mesh.wheel_drives and not facts[mesh.name].internal:
+            bound = "left out: the wheel of this case is no ring gear"
+            advice = "Give a case whose pinion is the gear that drives."
+            raise BadInput.of(f"meshes[{index}].wheel_drives", True, bound, advice)
+        for side, role in enumerate(("driven", "driver") if mesh.wheel_drives else ("driver", "driven")):
             name, teeth = getattr(mesh, role), _side(facts[mesh.name], side)
             known = found.setdefault(name, teeth)
             if known.teeth != teeth.teeth or not math.isclose(

@@ -56,8 +56,14 @@ class MeshInput(BoundaryModel):
     """Two gears in mesh and the source of their STE database."""
 
     name: Name = Field(description="Name of the mesh", examples=["mesh"])
-    driver: Name = Field(description="The driving gear: the pinion of the case", examples=["pinion"])
-    driven: Name = Field(description="The driven gear: the wheel of the case", examples=["wheel"])
+    driver: Name = Field(
+        description="The driving gear: the pinion of the case, with wheel_drives its wheel",
+        examples=["pinion"],
+    )
+    driven: Name = Field(description="The driven gear: the other gear of the case", examples=["wheel"])
+    wheel_drives: bool = Field(
+        default=False, description="The wheel of the case, a ring gear, drives its pinion", examples=[False]
+    )
     case: Case | None = Field(default=None, description="The case, written out")
     case_file: str | None = Field(
         default=None,

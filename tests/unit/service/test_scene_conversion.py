@@ -302,6 +302,25 @@ def test_planetary_sets_that_cannot_be_are_one_fault_by_name(change: Change, fie
     assert fault.field == field
 
 
+def test_a_ring_gear_may_drive() -> None:
+    """The wheel of its case then is the driver; an external wheel is told to be another case's pinion."""
+
+    def turned(table: dict[str, Any]) -> None:
+        table["meshes"][0].update(driver="planet", driven="sun")
+        table["meshes"][1].update(driver="ring", driven="planet", wheel_drives=True)
+        table["loads"] = [
+            {"name": "motor", "shaft": "carrier", "torque_n_m": [-200.0]},
+            {"name": "brake", "shaft": "sun", "torque_n_m": [50.0]},
+        ]
+
+    found = planetary(turned)
+    assert [gear.internal for gear in found.gears[:3]] == [False, False, True]
+    with pytest.raises(BadInput, match=r"meshes\[1\]\.driven"):
+        planetary(lambda table: (turned(table), table["meshes"][1].update(wheel_drives=False)))
+    with pytest.raises(BadInput, match=r"meshes\[0\]\.wheel_drives"):
+        planetary(lambda table: table["meshes"][0].update(wheel_drives=True))
+
+
 def test_the_planetary_example_is_a_system() -> None:
     """On stand-in tables with the facts of its pairs: six meshes, all torques carried, planets that fit."""
     from dataclasses import replace  # noqa: PLC0415

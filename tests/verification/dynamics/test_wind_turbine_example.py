@@ -1,0 +1,166 @@
+"""The two-stage wind-turbine gearbox of the examples: ratios, torques, forces and moments by hand, energy.
+
+On stand-in tables: forces at rest follow from the balance of torques, whatever the tables.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from wind_turbine import wind_turbine
+
+from dynamics.integrators import static_equilibrium
+from dynamics.results.histories import bearing_force
+from dynamics.simulate import simulate
+from dynamics.system.assemble import assemble
+from dynamics.system.frame_couplings import frame_turns
+from dynamics.system.observation import local_state
+
+TORQUE = 700.0  # N m on the generator
+SUN, PLANET, RING, LARGE, PINION = 21, 39, 99, 97, 23
+NORMAL = math.radians(20.0)
+LOW, HIGH = math.radians(8.0), math.radians(14.0)
+
+
+def steady(table):
+    table["drives"][0].update(time_s=[0.0], speed_rpm=[55.0])
+
+
+@pytest.fixture(scope="module")
+def rest():
+    """The system, its mesh forces and its bearings' forces at rest, by name."""
+    system = assemble(wind_turbine(steady))
+    found = static_equilibrium(system)
+    assert found.status.usable
+    q = found.displacement
+    local = local_state(system.arrays, 0.0, q, 0.0 * q)
+    force = bearing_force(system, local.force[:, None], q[None], 0.0 * q[None])[:, :3, 0]
+    meshes = dict(zip((mesh.name for mesh in system.scene.meshes), found.mesh_force, strict=True))
+    return system, meshes, dict(zip(system.supports.name, force, strict=True)), q
+
+
+def transverse(helix):
+    """Pressure angle in the transverse plane, base helix angle."""
+    alpha = math.atan(math.tan(NORMAL) / math.cos(helix))
+    return alpha, math.atan(math.tan(helix) * math.cos(alpha))
+
+
+def pitch_radius(teeth, module, helix):
+    return 0.5 * teeth * module / math.cos(helix)
+
+
+def test_ratios_and_phases_are_exact():
+    system = assemble(wind_turbine(steady))
+    at = system.scene.shaft_index
+    ratio, rates = system.kinematics.ratio, system.kinematics.mesh_rate
+    set_ratio = 1 + Fraction(RING, SUN)
+    assert ratio[at("sun")][0] == ratio[at("intermediate")][0] == set_ratio
+    assert ratio[at("generator")][0] == -set_ratio * Fraction(LARGE, PINION)
+    names = [mesh.name for mesh in system.scene.meshes]
+    assert rates[names.index("sun mesh")][0] == rates[names.index("ring mesh 2")][0] == RING
+    assert rates[names.index("high-speed mesh")][0] == LARGE * set_ratio
+    (turn,) = frame_turns(system.scene, system.kinematics)
+    assert turn[0] == 1  # the carrier's frame against the fixed one, per turn of the rotor
+    reference = system.arrays.reference
+    place = len(names)
+    assert (reference.numerator[place, 0], reference.denominator[place, 0]) == (1, 1)
+    for index, name in enumerate(("sun mesh", "sun mesh 2", "sun mesh 3")):
+        expected = (SUN * index / 3.0) % 1.0  # 21 teeth over three planets: all in phase
+        assert system.scene.meshes[names.index(name)].position_offset % 1.0 == pytest.approx(
+            expected, abs=1e-9
+        )
+
+
+def test_torques_pass_through_both_stages(rest):
+    system, meshes, _, _ = rest
+    alpha, _ = transverse(HIGH)
+    pinion = pitch_radius(PINION, 4e-3, HIGH) * math.cos(alpha)
+    assert meshes["high-speed mesh"] == pytest.approx(TORQUE / pinion, rel=1e-6)
+    alpha, _ = transverse(LOW)
+    sun = pitch_radius(SUN, 5e-3, LOW) * math.cos(alpha)
+    total = TORQUE * LARGE / PINION / sun
+    for kind in ("sun", "ring"):
+        forces = np.array([meshes[f"{kind} mesh{planet}"] for planet in ("", " 2", " 3")])
+        assert np.sum(forces) == pytest.approx(total, rel=1e-6)
+        assert 0.0 < np.ptp(forces) / np.mean(forces) < 0.01  # the large gear's tilt reaches the sun
+    result = simulate(replace(system.scene, duration=1e-4))
+    ratio = (1.0 + RING / SUN) * LARGE / PINION
+    joints = dict(zip(result.coupling, result.coupling_torque[:, 0], strict=True))
+    assert abs(joints["main shaft"]) == pytest.approx(ratio * TORQUE, rel=1e-6)
+    assert abs(joints["spline"]) == pytest.approx(TORQUE * LARGE / PINION, rel=1e-6)
+    assert abs(joints["generator coupling"]) == pytest.approx(TORQUE, rel=1e-6)
+
+
+def test_bearings_of_the_high_speed_shaft(rest):
+    """F along the line of action shared by two bearings, and the couple of its thrust."""
+    _, meshes, bearings, _ = rest
+    force, (alpha, helix) = meshes["high-speed mesh"], transverse(HIGH)
+    couple = force * math.tan(helix) * pitch_radius(PINION, 4e-3, HIGH) / 0.18
+    x, y = force * math.sin(alpha) / 2.0, force * math.cos(alpha) / 2.0
+    thrust = -force * math.tan(helix)
+    np.testing.assert_allclose(bearings["high speed rotor side"], [x + couple, y, thrust], rtol=1e-6)
+    np.testing.assert_allclose(bearings["high speed generator side"][:2], [x - couple, y], rtol=1e-6)
+
+
+def test_thrusts_of_both_stages_meet_on_the_intermediate_shaft(rest):
+    """The sun's thrust passes through the joint across frames; ring and high-speed shaft take the others."""
+    _, meshes, bearings, _ = rest
+    low = sum(meshes[name] for name in ("sun mesh", "sun mesh 2", "sun mesh 3")) * math.tan(
+        transverse(LOW)[1]
+    )
+    high = meshes["high-speed mesh"] * math.tan(transverse(HIGH)[1])
+    assert bearings["ring in its housing"][2] == pytest.approx(-low, rel=1e-6)
+    assert bearings["intermediate rotor side"][2] == pytest.approx(low + high, rel=1e-6)
+    assert abs(bearings["carrier rotor side"][2]) < 1e-6 * low
+
+
+def test_forces_and_moments_on_the_ground_balance(rest):
+    """In the fixed frame at t = 0, where both frames agree: no force is lost or made in the joint."""
+    system, _, bearings, _ = rest
+    total, moment, largest = np.zeros(3), np.zeros(3), 0.0
+    for rotor in system.rotors:
+        for part in rotor.bushings:
+            place = np.add(rotor.shaft.origin, (0.0, 0.0, part.position))
+            total += bearings[part.name]
+            moment += np.cross(place, bearings[part.name])
+            largest = max(largest, float(np.max(np.abs(bearings[part.name]))))
+    seat = system.seats.name.index("ring in its housing")
+    rows = slice(5 * seat, 5 * seat + 5)
+    q = rest[3]
+    moment[:2] += (system.seats.stiffness[rows, rows] @ system.freedoms.keep(system.seats.motion)[rows] @ q)[
+        3:
+    ]
+    np.testing.assert_allclose(total, 0.0, atol=1e-6 * largest)
+    np.testing.assert_allclose(moment[:2], 0.0, atol=1e-6 * largest)
+
+
+def test_pins_carry_the_load_and_the_couple_of_a_planet(rest):
+    _, meshes, bearings, _ = rest
+    alpha, helix = transverse(LOW)
+    radius = pitch_radius(PLANET, 5e-3, LOW)
+    for planet, name in enumerate(("", " 2", " 3")):
+        force = 0.5 * (meshes[f"sun mesh{name}"] + meshes[f"ring mesh{name}"])
+        angle = 2.0 * math.pi * planet / 3.0
+        away, across = (
+            np.array([math.cos(angle), math.sin(angle)]),
+            np.array([-math.sin(angle), math.cos(angle)]),
+        )
+        low, high = (bearings[f"pin {side} side{name}"][:2] for side in ("rotor", "generator"))
+        load = 2.0 * force * math.cos(alpha)
+        np.testing.assert_allclose(low + high, -load * across, atol=5e-3 * load)
+        couple = 2.0 * force * math.tan(helix) * radius / 0.05
+        np.testing.assert_allclose(0.5 * (low - high), couple * away, atol=5e-3 * couple)
+
+
+def test_the_balance_of_energy_closes(record_figure):
+    scene = wind_turbine(lambda table: table["drives"][0].update(time_s=[0.0, 0.1], speed_rpm=[50.0, 55.0]))
+    result = simulate(replace(scene, duration=0.1))
+    assert result.status.usable
+    name = "energy balance, wind turbine on stand-in tables"
+    record_figure(name, 100.0 * result.energy.relative, "below 0.1 %", "%", "energy audit")
+    assert result.energy.relative < 1e-3
+    assert result.energy.bushings > 0.0
