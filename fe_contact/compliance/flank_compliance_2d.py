@@ -22,7 +22,7 @@ from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import IntArray, Json
 
-MODEL_VERSION = 1  # raise it whenever the same input gives another result: old cache files are then not found
+MODEL_VERSION = 2  # raise it whenever the same input gives another result: old cache files are then not found
 USUAL_TEETH = 5
 
 

@@ -103,11 +103,11 @@ def root_pieces(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> list
     land = profile.s_root - profile.s_space
     if s_low <= profile.s_root:
         return [land_piece(profile, s_low, recipe)] if land > TINY * recipe.fillet_size else []
-    fillet = piece("fillet", profile.flank, divide(s_low, profile.s_root, size)[::-1])
     if land > SNAP * recipe.fillet_size:
+        fillet = piece("fillet", profile.flank, divide(s_low, profile.s_root, size)[::-1])
         return [land_piece(profile, s_low, recipe), fillet]
-    fillet.nodes[0] = profile.flank(np.array([profile.s_space]))[0]
-    return [fillet]
+    # a land too short for an element of its own: the lowest element of the fillet reaches over it
+    return [piece("fillet", profile.flank, divide(s_low, profile.s_space, size)[::-1])]
 
 
 def land_piece(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> Piece:

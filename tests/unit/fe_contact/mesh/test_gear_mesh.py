@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from fe_contact.geometry import Gear, Toothing, ToothProfile, tooth_profile
-from fe_contact.mesh import GearMesh, mesh_gear, mesh_quality
+from fe_contact.mesh import GearMesh, MeshRecipe, mesh_gear, mesh_quality
 from fe_contact.mesh.quadratic import rotated
 
 GearAndMesh = tuple[Toothing, GearMesh]
@@ -149,3 +150,16 @@ def test_a_gear_with_fewer_teeth_than_wanted_has_all_of_them() -> None:
     gear = Gear(teeth=6, normal_module=4e-3, face_width=25e-3, bore_diameter=6e-3, tip_diameter=29e-3)
     mesh = mesh_gear(gear)
     assert mesh.teeth.tolist() == [-2, -1, 0, 1, 2, 3]
+
+
+@pytest.mark.parametrize("level", [0.5, 0.6, 0.7, 1.0])
+def test_a_root_land_shorter_than_an_element_makes_no_poor_one(level):
+    """The lowest element of the fillet reaches over it; moved by one corner alone it was bent too far."""
+    gear = Gear(
+        teeth=50, normal_module=1e-3, face_width=5e-3, bore_diameter=30e-3, profile_shift_coefficient=0.48932,
+        addendum_coefficient=0.8, dedendum_coefficient=1.43845, root_radius_coefficient=0.210857,
+        normal_pressure_angle=math.radians(22.994),
+    )  # fmt: skip
+    profile = tooth_profile(gear)
+    assert 0.0 < profile.s_root - profile.s_space < 0.05e-3
+    mesh_gear(gear, MeshRecipe.standard(gear).refined(level))  # refuses poor elements
