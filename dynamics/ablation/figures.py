@@ -30,7 +30,7 @@ class RunFigures:
     bearing_orders : (b, 5) array
         Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored.
     seconds : float
-        Of the integration, s.
+        CPU time of the run.
     """
 
     mean: FloatArray
@@ -46,12 +46,18 @@ class RunFigures:
             "peak_to_peak_m": self.peak_to_peak.tolist(),
             "orders_m": self.orders.tolist(),
             "bearing_orders_n": self.bearing_orders.tolist(),
-            "seconds": self.seconds,
+            "cpu_seconds": self.seconds,
         }
 
 
-def run_figures(result: RunResult) -> RunFigures:
-    """Return the figures of a run; raises `InputError` where it is shorter than a few base pitches."""
+def run_figures(result: RunResult, seconds: float) -> RunFigures:
+    """Return the figures of a run of so many CPU seconds.
+
+    Raises
+    ------
+    InputError
+        It is shorter than a few base pitches.
+    """
     settled = slice(int(SETTLED * result.time.size), None)
     error = result.dynamic_transmission_error[:, settled]
     pitches = max(1, min(PITCHES, int(_travel(result) / 4.0)))
@@ -64,7 +70,7 @@ def run_figures(result: RunResult) -> RunFigures:
         np.ptp(error, axis=1),
         transmission,
         bearings,
-        float(result.receipt["seconds"]["integration"]),
+        seconds,
     )
 
 

@@ -355,6 +355,24 @@ def plan(
     run_plan(case, time_budget_s, as_json=json)
 
 
+@app.command(epilog="Example: loa ablate examples/palermo_spur_20_20.toml -o ablation.png")
+@guarded
+def ablate(
+    file: Annotated[Path, typer.Argument(help="Case or scene file.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="File to write, ending in .png or .json.")
+    ] = None,
+    only: Annotated[
+        str | None, typer.Option(help="Effects to switch over, separated by commas; default: all.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Switch each effect of a case or a scene over: what it changes, what was estimated, what it costs."""
+    from service.cli.ablate import run_ablate  # noqa: PLC0415 (start-up time)
+
+    run_ablate(file, output, only, as_json=json)
+
+
 @app.command(epilog="Example: loa frontier examples/palermo_spur_20_20.toml -o frontier")
 @guarded
 def frontier(

@@ -12,6 +12,7 @@ from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.effects.composer import compose
 from fe_contact.effects.effect import ContactScene, Effect
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
+from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.flipping import flipped
 from fe_contact.effects.worth.slice_model import EstimatedCurve, estimated_curve
 from fe_contact.types import FloatArray, Json
@@ -87,6 +88,8 @@ def estimate_worths(
     def worth(effect: Effect) -> Worth | None:
         if _unknown(scene, effect.name):
             return None
+        if effect.name == FaceLoadDistribution.name and _uncorrected(decided):
+            return worth(next(one for one in registry if one.name == FiniteWidth.name))
         if effect.name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
             # with nothing across the face the corrected plane stands in for three dimensions
             return Worth(np.zeros(scene.torque.size), np.zeros(scene.torque.size), 0.0, 0.0)
@@ -97,6 +100,11 @@ def estimate_worths(
         return _compared(with_it, without)
 
     return {effect.name: worth(effect) for effect in registry if effect.name in names}
+
+
+def _uncorrected(decided: Mapping[str, str]) -> bool:
+    """Whether a plane stands for the whole face without the correction for its finite width."""
+    return decided[FaceLoadDistribution.name] == "off" and decided.get(FiniteWidth.name) == "off"
 
 
 def _unknown(scene: ContactScene, name: str) -> bool:

@@ -1,0 +1,62 @@
+"""Ablations at the boundary: of a case and of a scene, and their JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from dynamics.ablation import Ablation as SceneAblation
+from dynamics.ablation import ablate as ablate_scene
+from dynamics.system import Scene
+from fe_contact.analysis.ablation import Ablation, ablate
+from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.convert.runs import staged
+from service.convert.units import UM
+from service.schemas import Case
+
+Json = dict[str, Any]
+Report = Callable[[str, float], None]
+_LEFT_ASIDE = ("receipt", "on_violation", "center_distance_changes")
+
+
+def ablation_of_case(case: Case, only: Sequence[str] | None, cache: Path | None, report: Report) -> Ablation:
+    """Switch the effects of a case over at its nominal centre distance.
+
+    Raises
+    ------
+    BadInput
+        No such pair or effect.
+    JobFailed
+        The case itself cannot be computed.
+    """
+    pair = gear_pair(case)
+    asked = {name: value for name, value in analysis_arguments(case).items() if name not in _LEFT_ASIDE}
+    with boundary_errors():
+        return ablate(pair, **asked, only=only, progress=report, cache=cache)
+
+
+def ablation_of_scene(scene: Scene, only: Sequence[str] | None, report: Report) -> SceneAblation:
+    """Switch the effects of a scene over; raises as `ablation_of_case`."""
+    with boundary_errors():
+        return ablate_scene(scene, only, staged(report))
+
+
+def ablation_json(found: Ablation | SceneAblation) -> Json:
+    """Return an ablation with lengths in um."""
+    return {"of": "case" if isinstance(found, Ablation) else "scene", **_in_um(found.to_json())}
+
+
+def _in_um(value: Any, *, metres: bool = False) -> Any:
+    """Turn every field that ends in _m (and no torque) into one that ends in _um."""
+    if isinstance(value, dict):
+        return dict(_field(name, inner) for name, inner in value.items())
+    if isinstance(value, list):
+        return [_in_um(inner, metres=metres) for inner in value]
+    return value / UM if metres and value is not None else value
+
+
+def _field(name: str, value: Any) -> tuple[str, Any]:
+    """One field."""
+    metres = name.endswith("_m") and not name.endswith("_n_m")
+    return (f"{name.removesuffix('_m')}_um" if metres else name), _in_um(value, metres=metres)
