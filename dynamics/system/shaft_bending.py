@@ -19,11 +19,18 @@ from dynamics.system.mesh_axes import misalignment_gradient
 from dynamics.system.shaft_grips import elastic_of, why_rigid
 from dynamics.types import FloatArray
 
+NOTHING_BENDS = (
+    "forces act at one place of the shaft alone, or it is not held there: nothing bends or twists it"
+)
+
 
 def bending_shafts(mechanism: Mechanism, flanks: Flanks) -> list[BendingShaft]:
     """Return for each shaft whether it can bend and twist, its elastic coordinates and their worth."""
     refusals = [why_rigid(mechanism, index) for index in range(len(mechanism.rotors))]
     elastic = [None if refusal else elastic_of(mechanism, i) for i, refusal in enumerate(refusals)]
+    for index, part in enumerate(elastic):
+        if part is not None and part.mass.size == 0:
+            refusals[index], elastic[index] = NOTHING_BENDS, None
     if all(part is None for part in elastic):
         return [BendingShaft(refusal) for refusal in refusals]
     flexible = with_elastic(mechanism, elastic)

@@ -9,6 +9,7 @@ from dynamics.system import Scene
 from dynamics.types import RunStatus
 from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
+from service.cli.run_effects import effect_lines
 from service.cli.scene_tables import scene_with_tables
 from service.client.portable import scene_of
 from service.convert.runs import run_json, staged
@@ -51,4 +52,7 @@ def _show(facts: dict[str, object]) -> None:
     for name, value in attributes.items():
         if isinstance(value, str | int | float) and len(str(value)) < 80:
             out.print(f"{name} {value}", highlight=False)
+    ledger = attributes.get("effect_ledger")
+    for line in effect_lines(ledger if isinstance(ledger, dict) else {}):
+        out.print(line, highlight=False)
     out.print(f"written to {facts['file']}", highlight=False)

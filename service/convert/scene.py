@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
-from dynamics.bodies import AngleLaw, GearBody, Inertia, Shaft, SpeedCurve, TimeLaw, hollow_cylinder
+from dynamics.bodies import AngleLaw, GearBody, Inertia, SpeedCurve, TimeLaw, hollow_cylinder
 from dynamics.forces import (
     CoastFlank,
     GearMesh,
@@ -26,6 +27,7 @@ from service.convert.bearings import (
 )
 from service.convert.case import boundary_errors
 from service.convert.errors import named
+from service.convert.shafts import has_bent_shafts, shaft_of
 from service.convert.topology import Teeth, check_center_distances, teeth_of
 from service.convert.units import DEGREE, MM, NM, RPM, UM
 from service.schemas.scene import CoastFlankInput, MeshInput, SceneInput
@@ -34,7 +36,6 @@ from service.schemas.scene_bodies import (
     GearBodyInput,
     HousingInput,
     InertiaInput,
-    ShaftInput,
 )
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
 
@@ -61,7 +62,10 @@ def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Sc
     facts = {name: database.facts for name, database in databases.items()}
     with boundary_errors():
         tables = {name: database.force_table() for name, database in databases.items()}
-    return _moving(scene, facts, tables)
+    moving = _moving(scene, facts, tables)
+    bent = {name for name, database in databases.items() if has_bent_shafts(database)}
+    meshes = tuple(replace(mesh, bent_shafts=mesh.name in bent) for mesh in moving.meshes)
+    return replace(moving, meshes=meshes)
 
 
 def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
@@ -90,7 +94,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
     gears = tuple(_gear(i, gear, teeth[gear.name]) for i, gear in enumerate(scene.gears))
     with named(""):
         return Scene(
-            shafts=tuple(_shaft(i, shaft) for i, shaft in enumerate(scene.shafts)),
+            shafts=tuple(shaft_of(i, shaft) for i, shaft in enumerate(scene.shafts)),
             gears=gears,
             bushings=tuple(bushing_of(i, bushing) for i, bushing in enumerate(scene.bushings)),
             meshes=meshes,
@@ -109,17 +113,6 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             integration=_integration(scene),
             on_violation=scene.run.on_violation,
         )
-
-
-def _shaft(index: int, given: ShaftInput) -> Shaft:
-    """Return a shaft."""
-    x, y, z = given.origin_mm
-    with named(f"shafts[{index}]"):
-        if given.inertia is None:
-            inertia = hollow_cylinder((given.diameter_mm or 0.0) * MM, given.length_mm * MM)
-        else:
-            inertia = _inertia(given.inertia)
-        return Shaft(given.name, given.length_mm * MM, (x * MM, y * MM, z * MM), inertia, given.frame)
 
 
 def _inertia(given: InertiaInput) -> Inertia:
@@ -226,6 +219,7 @@ def _drive(index: int, given: DriveInput) -> ImposedRotation:
             law,
             given.stiffness_n_m_per_rad,
             given.damping_n_m_s_per_rad,
+            given.position_mm * MM,
         )
 
 
@@ -238,7 +232,8 @@ def _free_rotation(index: int, given: FreeRotationInput) -> FreeRotation:
 def _load(index: int, given: LoadTorqueInput) -> LoadTorque:
     """Return a load."""
     with named(f"loads[{index}]"):
-        return LoadTorque(given.name, given.shaft, TimeLaw(given.time_s, given.torque_n_m, given.course))
+        law = TimeLaw(given.time_s, given.torque_n_m, given.course)
+        return LoadTorque(given.name, given.shaft, law, given.position_mm * MM)
 
 
 def _speed_torque(index: int, given: SpeedTorqueInput) -> SpeedTorque:
@@ -251,7 +246,7 @@ def _speed_torque(index: int, given: SpeedTorqueInput) -> SpeedTorque:
             curve = SpeedCurve.quadratic(given.torque_n_m[0], speed[0])
         else:
             curve = SpeedCurve.constant(given.torque_n_m[0], speed[0])
-        return SpeedTorque(given.name, given.shaft, curve)
+        return SpeedTorque(given.name, given.shaft, curve, given.position_mm * MM)
 
 
 def _outputs(scene: SceneInput) -> Outputs:

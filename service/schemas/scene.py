@@ -15,9 +15,9 @@ from service.schemas.scene_bodies import (
     HousingInput,
     PlanetBearingInput,
     PlanetsInput,
-    ShaftInput,
 )
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
+from service.schemas.scene_shafts import ShaftInput
 from service.schemas.scene_types import Name
 
 _NAMED = (

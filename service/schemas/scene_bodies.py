@@ -23,49 +23,6 @@ class InertiaInput(BoundaryModel):
     )
 
 
-class ShaftInput(BoundaryModel):
-    """A rigid shaft parallel to the z axis."""
-
-    name: Name = Field(description="Name of the shaft", examples=["input"])
-    length_mm: float = Field(gt=0.0, le=1e6, description="Length in mm", examples=[200.0])
-    origin_mm: Annotated[tuple[Coordinate, ...], Strict(False)] = Field(
-        default=(0.0, 0.0, 0.0),
-        min_length=3,
-        max_length=3,
-        description="Left end of the axis, x, y, z in mm",
-        examples=[[0.0, 0.0, 0.0]],
-    )
-    diameter_mm: float | None = Field(
-        default=None,
-        gt=0.0,
-        le=1e5,
-        description="Diameter in mm of a solid steel shaft, for its inertia",
-        examples=[40.0],
-    )
-    inertia: InertiaInput | None = Field(
-        default=None,
-        description="Inertia of the bare shaft, instead of a diameter",
-        examples=[{"mass_kg": 2.0}],
-    )
-    frame: Name | None = Field(
-        default=None,
-        description="The carrier of the planetary set it belongs to; a carrier names itself",
-        examples=["carrier"],
-    )
-
-    @model_validator(mode="after")
-    def _one_inertia(self) -> Self:
-        """Exactly one source of inertia."""
-        if (self.diameter_mm is None) == (self.inertia is None):
-            refuse(
-                "diameter_mm",
-                self.diameter_mm,
-                "given, or inertia instead, but not both",
-                "For example 40.0.",
-            )
-        return self
-
-
 class GearBodyInput(BoundaryModel):
     """A gear on a shaft; its teeth, base radius, helix and face width come from the mesh it takes part in."""
 

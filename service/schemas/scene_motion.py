@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Literal, Self
+from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
-from service.schemas.scene_types import Course, Name, Numbers, Times
+from service.schemas.scene_types import Coordinate, Course, Name, Numbers, Times
+
+
+def place_of(what: str) -> Any:
+    """Return the field of a place along a flexible shaft."""
+    text = f"Where along a flexible shaft {what}, in mm from its left end"
+    return Field(default=0.0, description=text, examples=[0.0])
 
 
 class DriveInput(BoundaryModel):
@@ -16,6 +22,7 @@ class DriveInput(BoundaryModel):
 
     name: Name = Field(description="Name of the drive", examples=["motor"])
     shaft: Name = Field(description="The driven shaft", examples=["input"])
+    position_mm: Coordinate = place_of("the motion is imposed")
     time_s: Times = Field(
         default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0, 5.0]]
     )
@@ -75,6 +82,7 @@ class LoadTorqueInput(BoundaryModel):
 
     name: Name = Field(description="Name of the load", examples=["brake"])
     shaft: Name = Field(description="The loaded shaft", examples=["output"])
+    position_mm: Coordinate = place_of("it acts")
     time_s: Times = Field(
         default=(0.0,), min_length=1, max_length=100_000, description="Times in s", examples=[[0.0]]
     )
@@ -97,6 +105,7 @@ class SpeedTorqueInput(BoundaryModel):
 
     name: Name = Field(description="Name of the torque", examples=["fan"])
     shaft: Name = Field(description="The shaft it acts on", examples=["output"])
+    position_mm: Coordinate = place_of("it acts")
     kind: Literal["table", "quadratic", "constant"] = Field(
         description="Through a table; as the square of the speed; constant against either sense of rotation",
         examples=["table"],

@@ -9,6 +9,8 @@ from small_table import small_table
 SCENE = """
 [run]
 duration_s = {duration}
+[effects]
+flexible_shafts = "off"
 [[shafts]]
 name = "input"
 length_mm = 100.0

@@ -23,8 +23,6 @@ class FlexibleShafts:
         shaft = rotor.bending
         if shaft.refusal:
             return Verdict(False, False, shaft.refusal, 0.0)
-        if shaft.elastic is None or shaft.elastic.mass.size == 0:
-            return Verdict(False, False, "nothing acts on two places of the shaft", 0.0)
         reason = (
             f"the nominal force bends and twists the shaft by {1e6 * shaft.moved:.3g} um along the line of "
             f"action, {100.0 * shaft.share:.3g} % of what the mesh yields, and misaligns the gear by "

@@ -15,6 +15,7 @@ from dynamics.simulate import simulate
 from dynamics.types import RunStatus
 from service.cli.commands import app
 from service.cli.interrupt import until_interrupted
+from service.cli.run_effects import effect_lines
 from service.cli.simulate import _run
 
 SCENE = gear_pair_scene(duration=0.02)
@@ -43,6 +44,18 @@ def test_a_second_interrupt_is_not_held_back():
         assert asked()
         os.kill(os.getpid(), signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_a_run_says_which_effects_are_on_and_what_the_others_are_worth():
+    entries = [
+        {"effect": "flexible_shafts", "part": "input", "on": False, "worth": 2e-6, "reason": "switched off"},
+        {"effect": "tilt", "part": "input", "on": False, "worth": 0.0, "reason": "centred"},
+        {"effect": "lateral", "part": "input", "on": True, "worth": 1.33e-5, "reason": "pushed aside"},
+    ]
+    assert effect_lines({"entries": entries}) == [
+        "effect flexible_shafts, input: off, worth 2 um: switched off",
+        "effect lateral, input: on, worth 13.3 um: pushed aside",
+    ]
 
 
 def test_resume_without_an_interrupted_run_is_refused(tmp_path):

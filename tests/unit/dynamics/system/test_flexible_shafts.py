@@ -357,6 +357,21 @@ def test_it_is_called_for_by_what_the_shaft_yields_at_the_mesh():
     assert not entry(thick).on
 
 
+def test_its_worth_is_that_of_bending_where_torques_act_at_the_gears():
+    """F (L^3/(48 E I) + L/(4 kappa A G)) on both shafts, and the wind-up of the wheel's where they do not."""
+    scene = flexible_pair()
+    at_gears = replace(
+        scene,
+        drives=(replace(scene.drives[0], position=0.1),),
+        loads=(replace(scene.loads[0], position=0.1),),
+    )
+    force = assemble(scene).flanks.nominal_force[0]
+    flexibility = 0.2**3 / (48.0 * bending_stiffness(STEEL)) + 0.05 / shear_stiffness(STEEL)
+    for shaft in ("input", "output"):
+        assert entry(at_gears, shaft).worth == pytest.approx(force * flexibility, rel=1e-9, abs=0.0)
+        assert entry(scene, shaft).worth > 1.01 * force * flexibility
+
+
 def test_off_nothing_changes():
     """Bit by bit the scene of rigid shafts with the inertia of the sections."""
     rigid = gear_pair_scene()
@@ -368,12 +383,18 @@ def test_off_nothing_changes():
     np.testing.assert_array_equal(ours.bearing_stiffness, theirs.bearing_stiffness)
 
 
-@pytest.mark.parametrize("case", ["no sections", "planetary set", "off the shaft", "bent table"])
+@pytest.mark.parametrize("case", ["no sections", "planetary set", "off the shaft", "bent table", "torn off"])
 def test_what_cannot_bend_stays_rigid_and_says_why(case):
     effects = {"flexible_shafts": "on"}
     scene, shaft = flexible_pair(), "input"
     if case == "no sections":
         scene, words = gear_pair_scene(effects=effects), "no sections"
+    elif case == "torn off":  # no bearings, no drive: one gear is all that acts
+        scene, words = (
+            replace(scene, bushings=(), outputs=Outputs(sample_rate=1e3)),
+            "nothing bends or twists",
+        )
+        scene = replace(scene, drives=(), free_rotations=(FreeRotation("train", "input", 94.0),))
     elif case == "off the shaft":
         scene = replace(scene, drives=(replace(scene.drives[0], position=0.3),))
         words = '"drive" at 0.3 m is off the shaft'

@@ -1,0 +1,102 @@
+"""Shafts of a scene file: one diameter, sections, places of torques, what does not fit."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from small_table import small_table
+
+from dynamics.bodies import Inertia
+from dynamics.system import Scene
+from dynamics.system.assemble import assemble
+from service.convert.scene import dynamic_scene
+from service.problems import BadInput
+from service.schemas import validated
+from service.schemas.scene import SceneInput
+
+ROOT = Path(__file__).parents[3]
+EXAMPLE = tomllib.loads((ROOT / "examples" / "flexible_shafts_scene.toml").read_text())
+PAPER = tomllib.loads((ROOT / "examples" / "palermo_scene.toml").read_text())
+Change = Callable[[dict[str, Any]], object]
+
+
+def scene(
+    change: Change = lambda _table: None, example: dict[str, Any] = EXAMPLE, table: Any = None
+) -> Scene:
+    given = copy.deepcopy(example)
+    change(given)
+    return dynamic_scene(validated(SceneInput, given), {"mesh": table or small_table()})
+
+
+def on(found: Scene) -> dict[str, bool]:
+    entries = assemble(found).ledger.entries
+    return {entry.part: entry.on for entry in entries if entry.effect == "flexible_shafts"}
+
+
+def test_sections_are_in_si_and_torques_act_at_their_places() -> None:
+    found = scene()
+    sections = found.shafts[0].sections
+    assert [s.length for s in sections] == pytest.approx([0.06, 0.065, 0.055])
+    assert [s.outer_diameter for s in sections] == pytest.approx([0.032, 0.045, 0.04])
+    assert [s.bore_diameter for s in sections] == pytest.approx([0.0, 0.012, 0.0])
+    assert {(s.youngs_modulus, s.poisson_ratio, s.density) for s in sections} == {(206e9, 0.3, 7850.0)}
+    assert (found.drives[0].position, found.loads[0].position) == pytest.approx((0.0, 0.26))
+    assert on(found) == {"input": True, "output": True}
+    fast = scene(lambda t: t["shafts"][0]["sections"][1].update(youngs_modulus_gpa=110.0, poissons_ratio=0.2))
+    assert fast.shafts[0].sections[1].youngs_modulus == pytest.approx(110e9)
+
+
+def test_a_diameter_is_one_section_of_steel() -> None:
+    paper = scene(lambda t: t.pop("effects"), PAPER)
+    (section,) = paper.shafts[0].sections
+    assert (section.length, section.outer_diameter) == pytest.approx((0.2, 0.04))
+    assert on(paper) == {"input": True, "output": True}
+    assert on(scene(example=PAPER)) == {"input": False, "output": False}
+
+
+def test_an_inertia_alone_is_a_rigid_shaft() -> None:
+    def change(table: dict[str, Any]) -> None:
+        del table["shafts"][0]["sections"]
+        table["shafts"][0]["inertia"] = {"mass_kg": 1.0, "polar_kg_m2": 2.0, "transverse_kg_m2": 3.0}
+
+    found = scene(change)
+    assert found.shafts[0].inertia == Inertia(1.0, 2.0, 3.0)
+    assert on(found) == {"input": False, "output": True}
+
+
+def test_a_table_that_has_the_bending_of_its_shafts_leaves_them_rigid() -> None:
+    table = small_table()
+    ledger = [{"name": "shaft_deflection", "on": True}]
+    fields = {name: getattr(table, name) for name in table.__dataclass_fields__}
+    fields["metadata"] = replace(table.metadata, effect_ledger=ledger)
+    found = scene(table=type(table)(**fields))
+    assert found.meshes[0].bent_shafts
+    assert on(found) == {"input": False, "output": False}
+    assert not scene().meshes[0].bent_shafts
+
+
+@pytest.mark.parametrize(
+    ("change", "field"),
+    [
+        (lambda t: t["shafts"][0]["sections"].pop(), "shafts[0].sections"),
+        (lambda t: t["shafts"][0].update(diameter_mm=40.0), "shafts[0].diameter_mm"),
+        (lambda t: t["shafts"][0].update(sections=[]), "shafts[0].sections"),
+        (
+            lambda t: t["shafts"][0]["sections"][0].update(bore_diameter_mm=32.0),
+            "shafts[0].sections[0].bore_diameter_mm",
+        ),
+        (lambda t: t["shafts"][0].update(damping_ratio=-1.0), "shafts[0].damping_ratio"),
+    ],
+)
+def test_shafts_that_cannot_be_are_one_fault_by_name(change: Change, field: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        scene(change)
+    (fault,) = caught.value.faults
+    assert fault.field == field
+    assert fault.bound
