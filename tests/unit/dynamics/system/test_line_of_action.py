@@ -13,6 +13,7 @@ from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.system.assemble import assemble
 from dynamics.system.line_of_action import line_of_action
+from dynamics.system.mesh_axes import common_face_width, misalignment_gradient
 
 
 def helical(scene, angle):
@@ -93,3 +94,28 @@ def test_gears_that_cannot_mesh_are_refused():
     for case in cases:
         with pytest.raises(InputError, match=r"meshes\[0\]\.driven"):
             assemble(case)
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("helix", [0.3, -0.2])
+def test_a_tilt_closes_the_gap_by_height_and_by_place_along_the_line_of_action(sense, helix):
+    """r (z + xi' xi): what tables know of it, r z, is the misalignment; along a contact line r z/cos^2."""
+    scene = moved(helical(gear_pair_scene(), helix), 0.08 * math.cos(0.7), 0.08 * math.sin(0.7))
+    drive = replace(scene.drives[0], speed=TimeLaw.constant(sense * 90.0))
+    system = assemble(replace(scene, drives=(drive,)))
+    line, width = system.lines[0], common_face_width(scene, 0)
+    row = misalignment_gradient(scene, system.rotors, 0, line, sense)[:6]
+    tilt = row[3:] / np.linalg.norm(row[3:])  # of the driver, towards a larger gap at larger face positions
+    transverse = line.force * np.array([1.0, 1.0, 0.0])
+    slope = -line.force[2]  # d xi / d z along a line of contact, which is at right angles to the force
+    assert abs(slope) == pytest.approx(math.tan(abs(helix)))
+
+    def approach(xi, z):
+        return float(np.cross(tilt, xi * transverse + z * np.array([0.0, 0.0, 1.0])) @ line.force)
+
+    face = -sense  # of the table's face position along z
+    for xi, z in ((0.0, 2e-3), (3e-3, 0.0), (-4e-3, 1e-3)):
+        gap = np.linalg.norm(row[3:]) * face * (z + slope * xi) / width
+        assert -approach(xi, z) == pytest.approx(gap, rel=1e-12)
+    along = approach(2e-3 * slope, 2e-3)
+    assert along == pytest.approx(approach(0.0, 2e-3) / math.cos(helix) ** 2, rel=1e-12)
