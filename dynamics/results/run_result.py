@@ -48,7 +48,7 @@ class RunResult:
         m; where along the face the mesh force acted, from the middle of the common face towards +z, 0 out of
         contact; m = 0 here if the moving application point is off in all meshes.
     speed : (s, T) array
-        rad/s about +z.
+        rad/s about +z; of a flexible shaft the mean over its inertia, or where a rigid drive imposes it.
     drive_torque : (d, T) array
         N m about +z, on each drive's shaft.
     coupling_torque : (c, T) array

@@ -19,6 +19,7 @@ from dynamics.system.mesh_axes import misalignment_gradient
 from dynamics.system.shaft_grips import elastic_of, why_rigid
 from dynamics.types import FloatArray
 
+ROUNDING = 1e-9
 NOTHING_BENDS = (
     "forces act at one place of the shaft alone, or it is not held there: nothing bends or twists it"
 )
@@ -71,7 +72,7 @@ def _worth(
         turn = misalignment_gradient(scene, rotors, mesh, mechanism.lines[mesh], sense)[own]
         away, tilted = max(away, here), max(tilted, abs(float(turn @ moved)))
         share = max(share, here / pressed if pressed > 0.0 else 0.0)
-    return BendingShaft("", elastic, away, share, tilted)
+    return BendingShaft("", elastic, away, share, tilted if tilted > ROUNDING * away else 0.0)
 
 
 def _meshes(mechanism: Mechanism, index: int) -> list[int]:
