@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 import struct
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -66,6 +70,24 @@ def test_motions_that_are_not_found_are_printed_and_fail(
     (point,) = json.loads(result.stdout)["up"]
     assert point["status"] == "iteration limit" and point["residual_um"] > 0.0
     assert "meshes" not in point
+
+
+def test_ctrl_c_ends_a_study_without_a_file(
+    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    @contextmanager
+    def interrupting() -> Iterator[Callable[[str, float], None]]:
+        def report(stage: str, _fraction: float) -> None:
+            if stage == "down":
+                os.kill(os.getpid(), signal.SIGINT)
+
+        yield report
+
+    monkeypatch.setattr("service.cli.dynamic_studies.progress_bar", interrupting)
+    result = loa(scene, "--speed-rpm", "3000,3200", "--settling-periods", 2, "-o", tmp_path / "s.nc")
+    assert (result.exit_code, result.stdout) == (130, "")
+    assert "interrupted" in result.stderr
+    assert not (tmp_path / "s.nc").exists()
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,105 @@
+"""A long simulation as a job: progress, memory that does not grow, and an end when it is cancelled."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from running_service import lives, until
+from scene_files import scene_file
+
+from service.app import create_app
+from service.client import LineOfActionClient
+from service.problems import JobDismissed
+from service.schemas import read_model
+from service.schemas.scene import SceneInput
+from service.settings import Settings
+from service.store import stored_results
+
+KEY = "cd" * 32
+DURATION, RATE = 900.0, 20e3
+SAMPLE_BYTES = 8 * 2 * 5  # displacements and rates of five freedoms
+PATIENCE_S = 240.0
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    return tmp_path / "data"
+
+
+@pytest.fixture
+def client(tmp_path: Path, data: Path) -> Iterator[LineOfActionClient]:
+    app = create_app(Settings(data_directory=data))
+    scene_file(tmp_path)
+    with (
+        TestClient(app) as service,
+        LineOfActionClient(
+            "http://testserver", cache_dir=tmp_path / "results", transport=service._transport
+        ) as found,
+    ):
+        stored_results(data).put(KEY, "database", tmp_path / "ste.nc")
+        yield found
+
+
+def workers() -> list[int]:
+    """Children of this process that run a job."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if not entry.name.isdigit():
+            continue
+        try:
+            parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+            command = (entry / "cmdline").read_bytes()
+        except (FileNotFoundError, ProcessLookupError, PermissionError):
+            continue
+        if parent == os.getpid() and b"service.jobs.child" in command:
+            found.append(int(entry.name))
+    return found
+
+
+def resident_bytes(pid: int) -> int:
+    """Memory of a process that is its own: pages of files do not count."""
+    lines = dict(
+        line.split(":", 1) for line in Path(f"/proc/{pid}/status").read_text().splitlines() if ":" in line
+    )
+    return 1024 * int(lines["RssAnon"].split()[0])
+
+
+def written(data: Path) -> float:
+    """Seconds of motion on disk."""
+    files = list((data / "work").glob("*/run.nc.partial/run.states"))
+    return sum(file.stat().st_size for file in files) / (SAMPLE_BYTES + 8) / RATE
+
+
+@pytest.mark.slow
+def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(
+    client: LineOfActionClient, tmp_path: Path, data: Path
+) -> None:
+    given = read_model(SceneInput, scene_file(tmp_path, duration=DURATION, rate=RATE))
+    (mesh,) = given.meshes
+    mesh = mesh.model_copy(update={"database_file": None, "database_hash": KEY})
+    job = client.submit_scene(given.model_copy(update={"meshes": (mesh,)}))
+    until(lambda: written(data) > 2.0, PATIENCE_S)
+    (pid,) = workers()
+    before, at = resident_bytes(pid), written(data)
+    until(lambda: written(data) > at + 40.0, PATIENCE_S)
+    held = (written(data) - at) * RATE * SAMPLE_BYTES
+    assert held > 40e6  # what it would have grown by, had the states stayed in memory
+    assert resident_bytes(pid) - before < 0.2 * held
+    until(lambda: client.status(job.id).stage == "integration", PATIENCE_S)
+    state = client.status(job.id)
+    assert (state.status, state.stage) == ("running", "integration")
+    assert 50 <= state.progress < 100
+
+    assert client.dismiss(job.id).status == "dismissed"
+    until(lambda: not lives(pid))
+    until(lambda: not list((data / "work").iterdir()))
+    assert workers() == []
+    assert client.status(job.id).status == "dismissed"
+    with pytest.raises(JobDismissed):
+        client.result(job.id)
+    again = client.submit_scene(given.model_copy(update={"meshes": (mesh,)}))
+    assert again.id != job.id and client.dismiss(again.id).status == "dismissed"
