@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from dynamics.checks import finite, integer, not_negative, positive, within
 from dynamics.errors import InputError
+from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.mesh_table import MeshTable, check_table
 from dynamics.system.assemble import assemble
 from dynamics.system.flanks import DAMPING_REACH
@@ -18,7 +19,7 @@ BASE_PITCH_AGREEMENT = 1e-9
 
 @dataclass(frozen=True)
 class MeshElement:
-    """The force between the driving flanks of two gears.
+    """The force between the flanks of two gears.
 
     Angles count in each gear's own sense: the driver's in the sense in which it drives, the driven gear's in
     the sense in which it is driven.
@@ -39,6 +40,8 @@ class MeshElement:
         Elastic force in N from which the damping acts in full. None: 5 % of the table's last level.
     position_offset : float
         Position in base pitches where the driver's angle is zero.
+    coast : CoastFlank or None
+        The backs of the teeth, alike to their fronts, damped as these; None: they never touch.
     """
 
     table: MeshTable
@@ -48,6 +51,7 @@ class MeshElement:
     damping: float = 0.0
     damping_reach: float | None = None
     position_offset: float = 0.0
+    coast: CoastFlank | None = None
 
     def __post_init__(self) -> None:
         check_table("table", self.table)
@@ -62,6 +66,9 @@ class MeshElement:
         not_negative("damping", self.damping)
         positive("damping_reach", self.reach)
         finite("position_offset", self.position_offset)
+        if self.coast is not None and self.coast.table is not None:
+            advice = "Leave the coast flank out, or run the scene here."
+            raise InputError("coast.table", "a table of its own", "None: backs of teeth like fronts", advice)
 
     @property
     def reach(self) -> float:
@@ -80,7 +87,7 @@ def mesh_element(scene: Scene, mesh: str) -> MeshElement:
     """Return a mesh of a scene with the damping and the table that a run of the scene uses.
 
     A table with axes keeps them with the variable-torque technique. The constant-torque technique has one
-    place on them. The coast flank is left out.
+    place on them. The coast flank comes with it where the scene's effect `backlash` is on.
 
     Raises
     ------
@@ -101,4 +108,5 @@ def mesh_element(scene: Scene, mesh: str) -> MeshElement:
         float(flanks.law.damping[index]),
         float(flanks.law.reach[index]),
         given.position_offset,
+        given.coast if index in flanks.coast else None,
     )

@@ -158,6 +158,10 @@ def export(
     damping_n_s_per_m: Annotated[
         float, typer.Option(help="Mesh damping an FMU starts with in N s/m along the line of action.")
     ] = 0.0,
+    backlash_um: Annotated[
+        float | None,
+        typer.Option(help="Of an FMU with coast flanks: along the transverse line of action, in um."),
+    ] = None,
     function: Annotated[
         str, typer.Option(help="Of a run: time, spectrum (over frequency) or orders (over mesh orders).")
     ] = "time",
@@ -179,7 +183,7 @@ def export(
     if is_for_runs(output):
         run_export_run(case, output, function, (start, end), as_json=json)
     elif output.suffix == ".fmu":
-        run_export_fmu(case, output, point, damping_n_s_per_m, as_json=json)
+        run_export_fmu(case, output, point, damping_n_s_per_m, backlash_um, as_json=json)
     else:
         run_export(case, output, point, at, beside, as_json=json)
 

@@ -8,10 +8,12 @@ from typing import Any
 
 from dynamics.engines import MeshElement
 from dynamics.engines.fmu import export_fmu
+from dynamics.forces import CoastFlank
 from dynamics.system.flanks import DAMPING_REACH
 from fe_contact.ste import SteDatabase
 from service.cli.output import check_writable, console, print_json
 from service.cli.ste import open_ste
+from service.convert.units import UM
 from service.problems import BadInput
 
 _INPUTS_INSTEAD = {
@@ -21,7 +23,13 @@ _INPUTS_INSTEAD = {
 
 
 def run_export_fmu(
-    file: Path, output: Path, point: dict[str, float | None], damping: float, *, as_json: bool
+    file: Path,
+    output: Path,
+    point: dict[str, float | None],
+    damping: float,
+    backlash_um: float | None,
+    *,
+    as_json: bool,
 ) -> None:
     """Read, export, print; `point` holds what `loa export` takes."""
     for name, instead in _INPUTS_INSTEAD.items():
@@ -31,8 +39,10 @@ def run_export_fmu(
     check_writable(output)
     if not (math.isfinite(damping) and damping >= 0.0):
         raise BadInput.of("--damping-n-s-per-m", damping, "0 or above")
+    if backlash_um is not None and not (math.isfinite(backlash_um) and backlash_um > 0.0):
+        raise BadInput.of("--backlash-um", backlash_um, "above 0", "Leave it out for driving flanks alone.")
     database = open_ste(file)
-    element = _element(database, damping, _nominal_force(database, point))
+    element = _element(database, damping, _nominal_force(database, point), backlash_um)
     export_fmu(element, output)
     facts: dict[str, Any] = {
         "file": str(output),
@@ -43,6 +53,7 @@ def run_export_fmu(
         "largest_force_n": float(element.table.level[-1]),
         "damping_n_s_per_m": damping,
         "damping_reach_n": element.reach,
+        **({} if backlash_um is None else {"backlash_um": backlash_um}),
     }
     if as_json:
         print_json(facts)
@@ -64,9 +75,10 @@ def _nominal_force(database: SteDatabase, point: dict[str, float | None]) -> flo
     return normal * math.cos(database.facts.base_helix_angle)
 
 
-def _element(database: SteDatabase, damping: float, nominal: float) -> MeshElement:
-    """Return the mesh of the database, gear 1 driving."""
+def _element(database: SteDatabase, damping: float, nominal: float, backlash_um: float | None) -> MeshElement:
+    """Return the mesh of the database, gear 1 driving; both gears' teeth are equally thick."""
     facts = database.facts
+    backlash = None if backlash_um is None else backlash_um * UM
     return MeshElement(
         database.force_table(),
         facts.teeth,
@@ -74,6 +86,7 @@ def _element(database: SteDatabase, damping: float, nominal: float) -> MeshEleme
         facts.helix_hand * facts.base_helix_angle,
         damping,
         DAMPING_REACH * nominal,
+        coast=None if backlash is None else CoastFlank(backlash, 0.5 * (1.0 - backlash / facts.base_pitch)),
     )
 
 

@@ -63,6 +63,8 @@ def _inputs(element: MeshElement) -> list[Variable]:
         _input("driven_speed", "rad/s", "Rate of driven_angle"),
         _input("displacement", "m", "Approach of the gears along the line of action by shafts that move"),
         _input("displacement_rate", "m/s", "Rate of displacement"),
+        _input("coast_displacement", "m", "The same approach along the coast flank's line of action"),
+        _input("coast_displacement_rate", "m/s", "Rate of coast_displacement"),
         _input("misalignment", "m", "Place on the table's axis", _nearest_zero(element.table.misalignment)),
         _input(
             "center_distance_change",
@@ -81,7 +83,9 @@ def _nearest_zero(knots: Sequence[float] | np.ndarray) -> float:
 
 
 def _parameters(element: MeshElement) -> list[Variable]:
-    """Return what is set before a run, the first three also during it."""
+    """Return what is set before a run, numbers also during it."""
+    coast = element.coast
+    backlash, thickness = (0.0, 0.5) if coast is None else (coast.backlash, coast.thickness)
     return [
         Variable("damping", REAL, "parameter", "tunable", "In full contact", "N.s/m", float(element.damping)),
         Variable(
@@ -101,6 +105,33 @@ def _parameters(element: MeshElement) -> list[Variable]:
             "Position at zero angle in base pitches",
             "",
             float(element.position_offset),
+        ),
+        Variable(
+            "backlash",
+            REAL,
+            "parameter",
+            "tunable",
+            "Along the transverse line of action, at zero displacements",
+            "m",
+            float(backlash),
+        ),
+        Variable(
+            "tooth_thickness",
+            REAL,
+            "parameter",
+            "tunable",
+            "Of the driver over the pitch, both on the operating pitch circle",
+            "",
+            float(thickness),
+        ),
+        Variable(
+            "coast_flank",
+            BOOLEAN,
+            "parameter",
+            "fixed",
+            "True: the backs of the teeth touch where the backlash is used up",
+            "",
+            coast is not None,
         ),
         Variable(
             "dte_from_angles",
@@ -125,9 +156,13 @@ _REAL_OUTPUTS = (
     _output("position", "", "Base pitches by the driver's angle, from 0 to the period of the table"),
     _output("stiffness", "N/m", "Derivative of mesh_force in the dte"),
     _output("viscosity", "N.s/m", "Derivative of mesh_force in dte_rate"),
+    _output("coast_force", "N", "Transverse force of the coast flanks along theirs, damping included"),
+    _output("coast_approach", "m", "Approach of the coast flanks; positive: the backlash is used up"),
+    _output("coast_stiffness", "N/m", "Derivative of coast_force in coast_approach"),
+    _output("coast_viscosity", "N.s/m", "Derivative of coast_force in its rate"),
 )
 _INTEGER_OUTPUTS = (
-    Variable("contact_state", INTEGER, "output", "discrete", "0 apart, 1 in contact"),
+    Variable("contact_state", INTEGER, "output", "discrete", "0 apart, 1 driving, 2 coast flanks, 3 both"),
     Variable(
         "validity",
         INTEGER,

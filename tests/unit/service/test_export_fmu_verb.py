@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import zipfile
 from pathlib import Path
 
@@ -38,12 +39,22 @@ def test_it_holds_the_whole_table_and_says_so(database: Path, tmp_path: Path) ->
     assert "1 misalignments x 1 centre distances" in again.stdout
 
 
+def test_backlash_gives_it_a_coast_flank(database: Path, tmp_path: Path) -> None:
+    assert loa(database, "-o", tmp_path / "m.fmu", "--backlash-um", 80).exit_code == 0
+    with zipfile.ZipFile(tmp_path / "m.fmu") as archive:
+        text = archive.read("modelDescription.xml").decode()
+    for name, start in (("backlash", f'"{80 * 1e-6!r}"'), ("coast_flank", '"true"')):
+        (line,) = re.findall(rf'name="{name}".*?</ScalarVariable>', text, re.DOTALL)
+        assert f"start={start}" in line
+
+
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
         (["--misalignment-um", 10], "left out for an FMU"),
         (["--damping-n-s-per-m", -1], "--damping-n-s-per-m = -1.0: must be 0 or above"),
         (["--torque", 0], "--torque = 0.0: must be above 0"),
+        (["--backlash-um", 0], "--backlash-um = 0.0: must be above 0"),
         (["--torque", 1, "--force", 1], "not both"),
     ],
 )

@@ -170,6 +170,7 @@ static fmi2Status refused(const unit *u, fmi2ValueReference reference, double va
     if (!isfinite(value)) return fail(u, "%s = %g: must be a finite number", REAL_NAMES[reference], value);
     if (reference == DAMPING && value < 0.0) return fail(u, "damping = %g N s/m: must be 0 or above", value);
     if (reference == DAMPING_REACH && value <= 0.0) return fail(u, "damping_reach = %g N: must be above 0", value);
+    if (reference == BACKLASH && value < 0.0) return fail(u, "backlash = %g m: must be 0 or above", value);
     return fmi2OK;
 }
 

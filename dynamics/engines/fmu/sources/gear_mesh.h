@@ -12,7 +12,7 @@ typedef struct {
     int32_t boolean[BOOLEAN_COUNT];
 } mesh_values;
 
-enum { APART = 0, IN_CONTACT = 1 };
+enum { APART = 0, IN_CONTACT = 1, COAST_IN_CONTACT = 2 };
 
 void start_values(mesh_values *values);
 

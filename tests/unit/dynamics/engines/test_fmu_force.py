@@ -12,6 +12,8 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, repeated, square_wave_ta
 from dynamics.bodies import TimeLaw
 from dynamics.engines import MeshElement, mesh_element
 from dynamics.engines.fmu import export_fmu
+from dynamics.errors import InputError
+from dynamics.forces.coast_flank import CoastFlank, mirrored
 from dynamics.forces.flank_force import FlankLaws, flank_force
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.technique import table_at
@@ -172,3 +174,118 @@ def test_the_torques_are_one_force_on_two_base_circles(element, rng, tmp_path):
             assert t1 * w1 + t2 * w2 == pytest.approx(-force * rate, abs=1e-12 * max(abs(t1 * w1), 1.0))
             loaded += force > 0.0
     assert 50 < loaded < 100
+
+
+def test_the_coast_flank_reads_the_table_at_the_other_misalignment(element, tmp_path):
+    """Seen turned about the line of centres, the gap grows towards the other end."""
+    table = table_with_axes()
+    element = replace(element, table=table, coast=CoastFlank(20e-6, 0.47))
+    with Instance(export_fmu(element, tmp_path / "m.fmu")) as unit:
+        unit.start(dte_from_angles=False, misalignment=-8e-6, center_distance_change=1e-4, displacement=-1e-3)
+        for approach in (1e-6, 5e-6, 12e-6):
+            unit.set(coast_displacement=approach + 20e-6)
+            back = mirrored(table_at(table, 8e-6, 1e-4), 0.47)
+            force = library(element, back, 0.3, approach, 0.0)[0]
+            assert unit.get("coast_force")[0] == pytest.approx(force, rel=1e-7) and force > 1.0
+        assert unit.get("validity") == [0]
+        unit.set(misalignment=20e-6)  # -20 um is beyond the table's axis
+        assert unit.get("validity") == [2]
+        with pytest.raises(Exception, match="fmi2SetReal"):
+            unit.set(backlash=-1e-6)
+
+
+@pytest.mark.parametrize("table", [square_wave_table(), hunting_table(7)], ids=["one", "hunting"])
+def test_the_coast_flank_is_the_librarys(element, rng, tmp_path, table):
+    """The mirror rule, its own approach with the backlash, the same damping; torques are those of both."""
+    coast = CoastFlank(20e-6, 0.47)
+    element = replace(element, table=table, coast=coast)
+    back, top = mirrored(table_at(table, 0.0, 0.0), coast.thickness), 1.2 * table.deflection.max()
+    seen = set()
+    with Instance(export_fmu(element, tmp_path / "m.fmu")) as unit:
+        unit.start()
+        for _ in range(400):
+            angle, lag = rng.uniform(-9.0, 9.0), rng.uniform(-1.0, 1.0) * (top + 20e-6)
+            speed, along, across = (
+                rng.uniform(-10.0, 10.0),
+                rng.uniform(-5e-6, 5e-6),
+                rng.uniform(-5e-6, 5e-6),
+            )
+            driven = (20 / 30) * angle - lag / element.base_radius[1]
+            unit.set(
+                driver_angle=angle,
+                driven_angle=driven,
+                driver_speed=speed,
+                driven_speed=0.0,
+                displacement=along,
+                coast_displacement=across,
+                coast_displacement_rate=0.01,
+            )
+            x, rotated = 20 * angle / (2.0 * np.pi) + 0.3, element.base_radius[0] * speed
+            error = element.base_radius[0] * angle - element.base_radius[1] * driven
+            approach = across - error - coast.backlash
+            force, elastic, tangent, viscous, _ = library(element, back, x, approach, 0.01 - rotated)
+            found = unit.get("coast_force", "coast_approach", "coast_stiffness", "coast_viscosity")
+            assert found == pytest.approx([force, approach, tangent, viscous], rel=1e-7, abs=1e-9)
+            drive, touched, *_ = library(element, table, x, error + along, rotated)
+            assert unit.get("mesh_force")[0] == pytest.approx(drive, rel=1e-7, abs=1e-7)
+            torques = unit.get("driver_torque", "driven_torque", "driver_axial_force")
+            r1, r2 = element.base_radius
+            both = (drive - force) * np.array([-r1, r2, np.tan(element.base_helix_angle)])
+            assert torques == pytest.approx(both, rel=1e-7, abs=1e-7)
+            state = int(unit.get("contact_state")[0])
+            assert state == int(touched > 0.0) + 2 * int(elastic > 0.0)
+            seen.add(state)
+    assert seen == {0, 1, 2}
+
+
+def test_rattle_comes_back_from_its_recorded_motion(tmp_path):
+    """A lightly loaded pair thrown between its flanks; the coast flank's line mirrors the other one."""
+    speed = TimeLaw((0.0, 0.01, 0.02), (60.0, 60.0, 20.0))
+    scene = gear_pair_scene(
+        speed=speed,
+        duration=0.03,
+        torque=1.0,
+        outputs=Outputs(displacements=True),
+        effects={"backlash": "on"},
+    )
+    scene = with_mesh(scene, coast=CoastFlank(5e-6, 0.48), damping_ratio=0.05)
+    run = simulate(scene)
+    element = mesh_element(scene, scene.meshes[0].name)
+    assert element.coast == CoastFlank(5e-6, 0.48)
+    n = np.array(run.case["meshes"][0]["line_of_action"])[:2]
+    e = np.array([1.0, 0.0])  # from the driver's centre to the driven one's
+    lines = {"displacement": n, "coast_displacement": 2.0 * (n @ e) * e - n}
+    place = {name: index for index, name in enumerate(run.freedom)}
+    driver, driven = (shaft.name for shaft in scene.shafts)
+
+    def along(line, series, k):
+        return sum(
+            sign * (line @ [series[place[f"{shaft}.{axis}"], k] for axis in "xy"])
+            for sign, shaft in ((1.0, driver), (-1.0, driven))
+        )
+
+    worst = 0.0
+    with Instance(export_fmu(element, tmp_path / "m.fmu")) as unit:
+        unit.start()
+        for k in range(run.time.size):
+            lag, lagging = (s[place[f"{driven}.rotation"], k] for s in (run.displacement, run.velocity))
+            angle = 2.0 * np.pi * run.position[0, k] / 20
+            unit.set(
+                driver_angle=angle,
+                driven_angle=angle - lag,
+                driver_speed=0.0,
+                driven_speed=-lagging,
+                **{name: along(line, run.displacement, k) for name, line in lines.items()},
+                **{f"{name}_rate": along(line, run.velocity, k) for name, line in lines.items()},
+            )
+            found = np.array(unit.get("mesh_force", "coast_force"))
+            exact = np.array([run.mesh_force[0, k], run.coast_force[0, k]])
+            worst = max(worst, float(np.max(np.abs(found - exact))))
+    assert run.coast_force.max() > 100.0 and run.mesh_force.max() > 100.0
+    assert worst < 1e-6 * run.coast_force.max()
+
+
+def test_a_coast_flank_with_a_table_of_its_own_is_refused(element):
+    with pytest.raises(InputError) as caught:
+        replace(element, coast=CoastFlank(5e-6, 0.5, square_wave_table()))
+    assert caught.value.field == "coast.table"
