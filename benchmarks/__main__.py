@@ -10,6 +10,7 @@ from pathlib import Path
 
 from benchmarks import (
     corrected_plane,
+    effects_off,
     error_honesty,
     finite_width,
     other_engine,
@@ -35,6 +36,7 @@ SUBJECTS = (
     predictions,
     error_honesty,
     worth_estimates,
+    effects_off,
 )
 _MARKS = ("<!-- figures: written by scripts/bench --publish -->", "<!-- end of figures -->")
 

@@ -35,7 +35,8 @@ def _further(named: dict[str, HonestyCase]) -> list[HonestyCase]:
     web = GearBlank(2.5 * M, 1.5 * M, 14.0 * M)
     tips = FlankModification(tip_relief=20e-6, tip_relief_length=1.5e-3)
     faint = FlankModification(tip_relief=0.3e-6, tip_relief_length=1e-3)
-    ends = FlankModification(helix_crowning=12e-6)
+    ends, flat = (FlankModification(helix_crowning=amount) for amount in (12e-6, 0.1e-6))
+    exact = PitchDeviation((0.02e-6, *([0.0] * 19)))
     made: dict[str, tuple[ParallelAxes, dict[str, object]]] = {
         "spur 20/20, eccentric pinion": (_with(spur, pitch_deviation=eccentric), {}),
         "spur 20/20, one tooth early": (_with(spur, pitch_deviation=early), {}),
@@ -48,6 +49,10 @@ def _further(named: dict[str, HonestyCase]) -> list[HonestyCase]:
         "spur 18/18, crowning of 12 um": (_with(small, modification=ends), even),
         "spur 18/18, 0.2 um misaligned": (small, even | {"misalignments": (0.2e-6,)}),
         "helical 18/23, 40 um misaligned": (helical, even | {"misalignments": (40e-6,)}),
+        "helical 18/23, 0.3 um misaligned": (helical, even | {"misalignments": (0.3e-6,)}),
+        "spur 18/18, 1 um misaligned": (small, even | {"misalignments": (1e-6,)}),
+        "spur 18/18, crowning of 0.1 um": (_with(small, modification=flat), even),
+        "spur 20/20, pitch errors of 0.02 um": (_with(spur, pitch_deviation=exact), {}),
     }
     return [HonestyCase(name, pair, options=how) for name, (pair, how) in made.items()]
 

@@ -14,6 +14,7 @@ import numpy as np
 from benchmarks.figures import Figure
 from benchmarks.honesty_cases import HonestyCase
 from benchmarks.worth_cases import worth_cases
+from fe_contact.analysis import check_request
 from fe_contact.analysis.ablation import EffectAblation, ablate
 
 PAGE = Path(__file__).parents[1] / "docs" / "effects" / "worth.md"
@@ -23,17 +24,23 @@ FLOOR = 0.01
 """Relative change below which both count as nothing: the usual tolerance, and the error of a draft."""
 FACTOR, SHARE = 2.0, 80.0
 QUANTITIES = ("mean", "peak-to-peak")
+TOLERANCES = (0.01, 0.05)
+"""At which the decisions of "auto" are judged."""
 
 
 @dataclass(frozen=True)
 class JudgedWorth:
-    """One effect of one case at one load: relative changes by leaving it out, estimated and measured."""
+    """One effect of one case at one load: relative changes by leaving it out, estimated and measured.
+
+    `off_at` are the tolerances at which "auto" leaves it off.
+    """
 
     case: str
     effect: str
     load: float
     estimated: tuple[float, float]
     measured: tuple[float, float]
+    off_at: tuple[float, ...] = ()
 
     @property
     def right(self) -> tuple[bool, bool]:
@@ -68,12 +75,15 @@ def study(cases: Sequence[HonestyCase], folder: Path) -> list[JudgedWorth]:
     for case in cases:
         sys.stderr.write(f"  {case.name}\n")
         made = ablate(case.pair, normal_forces=case.forces, level="draft", cache=folder, **case.options)
+        asked = {"normal_forces": case.forces, **case.options}
+        decided = {tol: check_request(case.pair, tolerance=tol, **asked).decided for tol in TOLERANCES}
         for entry in made.effects:
-            found += _judged(case, entry)
+            off_at = tuple(tol for tol in TOLERANCES if decided[tol][entry.name] == "off")
+            found += _judged(case, entry, off_at)
     return found
 
 
-def _judged(case: HonestyCase, entry: EffectAblation) -> list[JudgedWorth]:
+def _judged(case: HonestyCase, entry: EffectAblation, off_at: tuple[float, ...]) -> list[JudgedWorth]:
     """One effect at every load."""
     if entry.estimate is None:
         return []
@@ -87,6 +97,7 @@ def _judged(case: HonestyCase, entry: EffectAblation) -> list[JudgedWorth]:
             load,
             (float(estimated[0][k]), float(estimated[1][k])),
             (float(measured[0][k]), float(measured[1][k])),
+            off_at,
         )
         for k, load in enumerate(case.loads)
     ]
@@ -104,7 +115,15 @@ def counts(found: Sequence[JudgedWorth]) -> list[Figure]:
         wrong = 100.0 * float(np.mean([not one.right[k] for one in seen]))
         what = f"{name}: beyond a factor 2, of the {len(seen)} changes above {100 * FLOOR:g} %"
         rows.append(Figure(SUBJECT, what, wrong, "%", 100.0 - SHARE))
-    return rows
+    return rows + [_left_off(found, tolerance) for tolerance in TOLERANCES]
+
+
+def _left_off(found: Sequence[JudgedWorth], tolerance: float) -> Figure:
+    """Return the largest change of mean or peak-to-peak by an effect that "auto" leaves off."""
+    off = [one for one in found if tolerance in one.off_at]
+    worst = max((abs(change) for one in off for change in one.measured), default=0.0)
+    what = f"largest change by what auto leaves off at {100 * tolerance:g} % ({len(off)} ablations)"
+    return Figure(SUBJECT, what, 100.0 * worst, "%", 100.0 * tolerance)
 
 
 def markdown(found: Sequence[JudgedWorth]) -> str:
@@ -117,6 +136,9 @@ def markdown(found: Sequence[JudgedWorth]) -> str:
         f"**{right:.0f} %** have mean and peak-to-peak right within a factor {FACTOR:g} and in sign (target "
         f"{SHARE:g} %); changes below {100 * FLOOR:g} % count as nothing.\n\n"
     )
+    left = [_left_off(found, tolerance) for tolerance in TOLERANCES]
+    head += "".join(f"{figure.what[0].upper()}{figure.what[1:]}: {figure.value:.2g} %.\n" for figure in left)
+    head += "\n"
     return head + _table_of_effects(found) + "\n" + _table_of_cases(found)
 
 

@@ -47,3 +47,14 @@ def assumption_lines(receipt: Mapping[str, Any]) -> Iterator[str]:
     for one in receipt.get("assumptions", ()):
         if one["holds"] is False:
             yield f"DOES NOT HOLD: {one['assumption']}; {one['reason']}"
+
+
+def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what a dynamic run was repeated for, and what it took for granted that does not hold."""
+    again = attributes.get("receipt", {}).get("repeated")
+    if again:
+        for name, reason in again["turned_on"].items():
+            yield f"repeated with {name}: {reason} (first run {again['seconds']:.2g} s)"
+    for one in attributes.get("effect_ledger", {}).get("checks", ()):
+        if not one["holds"]:
+            yield f"DOES NOT HOLD: {one['assumption']} ({one['part']}); {one['reason']}"

@@ -7,6 +7,7 @@ from pathlib import Path
 from dynamics.simulate import interrupted_run, simulate_to_file
 from dynamics.system import Scene
 from dynamics.types import RunStatus
+from service.cli.effects import run_lines
 from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
 from service.cli.run_effects import effect_lines
@@ -53,6 +54,6 @@ def _show(facts: dict[str, object]) -> None:
         if isinstance(value, str | int | float) and len(str(value)) < 80:
             out.print(f"{name} {value}", highlight=False)
     ledger = attributes.get("effect_ledger")
-    for line in effect_lines(ledger if isinstance(ledger, dict) else {}):
+    for line in (*effect_lines(ledger if isinstance(ledger, dict) else {}), *run_lines(attributes)):
         out.print(line, highlight=False)
     out.print(f"written to {facts['file']}", highlight=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from benchmarks.worth_cases import worth_cases
-from benchmarks.worth_estimates import JudgedWorth, within_factor
+from benchmarks.worth_estimates import JudgedWorth, counts, markdown, within_factor
 from fe_contact.analysis import check_request
 from fe_contact.effects import EFFECTS
 
@@ -27,3 +27,21 @@ def test_every_effect_has_something_to_do_twice() -> None:
             times[entry.name] += entry.on
     assert min(times.values()) >= 1
     assert sum(times.values()) >= 24
+
+
+def test_counts_and_tables_are_those_of_the_ablations() -> None:
+    right = JudgedWorth("one", "misalignment", 1.0, (0.1, 0.2), (0.11, 0.19))
+    wrong = JudgedWorth("two", "misalignment", 1.0, (0.1, 0.2), (0.11, -0.19))
+    off = JudgedWorth("two", "corner_contact", 1.0, (0.001, 0.0), (0.002, 0.03), (0.05,))
+    rows = {figure.what: figure for figure in counts([right, right, wrong, off])}
+    assert rows["mean or peak-to-peak beyond a factor 2"].value == pytest.approx(50.0)
+    assert rows["mean: beyond a factor 2, of the 3 changes above 1 %"].value == 0.0
+    left = [
+        rows[f"largest change by what auto leaves off at {text}"]
+        for text in ("1 % (0 ablations)", "5 % (1 ablations)")
+    ]
+    assert [figure.value for figure in left] == pytest.approx([0.0, 3.0])
+    assert all(figure.met for figure in left)
+    text = markdown([right, wrong, off])
+    assert "| two | misalignment | +10 / +11 | **+20 / -19** |" in text
+    assert "| misalignment | 2 | 100 % | 0.91 | 50 % |" in text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from service.cli.effects import assumption_lines, ledger_lines
+from service.cli.effects import assumption_lines, ledger_lines, run_lines
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 
@@ -27,3 +27,20 @@ def test_decisions_worth_price_and_what_does_not_hold_are_told() -> None:
     again = {"turned_on": {"misalignment": "too small to be seen: 3 %"}, "cpu_seconds": 0.5}
     (line,) = assumption_lines({"repeated": [again], "assumptions": []})
     assert line == "repeated with misalignment: too small to be seen: 3 % (0.5 CPU s)"
+
+
+def test_a_run_says_what_it_was_repeated_for_and_what_does_not_hold() -> None:
+    check = {"assumption": "force inside the table", "part": "mesh", "reason": "forces up to 12 N of 10 N"}
+    told = list(
+        run_lines(
+            {
+                "receipt": {"repeated": {"turned_on": {"backlash": "mesh: parted"}, "seconds": 2.0}},
+                "effect_ledger": {"checks": [check | {"holds": False}, check | {"holds": True}]},
+            }
+        )
+    )
+    assert told == [
+        "repeated with backlash: mesh: parted (first run 2 s)",
+        "DOES NOT HOLD: force inside the table (mesh); forces up to 12 N of 10 N",
+    ]
+    assert list(run_lines({})) == []
