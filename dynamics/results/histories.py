@@ -156,7 +156,8 @@ def _mesh_frequency(system: System, speed: FloatArray, v: FloatArray) -> FloatAr
     for law, place in enumerate(reference.freedom):
         if place >= 0:
             turning[law] += v[:, place]
-    return np.asarray(np.abs((reference.numerator / reference.denominator) @ turning) / (2.0 * math.pi))
+    rates = (reference.numerator / reference.denominator)[: len(system.scene.meshes)]
+    return np.asarray(np.abs(rates @ turning) / (2.0 * math.pi))
 
 
 def _coast_force(system: System, force: FloatArray) -> FloatArray:

@@ -88,6 +88,9 @@ def test_torques_pass_through_both_stages(rest):
         assert np.sum(forces) == pytest.approx(total, rel=1e-6)
         assert 0.0 < np.ptp(forces) / np.mean(forces) < 0.01  # the large gear's tilt reaches the sun
     result = simulate(replace(system.scene, duration=1e-4))
+    mesh_frequency = 55.0 / 60.0 * np.array([RING, RING, LARGE * (1.0 + RING / SUN), *[RING] * 4])
+    np.testing.assert_allclose(result.mesh_frequency[:, 0], mesh_frequency, rtol=1e-12)
+    assert result.position.shape[0] == 7
     ratio = (1.0 + RING / SUN) * LARGE / PINION
     joints = dict(zip(result.coupling, result.coupling_torque[:, 0], strict=True))
     assert abs(joints["main shaft"]) == pytest.approx(ratio * TORQUE, rel=1e-6)

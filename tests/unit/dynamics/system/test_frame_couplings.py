@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.energy import stored_energy
 from dynamics.joints import Bushing, Coupling
 from dynamics.linearize import natural_modes
+from dynamics.linearize.common_period import common_period
 from dynamics.results import EnergyAudit
 from dynamics.system import Integration
 from dynamics.system.assemble import assemble
@@ -203,3 +205,11 @@ def test_a_gear_of_both_frames_is_told_how_to_be_parted():
     )
     with pytest.raises(InputError, match="Where shaft sun carries gears inside and outside"):
         assemble(scene)
+
+
+def test_motions_repeat_after_whole_turns_of_the_frames():
+    """The teeth of the pair repeat after a twentieth of a turn, what acts across frames after a whole one."""
+    fixed, turning = (common_period(assemble(coupled_disc(frame))) for frame in (None, "disc"))
+    assert fixed.revolutions == Fraction(1, 20)
+    assert turning.revolutions == 1
+    assert turning.pitches == (20,)
