@@ -51,11 +51,13 @@ class Reference:
 
 @dataclass(frozen=True)
 class Note:
-    """A short text above right of a point."""
+    """A short text above right of a point, moved up by text heights (`row`), or to its left."""
 
     x: float
     y: float
     text: str
+    row: int = 0
+    left: bool = False
 
 
 @dataclass(frozen=True)

@@ -6,10 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fe_contact.analysis.frontier import Frontier, RungResult
+from fe_contact.analysis.frontier import Frontier
 from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
+from fe_contact.analysis.rung_result import RungResult
 from service.report import palette
 from service.report.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
+from service.report.note_places import placed
 from service.report.page import Headline, Page, Section
 
 _HEAD = (
@@ -100,7 +102,10 @@ def _panel(
         size = _percent([level.relative_error for level in FULL_CONTACT])
         lines.append(Line("full contact, 2-D", time, size, palette.VERMILLION, markers=True))
     notes = [Note(r.cpu_seconds, 100.0 * error(r), _note(found, r)) for r in found.results if error(r) > 0.0]
-    return Panel(_time_axis(found), Axis(label, "log"), tuple(lines), title=title, notes=tuple(notes))
+    across, along = _time_axis(found), Axis(label, "log")
+    drawn = np.concatenate([line.y for line in lines])
+    beside = placed(notes, across, along, (float(drawn.min()), float(drawn.max())))
+    return Panel(across, along, tuple(lines), title=title, notes=beside)
 
 
 def _time_axis(found: Frontier) -> Axis:

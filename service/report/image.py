@@ -18,6 +18,7 @@ from service.report.image_shade import colour_map, draw_shade
 
 _WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
+_NOTE_ROW = 10  # points
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
@@ -85,7 +86,9 @@ def _finish(ax: Axes, panel: Panel) -> None:
     for reference in panel.references:
         _refer(ax, reference, boxed=panel.shade is not None)
     for note in panel.notes:
-        ax.annotate(note.text, (note.x, note.y), (5, 4), textcoords="offset points", fontsize=8)
+        place = (-5 if note.left else 5, 4 + _NOTE_ROW * note.row - (8 if note.row < 0 else 0))
+        side = "right" if note.left else "left"
+        ax.annotate(note.text, (note.x, note.y), place, textcoords="offset points", ha=side, fontsize=8)
     if panel.title:
         ax.set_title(panel.title, loc="left", fontsize=10, fontweight="bold")
     ax.grid(color=palette.GRID, lw=0.6)

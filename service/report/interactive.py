@@ -26,6 +26,7 @@ Json = dict[str, Any]
 _PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 520, 60, 62  # pixels
 _LABEL = 26  # pixels of an axis label between panels
 _LEGEND_ROW = 22  # pixels
+_NOTE_ROW = 15  # pixels
 _ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
@@ -145,7 +146,9 @@ def _notes(panel: Panel, suffix: str) -> list[Json]:
         place = {"xref": "x" + suffix, "yref": "y" + suffix, "showarrow": False, "text": note.text}
         for name, axis, value in (("x", panel.x, note.x), ("y", panel.y, note.y)):
             place[name] = float(np.log10(value)) if axis.scale == "log" else value
-        found.append(place | {"xanchor": "left", "yanchor": "bottom", "xshift": 4, "font": {"size": 12}})
+        shifts = {"xshift": -4 if note.left else 4, "yshift": _NOTE_ROW * note.row}
+        side = {"xanchor": "right" if note.left else "left", "yanchor": "bottom"}
+        found.append(place | shifts | side | {"font": {"size": 12}})
     return found
 
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from fe_contact.analysis.frontier import Frontier, RungResult
+from fe_contact.analysis.frontier import Frontier
+from fe_contact.analysis.rung_result import RungResult
 from service.cli.commands import app
 from service.report.frontier import frontier_figure, frontier_page, frontier_table
 from service.report.image import png
