@@ -19,6 +19,7 @@ from benchmarks import (
     run_up,
     solvers_3d,
     static_table,
+    tolerance_promise,
     worth_estimates,
 )
 from benchmarks.figures import Figure, markdown
@@ -35,6 +36,7 @@ SUBJECTS = (
     solvers_3d,
     predictions,
     error_honesty,
+    tolerance_promise,
     worth_estimates,
     effects_off,
 )
@@ -61,6 +63,8 @@ def main(arguments: Sequence[str]) -> int:
         _publish(page, machine, figures)
         if "error_honesty" in chosen:
             error_honesty.publish(error_honesty.judged(), machine)
+        if "tolerance_promise" in chosen:
+            tolerance_promise.publish(tolerance_promise.study())
         if "worth_estimates" in chosen:
             worth_estimates.publish(worth_estimates.judged(), machine)
     return 0 if all(figure.met is not False for figure in figures) else 1

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -12,13 +10,15 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.figures import Figure
-from benchmarks.finest_rung import FACE_POSITIONS, LAYERS, PLANE_FACTOR, PLANE_POSITIONS, SLICES, finest
+from benchmarks.finest_rung import FACE_POSITIONS, PLANE_FACTOR, PLANE_POSITIONS, SLICES
+from benchmarks.held_out_cases import held_out_face_cases, held_out_plane_cases
 from benchmarks.honesty_cases import HonestyCase, face_cases, plane_cases
-from fe_contact import analyze
+from benchmarks.marked_section import replace_section
+from benchmarks.measured_rungs import RungOf, measured, needs_face, truth
 from fe_contact.types import FloatArray
 
 PAGE = Path(__file__).parents[1] / "docs" / "accuracy.md"
-MARKS = ("<!-- figures: written by scripts/bench --publish -->", "<!-- end of figures -->")
+SECTION = "honesty"
 QUANTITIES = ("mean", "peak-to-peak", "first harmonic")
 SUBJECT = "error estimates against the finest rung"
 _SHARE, _MEDIAN = 90.0, 3.0
@@ -26,13 +26,23 @@ _SHARE, _MEDIAN = 90.0, 3.0
 
 @dataclass(frozen=True)
 class Judged:
-    """One case at one level: value, stated and true error (3 quantities, loads) in m."""
+    """One case on one rung: value, stated and true error (3 quantities, loads) in m."""
 
     case: str
     level: str
     value: FloatArray
     stated: FloatArray
     true: FloatArray
+
+    @property
+    def held_out(self) -> bool:
+        """Whether no constant was set on the pair."""
+        return self.case in {case.name for case in (*held_out_plane_cases(), *held_out_face_cases())}
+
+    @property
+    def in_plane(self) -> bool:
+        """Whether the plane stands in for three dimensions."""
+        return self.level.startswith("corrected")
 
     @property
     def ratio(self) -> FloatArray:
@@ -47,29 +57,28 @@ def figures() -> list[Figure]:
 
 @cache
 def judged() -> tuple[Judged, ...]:
-    """Judge all cases, once, with the compliances computed afresh: about ten CPU minutes."""
-    with tempfile.TemporaryDirectory() as folder:
-        return tuple(study([*plane_cases(), *face_cases()], Path(folder)))
+    """Judge all cases; what is measured already is not measured again."""
+    return tuple(study([*plane_cases(), *face_cases(), *held_out_plane_cases(), *held_out_face_cases()]))
 
 
-def study(cases: Sequence[HonestyCase], folder: Path) -> list[Judged]:
-    """Judge every case at each of its levels."""
-    return [found for case in cases for found in _judged(case, folder)]
+def study(cases: Sequence[HonestyCase]) -> list[Judged]:
+    """Hold every case on each of its rungs against the finest one of its model."""
+    return [found for case in cases for found in _judged(case)]
 
 
-def _judged(case: HonestyCase, folder: Path) -> Iterator[Judged]:
+def _judged(case: HonestyCase) -> Iterator[Judged]:
     """Hold a case against the finest rung."""
-    sys.stderr.write(f"  {case.name}\n")
-    exact = finest(case, folder)
-    truth = np.stack([exact.mean, exact.peak_to_peak, exact.first_harmonic])
-    for level in case.levels:
-        table = analyze(case.pair, normal_forces=case.forces, level=level, cache=folder, **case.options)
-        skew = float(table.misalignment[0])
-        curves = [table.curve(force=force, misalignment=skew) for force in case.forces]
-        found = [[c.mean, c.peak_to_peak, c.harmonics[0]] for c in curves]
-        value = np.array([[one.value for one in row] for row in found]).T
-        stated = np.array([[one.error for one in row] for row in found]).T
-        yield Judged(case.name, level, value, stated, np.abs(value - truth))
+    exact = truth(case)
+    for rung in judged_rungs(case):
+        found = measured(case, rung)
+        yield Judged(case.name, rung.name, found.value, found.stated, np.abs(found.value - exact))
+
+
+def judged_rungs(case: HonestyCase) -> list[RungOf]:
+    """Return the rungs of a case whose estimates are judged."""
+    if needs_face(case):
+        return [RungOf("3d", "draft", 15), RungOf("3d", "draft", 61), RungOf("3d", "standard", 31)]
+    return [RungOf("corrected", "draft"), RungOf("corrected", "standard")]
 
 
 def counts(found: Sequence[Judged]) -> list[Figure]:
@@ -87,36 +96,33 @@ def counts(found: Sequence[Judged]) -> list[Figure]:
 
 def markdown(found: Sequence[Judged]) -> str:
     """Return the section of docs/accuracy.md."""
-    flat = sum(one.case in {case.name for case in plane_cases()} for one in found)
-    points = sum(one.value.shape[1] for one in found)
+    pairs, points = len({one.case for one in found}), sum(one.value.shape[1] for one in found)
+    flat = sum(one.in_plane for one in found)
+    rest = len(found) - flat
     head = (
-        f"## How often they hold\n\n{len(found)} cases (pair x level; {flat} in the plane, "
-        f"{len(found) - flat} in three dimensions), {points} loads in all, against the finest rung that "
-        "could be afforded:\n"
+        f"{pairs} pairs on two or three rungs each: {len(found)} cases ({flat} in the plane, {rest} in three "
+        f"dimensions), {points} loads in all, against the finest rung that could be afforded:\n"
         f"in the plane elements {PLANE_FACTOR:g} times as fine as those of the level fine and "
-        f"{PLANE_POSITIONS} positions,\n"
-        f"in three dimensions {SLICES} slices on {LAYERS} layers, a section finer than that of fine, and "
-        f"{FACE_POSITIONS} positions.\n"
-        "That rung has an error of its own, in three dimensions a third to a half of that of standard: true "
-        "errors are that uncertain.\nThe factors of the meshes (1/4 and 1.25) and the order of the slices "
-        "were set with these cases in view; no further cases were held out.\n\n"
+        f"{PLANE_POSITIONS} positions, in three dimensions the mesh of the level fine, {SLICES} slices\n"
+        f"and {FACE_POSITIONS} positions. That rung has an error of its own, in three dimensions a third of "
+        "that of standard: true errors are that uncertain.\nAll constants of the estimates were set on the "
+        "pairs that are not marked; those marked * were held out.\n\n"
     )
     return head + _table_of_counts(found) + "\n" + _table_of_cases(found)
 
 
 def _table_of_counts(found: Sequence[Judged]) -> str:
-    """Coverage and over-estimate by quantity and level, in the plane and over the face."""
-    flat = {case.name for case in plane_cases()}
+    """Coverage and over-estimate by quantity: all, those held out, and by rung."""
     lines = [
         "| | loads | " + " | ".join(f"{name}: held | median over-estimate" for name in QUANTITIES) + " |",
         "|---|---:|" + "---:|" * (2 * len(QUANTITIES)),
     ]
-    groups = {"all": list(found)}
-    for place, inside in (("plane", True), ("three dimensions", False)):
-        for level in ("draft", "standard"):
-            groups[f"{place}, {level}"] = [
-                one for one in found if (one.case in flat) is inside and one.level == level
-            ]
+    groups = {"all": list(found), "held out of every fit": [one for one in found if one.held_out]}
+    for name, flat in (("plane", True), ("three dimensions", False)):
+        groups[f"{name}, held out"] = [one for one in found if one.held_out and one.in_plane is flat]
+    groups |= {
+        rung: [one for one in found if one.level == rung] for rung in dict.fromkeys(o.level for o in found)
+    }
     for name, group in groups.items():
         if group:
             ratio = np.concatenate([one.ratio for one in group], axis=1)
@@ -130,7 +136,7 @@ def _table_of_cases(found: Sequence[Judged]) -> str:
     lines = [
         "Each case at the load at which its estimate covers least, stated / true error in % of the value:",
         "",
-        "| case | level | " + " | ".join(QUANTITIES) + " |",
+        "| case | rung | " + " | ".join(QUANTITIES) + " |",
         "|---|---|---:|---:|---:|",
     ]
     for one in found:
@@ -140,15 +146,12 @@ def _table_of_cases(found: Sequence[Judged]) -> str:
             stated, true = (100.0 * errors[q, k] / one.value[q, k] for errors in (one.stated, one.true))
             text = f"{stated:.2g} / {true:.2g}"
             cells.append(text if one.ratio[q, k] >= 1.0 else f"**{text}**")
-        lines.append(f"| {one.case} | {one.level} | " + " | ".join(cells) + " |")
+        name = f"{one.case}*" if one.held_out else one.case
+        lines.append(f"| {name} | {one.level} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
 def publish(found: Sequence[Judged], machine: dict[str, str]) -> None:
     """Write the section of the page between its marks."""
-    page = PAGE.read_text(encoding="utf-8")
-    before, _, rest = page.partition(MARKS[0])
-    _, _, after = rest.partition(MARKS[1])
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
-    text = f"{markdown(found)}\nMeasured with {versions}.\n"
-    PAGE.write_text(f"{before}{MARKS[0]}\n{text}{MARKS[1]}{after}", encoding="utf-8")
+    replace_section(PAGE, SECTION, f"{markdown(found)}\nMeasured with {versions}.\n")

@@ -19,13 +19,12 @@ RATED = 100.0
 
 @dataclass(frozen=True)
 class HonestyCase:
-    """One pair with the levels at which it is computed and the loads over the rated one.
+    """One pair with its loads over the rated one.
 
     Attributes
     ----------
     name : str
     pair : GearPair or InternalGearPair
-    levels : tuple of str
     loads : tuple of float
     options : mapping
         Further arguments of `analyze`.
@@ -33,7 +32,6 @@ class HonestyCase:
 
     name: str
     pair: ParallelAxes
-    levels: tuple[str, ...] = ("draft", "standard")
     loads: tuple[float, ...] = (0.2, 1.0, 2.5)
     options: Mapping[str, Any] = field(default_factory=dict)
 
@@ -43,21 +41,21 @@ class HonestyCase:
         return [load * RATED * 1e6 * M * self.pair.face_width * 0.5 for load in self.loads]
 
 
-def _gear(teeth: int, face: float = 6.0, **more: Any) -> Gear:
+def gear_of(teeth: int, face: float = 6.0, **more: Any) -> Gear:
     """Return a gear of `face` modules."""
     return Gear(teeth=teeth, normal_module=M, face_width=face * M, bore_diameter=0.5 * teeth * M, **more)
 
 
-def _pair(one: Gear, two: Gear, apart: float = 0.0) -> GearPair:
+def spur_pair(one: Gear, two: Gear, apart: float = 0.0) -> GearPair:
     """Return a pair at its reference distance, moved by `apart` modules."""
     helix = math.cos(one.helix_angle)
     return GearPair(one, two, (0.5 * (one.teeth + two.teeth) / helix + apart) * M)
 
 
-def _helical(one: int, two: int, angle: float, face: float = 6.0, **more: Any) -> GearPair:
+def helical_pair(one: int, two: int, angle: float, face: float = 6.0, **more: Any) -> GearPair:
     """Return a helical pair; `more` belongs to the pinion."""
     beta = math.radians(angle)
-    return _pair(_gear(one, face, helix_angle=beta, **more), _gear(two, face, helix_angle=-beta))
+    return spur_pair(gear_of(one, face, helix_angle=beta, **more), gear_of(two, face, helix_angle=-beta))
 
 
 def plane_cases() -> list[HonestyCase]:
@@ -67,27 +65,32 @@ def plane_cases() -> list[HonestyCase]:
     ring = RingGear(60, M, 6.0 * M, rim_diameter=72.0 * M, tip_diameter=58.5 * M)
     spread = {"profile_shift_coefficient": 0.3}
     return [
-        HonestyCase("spur 20/20", _pair(_gear(20), _gear(20))),
-        HonestyCase("spur 17/43, shifted", _pair(_gear(17, **spread), _gear(43), 0.295)),
-        HonestyCase("spur 30/60, tip relief", _pair(_gear(30, modification=relieved), _gear(60))),
-        HonestyCase("spur 25/31, profile crowning", _pair(_gear(25, modification=crowned), _gear(31))),
-        HonestyCase("spur 24/37, centre distance + 0.1 modules", _pair(_gear(24), _gear(37), 0.1)),
-        HonestyCase("spur 20/20, face of 1.2 modules", _pair(_gear(20, 1.2), _gear(20, 1.2))),
+        HonestyCase("spur 20/20", spur_pair(gear_of(20), gear_of(20))),
+        HonestyCase("spur 17/43, shifted", spur_pair(gear_of(17, **spread), gear_of(43), 0.295)),
+        HonestyCase("spur 30/60, tip relief", spur_pair(gear_of(30, modification=relieved), gear_of(60))),
         HonestyCase(
-            "spur 20/40, thin rim", _pair(_gear(20), _gear(40, blank=GearBlank(2.0 * M, 1.5 * M, 25.0 * M)))
+            "spur 25/31, profile crowning", spur_pair(gear_of(25, modification=crowned), gear_of(31))
         ),
-        HonestyCase("internal 20/60", InternalGearPair(_gear(20), ring, 20.0 * M)),
-        HonestyCase("spur 40/40, 64 even positions", _pair(_gear(40), _gear(40)), options={"positions": 64}),
+        HonestyCase("spur 24/37, centre distance + 0.1 modules", spur_pair(gear_of(24), gear_of(37), 0.1)),
+        HonestyCase("spur 20/20, face of 1.2 modules", spur_pair(gear_of(20, 1.2), gear_of(20, 1.2))),
+        HonestyCase(
+            "spur 20/40, thin rim",
+            spur_pair(gear_of(20), gear_of(40, blank=GearBlank(2.0 * M, 1.5 * M, 25.0 * M))),
+        ),
+        HonestyCase("internal 20/60", InternalGearPair(gear_of(20), ring, 20.0 * M)),
+        HonestyCase(
+            "spur 40/40, 64 even positions", spur_pair(gear_of(40), gear_of(40)), options={"positions": 64}
+        ),
     ]
 
 
 def face_cases() -> list[HonestyCase]:
     """Return pairs that need three dimensions."""
     loads = (0.5, 1.5)
-    small, even = _helical(18, 23, 20.0), {"positions": 64}
+    small, even = helical_pair(18, 23, 20.0), {"positions": 64}
     lead = FlankModification(helix_crowning=6e-6)
     relieved = FlankModification(tip_relief=10e-6, tip_relief_length=2e-3)
-    spur = _pair(_gear(18), _gear(18))
+    spur = spur_pair(gear_of(18), gear_of(18))
 
     def with_pinion(pair: GearPair, modification: FlankModification) -> GearPair:
         return replace(pair, pinion=replace(pair.pinion, modification=modification))

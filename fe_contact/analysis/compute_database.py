@@ -5,6 +5,7 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from fe_contact.analysis.assumptions import Assumption, check_assumptions, viola
 from fe_contact.analysis.contact_receipt import contact_receipt
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
+from fe_contact.analysis.model_choice import Decided
 from fe_contact.analysis.request import Checked, check_asked
 from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, solve_table
 from fe_contact.errors import SolveError
@@ -24,11 +26,13 @@ from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 
-SOLVER_VERSION = "5"
+SOLVER_VERSION = "6"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 
-def compute_database(checked: Checked, case: Json, report: Progress, cache: Path | None) -> SteDatabase:
+def compute_database(
+    checked: Checked, case: Json, report: Progress, cache: Path | None, decided: Decided | None = None
+) -> SteDatabase:
     """Compute the table of a checked request.
 
     Parameters
@@ -40,6 +44,8 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
         Called as report(stage, fraction).
     cache : Path, optional
         Directory of flank compliances.
+    decided : Decided, optional
+        Model and discretisation; default: those that the accuracy asks for.
 
     Raises
     ------
@@ -48,7 +54,9 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
     """
     clock = StageClock()
     full = checked.request.accuracy.receipt == "full"
-    run, found, repeated = _assumed(solve_table(checked, clock, report, cache), clock, report, cache)
+    run, found, repeated = _assumed(
+        solve_table(checked, clock, report, cache, decided=decided), clock, report, cache
+    )
     with clock.stage("contact"):
         contact = contact_receipt(run.solved, run.support)
     judged = unjudged_table(run.table, run.places, run.plan)
@@ -56,11 +64,11 @@ def compute_database(checked: Checked, case: Json, report: Progress, cache: Path
         coarse = laid_out(run.checked, run.plan, clock, report, cache, coarse=True)
         with clock.stage("error estimate"):
             judged = judged_table(run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan)
-        if not repeated:
-            spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
-            record(cache, run.prediction.logged, spent)
+    if not repeated:
+        spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
+        record(cache, run.prediction.logged, spent)
     with clock.stage("effect ledger"):
-        ledger = effect_ledger(run.checked, cache, found, estimates=full)
+        ledger = effect_ledger(run.checked, cache, found, plan=run.plan, estimates=full)
     metadata = _metadata(case, run, clock, judged.to_json() | contact, ledger)
     metadata.receipt["assumptions"] = [one.to_json() for one in found]
     metadata.receipt["repeated"] = repeated
@@ -103,13 +111,14 @@ def _with(checked: Checked, needed: Mapping[str, str]) -> Checked:
 
 def _predicted(run: SolvedTable) -> Json:
     """Return what was expected of the run before it began, to stand beside what happened."""
-    error = expected_error(run.checked.request.pair, run.plan.discretisation, run.plan.level)
+    error = expected_error(run.checked.request.pair, run.plan)
     return run.prediction.to_json() | {"error": error.to_json()}
 
 
 def _metadata(case: Json, run: SolvedTable, clock: StageClock, found: Json, ledger: list[Json]) -> Metadata:
     """Everything about the making of the table; `found` is what was found of its errors and its contact."""
     receipt = clock.to_json() | found | {"plan": run.plan.to_json(), "prediction": _predicted(run)}
+    receipt["choice"] = run.decided.to_json()
     if run.checked.cycle is not None:
         receipt["predicted"] = run.checked.cycle.to_json()
     return Metadata(
@@ -123,4 +132,10 @@ def _metadata(case: Json, run: SolvedTable, clock: StageClock, found: Json, ledg
 
 def software_versions() -> dict[str, str]:
     """Return what a result was made with."""
-    return {"python": platform.python_version()} | {name: version(name) for name in PACKAGES}
+    return dict(_software_versions())
+
+
+@lru_cache(maxsize=1)
+def _software_versions() -> tuple[tuple[str, str], ...]:
+    """Read them once: the files of the packages are long."""
+    return ("python", platform.python_version()), *((name, version(name)) for name in PACKAGES)

@@ -12,14 +12,19 @@ from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.flipping import flipped
 from fe_contact.effects.worth import Worth, estimate_worth, estimate_worths
 from fe_contact.errors import InputError
-from fe_contact.planning import planned, predict_run
+from fe_contact.planning import Plan, make_plan, planned, predict_run
 from fe_contact.types import Json
 
 NOT_CHECKED = "no; switching it over measures it (ablation)"
 
 
 def effect_ledger(
-    checked: Checked, cache: Path | None, assumptions: Sequence[Assumption] = (), *, estimates: bool = True
+    checked: Checked,
+    cache: Path | None,
+    assumptions: Sequence[Assumption] = (),
+    *,
+    plan: Plan | None = None,
+    estimates: bool = True,
 ) -> list[Json]:
     """Return one entry per effect as plain JSON.
 
@@ -30,6 +35,8 @@ def effect_ledger(
         Directory of compliances and of what is known of the host, for predicted times.
     assumptions : sequence of Assumption
         What was checked after the run.
+    plan : Plan, optional
+        Of the run: costs are those of its mesh and slices; default: those that the accuracy asks for.
     estimates : bool
         Whether worth and cost are estimated, in milliseconds; without it they are None.
     """
@@ -41,7 +48,7 @@ def effect_ledger(
         for name in request.spared:
             worths[name] = estimate_worth(*checked.judging(name), name, EFFECTS)
     return [
-        _entry(checked, entry, worths.get(entry.name), cache, assumptions, estimates)
+        _entry(checked, entry, worths.get(entry.name), (cache, plan), assumptions, estimates)
         for entry in checked.ledger
     ]
 
@@ -50,12 +57,12 @@ def _entry(
     checked: Checked,
     entry: LedgerEntry,
     worth: Worth | None,
-    cache: Path | None,
+    known: tuple[Path | None, Plan | None],
     assumptions: Sequence[Assumption],
     estimates: bool,
 ) -> Json:
     """One effect."""
-    seconds = _cost(checked, entry, cache) if estimates else None
+    seconds = _cost(checked, entry, *known) if estimates else None
     found = [one for one in assumptions if one.effect == entry.name]
     return entry.to_json() | {
         "worth_estimate": None if worth is None else worth.to_json(),
@@ -66,7 +73,7 @@ def _entry(
     }
 
 
-def _cost(checked: Checked, entry: LedgerEntry, cache: Path | None) -> float | None:
+def _cost(checked: Checked, entry: LedgerEntry, cache: Path | None, plan: Plan | None) -> float | None:
     """Predict the CPU seconds that the effect adds to the run.
 
     None if it cannot be switched over, and where it is off without having been called for: nothing was saved.
@@ -77,14 +84,19 @@ def _cost(checked: Checked, entry: LedgerEntry, cache: Path | None) -> float | N
         other = switched_over(checked, entry.name, "off" if entry.on else "on")
     except InputError:
         return None
-    here, there = (_predicted(one, cache) for one in (checked, other))
+    here, there = (_predicted(one, cache, plan) for one in (checked, other))
     return here - there if entry.on else there - here
 
 
-def _predicted(checked: Checked, cache: Path | None) -> float:
-    """CPU seconds of a request."""
+def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
+    """CPU seconds of a request, on the mesh and in the slices of the run if that is over the face as well."""
     request = checked.request
-    plan = planned(request.pair, request.load, request.accuracy, checked.model, request.alignments, cache)
+    wanted = request.pair, request.load, request.accuracy, checked.model
+    if run is None:
+        plan = planned(*wanted, request.alignments, cache)
+    else:
+        slices = run.discretisation.slices
+        plan = make_plan(*wanted, run.level, slices if slices > 1 else None)
     return predict_run(request.pair, plan, checked.model, request.alignments, cache).cpu_seconds
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.analysis.ladder import RUNGS, Rung
 from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pareto import knee_of
 from fe_contact.analysis.request import Checked, check_request
 from fe_contact.analysis.rung_result import RungResult, rung_results
@@ -16,7 +17,6 @@ from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.warm_up import warm_up
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning import chosen_level
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 
@@ -177,13 +177,14 @@ def chosen_rung(checked: Checked) -> str | None:
 
     Plane strain has one rung, whose error is the model's: it stands for all its meshes.
     """
-    asked = checked.request
-    level = chosen_level(asked.pair, asked.load, asked.accuracy, checked.model, asked.alignments).level
-    if checked.model.across_face:
-        return f"3d_{level}"
-    if checked.model.finite_width:
+    decided = decide(checked)
+    level, model = decided.mesh.level, decided.checked.model
+    if model.across_face:
+        named = f"3d_{level}_{decided.mesh.slices}"
+        return named if any(rung.name == named for rung in RUNGS) else f"3d_{level}"
+    if model.finite_width:
         return "corrected" if level == "standard" else f"corrected_{level}"
-    return None if asked.accuracy.model == "plane_stress" else "plane_strain"
+    return None if checked.request.accuracy.model == "plane_stress" else "plane_strain"
 
 
 def _silent(stage: str, fraction: float) -> None:

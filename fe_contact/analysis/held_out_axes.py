@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.analysis.sampled import LOADS, sample_of, spread
 from fe_contact.analysis.table_places import Place, Places, table_places
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
@@ -17,6 +18,8 @@ from fe_contact.types import FloatArray, IntArray, Json
 
 LOAD_PROBES = np.array([0.25, 0.5, 0.75])
 """Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it."""
+FEWEST = 32
+"""Positions at which loads and misalignments are judged, at least, if the table has as many."""
 POSITIONS = 16
 """Positions at which an interval of centre distances is judged: each needs a compliance of its own."""
 
@@ -56,10 +59,10 @@ def held_out_axes(
 ) -> dict[str, AxisError]:
     """Solve one held-out point in every interval of every axis that has one.
 
-    Positions are those of the table, so that the axis alone is interpolated; what is missed between positions
-    `table_nodes` measures. Loads and misalignments are judged at all of them, whose compliance is at hand;
-    centre distances at those where the curves of the neighbouring nodes differ most. On the other axes the
-    point stands at the node nearest to zero; a longer period is judged in its first pitch.
+    Positions are some of the table's, so that the axis alone is interpolated; what is missed between
+    positions `table_nodes` measures. Loads and misalignments are judged at 32 of them or more; centre
+    distances at those where the curves of the neighbouring nodes differ most. On the other axes the point
+    stands at the node nearest to zero; a longer period is judged in its first pitch.
 
     Parameters
     ----------
@@ -117,7 +120,7 @@ def _measured(
         return quantity_changes(table.position[everywhere], *found, 1)
 
     found = {}
-    everywhere = np.arange(int(np.searchsorted(table.position, 1.0)))
+    everywhere = _some(int(np.searchsorted(table.position, 1.0)))
     m, d = _nearest(table.misalignment), _nearest(table.center_distance_change)
     if table.force.size > 1:
         loads = table.force[:-1, None] ** (1.0 - LOAD_PROBES) * table.force[1:, None] ** LOAD_PROBES
@@ -129,9 +132,11 @@ def _measured(
     if table.misalignment.size > 1:
         middles = _middles(table.misalignment)
         held_out = zip(_places(places, scene, choices, middles, d), middles, strict=True)
-        pairs = [curves(place, everywhere, table.force, x, d[0]) for place, x in held_out]
-        change = np.stack([changes(pair) for pair in pairs], axis=1)
-        found["misalignment"] = AxisError(middles, np.array([_worst(pair) for pair in pairs]), change)
+        some = sample_of(table.force.size, LOADS)
+        pairs = [curves(place, everywhere, table.force[some], x, d[0]) for place, x in held_out]
+        change = spread(table.force, some, np.stack([changes(pair) for pair in pairs], axis=1), 2)
+        error = spread(table.force, some, np.array([_worst(pair) for pair in pairs]), 1)
+        found["misalignment"] = AxisError(middles, error, change)
     if table.center_distance_change.size > 1:
         middles = _middles(table.center_distance_change)
         held_out = zip(_places(places, scene, choices, m, middles), middles, strict=True)
@@ -144,6 +149,11 @@ def _measured(
         bounds = np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)])
         found["center_distance_change"] = AxisError(middles, errors, bounds)
     return found
+
+
+def _some(rows: int) -> IntArray:
+    """Return at least `FEWEST` rows of a base pitch, evenly taken."""
+    return np.arange(0, rows, max(rows // FEWEST, 1))
 
 
 def _worst(found: Curves) -> FloatArray:

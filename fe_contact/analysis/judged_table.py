@@ -9,13 +9,19 @@ import numpy as np
 from fe_contact.analysis.curve_error_estimate import curve_errors, summary, unestimated, with_axes
 from fe_contact.analysis.error_estimate import Nested, estimate_errors, left_out
 from fe_contact.analysis.held_out_axes import held_out_axes
+from fe_contact.analysis.model_choice import plane_strain_error
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.table_places import Place, Places
+from fe_contact.analysis.sampled import ALIGNMENTS, LOADS, POSITIONS, sample_of, spread
+from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.planning import Plan
 from fe_contact.ste import SteDatabase
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import FloatArray, IntArray, Json
+
+Knots = tuple[FloatArray, FloatArray, FloatArray]
+"""Loads, misalignments and changes of the centre distance of a table."""
+MOST = (LOADS, ALIGNMENTS, ALIGNMENTS)
 
 
 @dataclass(frozen=True)
@@ -67,15 +73,15 @@ def judged_table(
     plan : Plan
     """
     made, found = plan.discretisation, [solution for _, solution in solved]
-    nested = Nested(
-        found,
-        _again([place.in_plane_strain for place in fine.places], nodes, plan) if made.corrected else found,
-        _again(coarse.places, nodes, plan),
-        _again(fine.in_slices(made.coarse_slices).places, nodes, plan) if made.slices > 1 else found,
-    )
-    sources = estimate_errors(fine, nested, nodes, plan)
+    curves = [solution.deflection for solution in found]
+    knots = plan.load, table.misalignment, table.center_distance_change
+    plane = _again(fine.in_plane_strain, nodes, knots, curves) if made.corrected else curves
+    sliced = _again(fine.in_slices(made.coarse_slices), nodes, knots, curves) if made.slices > 1 else curves
+    nested = Nested(found, plane, _again(coarse, nodes, knots, curves), sliced)
+    stands_in = plane_strain_error(checked)
+    sources = estimate_errors(fine, nested, nodes, plan, stands_in)
     axes = held_out_axes(table, fine, checked.request.scene, checked.decided)
-    errors = with_axes(curve_errors(fine, nested, nodes, plan), axes)
+    errors = with_axes(_not_less_between(curve_errors(fine, nested, nodes, plan, stands_in), knots), axes)
     held_out = {name: error.to_json() for name, error in axes.items()}
     return JudgedTable(sources.total, errors, sources.to_json(), held_out)
 
@@ -88,8 +94,50 @@ def unjudged_table(table: SteDatabase, places: Places, plan: Plan) -> JudgedTabl
 
 
 def _again(
-    places: list[Place] | tuple[Place, ...], nodes: PositionNodes, plan: Plan
-) -> list[ContactSolution]:
-    """Solve every place at the positions and loads of the table."""
-    pitches = np.arange(places[0].model.period)
-    return [place.solve_pitches(nodes.position, plan.load, pitches)[1] for place in places]
+    places: Places,
+    nodes: PositionNodes,
+    axes: Knots,
+    finer: list[FloatArray],
+) -> list[FloatArray]:
+    """Return STE (P, F) in m of every place on a rougher discretisation, at the positions of the table.
+
+    It is solved at some positions, loads and alignments of the axes (loads, misalignments, centre distances);
+    between them its difference to the table's own, `finer`, is interpolated.
+    """
+    loads, skews, changes = samples = [sample_of(axis.size, n) for axis, n in zip(axes, MOST, strict=True)]
+    some = _positions(finer, loads, nodes.position.size)
+    pitches = np.arange(places.period)
+    rows = (pitches[:, None] * nodes.position.size + some).ravel()
+    found = []
+    for k in (int(m) * places.shape[1] + int(d) for m in skews for d in changes):
+        _, rougher = places.places[k].solve_pitches(nodes.position[some], axes[0][loads], pitches)
+        found.append(rougher.deflection - finer[k][np.ix_(rows, loads)])
+    change = np.stack(found, axis=2).reshape(-1, *(sample.size for sample in samples))
+    everywhere = np.arange(len(finer[0]), dtype=float)
+    change = spread(everywhere, rows, change, 0)
+    for axis, (knots, sample) in enumerate(zip(axes, samples, strict=True), start=1):
+        change = spread(knots, sample, change, axis)
+    by_place = change.reshape(*change.shape[:2], -1)
+    return [one + by_place[:, :, k] for k, one in enumerate(finer)]
+
+
+def _not_less_between(errors: FloatArray, knots: Knots) -> FloatArray:
+    """Let errors (5, 22, F, M, D) between what was solved be no less than interpolated from there.
+
+    A difference of curves that is interpolated has a peak-to-peak that may be smaller by accident.
+    """
+    for axis, (nodes, most) in enumerate(zip(knots, MOST, strict=True), start=2):
+        sample = sample_of(nodes.size, most)
+        errors = np.maximum(errors, spread(nodes, sample, np.take(errors, sample, axis=axis), axis))
+    return errors
+
+
+def _positions(curves: list[FloatArray], loads: IntArray, count: int) -> IntArray:
+    """Return the positions that are solved: half of them, and where the curves are highest and lowest.
+
+    There and beside it a mesh changes peak-to-peak.
+    """
+    known = np.nan_to_num(np.stack([curve[:, loads] for curve in curves]))
+    ends = np.concatenate([known.argmax(axis=1).ravel(), known.argmin(axis=1).ravel()])
+    beside = np.concatenate([ends - 1, ends, ends + 1]) % count
+    return np.union1d(sample_of(count, max(POSITIONS, count // 2)), beside)

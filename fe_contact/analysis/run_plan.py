@@ -7,35 +7,41 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fe_contact.analysis.effect_ledger import effect_ledger
+from fe_contact.analysis.model_choice import decide, model_name
 from fe_contact.analysis.request import Checked, check_request
 from fe_contact.checks import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import (
     Accuracy,
     ExpectedError,
-    LevelChoice,
+    MeshChoice,
     Plan,
     Prediction,
-    chosen_level,
     expected_error,
     make_plan,
     predict_run,
 )
-from fe_contact.planning.error_model import LEVELS
+from fe_contact.planning.accuracy import LEVELS
 from fe_contact.types import FloatArray, Json
 
 
 @dataclass(frozen=True)
 class PlannedLevel:
-    """One mesh level: what it is predicted to cost, and its expected error."""
+    """One mesh level with its slices: what it is predicted to cost, and its expected error."""
 
     level: str
+    slices: int
     cost: Prediction
     error: ExpectedError
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        return {"level": self.level, "cost": self.cost.to_json(), "error": self.error.to_json()}
+        return {
+            "level": self.level,
+            "slices": self.slices,
+            "cost": self.cost.to_json(),
+            "error": self.error.to_json(),
+        }
 
 
 @dataclass(frozen=True)
@@ -46,7 +52,7 @@ class RunPlan:
     ----------
     checked : Checked
         The request with its model and its ledger of effects.
-    choice : LevelChoice
+    choice : MeshChoice
         The mesh that would be taken.
     plan : Plan
     levels : tuple of PlannedLevel
@@ -58,7 +64,7 @@ class RunPlan:
     """
 
     checked: Checked
-    choice: LevelChoice
+    choice: MeshChoice
     plan: Plan
     levels: tuple[PlannedLevel, ...]
     conflict: str
@@ -72,13 +78,13 @@ class RunPlan:
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {
-            "choice": self.choice.to_json(),
+            "choice": {"model": model_name(self.checked)} | self.choice.to_json(),
             "prediction": self.chosen.cost.to_json(),
             "error": self.chosen.error.to_json(),
             "levels": [entry.to_json() for entry in self.levels],
             "conflict": self.conflict,
             "plan": self.plan.to_json(),
-            "effect_ledger": effect_ledger(self.checked, self.cache),
+            "effect_ledger": effect_ledger(self.checked, self.cache, plan=self.plan),
         }
 
 
@@ -123,28 +129,28 @@ def plan_run(
         center_distance_changes=center_distance_changes,
         effects=effects,
     )
-    asked = checked.request
-    wish = asked.pair, asked.load, asked.accuracy, checked.model
-    choice = chosen_level(*wish, asked.alignments, cache)
-    levels = tuple(_planned(checked, name, cache) for name in LEVELS)
-    plan = make_plan(*wish, choice.level)
+    decided = decide(checked, cache)
+    checked, choice = decided.checked, decided.mesh
+    levels = tuple(
+        _planned(checked, name, choice.slices if name == choice.level else None, cache) for name in LEVELS
+    )
     conflict = ""
     if both and time_budget is not None:
         conflict = _conflict(choice, levels, tolerance, positive("time_budget", time_budget, "Seconds."))
-    return RunPlan(checked, choice, plan, levels, conflict, cache)
+    return RunPlan(checked, choice, decided.plan, levels, conflict, cache)
 
 
-def _planned(checked: Checked, level: str, cache: Path | None) -> PlannedLevel:
-    """Predict one mesh level of the request's model."""
+def _planned(checked: Checked, level: str, slices: int | None, cache: Path | None) -> PlannedLevel:
+    """Predict one mesh level of the request's model, in so many slices or in the usual ones."""
     asked = checked.request
     accuracy: Accuracy = replace(asked.accuracy, tolerance=None, time_budget=None, level=level)
-    plan = make_plan(asked.pair, asked.load, accuracy, checked.model)
+    plan = make_plan(asked.pair, asked.load, accuracy, checked.model, slices=slices)
     cost = predict_run(asked.pair, plan, checked.model, asked.alignments, cache)
-    return PlannedLevel(level, cost, expected_error(asked.pair, plan.discretisation, level))
+    return PlannedLevel(level, plan.discretisation.slices, cost, expected_error(asked.pair, plan))
 
 
 def _conflict(
-    choice: LevelChoice, levels: Sequence[PlannedLevel], tolerance: float | None, time_budget: float
+    choice: MeshChoice, levels: Sequence[PlannedLevel], tolerance: float | None, time_budget: float
 ) -> str:
     """Say why tolerance and time cannot both be had; empty if they can."""
     wish = f"level {choice.level}" if tolerance is None else f"{100.0 * tolerance:.3g} %"

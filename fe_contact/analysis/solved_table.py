@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_contact.analysis.model_choice import Decided, decide
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked, Request
@@ -15,7 +16,7 @@ from fe_contact.analysis.table_nodes import table_nodes
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.planning import Plan, Prediction, planned, predict_run
+from fe_contact.planning import Plan, Prediction, predict_run
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.types import FloatArray
@@ -30,8 +31,8 @@ class SolvedTable:
 
     Attributes
     ----------
-    checked : Checked
-    plan : Plan
+    decided : Decided
+        Model and discretisation.
     prediction : Prediction
         What it was expected to cost.
     places : Places
@@ -42,14 +43,23 @@ class SolvedTable:
         Its errors not yet estimated.
     """
 
-    checked: Checked
-    plan: Plan
+    decided: Decided
     prediction: Prediction
     places: Places
     nodes: PositionNodes
     solved: Solved
     support: Solved
     table: SteDatabase
+
+    @property
+    def checked(self) -> Checked:
+        """The request with the model that was chosen."""
+        return self.decided.checked
+
+    @property
+    def plan(self) -> Plan:
+        """Discretisation."""
+        return self.decided.plan
 
 
 def solve_table(
@@ -58,6 +68,7 @@ def solve_table(
     report: Progress,
     cache: Path | None,
     before: SolvedTable | None = None,
+    decided: Decided | None = None,
 ) -> SolvedTable:
     """Plan and solve a request.
 
@@ -71,21 +82,24 @@ def solve_table(
         Directory of flank compliances.
     before : SolvedTable, optional
         The same pair with other effects: its compliance is taken if the bodies are the same.
+    decided : Decided, optional
+        Model and discretisation; default: those that the accuracy asks for.
     """
-    request = checked.request
+    full = checked.request.accuracy.receipt == "full"
     with clock.stage("planning"):
-        wish = request.pair, request.load, request.accuracy, checked.model
-        plan = planned(*wish, request.alignments, cache)
-        prediction = predict_run(request.pair, plan, checked.model, request.alignments, cache)
+        decided = decided or decide(checked, cache)
+        checked, plan, request = decided.checked, decided.plan, decided.checked.request
+        wanted = request.pair, plan, checked.model, request.alignments
+        prediction = predict_run(*wanted, cache, with_errors=full)
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
     places = laid_out(checked, plan, clock, report, cache, known=known)
     with clock.stage("contact"):
-        nodes = table_nodes(places, plan, measured=request.accuracy.receipt == "full")
+        nodes = table_nodes(places, plan, measured=full)
         report("contact", 0.3)
         solved, support = (_solved(places, nodes, load) for load in (plan.load, plan.support))
         table = _table(request, places, nodes, solved, support)
         report("contact", 1.0)
-    return SolvedTable(checked, plan, prediction, places, nodes, solved, support, table)
+    return SolvedTable(decided, prediction, places, nodes, solved, support, table)
 
 
 def laid_out(

@@ -12,6 +12,7 @@ from fe_contact.analysis.position_nodes import (
     fixed_nodes,
     unmeasured_nodes,
 )
+from fe_contact.analysis.sampled import LOADS, sample_of, spread
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactModel
 from fe_contact.planning import MOST_ROWS, Plan
@@ -29,13 +30,13 @@ def table_nodes(places: Places, plan: Plan, measured: bool = True) -> PositionNo
 
     def solve(position: FloatArray) -> FloatArray:
         """STE (W, P, windows x places x L) in m."""
-        curves = [_curves(places, plan, position, window) for window in windows]
+        curves = [_curves(places, plan.load, position, window) for window in windows]
         return np.concatenate(curves, axis=2)
 
     if plan.positions is not None and not measured:
         return unmeasured_nodes(plan.positions, len(places.judged) * plan.load.size)
     if plan.positions is not None:
-        nodes = fixed_nodes(plan.positions, solve)
+        nodes = fixed_nodes(plan.positions, lambda position: _at_some_loads(places, plan, position, windows))
     else:
         rows = places.period * len(places.places)
         most = max(min(plan.nodes.most, MOST_ROWS // rows), plan.nodes.start)
@@ -59,23 +60,36 @@ def judged_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
     return tuple(order[k] + np.arange(-1, 2) for k in chosen)
 
 
-def _curves(places: Places, plan: Plan, position: FloatArray, pitches: IntArray) -> FloatArray:
+def _curves(places: Places, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
     """STE (T, P, places x L) in m of the judged places in the given pitches."""
     shape = (pitches.size, position.size, -1)
     curves = [
-        place.solve_pitches(position, plan.load, pitches)[1].deflection.reshape(shape)
-        for place in places.judged
+        place.solve_pitches(position, load, pitches)[1].deflection.reshape(shape) for place in places.judged
     ]
     return np.concatenate(curves, axis=2)
+
+
+def _at_some_loads(
+    places: Places, plan: Plan, position: FloatArray, windows: tuple[IntArray, ...]
+) -> FloatArray:
+    """STE (W, P, windows x places x L) in m, solved at some loads and interpolated to all of them.
+
+    What is missed between positions changes slowly with load.
+    """
+    sample = sample_of(plan.load.size, LOADS)
+    curves = [_curves(places, plan.load[sample], position, window) for window in windows]
+    solved = np.concatenate(curves, axis=2)
+    by_load = solved.reshape(*solved.shape[:2], -1, sample.size)
+    return spread(plan.load, sample, by_load, -1).reshape(*solved.shape[:2], -1)
 
 
 def _measured(nodes: FloatArray, places: Places, plan: Plan) -> PositionNodes:
     """Measure the error at the middles of the intervals of all pitches."""
     pitches = np.arange(places.period)
     axis = Axis((pitches[:, None] + nodes).ravel(), float(places.period))
-    values = _curves(places, plan, nodes, pitches).reshape(axis.knots.size, -1)
+    values = _curves(places, plan.load, nodes, pitches).reshape(axis.knots.size, -1)
     middles = nodes + 0.5 * np.diff(nodes, append=nodes[0] + 1.0)
-    found = _curves(places, plan, middles, pitches)
+    found = _curves(places, plan.load, middles, pitches)
     query = (pitches[:, None] + middles).ravel()
     between = found.reshape(query.size, -1)
     return PositionNodes(nodes, np.abs(interpolate(axis, values, query) - between), values, between)

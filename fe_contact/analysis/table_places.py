@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -36,11 +36,6 @@ class Place:
             return self.solve(position, load)
         return self.solve(position, load, np.repeat(pitches, position.size))
 
-    @property
-    def in_plane_strain(self) -> Place:
-        """The same place without the correction for the finite width."""
-        return replace(self, contact=self.contact.in_plane_strain)
-
 
 @dataclass(frozen=True)
 class Places:
@@ -71,9 +66,18 @@ class Places:
         last = len(self.places) - 1
         return tuple(self.places[i] for i in sorted({0, last // 2, last}))
 
+    @property
+    def in_plane_strain(self) -> Places:
+        """The same places without the correction for the finite width."""
+        return self._with_contacts(lambda contact: contact.in_plane_strain)
+
     def in_slices(self, count: int) -> Places:
-        """Return the same places in other slices; those of one centre distance share their compliance."""
-        contacts = {id(place.contact): place.contact.in_slices(count) for place in self.places}
+        """Return the same places in other slices."""
+        return self._with_contacts(lambda contact: contact.in_slices(count))
+
+    def _with_contacts(self, change: Callable[[PairContact], PairContact]) -> Places:
+        """Return the same places with other contacts; those of one centre distance share their compliance."""
+        contacts = {id(place.contact): change(place.contact) for place in self.places}
         places = tuple(replace(place, contact=contacts[id(place.contact)]) for place in self.places)
         return replace(self, places=places)
 

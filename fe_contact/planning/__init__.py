@@ -1,29 +1,33 @@
 """From a pair, an accuracy and a contact model to a plan."""
 
-from fe_contact.planning.accuracy import Accuracy
+from fe_contact.planning.accuracy import LEVELS, Accuracy
 from fe_contact.planning.cost_model import Prediction, predict_run
 from fe_contact.planning.cycle_cost import MOST_ROWS, CycleCost, cycle_cost, refuse_long_cycle
 from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
-from fe_contact.planning.error_model import ExpectedError, expected_error
-from fe_contact.planning.level_choice import LevelChoice
+from fe_contact.planning.error_model import LEFT_OUT, ExpectedError, Ripple, expected_error
+from fe_contact.planning.mesh_choice import MeshChoice, MeshOption
 from fe_contact.planning.plan import NodeRule, Plan, make_plan
-from fe_contact.planning.planned import chosen_level, planned
+from fe_contact.planning.planned import chosen_mesh, planned
 from fe_contact.planning.root_recipes import FaceRootMeshes, PlaneRootMeshes, root_meshes
 
 __all__ = [
+    "LEFT_OUT",
+    "LEVELS",
     "MOST_ROWS",
     "Accuracy",
     "CycleCost",
     "ExpectedError",
     "FaceDiscretisation",
     "FaceRootMeshes",
-    "LevelChoice",
+    "MeshChoice",
+    "MeshOption",
     "NodeRule",
     "Plan",
     "PlaneDiscretisation",
     "PlaneRootMeshes",
     "Prediction",
-    "chosen_level",
+    "Ripple",
+    "chosen_mesh",
     "cycle_cost",
     "expected_error",
     "make_plan",

@@ -9,7 +9,6 @@ Everything is then multiplied by how slow the host is and by what earlier runs s
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from fe_contact.compliance import PlaneHypothesis, free_ends_are_kept, is_kept, 
 from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
+from fe_contact.planning.contact_cost import contact_seconds, expected_positions
 from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
 from fe_contact.planning.host_speed import host_slowness
 from fe_contact.planning.plan import Plan
@@ -33,13 +33,8 @@ _SECTOR, _RING, _HUB_FREEDOM, _DEPTH = 1.89e-9, 2.06e-7, 5.34e-5, 2.72e-6
 _DEEP_RING = 9.4
 """Depth of a body in modules beyond which the mesh has a hub: three root circle pitches."""
 
-# measured on tables of 4 to 186 candidates, 3 to 109 us a point
-_POINT, _CANDIDATE = 3e-6, 0.55e-6
-_PLANE_POSITION, _FACE_POSITION = 4e-5, 1.1e-7
-# the search for positions assembles about five times as many as it keeps, equally spaced ones twice
-_SEARCH, _MIDDLES = 5, 2
-_EXPECTED = {"plane": 110, "face": 96}
-"""Positions that the search ends with, usually."""
+_READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.02, False: 0.007}
+"""CPU seconds to read what is kept of a gear in the plane, and over the face of a helical or a spur gear."""
 _BYTES_PER_UNKNOWN = 9_000
 
 
@@ -95,7 +90,13 @@ def log_name(kind: str, stage: str) -> str:
 
 
 def predict_run(
-    pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tuple[int, int], cache: Path | None
+    pair: ParallelAxes,
+    plan: Plan,
+    model: ContactModel,
+    alignments: tuple[int, int],
+    cache: Path | None,
+    *,
+    with_errors: bool = True,
 ) -> Prediction:
     """Predict the cost of a table; nothing is meshed or solved.
 
@@ -109,11 +110,14 @@ def predict_run(
         Numbers of misalignments and of centre distances.
     cache : Path, optional
         Directory of compliances, which cost nothing if they are there, and of what is known of the host.
+    with_errors : bool
+        Whether errors are estimated: a minimal receipt has no such stage.
     """
     made = plan.discretisation
     kind = "face" if isinstance(made, FaceDiscretisation) else "plane"
-    fine, coarse = (_compliance(pair, plan, cache, coarse=coarse) for coarse in (False, True))
-    solve, check = _contact(pair, plan, model, alignments)
+    fine = _compliance(pair, plan, cache, coarse=False)
+    coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else (0.0, 0.0)
+    solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
     slowness = host_slowness(cache)
     # dense algebra has its own measurement of the host in it
     speed = slowness if kind == "plane" else 1.0
@@ -125,7 +129,7 @@ def predict_run(
     known = corrections(cache)
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
     memory = PROCESS_BYTES + int(max(fine[1], coarse[1]))
-    return Prediction(raw, correction, memory, _positions(plan, kind), kind)
+    return Prediction(raw, correction, memory, expected_positions(pair, plan), kind)
 
 
 def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> tuple[float, float]:
@@ -151,7 +155,7 @@ def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: b
 def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> tuple[float, float]:
     """One gear over the face."""
     if is_kept(gear, recipe, cache):
-        return 0.0, 0.0
+        return _READ_SOLID[gear.helix_angle != 0.0], 0.0
     predicted = predict_cost(gear, recipe)
     return predicted.seconds, float(predicted.bytes)
 
@@ -167,9 +171,8 @@ def _free_ends(
         return []
     pairs = dict.fromkeys(zip(bodies, made.finite_width, strict=True))
     teeth = condensed_teeth(pair)
-    needed = [of for of in pairs if not free_ends_are_kept(*of, teeth, cache)]
-    found = [predict_cost(gear, recipe) for gear, recipe in needed]
-    return [(2.0 * cost.seconds, float(cost.bytes)) for cost in found]
+    found = [None if free_ends_are_kept(*of, teeth, cache) else predict_cost(*of) for of in pairs]
+    return [(_READ_PLANE, 0.0) if cost is None else (2.0 * cost.seconds, float(cost.bytes)) for cost in found]
 
 
 def _section(
@@ -177,7 +180,12 @@ def _section(
 ) -> tuple[float, float]:
     """One gear in the plane."""
     if plane_is_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
-        return 0.0, 0.0
+        return _READ_PLANE, 0.0
+    return section_cost(gear, recipe)
+
+
+def section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:
+    """CPU seconds and bytes of one gear in the plane on the reference host."""
     fineness = 0.05 * gear.normal_module / recipe.flank_size
     sector = 5000.0 * fineness**1.73
     depth = abs(gear.root_radius - gear.held_radius) / gear.normal_module
@@ -195,36 +203,3 @@ def condensed_teeth(pair: ParallelAxes) -> int:
     """Return the number of teeth in the plane that can touch at once, as many as both gears have."""
     fits = min(pair.pinion.teeth, pair.wheel.teeth)
     return min(teeth_in_reach(pair), fits - 1 + fits % 2)
-
-
-def _positions(plan: Plan, kind: str) -> int:
-    """Positions in a base pitch."""
-    return plan.positions or _EXPECTED[kind]
-
-
-def _contact(
-    pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tuple[int, int]
-) -> tuple[float, float]:
-    """CPU seconds of the contact, and of its second solution for the error estimate."""
-    made = plan.discretisation
-    pairs = math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 2
-    candidates = pairs * made.slices
-    point = _POINT + _CANDIDATE * candidates
-    if isinstance(made, FaceDiscretisation):
-        kind = "face"
-        layers = max(recipe.layers for recipe in made.recipes)
-        elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
-        position = _FACE_POSITION * candidates * pairs * layers * elements
-    else:
-        kind, position = "plane", _PLANE_POSITION
-    kept = _positions(plan, kind)
-    tried = kept * (_MIDDLES if plan.positions is not None else _SEARCH)
-    places = alignments[0] * alignments[1]
-    judged, rows = min(places, 3), model.period * places
-    loads = plan.load.size
-    search = tried * alignments[1] * position + tried * judged * loads * point
-    solve = kept * rows * (loads + plan.support.size) * point
-    again = kept * alignments[1] * position + kept * rows * loads * point
-    corrected = 2.0 if made.corrected else 1.0
-    held_out = 2.0 if places > 1 else 1.0
-    return search + solve, again * corrected * held_out

@@ -116,7 +116,12 @@ class Plan:
 
 
 def make_plan(
-    pair: ParallelAxes, load: FloatArray, accuracy: Accuracy, model: ContactModel, level: str = "standard"
+    pair: ParallelAxes,
+    load: FloatArray,
+    accuracy: Accuracy,
+    model: ContactModel,
+    level: str = "standard",
+    slices: int | None = None,
 ) -> Plan:
     """Choose meshes, slices, patches, positions and support loads.
 
@@ -132,12 +137,14 @@ def make_plan(
     level : str
         Of the meshes, unless the accuracy names one; `fe_contact.planning.planned` chooses it by the
         accuracy.
+    slices : int, optional
+        Of the face in three dimensions; default: those of the level.
     """
     level = accuracy.level or level
     levels = increasing("load", load)
     discretisation: Discretisation
     if model.across_face:
-        discretisation = face_discretisation(pair, level)
+        discretisation = face_discretisation(pair, level, slices)
     else:
         stress = accuracy.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN

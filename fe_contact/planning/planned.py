@@ -1,16 +1,17 @@
-"""From what the caller asks for to a plan: the mesh is chosen by the models of error and cost."""
+"""From what the caller asks for to a plan: mesh and slices are chosen by the models of error and cost."""
 
 from __future__ import annotations
 
-from functools import cache as remembered
 from pathlib import Path
 
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning.accuracy import Accuracy
-from fe_contact.planning.cost_model import Prediction, predict_run
-from fe_contact.planning.error_model import ExpectedError, expected_error
-from fe_contact.planning.level_choice import LevelChoice, level_for_time, level_for_tolerance
+from fe_contact.planning.accuracy import LEVELS, Accuracy
+from fe_contact.planning.cost_model import predict_run
+from fe_contact.planning.discretisation import FINER_SLICES, FaceDiscretisation
+from fe_contact.planning.effort import effort
+from fe_contact.planning.error_model import Ripple, expected_error
+from fe_contact.planning.mesh_choice import MeshChoice, MeshOption, mesh_for_time, mesh_for_tolerance
 from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.types import FloatArray
 
@@ -23,24 +24,24 @@ def planned(
     alignments: tuple[int, int] = (1, 1),
     cache: Path | None = None,
 ) -> Plan:
-    """Return the plan of a request: with the mesh that its accuracy asks for.
+    """Return the plan of a request: with the mesh and slices that its accuracy asks for.
 
-    Parameters are those of `chosen_level`.
+    Parameters are those of `chosen_mesh`.
     """
-    return make_plan(
-        pair, load, accuracy, model, chosen_level(pair, load, accuracy, model, alignments, cache).level
-    )
+    choice = chosen_mesh(pair, load, accuracy, model, alignments, cache)
+    return make_plan(pair, load, accuracy, model, choice.level, choice.slices)
 
 
-def chosen_level(
+def chosen_mesh(
     pair: ParallelAxes,
     load: FloatArray,
     accuracy: Accuracy,
     model: ContactModel,
     alignments: tuple[int, int] = (1, 1),
     cache: Path | None = None,
-) -> LevelChoice:
-    """Choose the mesh by the accuracy.
+    ripple: Ripple | None = None,
+) -> MeshChoice:
+    """Choose mesh and slices by the accuracy.
 
     Parameters
     ----------
@@ -52,23 +53,29 @@ def chosen_level(
     alignments : (int, int)
         Numbers of misalignments and of centre distances.
     cache : Path, optional
-        Directory of compliances and of what is known of the host: a time depends on them.
+        Directory of compliances and of what is known of the host: a time depends on them, a tolerance does
+        not.
+    ripple : Ripple, optional
+        What is known of the ripple of the case.
     """
 
-    @remembered
-    def plan(level: str) -> Plan:
-        return make_plan(pair, load, accuracy, model, level)
+    def option(level: str, slices: int | None = None) -> MeshOption:
+        plan = make_plan(pair, load, accuracy, model, level, slices)
+        work = effort(pair, plan, model, alignments)
+        return MeshOption(level, plan.discretisation.slices, expected_error(pair, plan, ripple), work)
 
-    def error(level: str) -> ExpectedError:
-        return expected_error(pair, plan(level).discretisation, level)
-
-    def cost(level: str) -> Prediction:
-        return predict_run(pair, plan(level), model, alignments, cache)
+    def seconds(choice: MeshOption) -> float:
+        plan = make_plan(pair, load, accuracy, model, choice.level, choice.slices)
+        return predict_run(pair, plan, model, alignments, cache).cpu_seconds
 
     if accuracy.level is not None:
-        return LevelChoice(accuracy.level, True, "as asked")
+        return MeshChoice(option(accuracy.level), True, "as asked")
+    if accuracy.tolerance is None and accuracy.time_budget is None:
+        return MeshChoice(option("standard"), True, "nothing asked")
+    options = [option(level) for level in LEVELS]
+    usual = make_plan(pair, load, accuracy, model, "draft").discretisation
+    if isinstance(usual, FaceDiscretisation):
+        options += [option(level, n) for level in LEVELS for n in FINER_SLICES]
     if accuracy.tolerance is not None:
-        return level_for_tolerance(accuracy.tolerance, error)
-    if accuracy.time_budget is not None:
-        return level_for_time(accuracy.time_budget, lambda level: cost(level).cpu_seconds)
-    return LevelChoice("standard", True, "nothing asked")
+        return mesh_for_tolerance(accuracy.tolerance, options)
+    return mesh_for_time(accuracy.time_budget or 0.0, options, seconds)

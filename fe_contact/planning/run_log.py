@@ -17,8 +17,8 @@ FILE = "run-log.jsonl"
 LAST = 40
 """Runs of a stage that count."""
 _MADE_UP = 2
-_SHORTEST = 1e-3
-"""Seconds; shorter stages say nothing about speed."""
+_SHORTEST = 0.02
+"""Seconds; shorter stages say nothing about speed: reading what is kept, calls of libraries."""
 _LARGEST_FILE = 1_000_000
 
 
@@ -39,8 +39,8 @@ def record(cache: Path | None, predicted: Mapping[str, float], measured: Mapping
     cache : Path, optional
         Directory of the log; None: nothing is kept.
     predicted, measured : mapping
-        CPU seconds by stage, predicted without corrections; stages in only one of the two, or shorter than a
-        millisecond, are left out.
+        CPU seconds by stage, predicted without corrections; stages in only one of the two, or shorter than
+        20 ms, are left out.
     """
     if cache is None:
         return

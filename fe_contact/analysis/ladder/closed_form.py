@@ -18,14 +18,13 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versions
-from fe_contact.analysis.ladder.slice_springs import SliceLaw, SpringContact
 from fe_contact.analysis.request import Checked
+from fe_contact.analysis.slice_laws import mean_stiffness, parabolic_stiffness
+from fe_contact.analysis.slice_springs import SliceLaw, SpringContact
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
-from fe_contact.contact import Candidates, ContactSolution
-from fe_contact.geometry import GearPair, ParallelAxes
-from fe_contact.geometry.iso6336_stiffness import MEASURED_OVER_THEORY, iso6336_stiffness
+from fe_contact.contact import ContactSolution
 from fe_contact.planning import Plan, make_plan
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
@@ -117,35 +116,6 @@ class ClosedFormRung:
     def _error(self, solution: ContactSolution) -> FloatArray:
         """State the error (P, L) as a part of the elastic deflection, m."""
         return self.relative_error * np.abs(solution.deflection - solution.no_load[:, None])
-
-
-def mean_stiffness(pair: ParallelAxes, candidates: Candidates) -> FloatArray:
-    """Stiffness per unit width whose mean over the cycle of all pairs is c_gamma_alpha, N/m per m."""
-    value = iso6336_stiffness(_external(pair)).mesh_stiffness / pair.transverse_contact_ratio
-    return np.full(candidates.gap.shape, value)
-
-
-def parabolic_stiffness(pair: ParallelAxes, candidates: Candidates) -> FloatArray:
-    """Stiffness per unit width c'/C_M (1 - k xi^2), xi from -1 to 1 along the path of contact, N/m per m.
-
-    Its mean over the path, 1 - k/3, is (0.75 eps_alpha + 0.25)/eps_alpha, hence k = 0.75 (1 - 1/eps_alpha);
-    a tip edge that touches beyond the path has the stiffness of its end.
-    """
-    largest = iso6336_stiffness(_external(pair)).single_stiffness / MEASURED_OVER_THEORY
-    path = pair.path_of_contact
-    phase = candidates.position - np.floor(candidates.position)
-    roll, _ = pair.roll_lengths(phase[:, None], candidates.pair)
-    roll = roll - candidates.face_position * np.tan(pair.base_helix_angle)
-    along = np.clip(2.0 * (roll - path.start) / path.length - 1.0, -1.0, 1.0)
-    drop = 0.75 * (1.0 - 1.0 / pair.transverse_contact_ratio)
-    return np.asarray(largest * (1.0 - drop * along**2))
-
-
-def _external(pair: ParallelAxes) -> GearPair:
-    """Return the pair as an external one; `ClosedFormRung.refusal` has refused any other."""
-    if not isinstance(pair, GearPair):
-        raise TypeError("the stiffness of ISO 6336-1 is for external pairs")
-    return pair
 
 
 ISO6336 = ClosedFormRung(

@@ -1,0 +1,181 @@
+"""Is an asked tolerance met, and at what price? `tolerance = 0.01` on many pairs, against the finest rung."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks.figures import Figure
+from benchmarks.held_out_cases import held_out_face_cases, held_out_plane_cases
+from benchmarks.honesty_cases import HonestyCase, face_cases, plane_cases
+from benchmarks.marked_section import replace_section
+from benchmarks.measured_rungs import Measured, RungOf, measured, needs_face, rungs_of, truth
+from fe_contact.analysis import check_request
+from fe_contact.analysis.model_choice import Decided, decide
+
+PAGE = Path(__file__).parents[1] / "docs" / "accuracy.md"
+SECTION = "tolerance"
+TOLERANCE = 0.01
+SUBJECT = f"tolerance = {TOLERANCE:g} against the finest rung"
+_MET, _PRICE = 90.0, 2.5
+REFERENCE = RungOf("3d", "standard")
+"""What the plane is held against: it errs by less than 0.3 %, and agrees with the finest plane to as much."""
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A promise on one case.
+
+    Attributes
+    ----------
+    case : str
+    held_out : bool
+        Whether no constant was fitted to the case.
+    rung : str
+        Model, mesh and slices that were chosen.
+    promised : bool
+        Whether the error model expected them to meet the tolerance.
+    error : float
+        True relative error of mean and peak-to-peak, the worst over the loads.
+    seconds : float
+        CPU seconds of the chosen run.
+    cheapest : str
+        The quickest rung that met the tolerance, empty if none did.
+    least : float
+        Its CPU seconds, NaN if there is none.
+    """
+
+    case: str
+    held_out: bool
+    rung: str
+    promised: bool
+    error: float
+    seconds: float
+    cheapest: str
+    least: float
+
+    @property
+    def met(self) -> bool:
+        """Whether the tolerance was met."""
+        return self.error <= TOLERANCE
+
+    @property
+    def price(self) -> float:
+        """Time over that of the cheapest rung that met it; NaN if none did."""
+        return self.seconds / self.least
+
+
+def figures() -> list[Figure]:
+    """Return the counts."""
+    return counts(study())
+
+
+@cache
+def study() -> tuple[Kept, ...]:
+    """Judge every case; what is measured already is not measured again."""
+    known = [*plane_cases(), *face_cases()]
+    held_out = [*held_out_plane_cases(), *held_out_face_cases()]
+    return tuple(judge(case, held_out=case in held_out) for case in [*known, *held_out])
+
+
+def judge(case: HonestyCase, *, held_out: bool) -> Kept:
+    """Ask for the tolerance, and hold what is chosen against the finest rung."""
+    begun = time.process_time()
+    chosen = ask(case)
+    planning = time.process_time() - begun
+    across_face = needs_face(case)
+    exact = truth(case) if across_face else measured(case, REFERENCE).value
+    rung = rung_of(chosen)
+    beside = [RungOf("3d", "standard", 91), RungOf("3d", "fine", 61)] if rung.level == "fine" else []
+    wanted = dict.fromkeys([*rungs_of(across_face=across_face), *beside, rung])
+    tried = {one: measured(case, one) for one in wanted}
+    errors = {one: relative_error(found, exact) for one, found in tried.items()}
+    good = [one for one, error in errors.items() if error <= TOLERANCE]
+    best = min(good, key=lambda one: tried[one].cpu_seconds, default=None)
+    return Kept(
+        case.name,
+        held_out,
+        rung.name,
+        chosen.mesh.met,
+        errors[rung],
+        tried[rung].cpu_seconds + planning,
+        best.name if best else "",
+        tried[best].cpu_seconds if best else float("nan"),
+    )
+
+
+def ask(case: HonestyCase) -> Decided:
+    """Return what is chosen for a case."""
+    options: dict[str, Any] = {name: value for name, value in case.options.items() if name != "positions"}
+    return decide(check_request(case.pair, normal_forces=case.forces, tolerance=TOLERANCE, **options))
+
+
+def rung_of(chosen: Decided) -> RungOf:
+    """Name the chosen model, mesh and slices as the study does."""
+    if chosen.checked.model.across_face:
+        return RungOf("3d", chosen.mesh.level, chosen.mesh.slices)
+    return RungOf("corrected" if chosen.checked.model.finite_width else "plane_strain", chosen.mesh.level)
+
+
+def relative_error(found: Measured, exact: Any) -> float:
+    """Largest relative error of mean and peak-to-peak over the loads."""
+    return float(np.max(np.abs(found.value[:2] / exact[:2] - 1.0)))
+
+
+def counts(found: Sequence[Kept]) -> list[Figure]:
+    """Return how often the tolerance was met, and at what price."""
+    rows = [Figure(SUBJECT, "cases", float(len(found)), "-")]
+    for name, part in (("", found), (" (held out)", [one for one in found if one.held_out])):
+        price = np.array([one.price for one in part])
+        known = price[np.isfinite(price)]
+        missed = 100.0 * float(np.mean([not one.met for one in part]))
+        dear = 100.0 * float(np.mean(known > _PRICE))
+        rows += [
+            Figure(SUBJECT, f"not met{name}", missed, "% of cases", 100.0 - _MET),
+            Figure(
+                SUBJECT, f"median price{name}", float(np.median(known)), "x the cheapest that met it", _PRICE
+            ),
+            Figure(SUBJECT, f"price above {_PRICE:g}{name}", dear, "% of cases", 0.0),
+        ]
+    return rows
+
+
+def markdown(found: Sequence[Kept]) -> str:
+    """Return the section of docs/accuracy.md."""
+    known = [one for one in found if np.isfinite(one.price)]
+    lines = [
+        f"`tolerance = {TOLERANCE:g}` on {len(found)} cases at two or three loads each, "
+        f"{sum(one.held_out for one in found)} of them held out of every fit (marked *):",
+        f"met in {_share(one.met for one in found)}, of those held out in "
+        f"{_share(one.met for one in found if one.held_out)};",
+        f"median price {np.median([one.price for one in known]):.2g} times the cheapest rung that met it, "
+        f"at most {_PRICE:g} times in {_share(one.price <= _PRICE for one in known)}, "
+        f"worst {max(one.price for one in known):.2g}.",
+        "",
+        "| case | chosen | true error, % | CPU s | cheapest that met it | CPU s | price |",
+        "|---|---|---:|---:|---|---:|---:|",
+    ]
+    for one in found:
+        error = f"{100.0 * one.error:.2g}" if one.met else f"**{100.0 * one.error:.2g}**"
+        promise = "" if one.promised else " (not promised)"
+        price = f"{one.price:.2g}" if np.isfinite(one.price) else "-"
+        name = f"{one.case}*" if one.held_out else one.case
+        best = f"{one.cheapest or 'none'} | {one.least:.2g}"
+        lines.append(f"| {name} | {one.rung}{promise} | {error} | {one.seconds:.2g} | {best} | {price} |")
+    return "\n".join(lines) + "\n"
+
+
+def _share(found: Any) -> str:
+    """Per cent of what is true."""
+    return f"{100.0 * np.mean(list(found)):.0f} %"
+
+
+def publish(found: Sequence[Kept]) -> None:
+    """Write the section of the page between its marks."""
+    replace_section(PAGE, SECTION, markdown(found))

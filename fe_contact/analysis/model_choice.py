@@ -1,0 +1,146 @@
+"""Which model a tolerance or a time asks for, among those that hold what is in the scene.
+
+A spur pair with nothing acting across its face may be computed in the plane, in the plane corrected for its
+finite width, or in three dimensions: the cheapest that is expected to meet the wish is taken. An explicit
+model, or an explicit choice of one of the two effects that tell the models apart, is obeyed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from fe_contact.analysis.request import Checked, Request, check_asked
+from fe_contact.analysis.ripple import expected_ripple
+from fe_contact.effects import FaceLoadDistribution, FiniteWidth
+from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.planning import LEFT_OUT, LEVELS, MeshChoice, Plan, chosen_mesh, make_plan
+from fe_contact.types import Json
+
+FACE, WIDTH = FaceLoadDistribution.name, FiniteWidth.name
+
+
+@dataclass(frozen=True)
+class Decided:
+    """A request with its model and mesh.
+
+    Attributes
+    ----------
+    checked : Checked
+        With the chosen model, and a ledger that says why.
+    mesh : MeshChoice
+    plan : Plan
+    """
+
+    checked: Checked
+    mesh: MeshChoice
+    plan: Plan
+
+    def to_json(self) -> Json:
+        """Return what was chosen, as plain JSON."""
+        return {"model": model_name(self.checked)} | self.mesh.to_json()
+
+
+def decide(checked: Checked, cache: Path | None = None, *, keep_model: bool = False) -> Decided:
+    """Choose model, mesh and slices by the accuracy of a request.
+
+    Parameters
+    ----------
+    checked : Checked
+    cache : Path, optional
+        Directory of compliances and of what is known of the host: a time depends on them.
+    keep_model : bool
+        Choose mesh and slices only: what is asked for is more than the transmission error.
+    """
+    models = [checked] if keep_model else alternatives(checked)
+    found: list[tuple[Checked, MeshChoice]] = []
+    for one in models:
+        # what the coarsest mesh in the plane meets, three dimensions meet no cheaper
+        if not (one.model.across_face and any(mesh.met and mesh.level == LEVELS[0] for _, mesh in found)):
+            found.append((one, _mesh(one, cache)))
+    return _planned(*_best(found))
+
+
+def alternatives(checked: Checked) -> list[Checked]:
+    """Return the request with every model that may stand in for its own; itself where it is bound."""
+    request = checked.request
+    wish = request.accuracy.tolerance is not None or request.accuracy.time_budget is not None
+    chosen = {name for name in (FACE, WIDTH) if request.asked_choices.get(name, "auto") != "auto"}
+    decided = {FACE, WIDTH} & {*request.spared, *request.turned_on}
+    if not wish or chosen or decided or checked.model.across_face:
+        return [checked]
+    plain = replace(request, spared={**request.spared, WIDTH: "left out"})
+    solid = replace(request, turned_on={**request.turned_on, FACE: "taken"})
+    return [_again(plain), checked, _again(solid)]
+
+
+def _again(request: Request) -> Checked:
+    """Compose a request anew; nothing more is spared."""
+    return check_asked(request, spare=False)
+
+
+def model_name(checked: Checked) -> str:
+    """Name the model of a request in words."""
+    if checked.model.across_face:
+        return "three dimensions"
+    if checked.request.accuracy.model == "plane_stress":
+        return "plane stress"
+    corrected = "plane strain corrected for the finite width"
+    return corrected if checked.model.finite_width else "plane strain"
+
+
+def plane_strain_error(checked: Checked) -> float:
+    """Return the relative error of plane strain where it is taken for the accuracy's sake, else 0.
+
+    Where the caller asked for plane strain it is the model, not an error.
+    """
+    taken = WIDTH in checked.request.spared and not checked.model.across_face
+    return LEFT_OUT * finite_width_excess(checked.request.pair) if taken else 0.0
+
+
+def _mesh(checked: Checked, cache: Path | None) -> MeshChoice:
+    """Choose the mesh of one model."""
+    asked, accuracy = checked.request, checked.request.accuracy
+    wish = accuracy.tolerance is not None or accuracy.time_budget is not None
+    ripple = expected_ripple(checked) if wish and checked.model.across_face else None
+    wanted = asked.pair, asked.load, accuracy, checked.model
+    return chosen_mesh(*wanted, asked.alignments, cache, ripple)
+
+
+def _best(found: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:
+    """Return the cheapest that meets a tolerance, the most exact that meets a time, else the most exact."""
+    if len(found) == 1:
+        return found[0]
+    good = [one for one in found if one[1].met]
+    by_time = found[0][0].request.accuracy.time_budget is not None
+    if good and not by_time:
+        return _said(min(good, key=lambda one: one[1].option.effort))
+    return _said(min(good or found, key=lambda one: one[1].option.error.total))
+
+
+def _said(found: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
+    """Write into the ledger why an effect is off that the scene calls for, or the other way round."""
+    checked, mesh = found
+    request, error = checked.request, mesh.option.error
+    parts = f"{100.0 * error.total:.2g} %, of which the model {100.0 * error.model:.2g} %"
+    spared, turned_on = (
+        {name: _reason(name, text, parts) for name, text in overrides.items()}
+        for overrides in (request.spared, request.turned_on)
+    )
+    if (spared, turned_on) == (dict(request.spared), dict(request.turned_on)):
+        return found
+    return _again(replace(request, spared=spared, turned_on=turned_on)), mesh
+
+
+def _reason(name: str, text: str, parts: str) -> str:
+    """Say why one of the two effects was turned here; reasons of others stay."""
+    mine = name in (FACE, WIDTH) and text in ("taken", "left out")
+    return f"{text} for the asked accuracy: expected error {parts}" if mine else text
+
+
+def _planned(checked: Checked, mesh: MeshChoice) -> Decided:
+    """Make the plan."""
+    asked = checked.request
+    plan = make_plan(asked.pair, asked.load, asked.accuracy, checked.model, mesh.level, mesh.slices)
+    return Decided(checked, mesh, plan)

@@ -1,0 +1,51 @@
+"""Errors change slowly along an axis: they are measured at a few of its nodes and interpolated between them.
+
+The errors of a discretisation are nearly a fixed part of the deflection, so that linear interpolation between
+loads a factor of some apart carries them on; the same holds between alignments. What is to be estimated is
+an error, of which one digit counts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.types import FloatArray, IntArray
+
+LOADS, ALIGNMENTS, POSITIONS = 4, 3, 32
+"""Nodes of an axis of loads, of misalignments or centre distances that are solved; shorter axes whole. Of the
+positions half, at least so many."""
+
+
+def sample_of(count: int, most: int) -> IntArray:
+    """Return the nodes of an axis of `count` that are solved: at most `most`, both ends among them."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
+
+
+def spread(nodes: FloatArray, sample: IntArray, values: FloatArray, axis: int) -> FloatArray:
+    """Interpolate values known at some nodes of an axis to all of them, linearly.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n,)
+        Increasing.
+    sample : ndarray of int, shape (k,)
+        Nodes of `values`, both ends among them.
+    values : ndarray
+        k long along `axis`; NaN goes to both intervals beside it.
+    axis : int
+
+    Returns
+    -------
+    ndarray
+        n long along `axis`; the values themselves where all nodes are solved.
+    """
+    if sample.size == nodes.size:
+        return values
+    known = nodes[sample]
+    right = np.clip(np.searchsorted(known, nodes), 1, sample.size - 1)
+    part = (nodes - known[right - 1]) / (known[right] - known[right - 1])
+    weight = part.reshape([-1 if i == axis % values.ndim else 1 for i in range(values.ndim)])
+    low, high = np.take(values, right - 1, axis=axis), np.take(values, right, axis=axis)
+    return np.asarray(
+        np.where(weight == 0.0, low, np.where(weight == 1.0, high, low + weight * (high - low)))
+    )

@@ -1,0 +1,109 @@
+"""Which mesh and slices a tolerance or a time asks for, by the models of error and of cost."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from fe_contact.planning.error_model import ExpectedError
+from fe_contact.types import Json
+
+
+@dataclass(frozen=True)
+class MeshOption:
+    """A mesh with its slices.
+
+    Attributes
+    ----------
+    level : str
+        "draft", "standard" or "fine".
+    slices : int
+        Of the face; 1 in the plane.
+    error : ExpectedError
+    effort : float
+        Work of a run, in CPU seconds of the host on which the models were measured and with nothing in the
+        cache: equal on every host, so that the choice is.
+    """
+
+    level: str
+    slices: int
+    error: ExpectedError
+    effort: float
+
+    @property
+    def name(self) -> str:
+        """In words."""
+        return self.level if self.slices == 1 else f"{self.level}, {self.slices} slices"
+
+
+@dataclass(frozen=True)
+class MeshChoice:
+    """A mesh with its slices, why, and whether the wish can be had.
+
+    Attributes
+    ----------
+    option : MeshOption
+    met : bool
+        Whether the models promise what was asked for.
+    reason : str
+        In words.
+    """
+
+    option: MeshOption
+    met: bool
+    reason: str
+
+    @property
+    def level(self) -> str:
+        """Level of the mesh."""
+        return self.option.level
+
+    @property
+    def slices(self) -> int:
+        """Slices of the face; 1 in the plane."""
+        return self.option.slices
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"level": self.level, "slices": self.slices, "met": self.met, "reason": self.reason}
+
+
+def mesh_for_tolerance(tolerance: float, options: Sequence[MeshOption]) -> MeshChoice:
+    """Return the option of least effort whose error is expected to be within the tolerance.
+
+    If there is none: where it is the model that is beyond it, the one of least effort whose own error is
+    within it, as no mesh mends the model; else the most exact one. Said in either case.
+    """
+    within = [option for option in options if option.error.total <= tolerance]
+    if within:
+        best = min(within, key=_effort)
+        return MeshChoice(best, True, f"expected error {_percent(best.error.total)} %")
+    enough = [option for option in options if option.error.discretisation <= tolerance]
+    beyond = min(option.error.model for option in options) > tolerance
+    best = min(enough, key=_effort) if enough and beyond else min(options, key=lambda o: o.error.total)
+    error = best.error
+    parts = f"mesh {_percent(error.discretisation)} %, model {_percent(error.model)} %"
+    return MeshChoice(best, False, f"no mesh is expected within {_percent(tolerance)} % ({parts})")
+
+
+def mesh_for_time(
+    budget: float, options: Sequence[MeshOption], seconds: Callable[[MeshOption], float]
+) -> MeshChoice:
+    """Return the most exact option that is predicted to fit into `budget` CPU seconds, else the cheapest."""
+    for option in sorted(options, key=lambda o: (o.error.total, o.effort)):
+        found = seconds(option)
+        if found <= budget:
+            return MeshChoice(option, True, f"predicted {found:.2g} CPU s")
+    least = min(options, key=_effort)
+    reason = f"even the quickest mesh is predicted to take {seconds(least):.2g} CPU s"
+    return MeshChoice(least, False, reason)
+
+
+def _effort(option: MeshOption) -> float:
+    """Work of a run."""
+    return option.effort
+
+
+def _percent(value: float) -> str:
+    """In per cent, two digits."""
+    return f"{100.0 * value:.2g}"

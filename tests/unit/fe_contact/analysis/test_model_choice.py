@@ -1,0 +1,134 @@
+"""Which model and mesh an accuracy asks for: the cheapest that promises it, unless chosen explicitly."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.analysis.model_choice import alternatives, decide, plane_strain_error
+from fe_contact.analysis.request import check_request
+from fe_contact.analysis.ripple import expected_ripple
+from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.ste.curve_errors import SOURCES
+
+LOADS = [400.0, 1600.0]
+
+
+def pair(helix: float = 0.0, width: float = 16e-3, **modification: float) -> GearPair:
+    gear = Gear(
+        teeth=20,
+        normal_module=2e-3,
+        face_width=width,
+        bore_diameter=20e-3,
+        helix_angle=helix,
+        modification=FlankModification(**modification),
+    )
+    mate = dataclasses.replace(gear, helix_angle=-helix, modification=FlankModification())
+    return GearPair(gear, mate, 40e-3 / math.cos(helix))
+
+
+def decided(pair: GearPair, **asked):
+    return decide(check_request(pair, normal_forces=LOADS, **asked))
+
+
+def model_of(found) -> str:
+    return found.to_json()["model"]
+
+
+def test_a_looser_tolerance_never_takes_more_work():
+    """Down to plane strain, where what it leaves out is within the tolerance."""
+    for case in (pair(), pair(0.3), pair(width=3e-3)):
+        found = [decided(case, tolerance=t) for t in (0.2, 0.05, 0.02, 0.01, 0.005, 0.002)]
+        effort = [one.mesh.option.effort for one in found if one.mesh.met]
+        assert effort == sorted(effort)
+        assert all(one.mesh.option.error.total <= t for one, t in zip(found, (0.2, 0.05), strict=False))
+    assert model_of(decided(pair(), tolerance=0.05)) == "plane strain"
+    assert model_of(decided(pair(), tolerance=0.01)) == "plane strain corrected for the finite width"
+
+
+def test_three_dimensions_are_taken_where_the_correction_is_not_enough():
+    narrow = pair(width=2e-3)
+    assert 0.03 * finite_width_excess(narrow) > 1.5e-3
+    found = decided(narrow, tolerance=0.0035)
+    assert model_of(found) == "three dimensions"
+    entry = next(e for e in found.checked.ledger if e.name == "face_load_distribution")
+    assert entry.on
+    assert entry.choice == "auto"
+    assert "taken for the asked accuracy: expected error" in entry.override
+
+
+def test_the_ledger_says_why_the_finite_width_is_left_out():
+    found = decided(pair(), tolerance=0.05)
+    entry = next(e for e in found.checked.ledger if e.name == "finite_width")
+    assert (entry.on, entry.choice, entry.verdict.on) == (False, "auto", True)
+    assert "left out for the asked accuracy: expected error" in entry.override
+
+
+@pytest.mark.parametrize(
+    "explicit",
+    [
+        {"model": "plane_strain"},
+        {"model": "3d"},
+        {"effects": {"finite_width": "on"}},
+        {"effects": {"finite_width": "off"}},
+        {"effects": {"face_load_distribution": "on"}},
+    ],
+)
+def test_an_explicit_model_or_effect_is_obeyed(explicit):
+    asked = check_request(pair(), normal_forces=LOADS, tolerance=0.05, **explicit)
+    found = decide(asked)
+    assert found.checked.model == asked.model
+    assert found.checked.ledger == asked.ledger
+
+
+def test_a_level_or_nothing_asked_keeps_the_model_of_the_scene():
+    for asked in ({"level": "draft"}, {}):
+        (only,) = alternatives(check_request(pair(), normal_forces=LOADS, **asked))
+        assert only.model.finite_width
+    (only,) = alternatives(check_request(pair(0.3), normal_forces=LOADS, tolerance=0.1))
+    assert only.model.across_face
+
+
+def test_helical_pairs_get_slices_before_a_finer_mesh():
+    """False steps fall with the slices, and those cost less than elements."""
+    found = [decided(pair(0.3), tolerance=t) for t in (0.1, 0.01)]
+    assert {one.mesh.level for one in found} == {"draft"}
+    assert found[1].mesh.slices > found[0].mesh.slices
+    assert found[1].plan.discretisation.slices == found[1].mesh.slices
+
+
+def test_a_small_ripple_asks_for_more():
+    """Steep and wide: the contact lines hardly change their length, so that per cents of ripple are small."""
+    smooth = pair(math.radians(30.0), width=math.pi * 2e-3 / math.sin(math.radians(30.0)))
+    ripples = [expected_ripple(check_request(one, normal_forces=LOADS)) for one in (pair(0.15), smooth)]
+    assert ripples[1].least < 0.3 * ripples[0].least
+    efforts = [decided(one, tolerance=0.02).mesh.option.effort for one in (pair(0.15), smooth)]
+    assert efforts[1] > 1.5 * efforts[0]
+
+
+def test_the_choice_knows_neither_host_nor_cache(tmp_path, monkeypatch):
+    before = decided(pair(0.3), tolerance=0.01).to_json()
+    monkeypatch.setattr("fe_contact.planning.cost_model.host_slowness", lambda _: 40.0)
+    asked = check_request(pair(0.3), normal_forces=LOADS, tolerance=0.01)
+    assert decide(asked, tmp_path).to_json() == before
+
+
+def test_plane_strain_taken_for_the_accuracy_states_what_it_leaves_out():
+    """The stated error covers the corrected plane; asked for by name it is the model, and states its mesh."""
+    found = analyze(pair(), normal_forces=LOADS, tolerance=0.05, positions=32)
+    named = analyze(pair(), normal_forces=LOADS, model="plane_strain", level="draft", positions=32)
+    truth = analyze(pair(), normal_forces=LOADS, level="draft", positions=32)
+    assert found.metadata.receipt["choice"]["model"] == "plane strain"
+    for name in ("mean", "peak_to_peak"):
+        one, exact, plain = (getattr(table, name)(force=LOADS[0]) for table in (found, truth, named))
+        assert one.value == plain.value
+        assert abs(one.value - exact.value) < one.error < 0.06 * one.value
+        assert plain.error < abs(one.value - exact.value)
+    row = SOURCES.index("finite_width")
+    assert np.all(found.curve_error[row, :2] > 0.0)
+    assert not named.curve_error[row].any()
+    assert plane_strain_error(check_request(pair(), normal_forces=LOADS, model="plane_strain")) == 0.0
