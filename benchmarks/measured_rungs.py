@@ -10,7 +10,7 @@ import hashlib
 import json
 import sys
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -127,10 +127,7 @@ def decided_rung(case: HonestyCase, rung: RungOf) -> Decided:
     options: dict[str, Any] = {name: value for name, value in case.options.items() if name != "positions"}
     options["model"] = "auto" if rung.model == "corrected" else rung.model
     found = decide(check_request(case.pair, normal_forces=case.forces, level=rung.level, **options))
-    if not rung.slices:
-        return found
-    made = replace(found.plan.discretisation, slices=rung.slices)
-    return replace(found, plan=replace(found.plan, discretisation=made))
+    return found.in_slices(rung.slices) if rung.slices else found
 
 
 def _compliance_seconds(made: Decided, folder: Path) -> dict[str, float]:

@@ -151,7 +151,7 @@ def markdown(found: Sequence[Kept]) -> str:
     known = [one for one in found if np.isfinite(one.price)]
     lines = [
         f"`tolerance = {TOLERANCE:g}` on {len(found)} cases at two or three loads each, "
-        f"{sum(one.held_out for one in found)} of them held out of every fit (marked *):",
+        f"{sum(one.held_out for one in found)} of them held out of the fits (marked *), no effect spared:",
         f"met in {_share(one.met for one in found)}, of those held out in "
         f"{_share(one.met for one in found if one.held_out)};",
         f"median price {np.median([one.price for one in known]):.2g} times the cheapest rung that met it, "

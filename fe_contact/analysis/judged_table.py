@@ -12,12 +12,12 @@ from fe_contact.analysis.held_out_axes import held_out_axes
 from fe_contact.analysis.model_choice import plane_strain_error
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.sampled import ALIGNMENTS, LOADS, POSITIONS, sample_of, spread
+from fe_contact.analysis.sampled import ALIGNMENTS, LOADS, sample_of, spread
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.planning import Plan
 from fe_contact.ste import SteDatabase
-from fe_contact.types import FloatArray, IntArray, Json
+from fe_contact.types import FloatArray, Json
 
 Knots = tuple[FloatArray, FloatArray, FloatArray]
 """Loads, misalignments and changes of the centre distance of a table."""
@@ -101,20 +101,17 @@ def _again(
 ) -> list[FloatArray]:
     """Return STE (P, F) in m of every place on a rougher discretisation, at the positions of the table.
 
-    It is solved at some positions, loads and alignments of the axes (loads, misalignments, centre distances);
-    between them its difference to the table's own, `finer`, is interpolated.
+    It is solved at some loads and alignments of the axes (loads, misalignments, centre distances); between
+    them its difference to the table's own, `finer`, is interpolated. Positions are all needed: between those
+    of a handover nothing can be interpolated.
     """
     loads, skews, changes = samples = [sample_of(axis.size, n) for axis, n in zip(axes, MOST, strict=True)]
-    some = _positions(finer, loads, nodes.position.size)
     pitches = np.arange(places.period)
-    rows = (pitches[:, None] * nodes.position.size + some).ravel()
     found = []
     for k in (int(m) * places.shape[1] + int(d) for m in skews for d in changes):
-        _, rougher = places.places[k].solve_pitches(nodes.position[some], axes[0][loads], pitches)
-        found.append(rougher.deflection - finer[k][np.ix_(rows, loads)])
+        _, rougher = places.places[k].solve_pitches(nodes.position, axes[0][loads], pitches)
+        found.append(rougher.deflection - finer[k][:, loads])
     change = np.stack(found, axis=2).reshape(-1, *(sample.size for sample in samples))
-    everywhere = np.arange(len(finer[0]), dtype=float)
-    change = spread(everywhere, rows, change, 0)
     for axis, (knots, sample) in enumerate(zip(axes, samples, strict=True), start=1):
         change = spread(knots, sample, change, axis)
     by_place = change.reshape(*change.shape[:2], -1)
@@ -130,14 +127,3 @@ def _not_less_between(errors: FloatArray, knots: Knots) -> FloatArray:
         sample = sample_of(nodes.size, most)
         errors = np.maximum(errors, spread(nodes, sample, np.take(errors, sample, axis=axis), axis))
     return errors
-
-
-def _positions(curves: list[FloatArray], loads: IntArray, count: int) -> IntArray:
-    """Return the positions that are solved: half of them, and where the curves are highest and lowest.
-
-    There and beside it a mesh changes peak-to-peak.
-    """
-    known = np.nan_to_num(np.stack([curve[:, loads] for curve in curves]))
-    ends = np.concatenate([known.argmax(axis=1).ravel(), known.argmin(axis=1).ravel()])
-    beside = np.concatenate([ends - 1, ends, ends + 1]) % count
-    return np.union1d(sample_of(count, max(POSITIONS, count // 2)), beside)

@@ -15,7 +15,7 @@ from fe_contact.analysis.request import Checked, Request, check_asked
 from fe_contact.analysis.ripple import expected_ripple
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.planning import LEFT_OUT, LEVELS, MeshChoice, Plan, chosen_mesh, make_plan
+from fe_contact.planning import LEFT_OUT, LEVELS, FaceDiscretisation, MeshChoice, Plan, chosen_mesh, make_plan
 from fe_contact.types import Json
 
 FACE, WIDTH = FaceLoadDistribution.name, FiniteWidth.name
@@ -36,6 +36,14 @@ class Decided:
     checked: Checked
     mesh: MeshChoice
     plan: Plan
+
+    def in_slices(self, count: int) -> Decided:
+        """Return the same model and mesh in another number of slices; itself in the plane."""
+        if not isinstance(self.plan.discretisation, FaceDiscretisation):
+            return self
+        made = replace(self.plan.discretisation, slices=count)
+        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=count))
+        return replace(self, mesh=mesh, plan=replace(self.plan, discretisation=made))
 
     def to_json(self) -> Json:
         """Return what was chosen, as plain JSON."""

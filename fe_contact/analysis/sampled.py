@@ -11,9 +11,8 @@ import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
 
-LOADS, ALIGNMENTS, POSITIONS = 4, 3, 32
-"""Nodes of an axis of loads, of misalignments or centre distances that are solved; shorter axes whole. Of the
-positions half, at least so many."""
+LOADS, ALIGNMENTS = 4, 3
+"""Nodes of an axis of loads, of misalignments or centre distances that are solved; shorter axes whole."""
 
 
 def sample_of(count: int, most: int) -> IntArray:

@@ -72,8 +72,7 @@ def _errors(pair: ParallelAxes, plan: Plan, rows: int, alignments: tuple[int, in
         again.append(unit_work(pair, plan, made.coarse_slices))
     some, places = min(loads, _SAMPLED_LOADS), min(alignments[0], _JUDGED) * min(alignments[1], _JUDGED)
     period = rows // (alignments[0] * alignments[1])
-    half = max(kept // 2, min(kept, _HELD_OUT_POSITIONS))
-    seconds = sum(w.of(half * min(alignments[1], _JUDGED), half * period * places * some) for w in again)
+    seconds = sum(w.of(kept * min(alignments[1], _JUDGED), kept * period * places * some) for w in again)
     held = _HELD_OUT_POSITIONS * (_PROBES * (loads - 1) + (alignments[0] - 1) * some)
     seconds += work.of(_HELD_OUT_POSITIONS * alignments[1], held)
     return _PLANE_CHECK + seconds + _TABLE_POINT * kept * rows * loads

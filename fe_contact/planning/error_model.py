@@ -20,7 +20,7 @@ _PLANE = {"draft": 4e-3, "standard": 2.5e-3, "fine": 2e-3}
 """Mesh in the plane, of mean and peak-to-peak."""
 _FACE_MEAN = {"draft": 6e-3, "standard": 2.5e-3, "fine": 1e-3}
 """Mesh over the face, of the mean; by the ripple more."""
-_FACE_RIPPLE = {"draft": 3.5e-3, "standard": 1e-3, "fine": 5e-4}
+_FACE_RIPPLE = {"draft": 5.5e-3, "standard": 1.8e-3, "fine": 8e-4}
 """Mesh over the face, of peak-to-peak in parts of the mean: spur pairs and modified profiles."""
 _HELICAL_RIPPLE = {"draft": 1e-3, "standard": 4e-4, "fine": 2e-4}
 """The same of plain helical pairs, whose contact lines average over the profile."""

@@ -28,7 +28,7 @@ def _show(found: RunPlan) -> None:
     head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", ""]
     rows = [
         [
-            entry.level,
+            entry.level if entry.slices == 1 else f"{entry.level}, {entry.slices} slices",
             f"{entry.cost.cpu_seconds:.2g}",
             *(f"{entry.cost.stages[stage]:.2g}" for stage in STAGES),
             f"{entry.cost.memory_bytes / 2**20:.0f}",
@@ -42,7 +42,7 @@ def _show(found: RunPlan) -> None:
     model = found.plan.discretisation.to_json()["model"].replace("_", " ")
     positions = found.plan.positions or f"about {found.chosen.cost.positions}, placed where the curve bends"
     out.print(
-        f"model {model}; positions {positions}; mesh {found.choice.level}: {found.choice.reason}",
+        f"model {model}; positions {positions}; mesh {found.choice.option.name}: {found.choice.reason}",
         highlight=False,
     )
     if found.conflict or not found.choice.met:

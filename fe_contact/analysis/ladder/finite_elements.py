@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fe_contact.analysis.compute_database import compute_database
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked, check_asked
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
@@ -29,12 +30,15 @@ class FiniteElementRung:
         "plane_strain", "3d", or "auto" for the plane corrected for its finite width.
     level : str
         "draft", "standard" or "fine".
+    slices : int, optional
+        Of the face; default: those that usually go with the mesh.
     """
 
     name: str
     title: str
     model: str
     level: str
+    slices: int | None = None
 
     @property
     def family(self) -> str:
@@ -68,4 +72,7 @@ class FiniteElementRung:
     def run(self, checked: Checked, progress: Progress, cache: Path | None) -> SteDatabase:
         """Compute the table."""
         asked = self.as_asked(checked)
-        return compute_database(asked, asked.request.to_json(), progress, cache)
+        decided = decide(asked, cache)
+        if self.slices is not None:
+            decided = decided.in_slices(self.slices)
+        return compute_database(asked, asked.request.to_json(), progress, cache, decided)
