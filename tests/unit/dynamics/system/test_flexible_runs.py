@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from flexible_scenes import STEEL, flexible_pair, section_motion
 from geared_scenes import RPM, spring_table, with_bushings, with_gear, with_mesh
+from sliced_face import sliced_database
 
 from dynamics.bodies import TimeLaw
+from dynamics.forces import CoastFlank
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.results import EnergyAudit
 from dynamics.simulate import simulate
@@ -98,3 +100,31 @@ def test_a_mesh_reads_the_tilt_of_its_gears_and_not_that_of_their_shafts(helix):
     assert here == pytest.approx(float((tilts[0] - tilts[1]) @ across), rel=1e-12, abs=0.0)
     middle = [section_motion(system, shaft, 0.0, q)[3:] for shaft in ("input", "output")]
     assert abs(here) > 1.5 * abs(float((middle[0] - middle[1]) @ across))
+
+
+def test_a_run_with_all_effects_of_the_mesh_closes_its_balance_and_reads_the_local_tilt():
+    """Misalignment, centre distance, moving application point, friction and backlash on flexible shafts."""
+    table = sliced_database((-60e-6, 0.0, 60e-6), (-1e-4, 0.0, 1e-4), positions=12).force_table()
+    names = (
+        "dynamic_misalignment",
+        "dynamic_center_distance",
+        "moving_application_point",
+        "backlash",
+        "gyroscopic",
+    )
+    scene = flexible_pair(
+        gear=0.06,
+        table=table,
+        speed=TimeLaw.constant(900.0 * RPM),
+        duration=0.01,
+        effects=dict.fromkeys(names, "on"),
+    )
+    back = CoastFlank(80e-6, 0.49)
+    run = simulate(replace(with_mesh(scene, coast=back), outputs=Outputs(displacements=True)))
+    assert run.energy.relative_to_throughput < 1e-6
+    assert {e["effect"] for e in run.effect_ledger["entries"] if e["on"]} >= {*names, "flexible_shafts"}
+    system = assemble(with_mesh(scene, coast=back))
+    line, sense = system.lines[0], system.kinematics.mesh_sense[0]
+    row = system.freedoms.keep(misalignment_gradient(scene, system.rotors, 0, line, sense))
+    np.testing.assert_allclose(run.misalignment[0], row @ run.displacement, rtol=1e-9, atol=1e-15)
+    assert np.max(np.abs(run.misalignment)) > 1e-7

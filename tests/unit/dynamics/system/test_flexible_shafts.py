@@ -436,3 +436,38 @@ def test_without_bearings_that_hold_it_a_shaft_twists_only():
 def test_shafts_that_do_not_fit_their_sections_are_refused(changes, words):
     with pytest.raises(InputError, match=words):
         replace(Shaft("shaft", 0.2, sections=(STEEL,)), **changes)
+
+
+def test_torque_winds_a_shaft_up_between_its_two_gears_and_passes_its_coupling():
+    """Pinion, shaft with two gears, third gear; a machine behind a coupling takes the load."""
+    scene = flexible_pair(gear=0.06)
+    behind = replace(scene.gears[1], name="second", position=0.14)
+    third = replace(scene.gears[0], name="third", shaft="third", position=0.14)
+    shaft = replace(scene.shafts[0], name="third", origin=(0.16, 0.0, 0.0))
+    machine = Shaft("machine", 0.1, (0.16, 0.0, 0.2), Inertia(5.0, 0.02, 0.02))
+    ends = tuple(Bushing(f"third.{k}", "third", z, STIFF) for k, z in enumerate((0.0, 0.2)))
+    scene = replace(
+        scene,
+        shafts=(*scene.shafts, shaft, machine),
+        gears=(*scene.gears, behind, third),
+        bushings=(*scene.bushings, *ends),
+        meshes=(scene.meshes[0], replace(scene.meshes[0], name="next", driver="second", driven="third")),
+        couplings=(Coupling("joint", "third", "machine", 1e4, position=0.2),),
+        loads=(replace(scene.loads[0], shaft="machine"),),
+    )
+    system = assemble(scene)
+    q = static_equilibrium(system).displacement
+    assert [rotor.elastic is not None for rotor in system.rotors] == [True, True, True, False]
+    per_metre = 100.0 / torsional_stiffness(STEEL)
+
+    def turned(name, place):
+        return section_motion(system, name, place, q)[5]
+
+    before = turned("output", 0.06) - turned("output", 0.14)
+    assert before == pytest.approx(system.kinematics.sense[1] * 0.08 * per_metre, rel=1e-8, abs=0.0)
+    wound = turned("third", 0.14) - turned("third", 0.2)
+    assert abs(wound) == pytest.approx(0.06 * per_metre, rel=1e-8, abs=0.0)
+    joint = turned("third", 0.2) - turned("machine", 0.0)
+    assert abs(joint) == pytest.approx(100.0 / 1e4, rel=1e-8, abs=0.0)
+    assert wound * joint > 0.0
+    assert turned("output", 0.14) == pytest.approx(turned("output", 0.2), rel=1e-9)  # nothing passes there
