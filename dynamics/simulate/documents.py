@@ -69,7 +69,9 @@ def _modes(system: System) -> Json:
         return {}
     found = natural_modes(linear)
     most = np.argmax(found.kinetic_energy, axis=1) if found.frequency.size else []
-    turning = any(entry.effect == Gyroscopic().name and entry.on for entry in system.ledger.entries)
+    turning = any(part.speed.extreme != 0.0 for part in system.scene.references) and any(
+        entry.effect == Gyroscopic().name and entry.on for entry in system.ledger.entries
+    )
     return {
         "frequency": [float(value) for value in found.frequency],
         "damping_ratio": [float(value) for value in found.damping_ratio],
