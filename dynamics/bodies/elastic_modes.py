@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from dynamics.bodies.craig_bampton import craig_bampton
+from dynamics.bodies.craig_bampton import ReducedBody, craig_bampton
 from dynamics.types import FloatArray, IntArray
 
 CUT_OFFS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
@@ -80,12 +80,9 @@ def elastic_modes(
         One of the interface, or -1.
     """
     whole = free_frequencies(mass, stiffness, rigid.shape[1], held)
-    place = int(np.flatnonzero(interface == held)[0]) if held >= 0 else -1
     for cut_off in CUT_OFFS:
         reduced = craig_bampton(mass, stiffness, interface, cut_off * highest)
-        none = np.zeros((reduced.frequency.size, rigid.shape[1]))
-        motions = np.concatenate([rigid[interface], none])
-        square, vectors = _split(reduced.mass, reduced.stiffness, motions, place)
+        square, vectors = _of_reduced(reduced, rigid, interface, held)
         truncation = worst_error(_hertz(square), whole, highest)
         if truncation <= TRUNCATION:
             break
@@ -122,6 +119,15 @@ def worst_error(found: FloatArray, exact: FloatArray, highest: float) -> float:
         return 0.0
     error = np.abs(found[:count] / exact[:count] - 1.0)
     return float(np.max(error * np.minimum(highest / exact[:count], 1.0) ** 2))
+
+
+def _of_reduced(
+    reduced: ReducedBody, rigid: FloatArray, interface: IntArray, held: int
+) -> tuple[FloatArray, FloatArray]:
+    """Squared circular frequencies and shapes of a reduced body: rigid motions are those of its interface."""
+    none = np.zeros((reduced.frequency.size, rigid.shape[1]))
+    place = int(np.flatnonzero(interface == held)[0]) if held >= 0 else -1
+    return _split(reduced.mass, reduced.stiffness, np.concatenate([rigid[interface], none]), place)
 
 
 def _split(

@@ -8,42 +8,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from dynamics.bodies.elastic_modes import ElasticModes, elastic_modes, free_frequencies, worst_error
-from dynamics.bodies.inertia import Inertia
-from dynamics.bodies.timoshenko_beam import PER_NODE, BeamSection, TimoshenkoBeam, timoshenko_beam
-from dynamics.types import BoolArray, FloatArray, IntArray
-
-MESH_ERROR = 1e-3
-"""Estimated relative error of the frequencies of interest at which beam elements are short enough."""
-FIRST_PARTS, LAST_PARTS = 8, 256  # elements per length of the shaft: where refining starts and ends
-ACROSS, ALONG, TURN = (0, 4), 2, 5  # freedoms of a node: bending in the plane x z, extension, torsion
-
-
-@dataclass(frozen=True)
-class Disc:
-    """A rigid body on a shaft: a gear. `position` of its centre along the shaft, m."""
-
-    position: float
-    inertia: Inertia
-
-
-@dataclass(frozen=True)
-class Grip:
-    """A place where forces act on a shaft, and on which motions of its section there.
-
-    Attributes
-    ----------
-    position : float
-        m from the left end.
-    across, tilt, along, turn : bool
-        Forces across the axis, moments across it, force along it, torque.
-    """
-
-    position: float
-    across: bool = False
-    tilt: bool = False
-    along: bool = False
-    turn: bool = False
+from dynamics.bodies.beam_families import Disc, Family, Grip, families, fine_beam
+from dynamics.bodies.elastic_modes import ElasticModes, elastic_modes
+from dynamics.bodies.timoshenko_beam import PER_NODE, BeamSection
+from dynamics.types import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -166,8 +134,8 @@ def elastic_shaft(
     held : float or None
         Where along the shaft its rotation is imposed, m: one of the grips.
     """
-    beam, error = _fine_enough(sections, discs, grips, highest, held)
-    across, along, turn = _families(beam, discs, held)
+    beam, error = fine_beam(sections, discs, grips, highest, held)
+    across, along, turn = families(beam, discs, held)
     nodes = [int(np.argmin(np.abs(beam.position - grip.position))) for grip in grips]
     pairs = list(zip(nodes, grips, strict=True))
     bent = [2 * k for k, g in pairs if g.across] + [2 * k + 1 for k, g in pairs if g.tilt]
@@ -183,74 +151,7 @@ def elastic_shaft(
     )
 
 
-@dataclass(frozen=True)
-class _Family:
-    """Matrices of a family, its rigid motions, and the freedom that is held (-1: none)."""
-
-    mass: FloatArray
-    stiffness: FloatArray
-    rigid: FloatArray
-    held: int = -1
-
-
-def _families(
-    beam: TimoshenkoBeam, discs: Sequence[Disc], held: float | None
-) -> tuple[_Family, _Family, _Family]:
-    """Return bending in x z, extension and torsion with the discs' inertia."""
-    mass, nodes = beam.mass.copy(), beam.position.size
-    for disc in discs:
-        i = disc.inertia
-        places = beam.freedoms(disc.position)
-        mass[places, places] += (i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar)
-    first = PER_NODE * np.arange(nodes)
-    bent = (first[:, None] + np.array(ACROSS)).ravel()
-    ones = np.ones((nodes, 1))
-    tilted = np.stack([beam.position - beam.position.mean(), np.ones(nodes)], axis=1).ravel()
-    moved = np.stack([np.ones(nodes), np.zeros(nodes)], axis=1).ravel()
-    turned = -1 if held is None else int(np.argmin(np.abs(beam.position - held)))
-
-    def part(places: IntArray, rigid: FloatArray, at: int = -1) -> _Family:
-        own = np.ix_(places, places)
-        return _Family(mass[own], beam.stiffness[own], rigid, at)
-
-    return (
-        part(bent, np.stack([moved, tilted], axis=1)),
-        part(first + ALONG, ones),
-        part(first + TURN, ones, turned),
-    )
-
-
-def _fine_enough(
-    sections: Sequence[BeamSection],
-    discs: Sequence[Disc],
-    grips: Sequence[Grip],
-    highest: float,
-    held: float | None,
-) -> tuple[TimoshenkoBeam, float]:
-    """Return a beam and the estimated error of its frequencies; errors fall with the length squared."""
-    stations = [*(disc.position for disc in discs), *(grip.position for grip in grips)]
-    length, parts = sum(section.length for section in sections), FIRST_PARTS
-    beam = timoshenko_beam(sections, stations, length / parts)
-    found = _frequencies(beam, discs, held)
-    while True:
-        finer = timoshenko_beam(sections, stations, 0.5 * float(np.max(np.diff(beam.position))))
-        exact = _frequencies(finer, discs, held)
-        error = 4.0 / 3.0 * max(worst_error(a, b, highest) for a, b in zip(found, exact, strict=True))
-        parts *= 2
-        if error <= MESH_ERROR or parts > LAST_PARTS:
-            return beam, error
-        beam, found = finer, exact
-
-
-def _frequencies(beam: TimoshenkoBeam, discs: Sequence[Disc], held: float | None) -> list[FloatArray]:
-    """Frequencies of the three families, Hz."""
-    return [
-        free_frequencies(part.mass, part.stiffness, part.rigid.shape[1], part.held)
-        for part in _families(beam, discs, held)
-    ]
-
-
-def _reduced(family: _Family, interface: Sequence[int], highest: float) -> ElasticModes:
+def _reduced(family: Family, interface: Sequence[int], highest: float) -> ElasticModes:
     """Return the coordinates of a family; none where nothing acts on it."""
     places = np.array(sorted(set(interface)), dtype=np.int64)
     if places.size == 0:
