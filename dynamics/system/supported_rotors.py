@@ -27,18 +27,19 @@ def supported_rotors(
     """Gather what the effects decide on; a carrier feels the meshes of its planets at their pins."""
     meshes: list[list[MeshOnRotor]] = [[] for _ in rotors]
     for mesh, line, force in zip(scene.meshes, lines, forces, strict=True):
-        for name in (mesh.driver, mesh.driven):
+        for name, sign in ((mesh.driver, -1.0), (mesh.driven, 1.0)):
             gear = scene.gear(name)
             index = scene.shaft_index(gear.shaft)
             lever = float(line.point[2] - rotors[index].center[2])
             radius = gear.base_radius / math.cos(line.working_pressure_angle)
             axial = abs(float(line.force[2]))
-            meshes[index].append(MeshOnRotor(float(force), lever, axial, radius))
+            direction = (sign * float(line.force[0]), sign * float(line.force[1]))
+            meshes[index].append(MeshOnRotor(float(force), lever, axial, radius, direction))
             carrier = rotors[index].carrier
             if carrier is not None:
                 arm = rotors[index].center - rotors[carrier].center
-                on_carrier = MeshOnRotor(float(force), float(arm[2]), axial, float(np.hypot(arm[0], arm[1])))
-                meshes[carrier].append(on_carrier)
+                place = float(arm[2]), axial, float(np.hypot(arm[0], arm[1]))
+                meshes[carrier].append(MeshOnRotor(float(force), *place, direction))
     clearances = nonlinear_worths(scene, loads)
     return [
         SupportedRotor(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -24,12 +25,15 @@ class MeshOnRotor:
         Axial over transverse force, tan(base helix angle), >= 0.
     radius : float
         Operating pitch radius, m: the axial force's lever across the shaft.
+    direction : (float, float)
+        Unit vector across the axis of the force on the rotor, along x and y.
     """
 
     force: float
     lever: float
     axial: float
     radius: float
+    direction: tuple[float, float] = (1.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -108,6 +112,12 @@ class SupportedRotor:
     nonlinear: tuple[float, ...] = ()
     turning: TurningRotor = TurningRotor()
     bending: BendingShaft = BendingShaft()
+
+    @property
+    def pushed(self) -> float:
+        """Resultant across the axis of all nominal mesh forces, N: around a sun they cancel."""
+        along_x, along_y = (sum(mesh.force * mesh.direction[k] for mesh in self.meshes) for k in (0, 1))
+        return math.hypot(along_x, along_y)
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,6 @@ class Gyroscopic:
         if turning.free:
             return Verdict(True, True, "torques alone turn the shaft: its speed is not known before", 0.0)
         share = max(turning.tilt_share if rotor.tilt_stiffness > 0.0 else 0.0, turning.frame_share)
-        pushed = sum(mesh.force for mesh in rotor.meshes)
-        held = pushed / rotor.radial_stiffness if rotor.radial_stiffness > 0.0 else 0.0
+        held = rotor.pushed / rotor.radial_stiffness if rotor.radial_stiffness > 0.0 else 0.0
         reason = f"turning shifts natural frequencies by up to {share:.2g} of them"
         return Verdict(share > SHARE, True, reason, min(share, 1.0) * held)

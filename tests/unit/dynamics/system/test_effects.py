@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
 from geared_scenes import gear_pair_scene, with_bushings, with_gear
+from planetary_scenes import BEARING_STIFFNESS, PRESSURE_ANGLE, driven_scene, published_set
 
 from dynamics.bodies import Inertia
 from dynamics.errors import InputError
@@ -46,6 +48,19 @@ def test_without_bushings_a_shaft_only_turns():
     assert kinds(scene) == ["rotation"]
     reasons = {entry.reason for entry in assemble(scene).ledger.entries}
     assert "no bushing with radial stiffness: held rigidly" in reasons
+
+
+def test_forces_around_a_sun_cancel_and_push_a_planet_along():
+    """Sun and ring push a planet the same way, 2 F cos(alpha_w); around the sun three forces cancel."""
+    entries = assemble(driven_scene(published_set(3))).ledger.entries
+    worth = {entry.part: entry.worth for entry in entries if entry.effect == "lateral"}
+    force = 3779.2895  # of every mesh
+    for planet in ("planet 1", "planet 2", "planet 3"):
+        exact = 2.0 * force * math.cos(PRESSURE_ANGLE) / BEARING_STIFFNESS
+        assert worth[planet] == pytest.approx(exact, rel=1e-6, abs=0.0)
+    for central in ("sun", "ring", "carrier"):
+        assert worth[central] < 1e-9 * force / BEARING_STIFFNESS
+        assert next(e for e in entries if (e.effect, e.part) == ("lateral", central)).on
 
 
 def test_choices_are_obeyed_and_their_price_is_stated():
