@@ -14,6 +14,8 @@ RPM = np.pi / 30.0
 CIRCULAR = 0.1  # from this whirl on a mode counts as forward or backward
 ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
 SHOWN_PARTS = 2
+HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
+LEAST_TOP = 1.0  # Hz
 WHIRLS: dict[str, tuple[str, Dash]] = {
     "forward whirl": (palette.BLUE, "solid"),
     "backward whirl": (palette.VERMILLION, "dash"),
@@ -36,7 +38,8 @@ def whirl_name(whirl: float) -> str:
 def _campbell(found: ModalAnalysis) -> Figure:
     """Frequencies over speed."""
     place = found.speed / RPM
-    top = 1.15 * float(np.nanmax(found.frequency))
+    reach = float(found.facts["orders"]) * float(np.max(found.mesh_frequency))
+    top = min(HEADROOM * float(np.nanmax(found.frequency)), max(HEADROOM * reach, LEAST_TOP))
     lines = [*_orders(found, place, top), *_modes(found, place)]
     if found.critical_speed.size:
         there = found.critical_speed / RPM
