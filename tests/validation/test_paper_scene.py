@@ -9,6 +9,7 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene
 
 from dynamics.bodies import TimeLaw
+from dynamics.orders import find_peaks, mesh_orders, window_spectrum
 from dynamics.simulate import simulate
 from fe_contact import Gear, GearPair, analyze
 
@@ -17,10 +18,15 @@ EXAMPLE_DAMPING = 0.15
 
 
 @pytest.fixture(scope="module")
-def table():
+def database():
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, 80e-3)
-    return analyze(pair, torques=np.geomspace(10.0, 400.0, 12)).force_table()
+    return analyze(pair, torques=np.geomspace(10.0, 400.0, 12))
+
+
+@pytest.fixture(scope="module")
+def table(database):
+    return database.force_table()
 
 
 def difference(table, speed: float, damping: float) -> dict[str, float]:
@@ -64,3 +70,45 @@ def test_less_damping_parts_the_techniques(table, record_figure):
         "-",
     )
     assert difference(table, 900.0, EXAMPLE_DAMPING)["mesh_force"] < loose < 0.04
+
+
+@pytest.mark.parametrize("technique", ["constant_torque", "variable_torque"])
+def test_the_static_parts_agree_with_the_database(database, table, technique, record_figure):
+    """Slowly, over more than a pitch: transmission error and force of the run, and the ones extracted."""
+    run = simulate(
+        gear_pair_scene(table, speed=TimeLaw.constant(4.0 * RPM), duration=0.9, technique=technique)
+    )
+    position, force = run.position[0], 100.0 / BASE_RADIUS
+    assert np.ptp(position) > 0.95
+    expected = database.ste(position, force)
+    extracted = database.force_at(position, run.dynamic_transmission_error[0]).force
+    off = {
+        "static part": np.max(np.abs(run.static_transmission_error[0] / expected - 1.0)),
+        "mean DTE": abs(run.dynamic_transmission_error[0].mean() / expected.mean() - 1.0),
+        "DTE, rms": np.sqrt(np.mean((run.dynamic_transmission_error[0] - expected) ** 2)) / expected.mean(),
+        "mean force": abs(run.mesh_force.mean() / force - 1.0),
+        "mean extracted force": abs(extracted.mean() / force - 1.0),
+    }
+    for name, value in off.items():
+        record_figure(
+            f"{name} of the slow run off the database, {technique}", 100 * value, "0.1 %", "%", "target"
+        )
+        assert value < 1e-3, name
+
+
+def test_the_bearing_spectrum_of_the_run_up_is_the_paper_s(table, record_figure):
+    """Run-up to 955 rpm in 5 s, window 4.5 to 4.75 s: fundamental between 287 and 303 Hz, and harmonics."""
+    run = simulate(gear_pair_scene(table, speed=TimeLaw.ramp(0.0, 955.0 * RPM, 5.0), duration=5.0))
+    order, *_ = mesh_orders(run, 4.5, 4.75, 1)
+    assert (order.low, order.high) == (pytest.approx(286.5, abs=0.1), pytest.approx(302.4, abs=0.1))
+    found = window_spectrum(run, "bearing_force", 4.5, 4.75)
+    one = replace(found, amplitude=found.amplitude[0, 1])
+    fundamental = find_peaks(one, 1, high=450.0)[0].frequency
+    record_figure(
+        "fundamental of the bearing force, FE table", fundamental, "287 to 303 Hz", "Hz", "ISMA 2010"
+    )
+    assert 286.5 < fundamental < 302.4
+    background = np.median(one.amplitude[(one.frequency > 350.0) & (one.frequency < 500.0)])
+    for multiple in (1, 2, 3):
+        inside = (one.frequency >= multiple * order.low) & (one.frequency <= multiple * order.high)
+        assert one.amplitude[inside].max() > 5.0 * background

@@ -63,7 +63,7 @@ def test_damping_makes_the_decay_of_its_ratio():
 
 
 @pytest.mark.parametrize(("method", "order"), [("implicit", 4.0), ("explicit", 5.0)])
-def test_the_order_is_the_theory_s_on_a_smooth_problem(method, order):
+def test_the_order_is_the_theory_s_on_a_smooth_problem(method, order, record_figure):
     """Error at fixed steps h, h/2, h/4 against a run at h/16, on a mesh whose position dependence is one
     cubic.
 
@@ -80,6 +80,7 @@ def test_the_order_is_the_theory_s_on_a_smooth_problem(method, order):
     fine = run(steps[0] / 32)
     errors = [np.sqrt(np.mean((run(step) - fine)[sample] ** 2)) for step in steps]
     rates = np.log2(errors[:-1] / np.array(errors[1:]))
+    record_figure(f"order of the {method} method, smooth", rates[-1], f"{order:g} within 0.15", "1", "theory")
     assert abs(rates[-1] - order) < 0.15
 
 

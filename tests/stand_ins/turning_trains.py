@@ -1,0 +1,59 @@
+"""Trains that turn far, and where exact arithmetic says they are, for tests and benchmarks of the phase."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from geared_scenes import RPM, gear_pair_scene, spring_table, with_mesh
+
+from dynamics.bodies import TimeLaw
+from dynamics.forces import LoadTorque
+from dynamics.joints import FreeRotation
+from dynamics.simulate import simulate
+from dynamics.system import Integration, Outputs, Scene
+from dynamics.system.assemble import assemble
+
+PI = Fraction(3141592653589793238462643383279502884197, 10**39)
+STEP, TEETH, START = 1e-5, 20, 50.0
+
+
+def imposed(steps: int, method: str = "implicit") -> Scene:
+    """Torsion alone, the drive at 955 rpm, `steps` fixed steps."""
+    duration = steps * STEP
+    scene = gear_pair_scene(spring_table(4e8), duration=duration, speed=TimeLaw.constant(955.0 * RPM))
+    outputs = Outputs(10.0 / duration, bearing_forces=False, energy_audit=False, receipt="minimal")
+    scene = replace(scene, bushings=(), effects={}, outputs=outputs)
+    return with_mesh(replace(scene, integration=Integration(method, fixed_step=STEP)), damping_ratio=0.1)
+
+
+def accelerating(steps: int, method: str = "implicit") -> Scene:
+    """A train without a drive: a motor of 1.25 and a brake of 0.25 of what makes 1 rad/s2."""
+    scene = replace(
+        imposed(steps, method), drives=(), free_rotations=(FreeRotation("train", "input", START),)
+    )
+    inertia = float(assemble(replace(scene, loads=_loads(1.0))).arrays.total_inertia[0, 0])
+    return replace(scene, loads=_loads(inertia))
+
+
+def _loads(inertia: float) -> tuple[LoadTorque, ...]:
+    """Motor and brake."""
+    return (
+        LoadTorque("motor", "input", TimeLaw.constant(-1.25 * inertia)),
+        LoadTorque("brake", "output", TimeLaw.constant(0.25 * inertia)),
+    )
+
+
+def phase_error(scene: Scene) -> float:
+    """Position at the last output sample less the exact one, base pitches."""
+    run = simulate(scene)
+    time = Fraction(float(run.time[-1]))
+    if scene.drives:
+        angle = Fraction(955.0 * RPM) * time
+    else:
+        torque = sum(-Fraction(load.torque.value[0]) for load in scene.loads)
+        inertia = Fraction(float(assemble(scene).arrays.total_inertia[0, 0]))
+        angle = Fraction(START) * time + torque / inertia * time**2 / 2
+    turned = Fraction(float(run.position[0, -1])) - Fraction(float(run.position[0, 0]))
+    error = turned - angle * TEETH / (2 * PI)
+    return float(error - round(error))
