@@ -52,7 +52,7 @@ def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
     """Lay out `tables`, each with misalignment and centre-distance axes of length 1."""
     knots = [_closed(table) for table in tables]
     relative = [knot - knot[0] for knot in knots]
-    buckets = [_buckets(knot) for knot in relative]
+    buckets = [bucket_starts(knot) for knot in relative]
     rows = [_rows(table, knot) for table, knot in zip(tables, relative, strict=True)]
     levels = [np.asarray(table.level, dtype=float) for table in tables]
     starts = [_starts(parts) for parts in (relative, buckets, rows, levels)]
@@ -84,8 +84,8 @@ def _starts(parts: Sequence[FloatArray] | Sequence[IntArray]) -> list[int]:
     return [0, *np.cumsum([len(part) for part in parts]).tolist()]
 
 
-def _buckets(knot: FloatArray) -> IntArray:
-    """Interval that holds the start of each bucket; rounding must not put it behind a position in it."""
+def bucket_starts(knot: FloatArray) -> IntArray:
+    """Return the interval that holds the start of each bucket; rounding puts it behind no position in it."""
     count = BUCKETS_PER_KNOT * (knot.size - 1)
     start = np.arange(count) / count * (knot[-1] * (1.0 - 1e-12))
     index = np.clip(np.searchsorted(knot, start, side="right") - 1, 0, knot.size - 2)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.forces.by_address import by_address
 from dynamics.forces.local_state import LocalState
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.system.arrays import SystemArrays
@@ -58,7 +59,7 @@ def flank_cycles(
     """
     arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
     at_rest = local_state(arrays, time, linear.equilibrium.displacement, rest)
-    probe = _by_coordinates(arrays)
+    probe = by_address(_by_coordinates(arrays))  # laid out once for thousands of look-ups
     origin = local_state(probe, time, *_states(probe, np.zeros(at_rest.coordinate.size), 0.0)).position
     return tuple(
         _cycle(

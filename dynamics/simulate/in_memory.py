@@ -23,6 +23,7 @@ from dynamics.simulate.documents import (
     series_of,
     squared_difference,
 )
+from dynamics.simulate.error_by_source import error_by_source
 from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said
 from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
@@ -134,13 +135,17 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
 def _error_estimate(
     system: System, start: StaticSolution, trajectory: Trajectory, progress: Progress | None
 ) -> Json:
-    """Step error of the transmission error, m rms: asked for, or measured against a finer run."""
+    """Errors by source; that of the steps from a finer run where it is asked for."""
     integration = system.scene.integration
-    if not (integration.estimate_error and trajectory.status.usable):
+    if not trajectory.status.usable:
         return asked_error(integration)
+    states = States(trajectory.q, trajectory.v, trajectory.moved)
+    error = error_by_source(system, states.rows, trajectory.samples)
+    if not integration.estimate_error:
+        return error
     check = integrate(system, start, finer(integration), progress)
     total = squared_difference(system, trajectory.q, check.q)
-    return measured_error(total, trajectory.samples, len(system.scene.meshes), check.seconds)
+    return error | measured_error(total, trajectory.samples, len(system.scene.meshes), check.seconds)
 
 
 def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:

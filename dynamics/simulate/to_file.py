@@ -30,6 +30,7 @@ from dynamics.simulate.documents import (
     series_of,
     squared_difference,
 )
+from dynamics.simulate.error_by_source import error_by_source
 from dynamics.simulate.in_memory import require_equilibrium
 from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said
 from dynamics.system import Integration, Scene
@@ -134,11 +135,13 @@ def _run_to_file(scene: Scene, path: Path, before: EarlierRun, how: _How) -> tup
         leg = _Leg(stack, folder / "run", system, start, scene.integration, how.resume)
         end = leg.go(*going)
         error = asked_error(scene.integration)
+        if end.status.usable:
+            error = error_by_source(system, leg.spool.states, end.samples)
         if scene.integration.estimate_error and end.status.usable:
             check = _Leg(stack, folder / "check", system, start, finer(scene.integration), how.resume)
             other = check.go(*going)
             end = replace(end, status=other.status)
-            error = _difference(system, leg, check, other) if other.status.usable else error
+            error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         seconds["integration"] = end.seconds
         ledger = _write(path, system, leg, end, seconds, error, before)
     if end.status is not RunStatus.CANCELLED:

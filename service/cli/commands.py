@@ -380,7 +380,7 @@ def ablate(
 @app.command(epilog="Example: loa frontier examples/palermo_spur_20_20.toml -o frontier")
 @guarded
 def frontier(
-    case: Annotated[Path, typer.Argument(help="Case file.")],
+    file: Annotated[Path, typer.Argument(help="Case or scene file.")],
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", help="Folder, or a file ending in .png, .html, .json."),
@@ -390,10 +390,10 @@ def frontier(
     ] = None,
     json: AsJson = False,
 ) -> None:
-    """Run the accuracy ladder on a case: error against time, from ISO 6336 to fine finite elements."""
+    """Run the ladder on a case (ISO 6336 to fine finite elements) or on a scene: error against time."""
     from service.cli.frontier import run_frontier  # noqa: PLC0415 (start-up time)
 
-    run_frontier(case, output, rungs, as_json=json)
+    run_frontier(file, output, rungs, as_json=json)
 
 
 @app.command(epilog="Example: loa hardcases --only table -o hardcases.html")

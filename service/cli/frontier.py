@@ -1,35 +1,78 @@
-"""``loa frontier``."""
+"""``loa frontier``: of a case or of a scene."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from fe_contact.analysis.frontier import Frontier
-from service.cli.output import check_writable, console, print_json, progress_bar, table
-from service.convert.frontier import frontier_of
+from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.problems import BadInput
-from service.report.frontier import frontier_figure, frontier_page, frontier_table
+from service.report.figure import Figure, Table
 from service.report.image import png
+from service.report.page import Page
 from service.report.write import write_whole
-from service.schemas import Case, read_model
+from service.schemas import read_table
+
+_TITLE = "What accuracy costs in time"
+
+
+@dataclass(frozen=True)
+class _Climbed:
+    """A ladder as it is written and printed."""
+
+    facts: dict[str, Any]
+    left_out: dict[str, str]
+    table: Table
+    figure: Figure
+    page: Page
 
 
 def run_frontier(file: Path, output: Path | None, rungs: str | None, *, as_json: bool) -> None:
     """Climb the ladder, write, print."""
-    case = read_model(Case, file)
+    content = read_table(file)
     targets = [] if output is None else _targets(output)
     names = None if rungs is None else [name.strip() for name in rungs.split(",")]
     with progress_bar() as report:
-        found = frontier_of(case, names, report)
+        climb = _of_scene if "shafts" in content else _of_case
+        found = climb(file, names, report)
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _WRITERS[target.suffix](found, target)
     if as_json:
-        print_json({"written": [str(target) for target in targets], **found.to_json()})
+        print_json({"written": [str(target) for target in targets], **found.facts})
     else:
         _show(found, targets)
+
+
+def _of_case(file: Path, names: list[str] | None, report: Report) -> _Climbed:
+    """Climb the ladder of transmission errors."""
+    from service.convert.frontier import frontier_of  # noqa: PLC0415 (start-up time)
+    from service.report.frontier import frontier_figure, frontier_page, frontier_table  # noqa: PLC0415
+    from service.schemas import Case, read_model  # noqa: PLC0415
+
+    found = frontier_of(read_model(Case, file), names, report)
+    page = frontier_page(found, _TITLE)
+    return _Climbed(found.to_json(), found.left_out, frontier_table(found), frontier_figure(found), page)
+
+
+def _of_scene(file: Path, names: list[str] | None, report: Report) -> _Climbed:
+    """Climb the ladder of dynamics."""
+    from service.cli.scene_tables import scene_with_tables  # noqa: PLC0415 (start-up time)
+    from service.client.portable import scene_of  # noqa: PLC0415
+    from service.convert.run_frontier import run_frontier_of  # noqa: PLC0415
+    from service.report.run_frontier import (  # noqa: PLC0415
+        run_frontier_figure,
+        run_frontier_page,
+        run_frontier_table,
+    )
+
+    scene = scene_with_tables(*scene_of(file), None, report)
+    found = run_frontier_of(scene, names, report)
+    figure, page = run_frontier_figure(found), run_frontier_page(found, _TITLE)
+    return _Climbed(found.to_json(), found.left_out, run_frontier_table(found), figure, page)
 
 
 def _targets(output: Path) -> list[Path]:
@@ -52,29 +95,28 @@ def _targets(output: Path) -> list[Path]:
     return [output / f"frontier{ending}" for ending in _WRITERS]
 
 
-def _picture(found: Frontier, target: Path) -> None:
+def _picture(found: _Climbed, target: Path) -> None:
     """PNG."""
-    target.write_bytes(png(frontier_figure(found)))
+    target.write_bytes(png(found.figure))
 
 
-def _page(found: Frontier, target: Path) -> None:
+def _page(found: _Climbed, target: Path) -> None:
     """Write the report page."""
-    write_whole(frontier_page(found, "What accuracy costs in time"), target)
+    write_whole(found.page, target)
 
 
-def _json(found: Frontier, target: Path) -> None:
+def _json(found: _Climbed, target: Path) -> None:
     """JSON."""
-    target.write_text(f"{json.dumps(found.to_json(), allow_nan=False, indent=1)}\n", encoding="utf-8")
+    target.write_text(f"{json.dumps(found.facts, allow_nan=False, indent=1)}\n", encoding="utf-8")
 
 
-_WRITERS: dict[str, Callable[[Frontier, Path], None]] = {".png": _picture, ".html": _page, ".json": _json}
+_WRITERS: dict[str, Callable[[_Climbed, Path], None]] = {".png": _picture, ".html": _page, ".json": _json}
 
 
-def _show(found: Frontier, targets: list[Path]) -> None:
+def _show(found: _Climbed, targets: list[Path]) -> None:
     """Print the table for people."""
     out = console()
-    rows = frontier_table(found)
-    out.print(table(rows.head, rows.rows, rows.caption))
+    out.print(table(found.table.head, found.table.rows, found.table.caption))
     for name, reason in found.left_out.items():
         out.print(f"not run: {name}: {reason}", highlight=False)
     for target in targets:

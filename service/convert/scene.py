@@ -258,6 +258,7 @@ def _outputs(scene: SceneInput) -> Outputs:
             given.bearing_forces,
             given.displacements,
             accelerations=given.accelerations,
+            receipt=given.receipt,
         )
 
 

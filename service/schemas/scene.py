@@ -154,6 +154,11 @@ class OutputsInput(BoundaryModel):
     accelerations: bool = Field(
         default=False, description="Store the acceleration of the shaft at every bearing", examples=[False]
     )
+    receipt: Literal["full", "minimal"] = Field(
+        default="full",
+        description="Measure the errors of steps and tables in windows of the run, or state the tolerance",
+        examples=["full"],
+    )
 
 
 class IntegrationInput(BoundaryModel):

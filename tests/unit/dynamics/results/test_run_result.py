@@ -76,7 +76,7 @@ def test_the_case_spells_out_every_damping(result):
     assert all(bushing["radial_damping"] > 0.0 for bushing in result.case["bushings"])
     assert result.case["meshes"][0]["damping"] > 0.0
     assert result.effect_ledger["left_out"]
-    assert result.receipt["error"]["time_step"]["rms"] == 1e-9
+    assert 0.0 < result.receipt["error"]["time_step"]["rms"] < 1e-9
 
 
 def test_files_give_back_every_bit(result, tmp_path):

@@ -1,0 +1,111 @@
+"""The ladder of dynamics: errors that fall, models that are what they say, rungs that say nothing."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
+
+from dynamics.bodies import TimeLaw
+from dynamics.errors import InputError
+from dynamics.ladder import RUNGS, frontier
+from dynamics.ladder.knee import knee_of
+from dynamics.ladder.time_integration import TimeIntegration
+from dynamics.ladder.vibration import blocks_of
+from dynamics.system import Integration
+from dynamics.system.assemble import assemble
+
+RUN_UP = gear_pair_scene(speed=TimeLaw.ramp(100.0 * RPM, 900.0 * RPM, 0.4), duration=0.4)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return frontier(RUN_UP)
+
+
+def by_name(found):
+    return {result.name: result for result in found.results}
+
+
+def test_errors_fall_with_the_tolerance(found):
+    steps = [r for r in found.results if r.family == "steps"]
+    for which in range(3):
+        errors = [result.errors[which] for result in steps]
+        assert errors[0] > 5.0 * errors[2] > 50.0 * errors[-1] > 0.0
+    assert steps[-1].cpu_seconds > steps[0].cpu_seconds
+
+
+def test_fewer_nodes_cost_accuracy(found):
+    rung = by_name(found)
+    assert rung["table_quarter"].error > 3.0 * rung["table_half"].error
+
+
+def test_models_with_less_in_them_are_worse_than_any_step(found):
+    rung = by_name(found)
+    worst = max(rung["1_nm"].error, rung["table_half"].error)
+    for name in ("quasi_static", "harmonic_response", "torsion"):
+        assert rung[name].error > worst
+    assert rung["quasi_static"].bearing_force_orders == pytest.approx(1.0)  # its forces do not vibrate
+    assert np.isnan(rung["torsion"].bearing_force_orders)  # nothing moves in the bearings
+    assert "in_plane" in found.left_out  # the scene has no more than that
+
+
+def test_the_linear_response_is_the_run_where_nothing_is_nonlinear():
+    scene = gear_pair_scene(spring_table(4e8, 1e-7), duration=0.4)
+    scene = with_mesh(scene, damping_ratio=0.1)
+    found = by_name(frontier(scene, rungs=["harmonic_response", "quasi_static", "0.1_nm", "0.01_nm"]))
+    linear, static = found["harmonic_response"], found["quasi_static"]
+    assert linear.transmission_error_orders < 1e-4
+    assert linear.bearing_force_orders < 0.02  # the first block rings from the start at rest
+    assert static.transmission_error_orders > 50.0 * linear.transmission_error_orders
+
+
+def test_the_scenes_own_setting_is_marked(found):
+    assert found.chosen == "1_nm"
+    assert found.results[-1].name == RUNGS[-1].name == "0.01_nm"
+    own = replace(RUN_UP, integration=Integration(tolerance=3e-9), duration=0.1)
+    assert frontier(own, rungs=["10_nm", "1_nm", "0.1_nm"]).chosen == "1_nm"
+
+
+def test_the_knee_does_not_go_below_what_the_table_is_worth(found):
+    """Steps whose error is far below that of the table they share buy nothing."""
+    rung = by_name(found)
+    finer = [name for name in ("0.1_nm", "0.01_nm") if rung[name].error < rung["table_half"].error / 30.0]
+    assert finer
+    assert found.knee is not None
+    assert found.knee not in finer
+
+
+def test_it_can_be_written_as_json(found):
+    written = json.loads(json.dumps(found.to_json(), allow_nan=False))
+    assert written["knee"] in {rung["name"] for rung in written["rungs"]}
+    assert "bearing_force_orders" not in next(r for r in written["rungs"] if r["name"] == "torsion")["errors"]
+
+
+def test_runs_too_short_to_compare_and_unknown_rungs_are_refused():
+    with pytest.raises(InputError, match="duration"):
+        frontier(replace(RUN_UP, duration=0.001))
+    with pytest.raises(InputError, match="rungs"):
+        frontier(RUN_UP, rungs=["2_nm"])
+
+
+def test_a_fixed_step_knows_no_tolerance():
+    fixed = replace(RUN_UP, integration=Integration(fixed_step=1e-5))
+    assert TimeIntegration("x", "x", "steps", tolerance=1e-9).refusal(fixed) is not None
+
+
+def test_blocks_hold_whole_parts_of_the_run():
+    blocks = blocks_of(assemble(gear_pair_scene(square_wave_table(), duration=0.4)))
+    assert blocks.orders == 5
+    assert blocks.bounds[0, 0] == 0
+    assert blocks.bounds[-1, 1] == 8001
+    np.testing.assert_array_equal(blocks.bounds[1:, 0], blocks.bounds[:-1, 1])
+
+
+def test_no_knee_with_two_points_or_on_a_straight_line():
+    line = {str(k): (10.0**k, 10.0**-k) for k in range(4)}
+    assert knee_of({"a": (1.0, 1.0), "b": (2.0, 0.1)}) is None
+    assert knee_of(line | {"corner": (1.1, 2e-3)}) == "corner"
