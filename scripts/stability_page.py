@@ -1,13 +1,14 @@
 """Put the outcomes of the hard scenes, and the counts of the sweeps, into docs/stability.md.
 
-Usage: stability_page.py FOLDER PAGE; FOLDER holds scenes.json. What stands between the marks of a part is
-replaced, the text around it is written by hand.
+Usage: stability_page.py FOLDER PAGE; FOLDER holds scenes.json and sweep-KIND.jsonl. What stands between the
+marks of a part is replaced, the text around it is written by hand.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+from collections import Counter
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,11 @@ Json = dict[str, Any]
 
 COMMON = ("failed points", "largest residual", "most iterations", "two solvers apart")
 """Figures of every contact scene: not shown, since the text names their bounds."""
+SWEEPS = {"plane": "in the plane", "face": "in three dimensions"}
+SWEEP_HEAD = (
+    "| random pairs | cases | sound tables | refused | anything else | points solved | most iterations "
+    "| largest residual | CPU time over predicted |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|"
+)
 HEAD = "| scene | hard because | criterion | figures beside the common ones | s |\n|---|---|---|---|---:|"
 
 
@@ -36,6 +42,45 @@ def scenes_part(scenes: list[Json]) -> str:
         rows = "\n".join(_row(scene) for scene in group)
         parts.append(f"### {family.capitalize()}\n\n{HEAD}\n{rows}\n")
     return "\n".join(parts)
+
+
+def sweeps_part(folder: Path) -> str:
+    """Return what became of the cases of every sweep, and what the refusals named."""
+    rows, named = [], []
+    for kind, title in SWEEPS.items():
+        file = folder / f"sweep-{kind}.jsonl"
+        if file.exists():
+            records = [json.loads(line) for line in file.read_text(encoding="utf-8").splitlines()]
+            rows.append(_sweep_row(title, records))
+            named.append(f"{title}: {_refused(records)}.")
+    return f"{SWEEP_HEAD}\n" + "\n".join(rows) + "\n\nRefused, by what was named: " + " ".join(named) + "\n"
+
+
+def _sweep_row(title: str, records: list[Json]) -> str:
+    """Write the counts and the worst figures of one sweep."""
+    ends = Counter(str(record["end"]) for record in records)
+    tables = [record["figures"] for record in records if record["end"] == "table"]
+    hardest = max(tables, key=lambda figures: float(figures["most iterations"]))
+    late = max(f["CPU time, s"] / (f["predicted CPU time, s"] + 1.0) for f in tables)
+    cells = (
+        title,
+        len(records),
+        ends["table"],
+        ends["refusal"],
+        len(records) - ends["table"] - ends["refusal"],
+        f"{sum(int(figures['points']) for figures in tables)}",
+        f"{hardest['most iterations']:.0f}",
+        f"{max(figures['largest residual'] for figures in tables):.1e}",
+        f"{late:.1f}",
+    )
+    return f"| {' | '.join(map(str, cells))} |"
+
+
+def _refused(records: list[Json]) -> str:
+    """Count the refusals by the standard term or the field they name."""
+    texts = (str(record["failure"]) for record in records if record["end"] == "refusal")
+    terms = Counter(text.split(" = ")[0].split(": ")[1] for text in texts)
+    return ", ".join(f"{term} {count}" for term, count in terms.most_common())
 
 
 def _summary(scenes: list[Json]) -> str:
@@ -70,6 +115,7 @@ def main(folder: Path, page: Path) -> None:
     """Rewrite the page."""
     scenes = json.loads((folder / "scenes.json").read_text(encoding="utf-8"))["scenes"]
     text = with_part(page.read_text(encoding="utf-8"), "scenes", scenes_part(scenes))
+    text = with_part(text, "sweeps", sweeps_part(folder))
     page.write_text(text, encoding="utf-8")
 
 

@@ -20,6 +20,8 @@ from fe_contact.types import FloatArray, Json
 LARGEST_DEVIATION = 0.01
 """m; larger values of an axis are micrometres given as metres."""
 LARGEST_PERIOD = 1_000_000
+THINNEST_HELICAL = 40.0
+"""Depth of a helical body, bore to root, over its face width: residuals exceed 1e-8 from 45 on, not at 34."""
 ON_VIOLATION = ("repeat", "fail", "report")
 
 
@@ -227,6 +229,8 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
     if spare and not (request.spared or request.turned_on):
         request = replace(request, spared=spared_effects(request.scene, ledger, request.accuracy.tolerance))
         composed, ledger = _composed(request) if request.spared else (composed, ledger)
+    if composed.across_face:
+        refuse_helical_plates(request.pair)
     _refuse_distances(request)
     _refuse_idle_pitches(request)
     cycle = _cycle_cost(request, composed) if whole_table and composed.period > 1 else None
@@ -339,6 +343,18 @@ def refuse_beyond_plane(scene: ContactScene) -> None:
             raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
     if np.any(scene.misalignment != 0.0):
         raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
+
+
+def refuse_helical_plates(pair: ParallelAxes) -> None:
+    """Refuse helical discs so thin that they bend as plates: the elements lose all digits."""
+    for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
+        least = abs(gear.root_radius - gear.held_radius) / THINNEST_HELICAL
+        if gear.helix_angle != 0.0 and gear.face_width < least:
+            bound = (
+                f"at least {least:.6g} m: {THINNEST_HELICAL:g} times as deep a helical body bends as a plate"
+            )
+            advice = "Widen the face or the bore, or take a spur gear."
+            raise InputError(f"{name}.face_width", gear.face_width, bound, advice)
 
 
 def refuse_web_off_center(scene: ContactScene) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from fe_contact.analysis import analyze
+from fe_contact.analysis.warm_up import warm_up
+from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from service.hardcases.scene import HardScene, Measured
 from service.hardcases.soundness import LARGEST_RESIDUAL, MOST_ITERATIONS
@@ -34,8 +37,14 @@ def sweep_case(kind: Kind, seed: int) -> HardScene:
 
 
 def measure(kind: Kind, seed: int) -> Sequence[Measured]:
-    """Compute the table that `seed` picks."""
+    """Compute the table that `seed` picks; what a process does once is done before."""
+    warm_up(across_face=kind == "face")
     pair, arguments = random_request(kind, seed)
+    return judged(pair, arguments)
+
+
+def judged(pair: ParallelAxes, arguments: Mapping[str, Any]) -> Sequence[Measured]:
+    """Analyse a pair and judge the table by what every table must obey."""
     table = analyze(pair, **arguments)
     receipt = table.metadata.receipt
     predicted = float(receipt["prediction"]["cpu_seconds"])

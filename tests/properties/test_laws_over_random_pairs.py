@@ -1,0 +1,199 @@
+"""Laws of loaded contact over random feasible pairs, from candidates to forces.
+
+Bodies are springs in closed form (`springs_for_teeth`), so that an example takes milliseconds: 40 of each law
+here, 640 of each in `scripts/nightly`. What finite elements add obeys the same laws in tests/stability.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+from springs_for_teeth import on_springs
+
+from fe_contact.analysis.pair_contact import PairContact
+from fe_contact.analysis.request import check_request
+from fe_contact.contact import ContactModel, ContactSolution
+from fe_contact.errors import InputError
+from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation
+from fe_contact.material import Material
+from fe_contact.planning import make_plan
+
+LAWS = settings(
+    max_examples=int(os.environ.get("LOA_EXAMPLES_PER_LAW", "40")),
+    deadline=None,
+    suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
+)
+POSITIONS = np.arange(24) / 24
+LINE_LOAD = 10e6  # Pa of face width times module
+
+
+@dataclass(frozen=True)
+class Loaded:
+    """A pair with its loads."""
+
+    contact: PairContact
+    model: ContactModel
+    load: np.ndarray
+
+    @property
+    def pair(self) -> GearPair:
+        return self.contact.pair
+
+    def solve(self, position=POSITIONS, load=None, **model: object) -> ContactSolution:
+        chosen = replace(self.model, **model)
+        return self.contact.solve(chosen, position, self.load if load is None else load)[1]
+
+
+def loaded(pair: GearPair, load: np.ndarray) -> Loaded:
+    asked = check_request(
+        pair, normal_forces=load, model="plane_strain", level="draft", pitches=pitches_of(pair)
+    )
+    plan = make_plan(pair, asked.request.load, asked.request.accuracy, asked.model)
+    return Loaded(on_springs(pair, plan), asked.model, load)
+
+
+def pitches_of(pair: GearPair) -> int | None:
+    gears = (pair.pinion, pair.wheel)
+    return None if all(gear.pitch_deviation.neutral for gear in gears) else 1
+
+
+materials = st.builds(Material, st.floats(2e9, 300e9), st.floats(0.0, 0.49))
+
+
+@st.composite
+def gears(draw: st.DrawFn, module: float) -> Gear:
+    size = module * 10.0 ** draw(st.floats(-4.0, -2.3))
+    relief = draw(st.sampled_from([0.0, size]))
+    modification = FlankModification(
+        tip_relief=relief,
+        tip_relief_length=0.5 * module if relief else 0.0,
+        profile_crowning=draw(st.sampled_from([0.0, size])),
+    )
+    return Gear(
+        teeth=draw(st.integers(12, 120)),
+        normal_module=module,
+        face_width=draw(st.floats(1.0, 20.0)) * module,
+        bore_diameter=3.0 * module,
+        profile_shift_coefficient=draw(st.floats(-0.2, 0.6)),
+        addendum_coefficient=draw(st.floats(0.85, 1.1)),
+        root_radius_coefficient=0.2,
+        material=draw(materials),
+        modification=modification,
+    )
+
+
+@st.composite
+def pairs(draw: st.DrawFn, alike: bool = False) -> Loaded:
+    module = 10.0 ** draw(st.floats(-3.7, -1.4))
+    try:
+        pinion = draw(gears(module))
+        pair = GearPair(pinion, pinion if alike else draw(gears(module)))
+        apart = draw(st.floats(0.0, 0.1)) * module
+        pair = replace(pair, center_distance=pair.center_distance + apart)
+    except InputError:
+        assume(False)
+        raise
+    softest = min(gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel))
+    nominal = LINE_LOAD * pair.face_width * module * softest / 210e9
+    return loaded(pair, nominal * np.geomspace(1e-3, 10.0, 5))
+
+
+def elastic(solution: ContactSolution) -> np.ndarray:
+    return solution.deflection - solution.no_load[:, None]
+
+
+@LAWS
+@given(pairs())
+def test_contact_holds_and_shares_are_positive_and_sum_to_one(case: Loaded) -> None:
+    problem, solution = case.contact.solve(case.model, POSITIONS, case.load)
+    assert solution.converged
+    assert solution.residuals.max() < 1e-9
+    assert solution.iterations.max() <= 40
+    shares = solution.force * problem.candidates.torque_share[:, None, :] / case.load[:, None]
+    assert shares.min() >= 0.0
+    assert shares.sum(axis=2) == pytest.approx(np.ones(solution.status.shape), abs=1e-12)
+
+
+@LAWS
+@given(pairs())
+def test_deflection_grows_with_load_and_stiffness_does_not_fall(case: Loaded) -> None:
+    solution = case.solve()
+    assert np.all(np.diff(solution.deflection, axis=1) > 0.0)
+    assert np.all(solution.tangent > 0.0)
+    # off the line of action the arms differ by a per cent, which lets the tangent rise by a trace
+    assert np.all(np.diff(solution.tangent, axis=1) <= 2e-3 * solution.tangent[:, :-1])
+
+
+@LAWS
+@given(pairs(), st.floats(0.02, 50.0))
+def test_lengths_scale_and_forces_scale_with_their_square(case: Loaded, scale: float) -> None:
+    def scaled(gear: Gear) -> Gear:
+        lengths = ("normal_module", "face_width", "bore_diameter")
+        names = ("tip_relief", "tip_relief_length", "profile_crowning")
+        modification = replace(gear.modification, **{n: scale * getattr(gear.modification, n) for n in names})
+        return replace(gear, modification=modification, **{n: scale * getattr(gear, n) for n in lengths})
+
+    try:
+        large = GearPair(scaled(case.pair.pinion), scaled(case.pair.wheel), scale * case.pair.center_distance)
+    except InputError:  # a modification above the largest that is believed
+        assume(False)
+        raise
+    found = loaded(large, scale**2 * case.load).solve(corner_contact=case.model.corner_contact)
+    plain = case.solve()
+    assert elastic(found) == pytest.approx(scale * elastic(plain), rel=1e-6, abs=0.0)
+
+
+@LAWS
+@given(pairs())
+def test_either_gear_may_drive(case: Loaded) -> None:
+    """Position x by the one gear is -x by the other, where contact is on the line of action."""
+    swapped = loaded(case.pair.swapped(), case.load)
+    there = case.solve(corner_contact=False).deflection
+    back = swapped.solve((1.0 - POSITIONS) % 1.0, corner_contact=False).deflection
+    assert back == pytest.approx(there, rel=1e-7, abs=1e-9 * there.max())
+
+
+@LAWS
+@given(pairs(alike=True))
+def test_a_pair_of_equal_gears_is_its_own_mirror_image(case: Loaded) -> None:
+    solution = case.solve((POSITIONS + 1e-3) % 1.0, corner_contact=False).deflection
+    mirrored = case.solve((1.0 - POSITIONS - 1e-3) % 1.0, corner_contact=False).deflection
+    assert mirrored == pytest.approx(solution, rel=1e-7, abs=1e-9 * solution.max())
+
+
+@LAWS
+@given(pairs(), st.floats(-1.0, 1.0))
+def test_a_rigid_offset_is_added(case: Loaded, part: float) -> None:
+    """All teeth of one gear out of their places by the same: STE shifts by that along the line of action."""
+    pinion = case.pair.pinion
+    deviation = part * 5e-4 * pinion.normal_module
+    moved = replace(pinion, pitch_deviation=PitchDeviation((deviation,) * pinion.teeth))
+    shifted = loaded(replace(case.pair, pinion=moved), case.load).solve()
+    plain = case.solve()
+    offset = -deviation * np.cos(pinion.transverse_pressure_angle)
+    error = np.abs(shifted.deflection - plain.deflection - offset)
+    assert error.max() <= 1e-9 * (np.abs(plain.deflection).max() + abs(offset))
+
+
+@LAWS
+@given(pairs(), st.floats(0.0, 1.0))
+def test_all_repeats_after_one_base_pitch(case: Loaded, position: float) -> None:
+    here, there = (case.solve(np.array([x])) for x in (position, position + 1.0))
+    assert there.deflection == pytest.approx(here.deflection, rel=1e-9, abs=0.0)
+
+
+@LAWS
+@given(pairs(), st.floats(0.0, 1.0))
+def test_taking_material_off_never_lowers_the_deflection(case: Loaded, part: float) -> None:
+    wheel = case.pair.wheel
+    more = wheel.modification.profile_crowning + part * 1e-3 * wheel.normal_module
+    worn = replace(wheel, modification=replace(wheel.modification, profile_crowning=more))
+    other = loaded(replace(case.pair, wheel=worn), case.load)
+    there, here = (each.solve(corner_contact=True).deflection for each in (other, case))
+    # the touching point of a modified flank is found to parts of a nanometre
+    assert np.all(there - here >= -1e-6 * np.abs(here).max())
