@@ -10,6 +10,7 @@ from pathlib import Path
 
 from benchmarks import (
     corrected_plane,
+    dynamics_cost,
     effects_off,
     error_honesty,
     finite_width,
@@ -35,6 +36,7 @@ SUBJECTS = (
     long_phase,
     other_engine,
     corrected_plane,
+    dynamics_cost,
     solvers_3d,
     predictions,
     error_honesty,

@@ -13,6 +13,7 @@ import numpy as np
 
 from dynamics.engines.mesh_element import MeshElement
 from dynamics.errors import InputError
+from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import compiled
 from dynamics.forces.flank_force import FlankLaws, flank_force
 from dynamics.forces.packed_tables import pack_tables
@@ -67,7 +68,7 @@ class PlanarMesh:
         """Return the force law for the compiled look-up."""
         place = table_at(self.element.table, self.misalignment, self.center_distance_change)
         damping, reach = np.array([self.element.damping]), np.array([self.element.reach])
-        return FlankLaws(pack_tables([place]), damping, reach)
+        return by_address(FlankLaws(pack_tables([place]), damping, reach))
 
 
 def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Drive | None = None) -> Any:
