@@ -20,7 +20,7 @@ def worth_cases() -> list[HonestyCase]:
     named = {case.name: case for case in (*plane_cases(), *face_cases())}
     for name in ("spur 40/40, 64 even positions", "spur 18/18 in 3-D"):
         del named[name]
-    return [replace(case, loads=LOADS, levels=("draft",)) for case in (*named.values(), *_further(named))]
+    return [replace(case, loads=LOADS) for case in (*named.values(), *_further(named))]
 
 
 def _further(named: dict[str, HonestyCase]) -> list[HonestyCase]:

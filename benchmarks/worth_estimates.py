@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -16,6 +16,8 @@ from benchmarks.honesty_cases import HonestyCase
 from benchmarks.worth_cases import worth_cases
 from fe_contact.analysis import check_request
 from fe_contact.analysis.ablation import EffectAblation, ablate
+from fe_contact.analysis.model_choice import decide
+from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 
 PAGE = Path(__file__).parents[1] / "docs" / "effects" / "worth.md"
 MARKS = ("<!-- figures: written by scripts/bench --publish -->", "<!-- end of figures -->")
@@ -76,11 +78,18 @@ def study(cases: Sequence[HonestyCase], folder: Path) -> list[JudgedWorth]:
         sys.stderr.write(f"  {case.name}\n")
         made = ablate(case.pair, normal_forces=case.forces, level="draft", cache=folder, **case.options)
         asked = {"normal_forces": case.forces, **case.options}
-        decided = {tol: check_request(case.pair, tolerance=tol, **asked).decided for tol in TOLERANCES}
+        wishes = {tol: check_request(case.pair, tolerance=tol, **asked) for tol in TOLERANCES}
+        decided = {tol: decide(wish, folder).checked.decided for tol, wish in wishes.items()}
         for entry in made.effects:
-            off_at = tuple(tol for tol in TOLERANCES if decided[tol][entry.name] == "off")
+            off_at = tuple(tol for tol in TOLERANCES if left_off(decided[tol], entry.name))
             found += _judged(case, entry, off_at)
     return found
+
+
+def left_off(decided: Mapping[str, str], name: str) -> bool:
+    """Whether an effect is off; three dimensions hold the finite width by themselves."""
+    held = name == FiniteWidth.name and decided[FaceLoadDistribution.name] == "on"
+    return decided[name] == "off" and not held
 
 
 def _judged(case: HonestyCase, entry: EffectAblation, off_at: tuple[float, ...]) -> list[JudgedWorth]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.effect_ledger import switched_over
-from fe_contact.analysis.request import Checked, check_request
+from fe_contact.analysis.model_choice import decide
+from fe_contact.analysis.request import Checked, check_asked, check_request
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.worth import Worth, estimate_worth
@@ -178,7 +179,8 @@ def ablate(
     ----------
     pair, torques, normal_forces, tolerance, level, time_budget, model, positions, pitches, misalignments, \
 effects, progress, cache
-        As for `analyze`. With `cache` the gears are condensed once for each body and model.
+        As for `analyze`; all tables are made on the level of mesh that the accuracy asks for. With `cache`
+        the gears are condensed once for each body and model.
     only : sequence of str, optional
         Effects to switch over; default all.
 
@@ -216,6 +218,7 @@ def ablate_checked(
     checked: Checked, names: Sequence[str], progress: Progress, cache: Path | None
 ) -> Ablation:
     """Switch the named effects of a checked request over; parameters of `ablate`."""
+    checked = _on_one_mesh(checked, cache)
     nominal = _figures(checked, cache)
     found, left_out = [], {}
     for count, entry in enumerate(ledger := [one for one in checked.ledger if one.name in names]):
@@ -232,6 +235,14 @@ def ablate_checked(
     return Ablation(
         request.torque, request.load, _judged_misalignment(checked), nominal, tuple(found), left_out
     )
+
+
+def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
+    """Return the request with the model and the level that its accuracy asks for: all tables compare."""
+    decided = decide(checked, cache)
+    request = decided.checked.request
+    accuracy = replace(request.accuracy, tolerance=None, time_budget=None, level=decided.mesh.level)
+    return check_asked(replace(request, accuracy=accuracy), spare=False)
 
 
 def _selected(only: Sequence[str] | None) -> tuple[str, ...]:

@@ -10,8 +10,12 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, ablate, analyze
+from fe_contact.analysis import ablation
 from fe_contact.analysis.ablation import Ablation
+from fe_contact.analysis.compute_database import compute_database
+from fe_contact.analysis.request import Checked
 from fe_contact.errors import InputError
+from fe_contact.ste import SteDatabase
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3))
@@ -96,3 +100,17 @@ def test_the_result_is_plain_json(made: Ablation) -> None:
 def test_an_unknown_effect_is_refused() -> None:
     with pytest.raises(InputError, match="only"):
         ablate(PAIR, normal_forces=[1000.0], only=["windage"])
+
+
+def test_a_tolerance_chooses_one_mesh_for_all_tables(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = []
+
+    def noted(checked: Checked, *further: object) -> SteDatabase:
+        made.append((checked.request.accuracy.level, checked.request.accuracy.tolerance))
+        return compute_database(checked, *further)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(ablation, "compute_database", noted)
+    asked = {"normal_forces": [2500.0], "tolerance": 0.05, "positions": 16, "cache": cache}
+    found = ablate(PAIR, **asked, only=["tooth_coupling"])  # type: ignore[arg-type]
+    assert len(found.effects) == 1
+    assert made == [("draft", None)] * 2
