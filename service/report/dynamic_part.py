@@ -23,6 +23,12 @@ from service.report.sideband_table import sideband_tables
 
 LEAST_PITCHES = 64  # of a run whose orders are shown
 _LEDGER = {"effect": "effect", "part": "part", "on": "simulated", "reason": "because"}
+_ERRORS = {
+    "time_step": ("step error", "nm rms"),
+    "table_interpolation": ("table error", "nm rms"),
+    "left_out_effects": ("effects that are off", "nm at rest"),
+}
+"""Sources of error, and the unit of what they do to transmission errors."""
 
 
 def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
@@ -122,11 +128,10 @@ def _worth(entry: dict[str, Any]) -> dict[str, str]:
 
 
 def _accuracy(run: RunResult) -> Table:
-    """Tabulate status, step error and balance."""
-    error = run.receipt.get("error", {}).get("time_step", {})
+    """Tabulate status, errors by source and balance."""
     rows = [("status", run.status.name.lower().replace("_", " "))]
-    if "rms" in error:
-        rows.append((f"step error, nm rms ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
+    for name, (title, unit) in _ERRORS.items():
+        rows += _errors(title, unit, run.receipt.get("error", {}).get(name, {}))
     if run.energy is not None:
         rows.append(
             ("energy unaccounted for, % of what vibration turns over", number(100 * run.energy.relative, 2))
@@ -134,6 +139,17 @@ def _accuracy(run: RunResult) -> Table:
         through = run.energy.relative_to_throughput
         rows.append(("energy unaccounted for, % of the drive's work", number(100 * through, 2)))
     return Table("Accuracy of the run", ("quantity", "value"), tuple(rows))
+
+
+def _errors(title: str, unit: str, error: dict[str, Any]) -> list[tuple[str, str]]:
+    """Write the error of one source: of transmission errors, and of the worst order of a bearing force."""
+    rows = []
+    if "rms" in error:
+        rows.append((f"{title}, {unit} ({error.get('source', '')})", number(1e9 * float(error["rms"]), 3)))
+    if error.get("bearing_force_orders"):
+        worst = max(float(value) for value in error["bearing_force_orders"])
+        rows.append((f"{title}, N at the worst mesh order of a bearing force", number(worst, 2)))
+    return rows
 
 
 def _seconds(run: RunResult) -> Table:
