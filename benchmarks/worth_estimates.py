@@ -145,6 +145,8 @@ def markdown(found: Sequence[JudgedWorth]) -> str:
         f"**{right:.0f} %** have mean and peak-to-peak right within a factor {FACTOR:g} and in sign (target "
         f"{SHARE:g} %); changes below {100 * FLOOR:g} % count as nothing.\n\n"
     )
+    seen = [one for one in counts(found) if "beyond a factor 2, of" in one.what]
+    head += "".join(f"{figure.what[0].upper()}{figure.what[1:]}: {figure.value:.2g} %.\n" for figure in seen)
     left = [_left_off(found, tolerance) for tolerance in TOLERANCES]
     head += "".join(f"{figure.what[0].upper()}{figure.what[1:]}: {figure.value:.2g} %.\n" for figure in left)
     head += "\n"
