@@ -56,7 +56,7 @@ def switched_off(path: str) -> dict[str, dict[str, float]]:
     }
     able = {
         "backlash": (_with_mesh(scene, coast=CoastFlank(50e-6)), {"backlash": "off"}),
-        "friction": (_with_mesh(scene, friction=0.05), {"friction": "off"}),
+        "friction": (_with_mesh(scene, friction=0.05, table=_with_axes(table)), {"friction": "off", **axes}),
         "places on a table's axes": (_with_mesh(scene, table=_with_axes(table)), axes),
     }
     found = {}
@@ -78,12 +78,13 @@ def _with_mesh(scene: Scene, **changes: Any) -> Scene:
 
 
 def _with_axes(table: MeshTable) -> PlainTable:
-    """Return the table at three misalignments and centre distances, the same at all."""
+    """Return the table at three misalignments and centre distances, the same at all, with levers."""
     places = np.array([-1e-5, 0.0, 1e-5])
     shape = (3, 3, *np.shape(table.deflection)[2:])
     names = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
     fields = {name: np.broadcast_to(getattr(table, name), shape).copy() for name in names}
-    return PlainTable(table.position, table.level, places, places, **fields, period=table.period)
+    levers = dict.fromkeys(("face_centroid", "sliding_share", "sliding_lever"), np.full(shape, 1e-3))
+    return PlainTable(table.position, table.level, places, places, **fields, period=table.period, **levers)
 
 
 def _cheapest(scene: Scene, repeats: int) -> tuple[float, Any]:

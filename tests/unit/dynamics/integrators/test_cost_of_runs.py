@@ -14,7 +14,7 @@ from dynamics.simulate import simulate
 from dynamics.system import Integration
 from dynamics.system.assemble import assemble
 
-SCENE = gear_pair_scene(duration=0.1)
+SCENE = replace(gear_pair_scene(duration=0.1), effects={"lateral": "on", "tilt": "on"})
 
 
 def cost(scene, method="implicit"):
@@ -29,7 +29,8 @@ def with_axes(table):
     names = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
     shape = (3, 3, *table.deflection.shape[2:])
     fields = {name: np.broadcast_to(getattr(table, name), shape).copy() for name in names}
-    return PlainTable(table.position, table.level, places, places, **fields)
+    levers = dict.fromkeys(("face_centroid", "sliding_share", "sliding_lever"), np.full(shape, 1e-3))
+    return PlainTable(table.position, table.level, places, places, **fields, **levers)
 
 
 @pytest.mark.parametrize("method", ["implicit", "explicit"])
@@ -46,13 +47,13 @@ AXES = ("dynamic_misalignment", "dynamic_center_distance", "moving_application_p
     ("able", "effects"),
     [
         ({"coast": CoastFlank(50e-6)}, ("backlash",)),
-        ({"friction": 0.05}, ("friction",)),
+        ({"friction": 0.05, "table": with_axes(square_wave_table())}, ("friction", *AXES)),
         ({"table": with_axes(square_wave_table())}, AXES),
     ],
     ids=["backlash", "friction", "axes"],
 )
 def test_an_effect_that_is_off_takes_no_step_and_no_evaluation(able, effects):
-    off = replace(with_mesh(SCENE, **able), effects=dict.fromkeys(effects, "off"))
+    off = replace(with_mesh(SCENE, **able), effects={**SCENE.effects, **dict.fromkeys(effects, "off")})
     with_it, without = simulate(off), simulate(SCENE)
     assert with_it.statistics == without.statistics
     np.testing.assert_array_equal(with_it.mesh_force, without.mesh_force)
