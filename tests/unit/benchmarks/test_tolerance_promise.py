@@ -44,7 +44,9 @@ def test_the_price_is_that_over_the_quickest_rung_that_met_it(monkeypatch) -> No
     assert found.error == pytest.approx(0.02)
     assert not found.met
     assert found.cheapest == "corrected standard"
-    assert found.price == pytest.approx(0.5, rel=0.3)
+    assert found.least == 2.0
+    assert found.seconds > 1.0  # and the choice itself
+    assert found.price == found.seconds / found.least
 
 
 def test_a_pair_of_three_dimensions_is_held_against_its_own_truth(monkeypatch) -> None:
