@@ -39,10 +39,10 @@ class Outputs:
     accelerations : bool
         Store the acceleration of the shaft at every bearing, and of every freedom if displacements are.
     energy_audit : bool
-        Integrate the powers and close the balance at the end: 15 to 60 % more time, more with more levels in
-        the tables.
+        Integrate the powers and close the balance at the end: a third to three quarters more time, more with
+        more levels in the tables.
     receipt : str
-        ``"full"``: measure the errors of time steps and tables in windows of the run (some 20 % more time).
+        ``"full"``: measure the errors of time steps and tables in windows of the run (6 to 21 % more time).
         ``"minimal"``: state the tolerance only.
     """
 
