@@ -13,6 +13,7 @@ from service.hardcases.contact import (
     sizes,
     tooth_counts,
 )
+from service.hardcases.dynamics import backlash, jumps, runs, steps, stiffness
 from service.hardcases.scene import HardScene
 from service.hardcases.tables import extraction, noise
 
@@ -48,4 +49,16 @@ HARD_SCENES: tuple[HardScene, ...] = (
     extraction.OUTSIDE,
     extraction.NEARLY_PARALLEL,
     noise.NOISE,
+    backlash.NO_MEAN_LOAD,
+    backlash.REVERSAL,
+    backlash.IMPACTS,
+    jumps.BOTH_SWEEPS,
+    runs.REST_TO_REST,
+    runs.CONTACT_LOST,
+    steps.EXTREME_SPEEDS,
+    steps.TORQUE_STEP,
+    steps.TOLERANCES,
+    steps.IMPLICIT_STEPS,
+    steps.EXPLICIT_STEPS,
+    stiffness.THREEFOLD,
 )

@@ -1,0 +1,93 @@
+"""What every scene in the time domain must obey: two integrators agree, and the energy balance closes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.results import RunResult
+from dynamics.simulate import simulate
+from dynamics.system import Scene
+from dynamics.types import FloatArray
+from service.hardcases.scene import Measured
+
+METHODS = ("implicit", "explicit")
+LARGEST_GROWTH = 100.0
+"""What a motion may make of errors of one tolerance: beyond it, agreement to measured errors says little."""
+LARGEST_MISSING = 1e-3
+"""Energy that may be missing, over what was turned over: what the documentation promises."""
+
+
+@dataclass(frozen=True)
+class Runs:
+    """The same scene by both integrators."""
+
+    implicit: RunResult
+    explicit: RunResult
+
+    @property
+    def both(self) -> tuple[RunResult, RunResult]:
+        """The runs."""
+        return self.implicit, self.explicit
+
+
+HONEST = 1.2
+"""Measured errors are differences to a tenth of the tolerance, itself not exact."""
+
+
+def run_both(scene: Scene) -> Runs:
+    """Run `scene` by both integrators, each at the tolerance of the scene."""
+    return Runs(*(simulate(by_method(scene, method)) for method in METHODS))
+
+
+def by_method(scene: Scene, method: str) -> Scene:
+    """Return the scene with another integrator."""
+    return replace(scene, integration=replace(scene.integration, method=method))
+
+
+def common_figures(runs: Runs, scene: Scene) -> tuple[Measured, ...]:
+    """Return how far both integrators are apart, and the energy that the worse one misses.
+
+    They agree to their tolerances; where the scene has errors measured (`Integration.estimate_error`), since
+    its motion makes more of an error than one tolerance, to these.
+    """
+    one, other = (run.dynamic_transmission_error for run in runs.both)
+    apart, tolerance = rms(one - other), scene.integration.tolerance
+    audits = [run.energy for run in runs.both if run.energy is not None]
+    energy = Measured(
+        "energy missing, over what was turned over", max(audit.relative for audit in audits), LARGEST_MISSING
+    )
+    if not scene.integration.estimate_error:
+        return (
+            Measured("two integrators apart, rms over both tolerances", apart / (2.0 * tolerance), 1.0),
+            energy,
+        )
+    errors = [measured_error(run) for run in runs.both]
+    return (
+        Measured("two integrators apart, rms over their measured errors", apart / sum(errors), HONEST),
+        Measured("larger measured error over the tolerance", max(errors) / tolerance, LARGEST_GROWTH),
+        energy,
+    )
+
+
+def off_closed_form(runs: Runs, scene: Scene, exact: Callable[[FloatArray], FloatArray]) -> Measured:
+    """Return the rms distance of the worse integrator from `exact`, over the tolerance or its error."""
+    off = [rms(run.dynamic_transmission_error[0] - exact(run.time)) for run in runs.both]
+    if not scene.integration.estimate_error:
+        return Measured(
+            "off the closed form, rms over the tolerance", max(off) / scene.integration.tolerance, 1.0
+        )
+    honest = max(one / measured_error(run) for one, run in zip(off, runs.both, strict=True))
+    return Measured("off the closed form, rms over the measured error", honest, HONEST)
+
+
+def measured_error(run: RunResult) -> float:
+    """Return what a run says its rms error is, m."""
+    return float(run.receipt["error"]["time_step"]["rms"])
+
+
+def rms(values: FloatArray) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(np.square(values))))
