@@ -442,7 +442,7 @@ def submit(
         str | None,
         typer.Option(
             help="On a case analyze (default), flank or sensitivity; on a scene simulate "
-            "(default), modes, response or steady."
+            "(default), modes, response or steady; on both ablate."
         ),
     ] = None,
     inputs: Annotated[
@@ -460,7 +460,9 @@ def submit(
 @guarded
 def fetch(
     name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
-    output: Annotated[Path, typer.Option("-o", "--output", help="File to write (netCDF).")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="File to write: netCDF, or JSON of an ablation.")
+    ],
     service: Service = DEFAULT_SERVICE,
     json: AsJson = False,
 ) -> None:

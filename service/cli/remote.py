@@ -14,10 +14,11 @@ from service.cli.output import Report, check_writable, console, print_json, prog
 from service.client import JobState, LineOfActionClient, Result
 from service.problems import BadInput, NotFound, ResultNotReady
 from service.schemas import Case, read_table, validated
+from service.schemas.result_kinds import RESULT_KINDS
 
-_KINDS = ("database", "flanks", "run", "sensitivity", "modes", "response", "steady")
 _OF_CASES = ("analyze", "flank", "sensitivity")
 _OF_SCENES = ("simulate", "modes", "response", "steady")
+_OF_BOTH = ("ablate",)
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,7 @@ def run_submit(
 
 def _further(wish: Wish) -> dict[str, Any]:
     """Return the further inputs of a process."""
-    known = (*_OF_CASES, *_OF_SCENES)
+    known = (*_OF_CASES, *_OF_SCENES, *_OF_BOTH)
     if wish.process not in (None, *known):
         raise BadInput.of("--process", wish.process, f"one of {', '.join(known)}", "Or leave it out.")
     if wish.inputs is None:
@@ -112,7 +113,7 @@ def run_fetch(name: str, output: Path, service: str, *, as_json: bool) -> None:
 
 def _by_hash(client: LineOfActionClient, key: str) -> tuple[Path, str, str]:
     """Return the result of a hash, whichever kind it is."""
-    for kind in _KINDS:
+    for kind in RESULT_KINDS:
         try:
             return client.fetch_file(key, kind), key, kind
         except NotFound:

@@ -9,6 +9,8 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from service.schemas.result_kinds import suffix_of
+
 
 class ResultCache:
     """A directory of result files; safe to share between processes, since every write is atomic."""
@@ -57,7 +59,7 @@ class ResultCache:
         """Return the file of a result; the name is hashed again unless it is a plain hash."""
         plain = len(key) == 64 and set(key) <= set("0123456789abcdef")
         name = key if plain else hashlib.sha256(key.encode("utf-8", "replace")).hexdigest()
-        return self._directory / kind / f"{name}.nc"
+        return self._directory / kind / f"{name}{suffix_of(kind)}"
 
     def _request_file(self, service: str, inputs: dict[str, Any]) -> Path:
         """Return the note of a request."""

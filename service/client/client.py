@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import json
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,10 +15,11 @@ import httpx2
 
 from service.client.cache import ResultCache
 from service.client.connection import Connection
-from service.client.portable import CaseLike, SceneLike, case_of, portable_scene, scene_of
+from service.client.portable import CaseLike, SceneLike, case_of, inputs_of, portable_scene, scene_of
 from service.client.status import JobState, Result
 from service.problems import DamagedFile, JobFailed, Unreachable
 from service.schemas.query import QueryOutput
+from service.schemas.result_kinds import RESULT_KINDS
 from service.settings import cache_home
 
 if TYPE_CHECKING:
@@ -25,17 +27,6 @@ if TYPE_CHECKING:
     from fe_contact.ste import SteDatabase
 
 Watch = Callable[[JobState], None]
-
-_PATHS = {
-    "database": "/v1/databases",
-    "flanks": "/v1/flanks",
-    "run": "/v1/runs",
-    "sensitivity": "/v1/sensitivities",
-    "modes": "/v1/modes",
-    "response": "/v1/responses",
-    "steady": "/v1/steadies",
-}
-_NETCDF = "application/x-netcdf"
 
 
 class LineOfActionClient:
@@ -154,7 +145,7 @@ class LineOfActionClient:
     # Results
 
     def fetch_file(self, key: str, kind: str = "database") -> Path:
-        """Return the netCDF file of a result, from the disk cache or the service.
+        """Return the file of a result (netCDF; of an ablation JSON), from the disk cache or the service.
 
         Raises
         ------
@@ -166,7 +157,10 @@ class LineOfActionClient:
         cached = self._cache.get(kind, key)
         if cached is not None:
             return cached
-        response = self._connection.request("GET", f"{_PATHS[kind]}/{key}", headers={"Accept": _NETCDF})
+        where = RESULT_KINDS[kind]
+        response = self._connection.request(
+            "GET", f"{where.path}/{key}", headers={"Accept": where.media_type}
+        )
         content = response.content
         digest = base64.b64encode(hashlib.sha256(content).digest()).decode()
         if response.headers.get("content-digest") != f"sha-256=:{digest}:":
@@ -234,6 +228,33 @@ class LineOfActionClient:
         return self._study(
             "sensitivity", case, progress, {name: list(values) for name, values in deviations.items()}
         )
+
+    def ablate(
+        self,
+        given: CaseLike | SceneLike,
+        progress: Watch | None = None,
+        *,
+        only: Sequence[str] | None = None,
+    ) -> dict[str, Any]:
+        """Return what each effect of a case or a scene changes: submit, wait, fetch.
+
+        Parameters
+        ----------
+        given : Case, SceneInput, mapping or Path
+            A scene is told by its shafts.
+        progress : callable, optional
+        only : sequence of str, optional
+            Effects to switch over; default all.
+
+        Returns
+        -------
+        dict
+            As ``loa ablate --json`` prints it, lengths in um.
+        """
+        inputs = inputs_of(given) if only is None else {**inputs_of(given), "only": list(only)}
+        result = self.wait(self.submit("ablate", inputs).id, progress)
+        found: dict[str, Any] = json.loads(self.fetch_file(result.key, result.kind).read_bytes())
+        return found
 
     def modes_file(
         self,

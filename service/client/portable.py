@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from service.problems import BadInput
-from service.schemas import Case, read_model, validated
+from service.schemas import Case, read_model, read_table, validated
 from service.schemas.scene import MeshInput, SceneInput
 
 CaseLike = Case | Mapping[str, Any] | Path
@@ -28,6 +28,18 @@ def scene_of(given: SceneLike) -> tuple[SceneInput, Path]:
     if isinstance(given, Path):
         return read_model(SceneInput, given), given.parent
     return validated(SceneInput, dict(given)), Path()
+
+
+def inputs_of(given: CaseLike | SceneLike) -> dict[str, Any]:
+    """Return ``{"case": ...}``, or of what has shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
+    if isinstance(given, SceneInput) or (not isinstance(given, Case) and "shafts" in _table(given)):
+        return {"scene": portable_scene(*scene_of(given)).model_dump(mode="json")}
+    return {"case": case_of(given).model_dump(mode="json")}
+
+
+def _table(given: Mapping[str, Any] | Path) -> Mapping[str, Any]:
+    """Return the table that was given, or that a file holds."""
+    return read_table(given) if isinstance(given, Path) else given
 
 
 def case_of_mesh(mesh: MeshInput, place: str, folder: Path) -> Case | None:

@@ -9,10 +9,14 @@ from typing import Any
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.system import Scene
+from dynamics.system.effects import EFFECTS as SCENE_EFFECTS
+from dynamics.system.effects import MESH_EFFECTS
 from fe_contact.analysis.ablation import Ablation, ablate
+from fe_contact.effects import EFFECTS
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.convert.runs import staged
 from service.convert.units import UM
+from service.problems import BadInput
 from service.schemas import Case
 
 Json = dict[str, Any]
@@ -40,6 +44,23 @@ def ablation_of_scene(scene: Scene, only: Sequence[str] | None, report: Report) 
     """Switch the effects of a scene over; raises as `ablation_of_case`."""
     with boundary_errors():
         return ablate_scene(scene, only, staged(report))
+
+
+def effects_asked(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
+    """Return the effects that an ablation is asked for, once each, in the order of their registry.
+
+    Raises
+    ------
+    BadInput
+        A name that no effect of a case, or of a scene, has.
+    """
+    known = [effect.name for effect in EFFECTS]
+    if of_scene:
+        known = [*(effect.name for effect in SCENE_EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
+    for name in only or ():
+        if name not in known:
+            raise BadInput.of("only", name, f"among {', '.join(known)}", "Or leave it out: all are switched.")
+    return [name for name in known if only is None or name in only]
 
 
 def ablation_json(found: Ablation | SceneAblation) -> Json:

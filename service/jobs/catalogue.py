@@ -1,4 +1,4 @@
-"""The processes of the service: analyze, flank, sensitivity, simulate, and studies of scenes."""
+"""The processes of the service: analyze, flank, sensitivity, ablate, simulate, and studies of scenes."""
 
 from __future__ import annotations
 
@@ -7,22 +7,21 @@ from typing import Any
 from pydantic import Field
 
 from fe_contact.analysis.compute_database import SOLVER_VERSION
-from fe_contact.ste import PairFacts, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
+from service.convert.ablation import effects_asked
 from service.convert.case import case_json
 from service.convert.checks import check_case
 from service.convert.flanks import case_at
-from service.convert.scene import check_scene
 from service.convert.sensitivity import Deviations, check_study
-from service.convert.topology import facts_of
 from service.jobs.process import Process, Registry, Stage
-from service.problems import BadInput
+from service.jobs.scene_inputs import check_scene_inputs
 from service.schemas import Case
+from service.schemas.ablation import AblationInput
 from service.schemas.dynamic_studies import ModesInput, ResponseInput, SteadyInput
 from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
-from service.schemas.scene import MeshInput, SceneInput
+from service.schemas.scene import SceneInput
 from service.schemas.sensitivity import DeviationsInput
 from service.store import ResultStore
 
@@ -101,33 +100,20 @@ def _name_database(inputs: Json) -> str:
 def _prepare_scene(inputs: BoundaryModel, store: ResultStore) -> Json:
     """Check the scene and the sources of its tables; return it with all defaults."""
     assert isinstance(inputs, SimulateInputs | ModesInputs | ResponseInputs | SteadyInputs)
-    facts = {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in enumerate(inputs.scene.meshes)}
-    check_scene(inputs.scene, facts)
+    check_scene_inputs(inputs.scene, store)
     return inputs.model_dump(mode="json")
 
 
-def _facts(place: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
-    """Return the facts of a mesh's pair, from its case or its stored database."""
-    _check_source(place, mesh.database_hash, mesh.case_file or mesh.database_file, store)
-    if mesh.case is not None:
-        try:
-            return facts_of(check_case(mesh.case))
-        except BadInput as error:
-            raise error.within(f"{place}.case") from None
-    return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts
-
-
-def _check_source(mesh: str, key: str | None, path: str | None, store: ResultStore) -> None:
-    """Refuse files of the callers, which a service does not read, and hashes it does not hold."""
-    if path is not None:
-        advice = "Write the case out, or submit it and give database_hash; the client does this for you."
-        raise BadInput.of(
-            f"{mesh}.case_file", path, "left out: the service reads no files of its callers", advice
-        )
-    if key is not None and store.find(key, "database") is None:
-        raise BadInput.of(
-            f"{mesh}.database_hash", key, "the hash of a stored database", "Submit its case first."
-        )
+def _prepare_ablation(inputs: BoundaryModel, store: ResultStore) -> Json:
+    """Check what is ablated; return it with all defaults and the effects in the order of their registry."""
+    assert isinstance(inputs, AblationInput)
+    if inputs.scene is not None:
+        check_scene_inputs(inputs.scene, store)
+    elif inputs.case is not None:
+        check_case(inputs.case)
+    only = effects_asked(inputs.only, of_scene=inputs.scene is not None)
+    given = {"case"} if inputs.scene is None else {"scene"}
+    return {**inputs.model_dump(mode="json", include=given), "only": only}
 
 
 ANALYZE = Process(
@@ -167,6 +153,19 @@ SENSITIVITY = Process(
     prepare=_prepare_sensitivity,
     entry="service.jobs.study_work:study_sensitivity_of",
     stages=(Stage("tables", 1.0),),
+)
+ABLATE = Process(
+    id="ablate",
+    title="What each effect of a case or a scene changes",
+    description="Every effect switched over by itself: the change of transmission errors (and of bearing "
+    "forces, for a scene), what the ledger estimated, and what it costs.",
+    version="1",
+    inputs=AblationInput,
+    output="ablation",
+    kind="ablation",
+    prepare=_prepare_ablation,
+    entry="service.jobs.ablation_work:switch_effects",
+    stages=(Stage("analysis", 0.1), Stage("ablation", 0.9)),
 )
 SIMULATE = Process(
     id="simulate",
@@ -223,4 +222,4 @@ STEADY = Process(
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
-    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE, MODES, RESPONSE, STEADY)
+    return Registry(ANALYZE, FLANK, SENSITIVITY, ABLATE, SIMULATE, MODES, RESPONSE, STEADY)

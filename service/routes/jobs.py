@@ -12,17 +12,7 @@ from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
 from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.schemas.ogc import JobList, JobStatus, Link, ResultReference, StatusInfo
-
-NETCDF = "application/x-netcdf"
-RESULT_PATHS = {
-    "database": "/v1/databases",
-    "flanks": "/v1/flanks",
-    "run": "/v1/runs",
-    "sensitivity": "/v1/sensitivities",
-    "modes": "/v1/modes",
-    "response": "/v1/responses",
-    "steady": "/v1/steadies",
-}
+from service.schemas.result_kinds import RESULT_KINDS
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
@@ -53,8 +43,9 @@ def results(job_id: str, context: Ctx) -> dict[str, ResultReference]:
     job = context.submissions.find(job_id)
     _refuse_without_result(job)
     process = context.registry[job.process]
-    href = f"{RESULT_PATHS[process.kind]}/{job.key}"
-    return {process.output: ResultReference(href=href, type=NETCDF, hash=job.key)}
+    kind = RESULT_KINDS[process.kind]
+    reference = ResultReference(href=f"{kind.path}/{job.key}", type=kind.media_type, hash=job.key)
+    return {process.output: reference}
 
 
 @router.delete("/{job_id}", summary="Dismiss a job", responses=documented(404))

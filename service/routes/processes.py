@@ -13,8 +13,7 @@ from service.routes.errors import documented
 from service.routes.jobs import status_info
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import Link, ProcessDescription, ProcessList, ProcessSummary, StatusInfo
-
-NETCDF = "application/x-netcdf"
+from service.schemas.result_kinds import RESULT_KINDS
 
 
 def processes_router(registry: Registry) -> APIRouter:
@@ -132,6 +131,6 @@ def _description(process: Process) -> ProcessDescription:
         }
         for name, field in process.inputs.model_fields.items()
     }
-    output = {"type": "string", "contentMediaType": NETCDF}
+    output = {"type": "string", "contentMediaType": RESULT_KINDS[process.kind].media_type}
     outputs = {process.output: {"title": process.output, "description": process.title, "schema": output}}
     return ProcessDescription(**_summary(process), inputs=inputs, outputs=outputs)

@@ -22,9 +22,9 @@ from service.convert.steady import steady_json
 from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.schemas.query import QueryInput, QueryOutput
+from service.schemas.result_kinds import NETCDF, RESULT_KINDS
 from service.store import StoredResult
 
-NETCDF = "application/x-netcdf"
 _IMMUTABLE = "public, max-age=31536000, immutable"
 _BINARY = {NETCDF: {"schema": {"type": "string", "format": "binary"}}, "application/json": {}}
 
@@ -81,6 +81,12 @@ def sensitivity(key: Key, request: Request, context: Ctx, accept: Accept = "appl
     return _metadata(stored, request, studies_json(read_studies(stored.path)))
 
 
+@router.get("/ablations/{key}", summary="An ablation", response_class=Response, responses=_answers())
+def ablation(key: Key, request: Request, context: Ctx) -> Response:
+    """Return the file, which is JSON, whatever is accepted."""
+    return _file(context.store.verified(key, "ablation"), request)
+
+
 @router.get("/modes/{key}", summary="A modal analysis", response_class=Response, responses=_answers())
 def modes(key: Key, request: Request, context: Ctx, accept: Accept = "application/json") -> Response:
     """Figures or the file, by Accept."""
@@ -127,14 +133,14 @@ def _wants_file(accept: str) -> bool:
 
 def _file(stored: StoredResult, request: Request) -> Response:
     """Return the file with its digest (RFC 9530), or 304."""
-    headers = _headers(f'"{stored.sha256}"')
+    headers, kind = _headers(f'"{stored.sha256}"'), RESULT_KINDS[stored.kind]
     digest = base64.b64encode(bytes.fromhex(stored.sha256)).decode()
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)
     return FileResponse(
         stored.path,
-        media_type=NETCDF,
-        filename=f"{stored.kind}_{stored.key[:12]}.nc",
+        media_type=kind.media_type,
+        filename=f"{stored.kind}_{stored.key[:12]}{kind.suffix}",
         headers=headers | {"Content-Digest": f"sha-256=:{digest}:"},
     )
 

@@ -11,6 +11,7 @@ from sqlalchemy import Column, Engine, Integer, String, Table, delete, select
 from sqlalchemy.dialects.sqlite import insert
 
 from service.problems import DamagedFile, NotFound
+from service.schemas.result_kinds import suffix_of
 from service.store.database import metadata, now, open_database, reading, writing
 
 DATABASE_FILE = "service.sqlite3"
@@ -36,7 +37,7 @@ class StoredResult:
     key : str
         Hash of the input: the resource's name.
     kind : str
-        "database", "flanks", "run" or "sensitivity".
+        One of `service.schemas.result_kinds`.
     sha256 : str
         Digest of the file's bytes, hexadecimal.
     size : int
@@ -119,7 +120,7 @@ class ResultStore:
             if len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
             else "none"
         )
-        return self._directory / kind / name[:2] / f"{name}.nc"
+        return self._directory / kind / name[:2] / f"{name}{suffix_of(kind)}"
 
 
 def stored_results(data_directory: Path) -> ResultStore:

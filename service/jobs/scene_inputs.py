@@ -1,0 +1,48 @@
+"""What a request can check of a scene: whether it can be, and whether its tables can be had."""
+
+from __future__ import annotations
+
+from fe_contact.ste import PairFacts, SteDatabase
+from service.convert.checks import check_case
+from service.convert.scene import check_scene
+from service.convert.topology import facts_of
+from service.problems import BadInput
+from service.schemas.scene import MeshInput, SceneInput
+from service.store import ResultStore
+
+
+def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
+    """Check a scene and the sources of its tables.
+
+    Raises
+    ------
+    BadInput
+        It cannot be or cannot move, names a file of the caller, or a database that is not stored.
+    """
+    check_scene(
+        scene, {mesh.name: _facts(f"meshes[{i}]", mesh, store) for i, mesh in enumerate(scene.meshes)}
+    )
+
+
+def _facts(place: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
+    """Return the facts of a mesh's pair, from its case or its stored database."""
+    _check_source(place, mesh.database_hash, mesh.case_file or mesh.database_file, store)
+    if mesh.case is not None:
+        try:
+            return facts_of(check_case(mesh.case))
+        except BadInput as error:
+            raise error.within(f"{place}.case") from None
+    return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts
+
+
+def _check_source(mesh: str, key: str | None, path: str | None, store: ResultStore) -> None:
+    """Refuse files of the callers, which a service does not read, and hashes it does not hold."""
+    if path is not None:
+        advice = "Write the case out, or submit it and give database_hash; the client does this for you."
+        raise BadInput.of(
+            f"{mesh}.case_file", path, "left out: the service reads no files of its callers", advice
+        )
+    if key is not None and store.find(key, "database") is None:
+        raise BadInput.of(
+            f"{mesh}.database_hash", key, "the hash of a stored database", "Submit its case first."
+        )
