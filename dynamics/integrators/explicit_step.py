@@ -67,5 +67,5 @@ def accelerate(system: SystemArrays, work: Workspace, time: float, stage: int) -
         evaluate(system.elements, local, e)
     for r in range(work.force.size):
         work.force[r] = local.force[r]
-        for i in range(q.size):
+        for i in range(system.reach[r, 0], system.reach[r, 1]):
             acceleration[i] -= work.response[rung, r, i] * work.force[r]

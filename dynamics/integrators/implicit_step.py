@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dynamics.forces.compiled import inner
 from dynamics.forces.routine import routine
 from dynamics.integrators.local_newton import solve_local_forces
 from dynamics.integrators.powers import write_powers
@@ -74,12 +75,21 @@ def solve_stage(system: SystemArrays, work: Workspace, rung: int, stage: int, to
         q[i] += span * span * work.linear[i]
     add_motion(system, q, v, work.free_position, work.free, work.free_rate)
     iterations = solve_local_forces(system, work, rung, span, tolerance)
-    for i in range(size):
-        pushed = 0.0
-        for r in range(work.force.size):
-            pushed += work.response[rung, r, i] * work.force[r]
-        work.stage_a[stage, i] = work.linear[i] - pushed
-        v[i] -= span * pushed
-        q[i] -= span * span * pushed
-        work.stage_v[stage, i] = v[i]
+    add_local_forces(system, work, rung, stage, span)
     return iterations
+
+
+@inner
+def add_local_forces(system: SystemArrays, work: Workspace, rung: int, stage: int, span: float) -> None:
+    """Let the forces found push the freedoms within their reach; fill the stage's rates and accelerations."""
+    pushed = work.external  # it has done its part in this stage
+    for i in range(pushed.size):
+        pushed[i] = 0.0
+    for r in range(work.force.size):
+        for i in range(system.reach[r, 0], system.reach[r, 1]):
+            pushed[i] += work.response[rung, r, i] * work.force[r]
+    for i in range(pushed.size):
+        work.stage_a[stage, i] = work.linear[i] - pushed[i]
+        work.v_new[i] -= span * pushed[i]
+        work.q_new[i] -= span * span * pushed[i]
+        work.stage_v[stage, i] = work.v_new[i]

@@ -11,6 +11,7 @@ from dynamics.forces.local_state import LocalState
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
+from dynamics.system.freedoms import row_reach
 from dynamics.system.observation import local_state, observe, static_deflections
 from dynamics.types import FloatArray
 
@@ -86,8 +87,10 @@ def averaged(
 def _by_coordinates(arrays: SystemArrays) -> SystemArrays:
     """Return arrays whose freedoms are the R local coordinates and the m positions themselves."""
     rows, meshes = arrays.direction.shape[0], arrays.turn.shape[0]
+    direction, each = np.eye(rows, rows + meshes), np.arange(rows + meshes)
     return arrays._replace(
-        direction=np.ascontiguousarray(np.eye(rows, rows + meshes)),
+        direction=direction,
+        reach=row_reach(direction, np.column_stack([each, each + 1])),
         turn=np.ascontiguousarray(np.eye(meshes, rows + meshes, rows)),
         elements=arrays.elements._replace(offset=np.zeros(rows)),
     )

@@ -122,6 +122,8 @@ class SystemArrays(NamedTuple):
     direction : (R, n) array
         G: derivative of the elements' local coordinates in q. The first m elements are the driving flanks,
         whose first coordinate is the transmission error.
+    reach : (R, 2) int array
+        First and end freedom of the blocks that each row of G enters: beyond them it moves nothing.
     turn : (m + f, n) array
         Derivative of the meshes' positions in q, base pitches; 0.
     constant : (n,) array
@@ -145,6 +147,7 @@ class SystemArrays(NamedTuple):
     stiffness: FloatArray
     block: IntArray
     direction: FloatArray
+    reach: IntArray
     turn: FloatArray
     constant: FloatArray
     inertial: FloatArray

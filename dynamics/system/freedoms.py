@@ -88,3 +88,13 @@ def shared_blocks(matrices: Sequence[FloatArray]) -> IntArray:
     ends = [*starts[1:], size]
     spans = [[start, end] for start, end in zip(starts, ends, strict=True) for _ in range(start, end)]
     return np.array(spans, dtype=np.int64).reshape(-1, 2)
+
+
+def row_reach(direction: FloatArray, block: IntArray) -> IntArray:
+    """Return (R, 2): first and end freedom of the blocks that each row enters; an empty range for zeros."""
+    reach = np.zeros((direction.shape[0], 2), dtype=np.int64)
+    for row, along in enumerate(direction):
+        entered = np.flatnonzero(along)
+        if entered.size:
+            reach[row] = block[entered[0], 0], block[entered[-1], 1]
+    return reach

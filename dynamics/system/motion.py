@@ -109,7 +109,7 @@ def add_motion(
     """Add `q` to the positions, and write the elements' local coordinates and their rates."""
     for r in range(coordinate.size):
         moved, moving = system.elements.offset[r], 0.0
-        for i in range(q.size):
+        for i in range(system.reach[r, 0], system.reach[r, 1]):
             moved += system.direction[r, i] * q[i]
             moving += system.direction[r, i] * v[i]
         coordinate[r], rate[r] = moved, moving

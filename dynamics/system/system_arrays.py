@@ -15,7 +15,7 @@ from dynamics.system.connections import elastic_matrices, linear_matrices
 from dynamics.system.effects import FREEDOMS
 from dynamics.system.elements import Element, gradients, pack_elements
 from dynamics.system.frame_couplings import frame_turns
-from dynamics.system.freedoms import ROTATION, Freedoms, shared_blocks
+from dynamics.system.freedoms import ROTATION, Freedoms, row_reach, shared_blocks
 from dynamics.system.kinematics import Kinematics, mesh_shafts
 from dynamics.system.model import Model
 from dynamics.system.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
@@ -42,12 +42,14 @@ def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) 
     along = direction[packed.first[: len(scene.meshes)]]
     held = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
     held += packed.stiffness @ direction**2
+    block = shared_blocks([mass, damping, stiffness])
     arrays = SystemArrays(
         np.ascontiguousarray(mass),
         damping,
         stiffness,
-        shared_blocks([mass, damping, stiffness]),
+        block,
         direction,
+        row_reach(direction, block),
         freedoms.keep(_turns(scene, rotors, kinematics)),
         constant,
         freedoms.keep(-times_mass(rotors, vectors)),
