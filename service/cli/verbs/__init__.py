@@ -1,0 +1,1 @@
+"""Arguments, help and examples of the verbs, a module for each family."""

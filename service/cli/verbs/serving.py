@@ -1,0 +1,72 @@
+"""Verbs of the service and its client."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.cli.guard import guarded
+from service.cli.verbs.options import DEFAULT_SERVICE, AsJson, Service
+
+verbs = typer.Typer()
+
+
+@verbs.command(epilog="Example: loa serve --port 8321 --workers 2")
+@guarded
+def serve(
+    host: Annotated[str | None, typer.Option(help="Loopback address to listen on [LOA_HOST].")] = None,
+    port: Annotated[int | None, typer.Option(help="Port; 0 takes a free one [LOA_PORT].")] = None,
+    data_directory: Annotated[
+        Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
+) -> None:
+    """Serve jobs and results over HTTP on this machine, until stopped."""
+    from service.cli.serve import run_serve  # noqa: PLC0415 (start-up time)
+
+    run_serve(host=host, port=port, data_directory=data_directory, workers=workers)
+
+
+@verbs.command(epilog="Example: loa submit examples/palermo_spur_20_20.toml --wait -o ste.nc")
+@guarded
+def submit(
+    file: Annotated[Path, typer.Argument(help="Case or scene file.")],
+    service: Service = DEFAULT_SERVICE,
+    wait: Annotated[bool, typer.Option("--wait", help="Wait for the result.")] = False,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Wait, and write the result here.")
+    ] = None,
+    process: Annotated[
+        str | None,
+        typer.Option(
+            help="On a case analyze (default), flank or sensitivity; on a scene simulate "
+            "(default), modes, response or steady; on both ablate."
+        ),
+    ] = None,
+    inputs: Annotated[
+        str | None, typer.Option(help="Further inputs of that process, as a JSON object.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Submit a case or a scene to a service."""
+    from service.cli.remote import Wish, run_submit  # noqa: PLC0415 (start-up time)
+
+    run_submit(file, service, Wish(process, inputs), wait=wait, output=output, as_json=json)
+
+
+@verbs.command(epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc")
+@guarded
+def fetch(
+    name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
+    output: Annotated[
+        Path, typer.Option("-o", "--output", help="File to write: netCDF, or JSON of an ablation.")
+    ],
+    service: Service = DEFAULT_SERVICE,
+    json: AsJson = False,
+) -> None:
+    """Fetch the result of a job, or a result by its hash, from a service or the cache."""
+    from service.cli.remote import run_fetch  # noqa: PLC0415 (start-up time)
+
+    run_fetch(name, output, service, as_json=json)

@@ -1,0 +1,102 @@
+"""Verbs on what results are worth: plans, ladders, effects switched over, sensitivity, hard scenes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.cli.guard import guarded
+from service.cli.verbs.options import AsJson
+
+verbs = typer.Typer()
+
+
+@verbs.command(epilog="Example: loa plan examples/palermo_spur_20_20.toml --time-budget-s 5")
+@guarded
+def plan(
+    case: Annotated[Path, typer.Argument(help="Case file.")],
+    time_budget_s: Annotated[
+        float | None, typer.Option(help="CPU seconds to hold the plan against, beside the case's tolerance.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Predict time by stage, memory and error of a case, with its effects; computes no contact."""
+    from service.cli.plan import run_plan  # noqa: PLC0415 (start-up time)
+
+    run_plan(case, time_budget_s, as_json=json)
+
+
+@verbs.command(epilog="Example: loa frontier examples/palermo_spur_20_20.toml -o frontier")
+@guarded
+def frontier(
+    file: Annotated[Path, typer.Argument(help="Case or scene file.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder, or a file ending in .png, .html, .json."),
+    ] = None,
+    rungs: Annotated[
+        str | None, typer.Option(help="Rungs to run, separated by commas; default: all that are valid.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Run the ladder on a case (ISO 6336 to fine finite elements) or on a scene: error against time."""
+    from service.cli.frontier import run_frontier  # noqa: PLC0415 (start-up time)
+
+    run_frontier(file, output, rungs, as_json=json)
+
+
+@verbs.command(epilog="Example: loa ablate examples/palermo_spur_20_20.toml -o ablation.png")
+@guarded
+def ablate(
+    file: Annotated[Path, typer.Argument(help="Case or scene file.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="File to write, ending in .png or .json.")
+    ] = None,
+    only: Annotated[
+        str | None, typer.Option(help="Effects to switch over, separated by commas; default: all.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Switch each effect of a case or a scene over: what it changes, what was estimated, what it costs."""
+    from service.cli.ablate import run_ablate  # noqa: PLC0415 (start-up time)
+
+    run_ablate(file, output, only, as_json=json)
+
+
+@verbs.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")
+@guarded
+def sensitivity(
+    cases: Annotated[list[Path], typer.Argument(help="Case files; each becomes a line in the picture.")],
+    output: Annotated[
+        Path,
+        typer.Option("-o", "--output", help="Folder, or a file ending in .png, .csv, .json, .nc, .html."),
+    ],
+    misalignment_um: Annotated[str, typer.Option(help="Misalignments in um.")] = "0,15,30,45,60",
+    center_distance_change_percent: Annotated[
+        str, typer.Option(help="Changes of the centre distance in per cent.")
+    ] = "-0.2,-0.1,0,0.1,0.2",
+    json: AsJson = False,
+) -> None:
+    """Vary misalignment and centre distance of a case at its highest load: peak-to-peak STE."""
+    from service.cli.sensitivity import run_sensitivity  # noqa: PLC0415 (start-up time)
+
+    run_sensitivity(cases, output, misalignment_um, center_distance_change_percent, as_json=json)
+
+
+@verbs.command(epilog="Example: loa hardcases --only table -o hardcases.html")
+@guarded
+def hardcases(
+    only: Annotated[
+        list[str] | None, typer.Option("--only", help="Names or families of scenes, separated by commas.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="Report page to write (HTML).")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Run the hard scenes: cases known to break solvers, each judged by laws of physics."""
+    from service.cli.hardcases import run_hardcases  # noqa: PLC0415 (start-up time)
+
+    run_hardcases(only or [], output, as_json=json)

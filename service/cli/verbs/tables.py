@@ -1,0 +1,174 @@
+"""Verbs on one gear pair: its table, curves, flanks, roots, and files for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.cli.guard import guarded
+from service.cli.verbs.options import AsJson
+
+verbs = typer.Typer()
+
+
+@verbs.command(epilog="Example: loa analyze examples/palermo_spur_20_20.toml -o ste.nc")
+@guarded
+def analyze(
+    case: Annotated[Path, typer.Argument(help="Case file (TOML, or JSON of the same shape).")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="STE database to write (netCDF).")],
+    json: AsJson = False,
+) -> None:
+    """Compute the STE database of a case."""
+    from service.cli.analyze import run_analyze  # noqa: PLC0415 (start-up time)
+
+    run_analyze(case, output, as_json=json)
+
+
+@verbs.command(epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
+@guarded
+def ste(
+    database: Annotated[Path, typer.Argument(help="STE database (netCDF).")],
+    torque: Annotated[float | None, typer.Option(help="Torque on the driving gear in N m.")] = None,
+    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
+    at: Annotated[
+        str | None,
+        typer.Option(help="Positions by the driving gear in base pitches, 0 = pitch point: 0,0.25,0.5"),
+    ] = None,
+    misalignment_um: Annotated[float | None, typer.Option(help="Misalignment in um.")] = None,
+    center_distance_change_mm: Annotated[
+        float | None, typer.Option(help="Change of the centre distance in mm.")
+    ] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False,
+    json: AsJson = False,
+) -> None:
+    """Print one STE curve of a database, with load sharing, mean, peak-to-peak and harmonics."""
+    from service.cli.ste import CurveRequest, run_ste  # noqa: PLC0415 (start-up time)
+
+    request = CurveRequest(torque, force, at, misalignment_um, center_distance_change_mm)
+    run_ste(database, request, as_csv=csv, as_json=json)
+
+
+@verbs.command(epilog="Example: loa flank examples/palermo_spur_20_20.toml --torque 100 -o flank.nc")
+@guarded
+def flank(
+    case: Annotated[Path, typer.Argument(help="Case file.")],
+    output: Annotated[Path, typer.Option("-o", "--output", help="Flank results to write (netCDF).")],
+    torque: Annotated[
+        float | None,
+        typer.Option(help="Torque on the driving gear in N m; default: the highest load."),
+    ] = None,
+    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
+    misalignment_um: Annotated[
+        float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
+    ] = None,
+    center_distance_change_mm: Annotated[
+        float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta."""
+    from service.cli.flank import run_flank  # noqa: PLC0415 (start-up time)
+
+    point = {
+        "torque_n_m": torque,
+        "normal_force_n": force,
+        "misalignment_um": misalignment_um,
+        "center_distance_change_mm": center_distance_change_mm,
+    }
+    run_flank(case, output, point, as_json=json)
+
+
+@verbs.command(epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed")
+@guarded
+def export(
+    case: Annotated[Path, typer.Argument(help="Case file; for an FMU an STE database, or a run.")],
+    output: Annotated[
+        Path,
+        typer.Option(
+            "-o",
+            "--output",
+            help="Folder for pinion.vtu and wheel.vtu, made if missing; or MESH.fmu; of a run .unv or .csv.",
+        ),
+    ],
+    torque: Annotated[
+        float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
+    ] = None,
+    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
+    misalignment_um: Annotated[
+        float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
+    ] = None,
+    center_distance_change_mm: Annotated[
+        float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
+    ] = None,
+    at: Annotated[str, typer.Option(help="Positions by the driving gear in base pitches.")] = "0",
+    beside: Annotated[
+        int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
+    ] = 1,
+    damping_n_s_per_m: Annotated[
+        float, typer.Option(help="Mesh damping an FMU starts with in N s/m along the line of action.")
+    ] = 0.0,
+    backlash_um: Annotated[
+        float | None,
+        typer.Option(help="Of an FMU with coast flanks: along the transverse line of action, in um."),
+    ] = None,
+    function: Annotated[
+        str, typer.Option(help="Of a run: time, spectrum (over frequency) or orders (over mesh orders).")
+    ] = "time",
+    start: Annotated[float | None, typer.Option("--from", help="Of a run: from this time in s.")] = None,
+    end: Annotated[float | None, typer.Option("--to", help="Of a run: to this time in s.")] = None,
+    json: AsJson = False,
+) -> None:
+    """Write both gears as they bend in mesh (ParaView), the mesh force as an FMU, or a run as UFF or CSV."""
+    from service.cli.export import run_export  # noqa: PLC0415 (start-up time)
+    from service.cli.export_fmu import run_export_fmu  # noqa: PLC0415
+    from service.cli.export_run import is_for_runs, run_export_run  # noqa: PLC0415
+
+    point = {
+        "torque_n_m": torque,
+        "normal_force_n": force,
+        "misalignment_um": misalignment_um,
+        "center_distance_change_mm": center_distance_change_mm,
+    }
+    if is_for_runs(output):
+        run_export_run(case, output, function, (start, end), as_json=json)
+    elif output.suffix == ".fmu":
+        run_export_fmu(case, output, point, damping_n_s_per_m, backlash_um, as_json=json)
+    else:
+        run_export(case, output, point, at, beside, as_json=json)
+
+
+@verbs.command(
+    name="root-stress", epilog="Example: loa root-stress examples/palermo_spur_20_20.toml --torque 100"
+)
+@guarded
+def root_stress(
+    case: Annotated[Path, typer.Argument(help="Case file.")],
+    torque: Annotated[
+        float | None,
+        typer.Option(help="Torque on the driving gear in N m; default: the highest load."),
+    ] = None,
+    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
+    misalignment_um: Annotated[
+        float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
+    ] = None,
+    center_distance_change_mm: Annotated[
+        float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
+    ] = None,
+    image: Annotated[
+        Path | None, typer.Option(help="PNG file to draw the passage of one tooth of each gear to.")
+    ] = None,
+    csv: Annotated[bool, typer.Option("--csv", help="Print the passage of one tooth as CSV.")] = False,
+    json: AsJson = False,
+) -> None:
+    """Compute the stress of the tooth roots at one load: peaks, where they are, and their history."""
+    from service.cli.root_stress import run_root_stress  # noqa: PLC0415 (start-up time)
+
+    point = {
+        "torque_n_m": torque,
+        "normal_force_n": force,
+        "misalignment_um": misalignment_um,
+        "center_distance_change_mm": center_distance_change_mm,
+    }
+    run_root_stress(case, point, image, as_csv=csv, as_json=json)
