@@ -49,11 +49,24 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
     """Balance bushings and meshes against loads and the inertia of the imposed motion at `time`.
 
     Newton's method with step halving, from the state in which every mesh is a spring of its nominal force,
-    on the flank that the load presses.
+    on the flank that the load presses. Meshes stay in contact on the way; where that leads to no equilibrium
+    (a planet whose pin is too far back to carry), they may part, and what nothing holds then stays where it
+    is.
     """
-    arrays = system.arrays
     external = _external(system, time)
-    q = _first_guess(system, time, external)
+    guess = _first_guess(system, time, external)
+    solution = _newton(system, time, guess, external, parting=False)
+    if solution.status.usable:
+        return solution
+    parted = _newton(system, time, guess, external, parting=True)
+    return parted if parted.status.usable else solution
+
+
+def _newton(
+    system: System, time: float, q: FloatArray, external: FloatArray, *, parting: bool
+) -> StaticSolution:
+    """Search from `q`, with meshes that may part on the way or not."""
+    arrays = system.arrays
     found = force_balance(arrays, time, q, np.zeros(q.size), external)
     scale = max(
         float(np.max(np.abs(external / arrays.scale), initial=0.0)),
@@ -65,7 +78,7 @@ def static_equilibrium(system: System, time: float = 0.0) -> StaticSolution:
             force = found.local.force[system.driving_rows]
             return StaticSolution(StaticStatus.CONVERGED, q, force, size, iteration)
         update = _solve(arrays, found.stiffness, found.force, q)
-        q, found = _line_search(arrays, time, q, update, external, size)
+        q, found = _line_search(arrays, time, q, update, external, size, parting)
     lost = bool(np.any(_per_mesh(arrays, found.local.force) <= LOST_CONTACT * scale))
     status = StaticStatus.UNBALANCED if lost else StaticStatus.ITERATION_LIMIT
     return StaticSolution(status, q, found.local.force[system.driving_rows], size, ITERATION_LIMIT)
@@ -162,14 +175,20 @@ def _size(arrays: SystemArrays, balance: ForceBalance) -> float:
 
 
 def _line_search(
-    arrays: SystemArrays, time: float, q: FloatArray, update: FloatArray, external: FloatArray, size: float
+    arrays: SystemArrays,
+    time: float,
+    q: FloatArray,
+    update: FloatArray,
+    external: FloatArray,
+    size: float,
+    parting: bool,
 ) -> tuple[FloatArray, ForceBalance]:
-    """Halve the update until it lowers the residual with all meshes in contact (or is tiny)."""
+    """Halve the update until it lowers the residual (or is tiny), all meshes in contact unless parting."""
     for halving in range(30):
         trial = q + update * 0.5**halving
         found = force_balance(arrays, time, trial, np.zeros(q.size), external)
         # beyond lift-off there is no stiffness to come back by, however small the residual is there
-        touching = np.all(_per_mesh(arrays, found.local.tangent[:, 0]) > 0.0)
+        touching = parting or np.all(_per_mesh(arrays, found.local.tangent[:, 0]) > 0.0)
         if _size(arrays, found) < size and (touching or np.max(np.abs(found.force)) == 0.0):
             break
     return trial, found

@@ -74,7 +74,7 @@ def _accelerations(
     if system.scene.outputs.bearing_forces:
         moves = system.freedoms.keep(system.supports.motion)
         bearings, _, freedoms = moves.shape
-        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration.T).reshape(bearings, 3, -1)
+        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration.T).reshape(bearings, 3, len(moved))
         found["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, moved)
     return found
 

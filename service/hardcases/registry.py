@@ -13,7 +13,17 @@ from service.hardcases.contact import (
     sizes,
     tooth_counts,
 )
-from service.hardcases.dynamics import backlash, jumps, runs, steps, stiffness
+from service.hardcases.dynamics import (
+    backlash,
+    checkpoints,
+    inertias,
+    jumps,
+    planets,
+    runs,
+    steps,
+    stiffness,
+    supports,
+)
 from service.hardcases.scene import HardScene
 from service.hardcases.tables import extraction, noise
 
@@ -61,4 +71,9 @@ HARD_SCENES: tuple[HardScene, ...] = (
     steps.IMPLICIT_STEPS,
     steps.EXPLICIT_STEPS,
     stiffness.THREEFOLD,
+    supports.UNLIKE_BUSHINGS,
+    supports.UNLOADED,
+    inertias.UNLIKE_MASSES,
+    planets.ONE_WITHOUT_LOAD,
+    checkpoints.TAKEN_UP_AGAIN,
 )

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, square_wave_table, with_gear, with_mesh
+from planetary_scenes import planetary_scene, published_set
 
 from dynamics.bodies import TimeLaw
 from dynamics.errors import SolveError
@@ -78,6 +79,19 @@ def test_no_load_rests_at_lift_off():
     found = static_equilibrium(assemble(gear_pair_scene(spring_table(4e8, 1e-6), torque=0.0)))
     assert found.status is StaticStatus.CONVERGED
     assert found.mesh_force[0] == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("planets", [3, 4, 5])
+def test_a_planet_set_back_too_far_leaves_its_load_to_the_others(planets):
+    """Sun, ring and carrier held across the axis: the others share alike, and it touches nothing."""
+    held = {"sun_stiffness": None, "ring_stiffness": None, "carrier_stiffness": None}
+    errors = ((0.0, 200e-6), *[(0.0, 0.0)] * (planets - 1))
+    gears = published_set(planets, pin_errors=errors, **held)
+    found = static_equilibrium(assemble(planetary_scene(gears, sun_torque=200.0)))
+    assert found.status is StaticStatus.CONVERGED
+    force = 200.0 / gears.base_radius[0]
+    np.testing.assert_array_equal(found.mesh_force[:2], 0.0)
+    np.testing.assert_allclose(found.mesh_force[2:], force / (planets - 1), rtol=1e-9)
 
 
 def test_inertia_alone_loads_an_unloaded_pair():

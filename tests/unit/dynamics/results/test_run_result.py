@@ -14,6 +14,7 @@ from dynamics.errors import InputError, ResultError
 from dynamics.results import RunResult
 from dynamics.simulate import simulate
 from dynamics.system import Integration, Outputs
+from dynamics.system.assemble import assemble
 
 
 @pytest.fixture(scope="module")
@@ -138,3 +139,16 @@ def test_mirrored_hand_mirrors_the_axial_forces():
     np.testing.assert_allclose(right.bearing_force[:, 2], -left.bearing_force[:, 2], rtol=1e-6, atol=1e-3)
     np.testing.assert_allclose(right.mesh_force, left.mesh_force, rtol=1e-9)
     assert right.bearing_force[0, 2].mean() > 100.0  # the driver's right hand pushes it along +z
+
+
+def test_accelerations_of_a_scene_without_bearings():
+    """The one freedom of the driven gear obeys J a = r F - T, its kinematic motion having none."""
+    scene = replace(
+        gear_pair_scene(duration=0.005, bushings=()), outputs=Outputs(displacements=True, accelerations=True)
+    )
+    result = simulate(scene)
+    assert result.bearing_acceleration.shape == (0, 3, result.time.size)
+    polar = assemble(scene).arrays.mass[0, 0]
+    expected = (BASE_RADIUS * result.mesh_force[0] - 100.0) / polar
+    assert np.ptp(expected) > 100.0
+    np.testing.assert_allclose(np.abs(result.acceleration[0]), np.abs(expected), rtol=1e-6, atol=1e-3)
