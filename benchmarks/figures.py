@@ -30,6 +30,7 @@ def markdown(figures: Sequence[Figure]) -> str:
 
 def _row(figure: Figure) -> str:
     """One figure as a row."""
-    target = "" if figure.limit is None else f"at most {figure.limit:g} {figure.unit}"
+    unit = "" if figure.unit == "-" else f" {figure.unit}"
+    target = "" if figure.limit is None else f"at most {figure.limit:g}{unit}"
     met = {True: "yes", False: "**no**", None: ""}[figure.met]
-    return f"| {figure.subject} | {figure.what} | {figure.value:.3g} {figure.unit} | {target} | {met} |"
+    return f"| {figure.subject} | {figure.what} | {figure.value:.3g}{unit} | {target} | {met} |"

@@ -10,12 +10,15 @@ from benchmarks import __main__ as bench
 from benchmarks.figures import Figure, markdown
 from benchmarks.fresh_process import measure
 from benchmarks.machine import describe
+from benchmarks.page import MARKS
+from benchmarks.record import Measured
 
 FIGURES = (
     Figure("table", "cold", 2.5, "CPU s", 3.0),
     Figure("table", "cached", 0.25, "CPU s", 0.2),
     Figure("table", "memory", 210.0, "MiB"),
 )
+ORDER = ("static_table", "run_up")
 
 
 def test_met_missed_and_without_target() -> None:
@@ -45,26 +48,53 @@ def test_code_that_fails_is_an_error() -> None:
         measure("raise SystemExit('no such thing')\n")
 
 
+def _measured(day: str, *figures: Figure) -> Measured:
+    """A subject's figures on a machine that is named."""
+    return Measured(day, {"processor": "P", "python": "3"}, figures)
+
+
 def test_publishing_replaces_the_figures_and_nothing_else(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "docs").mkdir()
     readme = tmp_path / "README.md"
-    before, after = f"# Title\n\n{bench._MARKS[0]}\n", f"{bench._MARKS[1]}\n\nRest.\n"
+    before, after = f"# Title\n\n{MARKS[0]}\n", f"{MARKS[1]}\n\nRest.\n"
     readme.write_text(before + "stale row\n" + after)
     monkeypatch.setattr(bench, "ROOT", tmp_path)
     for _ in range(2):  # publishing again changes nothing
-        bench._publish("page", {"processor": "P", "python": "3"}, FIGURES)
+        bench._publish({"static_table": _measured("2026-01-02", *FIGURES)}, ORDER)
         text = readme.read_text()
         assert text.startswith(before)
         assert text.endswith(after)
         assert "stale row" not in text
         assert text.count("| table | cold |") == 1
         assert "memory" not in text  # no target, so no place in the README
-    assert (tmp_path / "docs" / "benchmarks.md").read_text() == "page"
+    assert "| table | memory |" in (tmp_path / "docs" / "benchmarks.md").read_text()
 
 
-def test_named_subjects_are_measured_and_the_others_named(
+def test_publishing_one_subject_keeps_the_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "README.md").write_text(f"{MARKS[0]}\n{MARKS[1]}\n")
+    monkeypatch.setattr(bench, "ROOT", tmp_path)
+    other = Figure("run", "run-up", 0.5, "CPU s", 1.0)
+    bench._publish({"static_table": _measured("2026-01-02", *FIGURES)}, ORDER)
+    bench._publish({"run_up": _measured("2026-01-03", other), "gone": _measured("2026-01-03")}, ORDER)
+    bench._publish({"static_table": _measured("2026-01-04", FIGURES[0])}, ORDER)
+    published = (tmp_path / "docs" / "benchmarks.md").read_text()
+    assert [line for line in published.splitlines() if line.startswith(("## ", "2026"))] == [
+        "## static_table",
+        "2026-01-04",
+        "## run_up",
+        "2026-01-03",
+        "## Machines",
+    ]
+    assert "| run | run-up | 0.5 CPU s |" in published
+    assert "| table | cached |" not in published
+    assert published.count("- processor: P") == 1
+    assert "| run | run-up | 0.5 CPU s |" in (tmp_path / "README.md").read_text()
+
+
+def test_only_named_subjects_are_measured(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(bench, "ROOT", tmp_path)
@@ -72,6 +102,6 @@ def test_named_subjects_are_measured_and_the_others_named(
     assert bench.main(["finite_width"]) == 0
     printed = capsys.readouterr().out
     assert "| table | cold |" in printed
-    assert "not measured this time: reference_errors, static_table, run_up" in printed
+    assert "reference_errors" not in printed
     assert bench.main(["finite_widht"]) == 2
     assert "no subject finite_widht; one of reference_errors" in capsys.readouterr().err
