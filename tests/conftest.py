@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import signal
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,6 +14,16 @@ import pytest
 FIGURES = Path(__file__).parents[1] / "out" / "validation"
 
 RecordFigure = Callable[..., None]
+
+
+def pytest_configure() -> None:
+    """Heed interrupts again: who starts the tests in the background may have had them ignored for good.
+
+    A shell does so for what it starts with ``&``, and all its children inherit it; tests that interrupt a
+    program would wait for ever.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture
