@@ -124,14 +124,14 @@ def _gathered(
 def _whirl(system: System, linear: LinearSystem, speed: float, modes: WhirlModes) -> FloatArray:
     """Return the sense of whirl of each mode, (a,).
 
-    Modes of one frequency are any combination of each other: they get the mean over an orthonormal basis,
-    which does not depend on the combination.
+    Modes of one frequency are any combination of each other: they get one sense together, which does not
+    depend on the combination.
     """
     spin = system.kinematics.float_ratio @ law_speeds(system, speed)
     found = np.empty(modes.frequency.size)
     for cluster in _clusters(modes.frequency):
         basis = _orthonormal(linear, modes.shape[cluster])
-        found[cluster] = np.mean(_senses(system, spin, basis, kinetic_shares(linear, basis)))
+        found[cluster] = _sense(system, spin, basis, kinetic_shares(linear, basis))
     return found
 
 
@@ -149,17 +149,20 @@ def _orthonormal(linear: LinearSystem, shape: ComplexArray) -> ComplexArray:
     return np.asarray(np.linalg.solve(factor.T, np.linalg.qr(factor.T @ shape.T)[0]).T)
 
 
-def _senses(system: System, spin: FloatArray, shape: ComplexArray, kinetic: FloatArray) -> FloatArray:
-    """Return the sense in which the shaft that moves most across its axis goes round, of every mode (a,)."""
-    best, found = np.full(shape.shape[0], STILL), np.zeros(shape.shape[0])
+def _sense(system: System, spin: FloatArray, shape: ComplexArray, kinetic: FloatArray) -> float:
+    """Return the sense in which the shaft that moves most across its axis goes round in modes (c, n).
+
+    Sums over all of them: traces, which are the same in every orthonormal basis.
+    """
+    best, found = STILL * shape.shape[0], 0.0
     for rotor in range(len(system.rotors)):
         for kinds in ((0, 1), (3, 4)):
             i, j = (system.freedoms.find(rotor, kind) for kind in kinds)
             if i < 0 or j < 0:
                 continue
-            turned = np.imag(shape[:, i] * np.conj(shape[:, j]))
-            size = np.abs(shape[:, i]) ** 2 + np.abs(shape[:, j]) ** 2
-            share = kinetic[:, i] + kinetic[:, j]
-            sense = np.sign(spin[rotor]) * 2.0 * turned / np.where(size > 0.0, size, 1.0)
-            found, best = np.where(share > best, sense, found), np.maximum(share, best)
+            turned = float(np.sum(np.imag(shape[:, i] * np.conj(shape[:, j]))))
+            size = float(np.sum(np.abs(shape[:, [i, j]]) ** 2))
+            share = float(np.sum(kinetic[:, [i, j]]))
+            if share > best:
+                best, found = share, float(np.sign(spin[rotor])) * 2.0 * turned / size
     return found

@@ -11,6 +11,7 @@ from dynamics.ablation import RunFigures
 from fe_contact.analysis.ablation import Ablation, EffectAblation
 from service.report import palette
 from service.report.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
+from service.report.note_places import placed
 
 _CASE_HEAD = (
     "effect", "case has it", "mean, µm", "mean, %", "estimated, %", "peak to peak, µm", "peak to peak, %",
@@ -115,9 +116,11 @@ def _scatter(found: Ablation, title: str, which: int) -> Panel:
     if points:
         measured, estimated_values = (np.array([point[k] for point in points]) for k in (0, 1))
         lines.append(Line("effects", measured, estimated_values, palette.INK, width=0, markers=True))
-    notes = tuple(Note(x, y, name.replace("_", " ")) for x, y, name in points)
-    axes = Axis("measured change, %", "log"), Axis("estimated change, %", "log")
-    return Panel(*axes, tuple(lines), title=title, notes=notes)
+    notes = [Note(x, y, name.replace("_", " ")) for x, y, name in points]
+    reach = float(ends[0]), float(ends[1])
+    axes = Axis("measured change, %", "log", reach), Axis("estimated change, %", "log")
+    beside = placed(notes, *axes, (0.5 * reach[0], 2.0 * reach[1]))
+    return Panel(*axes, tuple(lines), title=title, notes=beside)
 
 
 def _harmonics(found: Ablation) -> Panel:

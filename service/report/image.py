@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure as Sheet
-from matplotlib.ticker import ScalarFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, ScalarFormatter
 
 from service.report import palette
 from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, repeats_below
@@ -19,6 +19,8 @@ from service.report.image_shade import colour_map, draw_shade
 _WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
 _NOTE_ROW = 10  # points
+_NARROW = 100.0  # largest over smallest value of a logarithmic axis with plain numbers
+_MOST_WHOLE = 30  # an axis of whole numbers up to here has no ticks between them
 _DASH = {"solid": "-", "dash": "--", "dot": ":"}
 
 
@@ -83,6 +85,8 @@ def _finish(ax: Axes, panel: Panel) -> None:
     """Label, scale and dress one panel."""
     for axis, name in ((panel.x, "x"), (panel.y, "y")):
         _scale(ax, axis, name)
+    if panel.lines and _is_whole(np.concatenate([line.x for line in panel.lines])):
+        ax.xaxis.set_major_locator(MaxNLocator(integer=True))
     for reference in panel.references:
         _refer(ax, reference, boxed=panel.shade is not None)
     for note in panel.notes:
@@ -96,14 +100,25 @@ def _finish(ax: Axes, panel: Panel) -> None:
     ax.set_axisbelow(True)
 
 
+def _is_whole(values: Any) -> bool:
+    """Whether all values are whole numbers and few, as orders are."""
+    return bool(np.all(values == np.round(values)) and np.ptp(values) <= _MOST_WHOLE)
+
+
 def _scale(ax: Axes, axis: Axis, name: str) -> None:
     """Give one axis its label, scale and limits."""
     ax.set(**{f"{name}label": axis.label, f"{name}scale": axis.scale})
     if axis.limits:
         ax.set(**{f"{name}lim": axis.limits})
+    drawn = getattr(ax, f"{name}axis")
     if axis.scale == "linear":
-        formatter = ScalarFormatter(useOffset=False)
-        getattr(ax, f"{name}axis").set_major_formatter(formatter)
+        drawn.set_major_formatter(ScalarFormatter(useOffset=False))
+        return
+    low, high = getattr(ax, f"get_{name}lim")()
+    if high <= _NARROW * low:  # powers of ten would stand alone, or not at all
+        drawn.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        drawn.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        drawn.set_minor_formatter(NullFormatter())
 
 
 def _refer(ax: Axes, reference: Reference, *, boxed: bool) -> None:

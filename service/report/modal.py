@@ -16,6 +16,7 @@ ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the table
 SHOWN_PARTS = 2
 HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
 LEAST_TOP = 1.0  # Hz
+ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
 WHIRLS: dict[str, tuple[str, Dash]] = {
     "forward whirl": (palette.BLUE, "solid"),
     "backward whirl": (palette.VERMILLION, "dash"),
@@ -79,15 +80,15 @@ def _different(found: ModalAnalysis) -> list[int]:
 
 def _order_notes(found: ModalAnalysis, place: FloatArray, top: float) -> Iterator[Note]:
     """Name the orders where they leave the panel."""
-    several = len(_different(found)) > 1
+    several, width = len(_different(found)) > 1, float(np.ptp(place))
     for mesh in _different(found):
-        rate = float(found.mesh_frequency[mesh, -1] / place[-1])
+        rate, last = float(found.mesh_frequency[mesh, -1] / place[-1]), np.inf
         for order in range(1, int(found.facts["orders"]) + 1):
             end = min(float(place[-1]), 0.97 * top / (order * rate))
-            if end <= place[0]:
+            if end <= place[0] or last - end < ROOM * width:
                 continue
-            name = f"{order}x {found.mesh[mesh]}" if several else f"{order}x"
-            yield Note(end - 0.03 * float(np.ptp(place)), order * rate * end * 0.985, name)
+            last, name = end, f"{order}x {found.mesh[mesh]}" if several else f"{order}x"
+            yield Note(end - ROOM * width, order * rate * end * 0.985, name)
 
 
 def _modes(found: ModalAnalysis, place: FloatArray) -> Iterator[Line]:

@@ -93,6 +93,30 @@ def test_an_image_grows_with_its_panels(count: int) -> None:
     assert height == pytest.approx(150 * (2.7 * count + 1.2), abs=1)
 
 
+def _ticks(x: list[float], y: list[float]) -> tuple[list[str], list[str]]:
+    """Labels within the limits of an image with these points, logarithmic in y."""
+    line = Line("a", np.array(x), np.array(y), palette.BLUE)
+    sheet = _panel_sheet((Panel(Axis("mesh order"), Axis("amplitude", "log"), (line,)),))
+    FigureCanvasAgg(sheet).draw()
+    (ax,) = sheet.axes
+    found = []
+    for axis in (ax.xaxis, ax.yaxis):
+        low, high = axis.get_view_interval()
+        ticks = [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+        found.append([t.label1.get_text() for t in ticks if low <= t.get_loc() <= high])
+    return tuple([text for text in texts if text] for texts in found)  # type: ignore[return-value]
+
+
+def test_orders_have_ticks_at_whole_numbers_and_fractions_have_their_own() -> None:
+    assert _ticks([1.0, 2.0, 3.0, 4.0, 5.0], [1.0] * 5)[0] == ["1", "2", "3", "4", "5"]
+    assert "1.50" in _ticks([1.0, 1.5, 2.0, 3.0], [1.0] * 4)[0]
+
+
+def test_a_narrow_logarithmic_axis_has_plain_numbers() -> None:
+    assert _ticks([1.0, 2.0], [0.6, 7.0])[1] == ["1", "2", "5"]
+    assert all("10^" in text for text in _ticks([1.0, 2.0], [1e-4, 1e3])[1])
+
+
 @pytest.mark.parametrize("length", [5, 34, 200])
 @pytest.mark.parametrize("count", [2, 4, 5, 7])
 def test_a_legend_stays_within_the_sheet(count: int, length: int) -> None:
