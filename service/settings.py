@@ -16,6 +16,9 @@ _LOOPBACK = (
     "control in front of it if others need it."
 )
 
+LEAST_MEMORY_MB = 256
+"""What a worker needs to load the program."""
+
 
 def data_home() -> Path:
     """Return the directory for results and jobs (XDG base directory specification)."""
@@ -44,6 +47,8 @@ class Settings(BaseSettings):
         Bytes of a request body; beyond it 413.
     deadline_s : float
         Longest run of one computation.
+    memory_limit_mb : int or None
+        Memory that one computation may have, MB; None: the machine's over the number of workers.
     attempts : int
         How often a computation whose worker died is started.
     """
@@ -57,6 +62,7 @@ class Settings(BaseSettings):
     queue_limit: int = Field(100, ge=1, le=100_000)
     body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)
     deadline_s: float = Field(3600.0, gt=0.0, le=1e6)
+    memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
     attempts: int = Field(2, ge=1, le=10)
 
     @field_validator("host")

@@ -24,6 +24,7 @@ from service.hardcases.dynamics import (
     stiffness,
     supports,
 )
+from service.hardcases.jobs import deaths, limits
 from service.hardcases.scene import HardScene
 from service.hardcases.tables import extraction, noise
 
@@ -76,4 +77,9 @@ HARD_SCENES: tuple[HardScene, ...] = (
     inertias.UNLIKE_MASSES,
     planets.ONE_WITHOUT_LOAD,
     checkpoints.TAKEN_UP_AGAIN,
+    limits.OUT_OF_MEMORY,
+    limits.DEADLINE,
+    deaths.MESHER,
+    deaths.WORKER_ONCE,
+    deaths.WORKER_ALWAYS,
 )

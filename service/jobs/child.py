@@ -18,6 +18,7 @@ import time
 import traceback
 from typing import Any, TextIO
 
+from service.jobs.memory import hold_to, machine_memory_mb, out_of_memory
 from service.jobs.order import Product, WorkOrder
 from service.problems import ServiceError
 
@@ -31,6 +32,8 @@ def main() -> None:
     order = WorkOrder.from_line(_first_line())
     threading.Thread(target=_watch_parent, daemon=True).start()
     os.nice(_NICENESS)
+    if order.memory_limit_mb is not None:
+        hold_to(order.memory_limit_mb)
     with os.fdopen(int(sys.argv[1]), "w", buffering=1) as channel:
         _send(channel, _outcome(order, _Reporter(channel)))
 
@@ -80,7 +83,8 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
         module, _, name = order.entry.partition(":")
         products: tuple[Product, ...] = getattr(importlib.import_module(module), name)(order, progress)
     except MemoryError:
-        return {"failure": "The computation ran out of memory. Ask for a coarser level."}
+        limit = order.memory_limit_mb
+        return {"failure": out_of_memory(machine_memory_mb() if limit is None else limit)}
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
         known = error if isinstance(error, ServiceError) else _translated(error)
         if known is None:

@@ -28,6 +28,8 @@ class WorkOrder:
         what that one left.
     data_directory : Path
         Where results and the compliance cache are, to read.
+    memory_limit_mb : int, optional
+        Memory the work may have, MB.
     """
 
     entry: str
@@ -35,6 +37,7 @@ class WorkOrder:
     key: str
     workspace: Path
     data_directory: Path
+    memory_limit_mb: int | None = None
 
     def line(self) -> bytes:
         """Return the order as one line of JSON."""

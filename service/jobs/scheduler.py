@@ -14,10 +14,11 @@ from pathlib import Path
 import structlog
 
 from service.jobs.claims import Claim, Claims
+from service.jobs.memory import machine_memory_mb
 from service.jobs.order import Outcome, WorkOrder
 from service.jobs.process import Registry
 from service.jobs.worker import Worker
-from service.settings import Settings
+from service.settings import LEAST_MEMORY_MB, Settings
 from service.store import ResultStore
 
 _HEARTBEAT_S = 0.5
@@ -112,7 +113,8 @@ class Scheduler:
         try:
             entry = self._registry[claim.process].entry
             workspace.mkdir(parents=True, exist_ok=True)
-            order = WorkOrder(entry, claim.inputs, claim.key, workspace, self._settings.data_directory)
+            data, memory_mb = self._settings.data_directory, _memory_mb(self._settings)
+            order = WorkOrder(entry, claim.inputs, claim.key, workspace, data, memory_mb)
             worker = Worker(order, log)
         except Exception:
             reference = uuid.uuid4().hex[:12]
@@ -185,5 +187,19 @@ class Scheduler:
                 self._forget(running).kill()
                 shutil.rmtree(self._settings.data_directory / "work" / running.claim.id, ignore_errors=True)
             if late:
-                text = f"The deadline of {self._settings.deadline_s:g} s passed. Ask for less."
-                self._claims.fail(running.claim.id, text)
+                self._claims.fail(running.claim.id, _too_late(self._settings.deadline_s))
+
+
+def _memory_mb(settings: Settings) -> int:
+    """Return what one worker may have, MB: what is set, or its share of the machine's memory."""
+    if settings.memory_limit_mb is not None:
+        return settings.memory_limit_mb
+    return max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
+
+
+def _too_late(deadline_s: float) -> str:
+    """Return what a job is told that took too long."""
+    return (
+        f"The deadline of {deadline_s:g} s (LOA_DEADLINE_S) passed. Ask for a coarser level or fewer "
+        "positions, of a run for a shorter one, or start the service with a later deadline."
+    )

@@ -18,6 +18,7 @@ _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
 _LEAVING_S = 2.0
+_OF_LITTLE_MEMORY = (signal.SIGKILL, signal.SIGABRT)  # by the system, and by libraries that cannot go on
 _ROOT = str(Path(__file__).resolve().parents[2])
 
 
@@ -134,6 +135,6 @@ def _cause(code: int) -> str:
     """Why a worker ended without an outcome."""
     if code < 0:
         name = signal.Signals(-code).name
-        hint = " (the system may have run out of memory)" if -code == signal.SIGKILL else ""
+        hint = " (it may have run out of memory)" if -code in _OF_LITTLE_MEMORY else ""
         return f"The worker was ended by {name}{hint}."
     return f"The worker ended early with exit code {code}."

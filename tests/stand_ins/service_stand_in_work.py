@@ -38,6 +38,10 @@ def _misbehave(order: WorkOrder, mode: str) -> None:
     if mode == "leave_and_die" and _first_time(order):
         (order.workspace / "left").write_text("left behind")
         os._exit(7)
+    if mode == "abort":
+        os.abort()
+    if mode == "hog":
+        _hold = bytearray(300 << 20)
     if mode == "mesh":
         raise MeshError("element 7 has a negative Jacobian")
     if mode == "input":

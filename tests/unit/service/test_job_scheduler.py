@@ -10,6 +10,9 @@ from running_service import Bench, bench, lives, until
 from service_stand_in_work import SECRET
 from service_stand_ins import REGISTRY
 
+from service.jobs.memory import machine_memory_mb
+from service.settings import LEAST_MEMORY_MB
+
 
 @pytest.fixture
 def machine(tmp_path: Path) -> Iterator[Bench]:
@@ -129,9 +132,36 @@ def test_the_deadline_ends_the_work(tmp_path: Path) -> None:
     job = machine.submit(mode="hang")
     ended = machine.ended(job)
     machine.scheduler.stop()
-    assert (ended.status, ended.message) == ("failed", "The deadline of 2 s passed. Ask for less.")
+    assert ended.status == "failed"
+    assert ended.message.startswith("The deadline of 2 s (LOA_DEADLINE_S) passed. Ask for a coarser level")
     for file in tmp_path.glob("grandchild_*"):  # on a busy machine the worker may not have come that far
         assert not lives(int(file.read_text()))
+
+
+def test_work_beyond_its_memory_fails_with_the_limit_and_what_to_try(tmp_path: Path) -> None:
+    """300 MB are refused to one that may have 256, and had by one that may have 1000."""
+    for limit, status in ((256, "failed"), (1000, "successful")):
+        machine = bench(tmp_path / str(limit), REGISTRY, memory_limit_mb=limit)
+        machine.scheduler.start()
+        job = machine.ended(machine.submit(mode="hog"))
+        machine.scheduler.stop()
+        assert (job.status, job.attempts) == (status, 1)
+        assert ("256 MB (LOA_MEMORY_LIMIT_MB). Ask for a coarser level" in job.message) == (limit == 256)
+
+
+def test_a_library_that_gives_up_is_told_with_its_signal(machine: Bench) -> None:
+    job = machine.ended(machine.submit(mode="abort"))
+    assert (job.status, job.attempts) == ("failed", 2)
+    assert job.message.startswith("The worker was ended by SIGABRT (it may have run out of memory).")
+
+
+def test_memory_is_the_machine_s_or_what_its_control_group_leaves(tmp_path: Path) -> None:
+    group = tmp_path / "memory.max"
+    whole = machine_memory_mb(group)  # no such file
+    group.write_text("max\n")
+    assert machine_memory_mb(group) == whole > LEAST_MEMORY_MB
+    group.write_text(f"{300 << 20}\n")
+    assert machine_memory_mb(group) == 300
 
 
 def test_a_stop_kills_the_workers_and_loses_no_job(machine: Bench) -> None:

@@ -1,0 +1,128 @@
+"""Processes that die under a job: its mesher, its worker, and its worker every time."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Sequence
+from contextlib import suppress
+
+import numpy as np
+
+from fe_contact.analysis import analyze
+from fe_contact.types import FloatArray
+from service.convert.case import analysis_arguments, gear_pair
+from service.hardcases.jobs.aftermath import MEDIUM, aftermath, largest_difference
+from service.hardcases.jobs.job_service import Disturb, JobService
+from service.hardcases.scene import HardScene, Measured
+from service.jobs.submissions import Job
+from service.schemas import Case, validated
+
+_MESHER, _WORKER = "gmsh_worker", "service.jobs.child"
+"""What their commands hold."""
+
+
+def kill_meshers(times: int, killed: list[int]) -> Disturb:
+    """Return what kills so many meshers as they run, and notes them."""
+
+    def kill(service: JobService, _job: Job) -> None:
+        if len(killed) < times:
+            killed.extend(_sent(signal.SIGKILL, service.processes(_MESHER)))
+
+    return kill
+
+
+def kill_workers(times: int, killed: list[int]) -> Disturb:
+    """Return what kills so many workers while their mesher runs, and notes them.
+
+    The mesher is stopped first: it would be left for ever if nobody ended it.
+    """
+
+    def kill(service: JobService, _job: Job) -> None:
+        if len(killed) < times and _sent(signal.SIGSTOP, service.processes(_MESHER)):
+            killed.extend(_sent(signal.SIGKILL, service.processes(_WORKER)))
+
+    return kill
+
+
+def _sent(number: signal.Signals, processes: Sequence[int]) -> list[int]:
+    """Send a signal to processes; return those that were there to get it."""
+    reached = []
+    for pid in processes:
+        with suppress(ProcessLookupError):
+            os.kill(pid, number)
+            reached.append(pid)
+    return reached
+
+
+def mesher_killed() -> Sequence[Measured]:
+    """Kill the mesher."""
+    killed: list[int] = []
+    found = aftermath(MEDIUM, kill_meshers(1, killed))
+    said = "gmsh worker: killed by SIGKILL" in found.job.message
+    return (
+        Measured("meshers killed", float(len(killed)), 1.0, 1.0),
+        Measured("failed at the first attempt", float(found.ended_as("failed", 1)), least=1.0),
+        Measured("says that the mesh failed, and how", float(said), least=1.0),
+        *found.figures,
+    )
+
+
+def worker_killed_once() -> Sequence[Measured]:
+    """Kill the first worker in mid-mesh."""
+    killed: list[int] = []
+    found = aftermath(MEDIUM, kill_workers(1, killed))
+    off = np.inf if found.errors is None else largest_difference(found.errors, _of_python())
+    return (
+        Measured("workers killed", float(len(killed)), 1.0, 1.0),
+        Measured("done at the second attempt", float(found.ended_as("successful", 2)), least=1.0),
+        Measured("result off that of Python, m", off, most=0.0),
+        *found.figures,
+    )
+
+
+def worker_killed_always() -> Sequence[Measured]:
+    """Kill every worker in mid-mesh."""
+    killed: list[int] = []
+    found = aftermath(MEDIUM, kill_workers(2, killed))
+    said = "ended by SIGKILL" in found.job.message and found.job.message.endswith("That was attempt 2 of 2.")
+    return (
+        Measured("workers killed", float(len(killed)), 2.0, 2.0),
+        Measured("failed at the last attempt", float(found.ended_as("failed", 2)), least=1.0),
+        Measured("says what ended it, and how often it was tried", float(said), least=1.0),
+        *found.figures,
+    )
+
+
+def _of_python() -> FloatArray:
+    """Return the transmission errors of the job, computed here."""
+    case = validated(Case, MEDIUM)
+    return analyze(gear_pair(case), **analysis_arguments(case)).static_transmission_error
+
+
+_AFTER = (
+    "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
+    "those of an undisturbed service to the last bit."
+)
+
+MESHER = HardScene(
+    "job_whose_mesh_fails",
+    "service",
+    "The mesher is killed in mid-mesh: a process started by the worker, of which the service knows nothing.",
+    f"The job fails at its first attempt and says that the mesher was killed; {_AFTER}",
+    mesher_killed,
+)
+WORKER_ONCE = HardScene(
+    "worker_killed_once",
+    "service",
+    "The worker is killed (SIGKILL) while its mesher hangs: nobody tells the service, and the mesher stays.",
+    f"The second attempt gives what Python gives undisturbed, to the last bit; {_AFTER}",
+    worker_killed_once,
+)
+WORKER_ALWAYS = HardScene(
+    "worker_killed_at_every_attempt",
+    "service",
+    "Every worker of the job is killed while its mesher hangs: tried for ever, it would block all others.",
+    f"The job fails at its second attempt, with the signal and the number of attempts; {_AFTER}",
+    worker_killed_always,
+)

@@ -1,0 +1,113 @@
+"""The job machinery of the service on a directory, without HTTP, and what its processes are doing."""
+
+from __future__ import annotations
+
+import os
+import signal
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from structlog.testing import capture_logs
+
+from fe_contact.ste import SteDatabase
+from fe_contact.types import FloatArray
+from service.jobs.catalogue import ANALYZE, AnalyzeInputs, default_registry
+from service.jobs.claims import Claims
+from service.jobs.scheduler import Scheduler
+from service.jobs.submissions import Job, Submissions
+from service.schemas import Case, validated
+from service.settings import Settings
+from service.store import DATABASE_FILE, RESULTS_DIRECTORY, ResultStore, open_database
+
+LOOK_S = 0.02
+"""Between two looks at a job: a mesher needs several times as long to load."""
+
+Disturb = Callable[["JobService", Job], None]
+
+
+@dataclass(frozen=True)
+class JobService:
+    """A service at work.
+
+    Attributes
+    ----------
+    directory : Path
+    submissions : Submissions
+    store : ResultStore
+    scheduler : Scheduler
+    log : list of dict
+        What it has logged.
+    """
+
+    directory: Path
+    submissions: Submissions
+    store: ResultStore
+    scheduler: Scheduler
+    log: list[Any]
+
+    def submit(self, case: dict[str, Any]) -> Job:
+        """Enter the analysis of a case as the execution route does."""
+        inputs = ANALYZE.prepare(AnalyzeInputs(case=validated(Case, case)), self.store)
+        key = ANALYZE.key(inputs)
+        stored = self.store.find(key, "database") is not None
+        job = self.submissions.submit("analyze", key, inputs, stored=stored)
+        self.scheduler.wake()
+        return job
+
+    def ended(self, job: Job, disturb: Disturb | None = None) -> Job:
+        """Wait for a job; `disturb` is called at every look. Who runs the scene ends a wait in vain."""
+        while not (state := self.submissions.find(job.id)).ended:
+            if disturb is not None:
+                disturb(self, state)
+            time.sleep(LOOK_S)
+        return state
+
+    def errors(self, job: Job) -> FloatArray:
+        """Return the transmission errors of a job that has succeeded."""
+        file = self.store.verified(job.key, "database").path
+        return SteDatabase.from_netcdf(file).static_transmission_error
+
+    def end_processes(self) -> None:
+        """Kill what should have ended before, so that a scene that fails leaves nothing either."""
+        for pid in self.processes():
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
+
+    def processes(self, name: str = "") -> list[int]:
+        """Return the processes at work for the service, or those of them whose command has `name`.
+
+        Each worker, and what it starts, stands in a directory of its own below that of the service.
+        """
+        found = []
+        for entry in Path("/proc").iterdir():
+            with suppress(OSError):  # it has ended, or is another user's
+                place = (entry / "cwd").readlink() if entry.name.isdigit() else Path()
+                if place.is_relative_to(self.directory) and name.encode() in (entry / "cmdline").read_bytes():
+                    found.append(int(entry.name))
+        return [pid for pid in found if pid != os.getpid()]
+
+
+@contextmanager
+def fresh_service(**settings: Any) -> Iterator[JobService]:
+    """Run a service with one worker on a directory of its own, its log kept from the terminal."""
+    with tempfile.TemporaryDirectory(prefix="loa-hard-jobs-") as name, capture_logs() as log:
+        service = _service(Path(name).resolve(), log, settings)
+        service.scheduler.start()
+        try:
+            yield service
+        finally:
+            service.scheduler.stop()
+
+
+def _service(directory: Path, log: list[Any], settings: dict[str, Any]) -> JobService:
+    """Put the machinery together; it is not started."""
+    chosen = Settings(data_directory=directory, workers=1, **settings)
+    engine = open_database(directory / DATABASE_FILE)
+    store = ResultStore(engine, directory / RESULTS_DIRECTORY)
+    scheduler = Scheduler(chosen, default_registry(), Claims(engine), store)
+    return JobService(directory, Submissions(engine, chosen.queue_limit), store, scheduler, log)
