@@ -16,6 +16,7 @@ from structlog.testing import capture_logs
 
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
+from service.hardcases.scene import TIME_LIMIT
 from service.jobs.catalogue import ANALYZE, AnalyzeInputs, default_registry
 from service.jobs.claims import Claims
 from service.jobs.scheduler import Scheduler
@@ -60,8 +61,17 @@ class JobService:
         return job
 
     def ended(self, job: Job, disturb: Disturb | None = None) -> Job:
-        """Wait for a job; `disturb` is called at every look. Who runs the scene ends a wait in vain."""
+        """Wait for a job; `disturb` is called at every look.
+
+        Raises
+        ------
+        TimeoutError
+            It has not ended within the time a scene may take.
+        """
+        latest = time.monotonic() + TIME_LIMIT
         while not (state := self.submissions.find(job.id)).ended:
+            if time.monotonic() > latest:
+                raise TimeoutError(f"the job has not ended after {TIME_LIMIT:g} s; it says: {state.message}")
             if disturb is not None:
                 disturb(self, state)
             time.sleep(LOOK_S)
