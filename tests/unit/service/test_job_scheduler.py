@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -47,7 +48,8 @@ def test_work_is_stored_under_its_key_and_the_workspace_is_gone(machine: Bench) 
 def test_workers_are_nice_and_keep_to_one_thread(machine: Bench) -> None:
     job = machine.ended(machine.submit())
     _, niceness, threads = machine.starts(job)[0].split()
-    assert (int(niceness), threads) == (10, "1")
+    nicest = 19  # where these tests are niced themselves
+    assert (int(niceness), threads) == (min(os.nice(0) + 10, nicest), "1")
 
 
 def test_progress_is_reported_by_stage(machine: Bench) -> None:
