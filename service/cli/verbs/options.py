@@ -18,3 +18,26 @@ TableService = Annotated[
     str | None,
     typer.Option("--service", help="Take the tables from this service instead of computing them here."),
 ]
+
+Torque = Annotated[
+    float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
+]
+Force = Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")]
+Misalignment = Annotated[
+    float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
+]
+CenterDistanceChange = Annotated[
+    float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
+]
+
+
+def load_point(
+    torque: float | None, force: float | None, misalignment_um: float | None, change_mm: float | None
+) -> dict[str, float | None]:
+    """Return one load and alignment under the names of their fields."""
+    return {
+        "torque_n_m": torque,
+        "normal_force_n": force,
+        "misalignment_um": misalignment_um,
+        "center_distance_change_mm": change_mm,
+    }

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from service.cli.guard import guarded
-from service.cli.verbs.options import AsJson
+from service.cli.verbs.options import AsJson, CenterDistanceChange, Force, Misalignment, Torque, load_point
 
 verbs = typer.Typer()
 
@@ -31,7 +31,7 @@ def analyze(
 def ste(
     database: Annotated[Path, typer.Argument(help="STE database (netCDF).")],
     torque: Annotated[float | None, typer.Option(help="Torque on the driving gear in N m.")] = None,
-    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
+    force: Force = None,
     at: Annotated[
         str | None,
         typer.Option(help="Positions by the driving gear in base pitches, 0 = pitch point: 0,0.25,0.5"),
@@ -55,28 +55,16 @@ def ste(
 def flank(
     case: Annotated[Path, typer.Argument(help="Case file.")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Flank results to write (netCDF).")],
-    torque: Annotated[
-        float | None,
-        typer.Option(help="Torque on the driving gear in N m; default: the highest load."),
-    ] = None,
-    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
-    misalignment_um: Annotated[
-        float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
-    ] = None,
-    center_distance_change_mm: Annotated[
-        float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
-    ] = None,
+    torque: Torque = None,
+    force: Force = None,
+    misalignment_um: Misalignment = None,
+    center_distance_change_mm: CenterDistanceChange = None,
     json: AsJson = False,
 ) -> None:
     """Compute pressure, line load and gap on the flanks at one load: contact pattern and K_Hbeta."""
     from service.cli.flank import run_flank  # noqa: PLC0415 (start-up time)
 
-    point = {
-        "torque_n_m": torque,
-        "normal_force_n": force,
-        "misalignment_um": misalignment_um,
-        "center_distance_change_mm": center_distance_change_mm,
-    }
+    point = load_point(torque, force, misalignment_um, center_distance_change_mm)
     run_flank(case, output, point, as_json=json)
 
 
@@ -92,16 +80,10 @@ def export(
             help="Folder for pinion.vtu and wheel.vtu, made if missing; or MESH.fmu; of a run .unv or .csv.",
         ),
     ],
-    torque: Annotated[
-        float | None, typer.Option(help="Torque on the driving gear in N m; default: the highest load.")
-    ] = None,
-    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
-    misalignment_um: Annotated[
-        float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
-    ] = None,
-    center_distance_change_mm: Annotated[
-        float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
-    ] = None,
+    torque: Torque = None,
+    force: Force = None,
+    misalignment_um: Misalignment = None,
+    center_distance_change_mm: CenterDistanceChange = None,
     at: Annotated[str, typer.Option(help="Positions by the driving gear in base pitches.")] = "0",
     beside: Annotated[
         int, typer.Option(min=0, max=100, help="Unloaded teeth to show on either side, in three dimensions.")
@@ -125,12 +107,7 @@ def export(
     from service.cli.export_fmu import run_export_fmu  # noqa: PLC0415
     from service.cli.export_run import is_for_runs, run_export_run  # noqa: PLC0415
 
-    point = {
-        "torque_n_m": torque,
-        "normal_force_n": force,
-        "misalignment_um": misalignment_um,
-        "center_distance_change_mm": center_distance_change_mm,
-    }
+    point = load_point(torque, force, misalignment_um, center_distance_change_mm)
     if is_for_runs(output):
         run_export_run(case, output, function, (start, end), as_json=json)
     elif output.suffix == ".fmu":
@@ -145,17 +122,10 @@ def export(
 @guarded
 def root_stress(
     case: Annotated[Path, typer.Argument(help="Case file.")],
-    torque: Annotated[
-        float | None,
-        typer.Option(help="Torque on the driving gear in N m; default: the highest load."),
-    ] = None,
-    force: Annotated[float | None, typer.Option(help="Normal tooth force in N, instead of a torque.")] = None,
-    misalignment_um: Annotated[
-        float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
-    ] = None,
-    center_distance_change_mm: Annotated[
-        float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
-    ] = None,
+    torque: Torque = None,
+    force: Force = None,
+    misalignment_um: Misalignment = None,
+    center_distance_change_mm: CenterDistanceChange = None,
     image: Annotated[
         Path | None, typer.Option(help="PNG file to draw the passage of one tooth of each gear to.")
     ] = None,
@@ -165,10 +135,5 @@ def root_stress(
     """Compute the stress of the tooth roots at one load: peaks, where they are, and their history."""
     from service.cli.root_stress import run_root_stress  # noqa: PLC0415 (start-up time)
 
-    point = {
-        "torque_n_m": torque,
-        "normal_force_n": force,
-        "misalignment_um": misalignment_um,
-        "center_distance_change_mm": center_distance_change_mm,
-    }
+    point = load_point(torque, force, misalignment_um, center_distance_change_mm)
     run_root_stress(case, point, image, as_csv=csv, as_json=json)
