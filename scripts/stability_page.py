@@ -112,10 +112,11 @@ def _number(value: float | None) -> str:
 
 
 def main(folder: Path, page: Path) -> None:
-    """Rewrite the page."""
+    """Rewrite the page; sweeps that are not in the folder stay as they were published."""
     scenes = json.loads((folder / "scenes.json").read_text(encoding="utf-8"))["scenes"]
     text = with_part(page.read_text(encoding="utf-8"), "scenes", scenes_part(scenes))
-    text = with_part(text, "sweeps", sweeps_part(folder))
+    if any((folder / f"sweep-{kind}.jsonl").exists() for kind in SWEEPS):
+        text = with_part(text, "sweeps", sweeps_part(folder))
     page.write_text(text, encoding="utf-8")
 
 

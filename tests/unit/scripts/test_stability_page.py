@@ -1,0 +1,69 @@
+"""The page of the hard scenes keeps what was not run anew."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+SCRIPT = Path(__file__).parents[3] / "scripts" / "stability_page.py"
+PAGE = (
+    "# Stability\n\n<!-- scenes -->\nold scenes\n<!-- end of scenes -->\nbetween\n"
+    "<!-- sweeps -->\nold sweeps\n<!-- end of sweeps -->\nend\n"
+)
+SCENE: dict[str, Any] = {
+    "name": "zero_load",
+    "family": "contact",
+    "hard_because": "0/0",
+    "criterion": "tends to the gap",
+    "passed": True,
+    "failure": "",
+    "figures": {"STE left": 1e-15},
+    "bounds": {"STE left": "<= 1e-12"},
+    "seconds": 2.0,
+}
+FIGURES = {
+    "points": 5,
+    "most iterations": 7.0,
+    "largest residual": 1e-15,
+    "CPU time, s": 1.0,
+    "predicted CPU time, s": 2.0,
+}
+
+
+@pytest.fixture(scope="module")
+def script() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("stability_page", SCRIPT)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def _made(script: ModuleType, folder: Path) -> str:
+    (folder / "scenes.json").write_text(json.dumps({"scenes": [SCENE]}))
+    page = folder / "page.md"
+    page.write_text(PAGE)
+    script.main(folder, page)
+    return page.read_text()
+
+
+def test_sweeps_that_were_not_run_stay(script: ModuleType, tmp_path: Path) -> None:
+    page = _made(script, tmp_path)
+    assert "old scenes" not in page
+    assert "| `zero_load` | 0/0 |" in page
+    assert "old sweeps" in page
+
+
+def test_sweeps_in_the_folder_replace_the_old(script: ModuleType, tmp_path: Path) -> None:
+    (tmp_path / "sweep-plane.jsonl").write_text(json.dumps({"end": "table", "figures": FIGURES}) + "\n")
+    page = _made(script, tmp_path)
+    assert "old sweeps" not in page
+    assert "| in the plane | 1 | 1 | 0 | 0 | 5 | 7 |" in page
+    assert page.startswith("# Stability\n")
+    assert page.endswith("end\n")
