@@ -11,8 +11,9 @@ from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
 from fe_contact.analysis.rung_result import RungResult
 from service.report import palette
 from service.report.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
+from service.report.ladder_page import ladder_page
 from service.report.note_places import placed
-from service.report.page import Headline, Page, Section
+from service.report.page import Page
 
 _HEAD = (
     "rung", "CPU time, s", "mean error, %", "peak-to-peak error, %", "memory, MiB", "mark",
@@ -75,18 +76,9 @@ def frontier_table(found: Frontier) -> Table:
 
 def frontier_page(found: Frontier, title: str) -> Page:
     """Return the page of a ladder."""
-    by_name = {result.name: result for result in found.results}
-    heads = [
-        Headline(text, by_name[name].title, f"{number(by_name[name].cpu_seconds, 2)} CPU s")
-        for text, name in (("chosen for the asked accuracy", found.chosen), ("knee", found.knee))
-        if name in by_name and name is not None
-    ]
-    left = Table("Rungs that were not run", ("rung", "because"), tuple(found.left_out.items()))
-    tables = (frontier_table(found), *([left] if found.left_out else []))
     lead = f"{len(found.results)} ways to the same table of {found.solves} positions x loads"
-    return Page(
-        title, lead, tuple(heads), (Section("Accuracy ladder", "", (frontier_figure(found),), tables),)
-    )
+    figure, rungs = frontier_figure(found), frontier_table(found)
+    return ladder_page(found, title, lead, "chosen for the asked accuracy", figure, rungs)
 
 
 def _panel(

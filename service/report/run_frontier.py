@@ -7,7 +7,8 @@ import numpy as np
 from dynamics.ladder import Frontier, RungResult
 from service.report import palette
 from service.report.figure import Axis, Figure, Line, Note, Panel, Table, number
-from service.report.page import Headline, Page, Section
+from service.report.ladder_page import ladder_page
+from service.report.page import Page
 
 _HEAD = (
     "rung", "CPU time, s", "DTE rms error, %", "DTE orders error, %", "bearing-force orders error, %", "mark",
@@ -56,17 +57,9 @@ def run_frontier_table(found: Frontier) -> Table:
 
 def run_frontier_page(found: Frontier, title: str) -> Page:
     """Return the page of a ladder."""
-    by_name = {result.name: result for result in found.results}
-    heads = [
-        Headline(text, by_name[name].title, f"{number(by_name[name].cpu_seconds, 2)} CPU s")
-        for text, name in (("the scene's own setting", found.chosen), ("knee", found.knee))
-        if name in by_name and name is not None
-    ]
-    left = Table("Rungs that were not run", ("rung", "because"), tuple(found.left_out.items()))
-    tables = (run_frontier_table(found), *([left] if found.left_out else []))
     lead = f"{len(found.results)} ways to the same vibration: {found.blocks} blocks, {found.orders} orders"
-    section = Section("Ladder of dynamics", "", (run_frontier_figure(found),), tables)
-    return Page(title, lead, tuple(heads), (section,))
+    figure, rungs = run_frontier_figure(found), run_frontier_table(found)
+    return ladder_page(found, title, lead, "the scene's own setting", figure, rungs)
 
 
 def _panel(found: Frontier, title: str, label: str, which: int) -> Panel:

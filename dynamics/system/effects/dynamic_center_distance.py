@@ -19,10 +19,8 @@ class DynamicCenterDistance:
         axes = mesh.axes
         if axes.center_distances == 1:
             return Verdict(False, False, "the table has one centre distance only", 0.0)
-        if not axes.variable:
-            return Verdict(False, False, "the constant-torque technique has one stiffness per position", 0.0)
-        if not axes.derivatives:
-            return Verdict(False, False, "the table has no derivatives along its axes", 0.0)
+        if reason := axes.not_read():
+            return Verdict(False, False, reason, 0.0)
         if not axes.moves_apart:
             return Verdict(False, False, "no shaft can move along the line of centres", 0.0)
         return Verdict(True, True, "shafts move along the line of centres, and the table knows", axes.apart)

@@ -19,10 +19,8 @@ class DynamicMisalignment:
         axes = mesh.axes
         if axes.misalignments == 1:
             return Verdict(False, False, "the table has one misalignment only", 0.0)
-        if not axes.variable:
-            return Verdict(False, False, "the constant-torque technique has one stiffness per position", 0.0)
-        if not axes.derivatives:
-            return Verdict(False, False, "the table has no derivatives along its axes", 0.0)
+        if reason := axes.not_read():
+            return Verdict(False, False, reason, 0.0)
         if not axes.tilts:
             return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)
         return Verdict(True, True, "shafts tilt in the plane of action, and the table knows", axes.misaligned)

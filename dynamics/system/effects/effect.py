@@ -165,6 +165,12 @@ class MeshAxes:
     driven: bool
     slowed: float
 
+    def not_read(self) -> str | None:
+        """Why the table cannot be read along its axes as bodies move; None where it can."""
+        if not self.variable:
+            return "the constant-torque technique has one stiffness per position"
+        return None if self.derivatives else "the table has no derivatives along its axes"
+
 
 @dataclass(frozen=True)
 class LoadedMesh:
