@@ -9,6 +9,7 @@ from pathlib import Path
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.model_choice import decide, model_name
 from fe_contact.analysis.request import Checked, check_request
+from fe_contact.analysis.ripple import expected_ripple
 from fe_contact.checks import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import (
@@ -17,6 +18,7 @@ from fe_contact.planning import (
     MeshChoice,
     Plan,
     Prediction,
+    Ripple,
     expected_error,
     make_plan,
     predict_run,
@@ -131,8 +133,10 @@ def plan_run(
     )
     decided = decide(checked, cache)
     checked, choice = decided.checked, decided.mesh
+    ripple = expected_ripple(checked) if checked.model.across_face else None
     levels = tuple(
-        _planned(checked, name, choice.slices if name == choice.level else None, cache) for name in LEVELS
+        _planned(checked, name, choice.slices if name == choice.level else None, ripple, cache)
+        for name in LEVELS
     )
     conflict = ""
     if both and time_budget is not None:
@@ -140,13 +144,18 @@ def plan_run(
     return RunPlan(checked, choice, decided.plan, levels, conflict, cache)
 
 
-def _planned(checked: Checked, level: str, slices: int | None, cache: Path | None) -> PlannedLevel:
-    """Predict one mesh level of the request's model, in so many slices or in the usual ones."""
+def _planned(
+    checked: Checked, level: str, slices: int | None, ripple: Ripple | None, cache: Path | None
+) -> PlannedLevel:
+    """Predict one mesh level of the request's model, in so many slices or in the usual ones.
+
+    With the case's own ripple, as its mesh is chosen by: both must tell the same error.
+    """
     asked = checked.request
     accuracy: Accuracy = replace(asked.accuracy, tolerance=None, time_budget=None, level=level)
     plan = make_plan(asked.pair, asked.load, accuracy, checked.model, slices=slices)
     cost = predict_run(asked.pair, plan, checked.model, asked.alignments, cache)
-    return PlannedLevel(level, plan.discretisation.slices, cost, expected_error(asked.pair, plan))
+    return PlannedLevel(level, plan.discretisation.slices, cost, expected_error(asked.pair, plan, ripple))
 
 
 def _conflict(

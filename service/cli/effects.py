@@ -25,7 +25,7 @@ def worth_words(entry: Mapping[str, Any]) -> str:
     """Say what leaving an effect out is estimated to change."""
     found = entry["worth_estimate"]
     if found is None:
-        return f"worth {entry['worth']}"
+        return f"worth: {entry['worth']}"
     mean, ripple = found["mean_m"][-1] / UM, found["peak_to_peak_m"][-1] / UM
     return (
         f"without it mean {mean:+.2g} um ({100 * found['relative_mean']:+.2g} %), "

@@ -2,11 +2,12 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair, analyze
+from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.errors import InputError
 from fe_contact.planning import host_speed
@@ -197,3 +198,13 @@ def test_a_run_keeps_what_was_predicted_beside_what_happened(tmp_path):
     second = analyze(pair(), **asked, cache=tmp_path).metadata.receipt
     assert second["prediction"]["stages"]["compliance"] < 0.1 * first["prediction"]["stages"]["compliance"]
     assert second["stages"]["compliance"]["cpu_seconds"] < first["stages"]["compliance"]["cpu_seconds"]
+
+
+@pytest.mark.parametrize("relief", [0.0, 10e-6])
+def test_a_plan_tells_the_error_that_its_mesh_is_chosen_by(relief):
+    """Modified helical pairs have a ripple of their own; the list of meshes knows it as the choice does."""
+    helical = pair(helix=0.3)
+    relieved = FlankModification(tip_relief=relief, tip_relief_length=1e-3 if relief else 0.0)
+    gear = replace(helical.pinion, modification=relieved)
+    found = plan_run(replace(helical, pinion=gear), torques=[20.0, 60.0], tolerance=0.05)
+    assert found.chosen.error == found.choice.option.error
