@@ -149,6 +149,10 @@ def frontier(
             found.append((rung, *_timed(rung, scene, blocks)))
         except (InputError, SolveError) as error:
             left_out[rung.name] = str(error)
+        except MemoryError:
+            left_out[rung.name] = "out of memory"
+    if progress is not None:
+        progress("ladder", 1.0)
     if len(found) < 2:
         raise SolveError(f"an error needs two rungs to compare; left out: {left_out}")
     results = _compared(found)

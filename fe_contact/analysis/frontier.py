@@ -158,6 +158,10 @@ def _climbed(
             tables[rung.name] = table
         except (MeshError, SolveError) as error:
             left_out = left_out | {rung.name: str(error)}
+        except MemoryError:
+            left_out = left_out | {rung.name: "out of memory"}
+    if progress is not None:
+        progress("ladder", 1.0)
     if len(tables) < 2:
         raise SolveError(f"an error needs two rungs to compare; left out: {left_out}")
     results = rung_results([rung for rung in rungs if rung.name in tables], tables)

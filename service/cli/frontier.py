@@ -34,7 +34,7 @@ def run_frontier(file: Path, output: Path | None, rungs: str | None, *, as_json:
     """Climb the ladder, write, print."""
     content = read_table(file)
     targets = [] if output is None else _targets(output)
-    names = None if rungs is None else [name.strip() for name in rungs.split(",")]
+    names = None if rungs is None else _named(rungs, of_scene="shafts" in content)
     with progress_bar() as report:
         climb = _of_scene if "shafts" in content else _of_case
         found = climb(file, names, report)
@@ -45,6 +45,13 @@ def run_frontier(file: Path, output: Path | None, rungs: str | None, *, as_json:
         print_json({"written": [str(target) for target in targets], **found.facts})
     else:
         _show(found, targets)
+
+
+def _named(rungs: str, *, of_scene: bool) -> list[str]:
+    """Split the names of rungs; raises `BadInput`."""
+    from service.convert.rungs import rungs_asked  # noqa: PLC0415 (start-up time)
+
+    return rungs_asked([name.strip() for name in rungs.split(",")], of_scene=of_scene)
 
 
 def _of_case(file: Path, names: list[str] | None, report: Report) -> _Climbed:

@@ -18,7 +18,7 @@ from service.schemas.result_kinds import RESULT_KINDS
 
 _OF_CASES = ("analyze", "flank", "sensitivity")
 _OF_SCENES = ("simulate", "modes", "response", "steady")
-_OF_BOTH = ("ablate",)
+_OF_BOTH = ("ablate", "frontier")
 
 
 @dataclass(frozen=True)

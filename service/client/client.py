@@ -145,7 +145,7 @@ class LineOfActionClient:
     # Results
 
     def fetch_file(self, key: str, kind: str = "database") -> Path:
-        """Return the file of a result (netCDF; of an ablation JSON), from the disk cache or the service.
+        """Return the file of a result (netCDF or JSON, by its kind), from the disk cache or the service.
 
         Raises
         ------
@@ -251,10 +251,31 @@ class LineOfActionClient:
         dict
             As ``loa ablate --json`` prints it, lengths in um.
         """
-        inputs = inputs_of(given) if only is None else {**inputs_of(given), "only": list(only)}
-        result = self.wait(self.submit("ablate", inputs).id, progress)
-        found: dict[str, Any] = json.loads(self.fetch_file(result.key, result.kind).read_bytes())
-        return found
+        return self._json("ablate", given, progress, {} if only is None else {"only": list(only)})
+
+    def frontier(
+        self,
+        given: CaseLike | SceneLike,
+        progress: Watch | None = None,
+        *,
+        rungs: Sequence[str] | None = None,
+    ) -> dict[str, Any]:
+        """Return the error of each rung of the accuracy ladder against its time: submit, wait, fetch.
+
+        Parameters
+        ----------
+        given : Case, SceneInput, mapping or Path
+            A scene is told by its shafts.
+        progress : callable, optional
+        rungs : sequence of str, optional
+            Rungs to run, at least two; default all that are valid.
+
+        Returns
+        -------
+        dict
+            As ``loa frontier --json`` prints it; times are those of the service's machine.
+        """
+        return self._json("frontier", given, progress, {} if rungs is None else {"rungs": list(rungs)})
 
     def modes_file(
         self,
@@ -317,6 +338,18 @@ class LineOfActionClient:
         """Submit a scene with further inputs, wait, fetch the file."""
         result = self.wait(self.submit_scene(scene, process, **further).id, progress)
         return self.fetch_file(result.key, result.kind)
+
+    def _json(
+        self,
+        process: str,
+        given: CaseLike | SceneLike,
+        progress: Watch | None,
+        further: dict[str, Any],
+    ) -> dict[str, Any]:
+        """Submit a case or a scene with further inputs, wait, read the JSON."""
+        result = self.wait(self.submit(process, inputs_of(given) | further).id, progress)
+        found: dict[str, Any] = json.loads(self.fetch_file(result.key, result.kind).read_bytes())
+        return found
 
     def _study(self, process: str, case: CaseLike, progress: Watch | None, further: dict[str, Any]) -> Path:
         """Submit a case with further inputs, wait, fetch the file."""

@@ -1,4 +1,4 @@
-"""The processes of the service: analyze, flank, sensitivity, ablate, simulate, and studies of scenes."""
+"""The processes of the service: analyze, flank, sensitivity, ablate, frontier, simulate, scene studies."""
 
 from __future__ import annotations
 
@@ -13,13 +13,16 @@ from service.convert.ablation import effects_asked
 from service.convert.case import case_json
 from service.convert.checks import check_case
 from service.convert.flanks import case_at
+from service.convert.rungs import rungs_asked
 from service.convert.sensitivity import Deviations, check_study
 from service.jobs.process import Process, Registry, Stage
 from service.jobs.scene_inputs import check_scene_inputs
 from service.schemas import Case
 from service.schemas.ablation import AblationInput
+from service.schemas.case_or_scene import CaseOrScene
 from service.schemas.dynamic_studies import ModesInput, ResponseInput, SteadyInput
 from service.schemas.flank import FlankPoint
+from service.schemas.frontier import FrontierInput
 from service.schemas.model import BoundaryModel
 from service.schemas.scene import SceneInput
 from service.schemas.sensitivity import DeviationsInput
@@ -107,13 +110,25 @@ def _prepare_scene(inputs: BoundaryModel, store: ResultStore) -> Json:
 def _prepare_ablation(inputs: BoundaryModel, store: ResultStore) -> Json:
     """Check what is ablated; return it with all defaults and the effects in the order of their registry."""
     assert isinstance(inputs, AblationInput)
+    given = _case_or_scene(inputs, store)
+    return {**given, "only": effects_asked(inputs.only, of_scene="scene" in given)}
+
+
+def _prepare_frontier(inputs: BoundaryModel, store: ResultStore) -> Json:
+    """Check what the ladder is run on; return it with all defaults and the rungs in their order."""
+    assert isinstance(inputs, FrontierInput)
+    given = _case_or_scene(inputs, store)
+    return {**given, "rungs": rungs_asked(inputs.rungs, of_scene="scene" in given)}
+
+
+def _case_or_scene(inputs: CaseOrScene, store: ResultStore) -> Json:
+    """Check the one that is given; return it with all defaults."""
     if inputs.scene is not None:
         check_scene_inputs(inputs.scene, store)
     elif inputs.case is not None:
         check_case(inputs.case)
-    only = effects_asked(inputs.only, of_scene=inputs.scene is not None)
     given = {"case"} if inputs.scene is None else {"scene"}
-    return {**inputs.model_dump(mode="json", include=given), "only": only}
+    return inputs.model_dump(mode="json", include=given)
 
 
 ANALYZE = Process(
@@ -166,6 +181,19 @@ ABLATE = Process(
     prepare=_prepare_ablation,
     entry="service.jobs.ablation_work:switch_effects",
     stages=(Stage("analysis", 0.1), Stage("ablation", 0.9)),
+)
+FRONTIER = Process(
+    id="frontier",
+    title="What accuracy costs in time on a case or a scene",
+    description="The ladder of models and settings, each rung compared to the finest: error against time, "
+    "the knee, and the rung that the accuracy asks for.",
+    version="1",
+    inputs=FrontierInput,
+    output="frontier",
+    kind="frontier",
+    prepare=_prepare_frontier,
+    entry="service.jobs.frontier_work:climb_ladder",
+    stages=(Stage("analysis", 0.1), Stage("ladder", 0.9)),
 )
 SIMULATE = Process(
     id="simulate",
@@ -222,4 +250,4 @@ STEADY = Process(
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
-    return Registry(ANALYZE, FLANK, SENSITIVITY, ABLATE, SIMULATE, MODES, RESPONSE, STEADY)
+    return Registry(ANALYZE, FLANK, SENSITIVITY, ABLATE, FRONTIER, SIMULATE, MODES, RESPONSE, STEADY)

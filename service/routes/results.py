@@ -87,6 +87,12 @@ def ablation(key: Key, request: Request, context: Ctx) -> Response:
     return _file(context.store.verified(key, "ablation"), request)
 
 
+@router.get("/frontiers/{key}", summary="An accuracy ladder", response_class=Response, responses=_answers())
+def frontier(key: Key, request: Request, context: Ctx) -> Response:
+    """Return the file, which is JSON, whatever is accepted."""
+    return _file(context.store.verified(key, "frontier"), request)
+
+
 @router.get("/modes/{key}", summary="A modal analysis", response_class=Response, responses=_answers())
 def modes(key: Key, request: Request, context: Ctx, accept: Accept = "application/json") -> Response:
     """Figures or the file, by Accept."""

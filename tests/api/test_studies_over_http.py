@@ -118,7 +118,9 @@ def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
 def test_both_processes_are_described(served: tuple[LineOfActionClient, TestClient]) -> None:
     _, http = served
     listed = {process["id"] for process in http.get("/v1/processes").json()["processes"]}
-    assert listed == {"analyze", "flank", "sensitivity", "ablate", "simulate", "modes", "response", "steady"}
+    assert listed == {
+        "analyze", "flank", "sensitivity", "ablate", "frontier", "simulate", "modes", "response", "steady",
+    }  # fmt: skip
     inputs = http.get("/v1/processes/flank").json()["inputs"]
     assert set(inputs) == {
         "case", "torque_n_m", "normal_force_n", "misalignment_um", "center_distance_change_mm",

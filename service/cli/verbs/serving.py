@@ -42,7 +42,7 @@ def submit(
         str | None,
         typer.Option(
             help="On a case analyze (default), flank or sensitivity; on a scene simulate "
-            "(default), modes, response or steady; on both ablate."
+            "(default), modes, response or steady; on both ablate and frontier."
         ),
     ] = None,
     inputs: Annotated[
@@ -61,7 +61,8 @@ def submit(
 def fetch(
     name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
     output: Annotated[
-        Path, typer.Option("-o", "--output", help="File to write: netCDF, or JSON of an ablation.")
+        Path,
+        typer.Option("-o", "--output", help="File to write: netCDF, or JSON of ablations and frontiers."),
     ],
     service: Service = DEFAULT_SERVICE,
     json: AsJson = False,

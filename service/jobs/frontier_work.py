@@ -1,0 +1,28 @@
+"""The work of the process frontier, done in a child process of its own."""
+
+from __future__ import annotations
+
+import json
+
+from dynamics.ladder import Frontier as SceneFrontier
+from fe_contact.analysis.frontier import Frontier
+from service.convert.frontier import frontier_of
+from service.convert.run_frontier import run_frontier_of
+from service.jobs.order import Product, Progress, WorkOrder
+from service.jobs.simulation_work import ordered_scene
+from service.schemas import Case
+
+
+def climb_ladder(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Run the ladder on a case or a scene, into a JSON file."""
+    file = order.workspace / "frontier.json"
+    products: list[Product] = []
+    found: Frontier | SceneFrontier
+    if "scene" in order.inputs:
+        scene, products = ordered_scene(order, progress)
+        found = run_frontier_of(scene, order.inputs["rungs"], progress)
+    else:
+        case = Case.model_validate_json(json.dumps(order.inputs["case"]))
+        found = frontier_of(case, order.inputs["rungs"], progress)
+    file.write_text(f"{json.dumps(found.to_json(), allow_nan=False)}\n", encoding="utf-8")
+    return (*products, Product(order.key, "frontier", file))

@@ -1,0 +1,30 @@
+"""What a process takes that answers for cases and for scenes: one of them."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from service.schemas.case import Case
+from service.schemas.model import BoundaryModel, refuse
+from service.schemas.scene import SceneInput
+
+Name = Annotated[str, Field(min_length=1, max_length=64)]
+
+
+class CaseOrScene(BoundaryModel):
+    """A case or a scene, one of both."""
+
+    case: Case | None = Field(default=None, description="The case, as in a case file; or else a scene")
+    scene: SceneInput | None = Field(
+        default=None, description="The scene, with cases written out or databases by hash; or else a case"
+    )
+
+    @model_validator(mode="after")
+    def _one_of_both(self) -> Self:
+        """Refuse none of both, and both."""
+        if (self.case is None) == (self.scene is None):
+            given = None if self.case is None else "beside a scene"
+            refuse("case", given, "given without a scene, left out beside one", "Give one of them.")
+        return self
