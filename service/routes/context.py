@@ -10,6 +10,7 @@ from typing import Annotated
 from fastapi import Depends, Request
 
 from fe_contact.ste import SteDatabase
+from service.jobs.live_desk import LiveDesk
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
@@ -50,6 +51,7 @@ class Context:
     submissions: Submissions
     scheduler: Scheduler
     store: ResultStore
+    live: LiveDesk
     databases: OpenDatabases = field(default_factory=OpenDatabases)
 
 
