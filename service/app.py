@@ -10,11 +10,10 @@ from fastapi import FastAPI
 from service.jobs.catalogue import default_registry
 from service.jobs.claims import Claims
 from service.jobs.key import solver_version
-from service.jobs.live_desk import live_desk
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
-from service.routes import effects, health, jobs, landing, live, results
+from service.routes import effects, health, jobs, landing, queries, results
 from service.routes.context import Context
 from service.routes.errors import install_error_handlers
 from service.routes.metrics import Metrics
@@ -55,7 +54,6 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
         try:
             yield
         finally:
-            context.live.stop()
             context.scheduler.stop()
             lock.release()
 
@@ -71,8 +69,14 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
     app.state.metrics = Metrics(context.submissions)
     install_error_handlers(app)
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
-    executions = processes_router(offered)
-    for router in (landing.router, executions, jobs.router, results.router, effects.router, live.router):
+    for router in (
+        landing.router,
+        processes_router(offered),
+        jobs.router,
+        results.router,
+        queries.router,
+        effects.router,
+    ):
         app.include_router(router, prefix="/v1")
     app.include_router(health.router)
     return app
@@ -83,5 +87,4 @@ def _context(settings: Settings, registry: Registry) -> Context:
     engine = open_database(settings.data_directory / DATABASE_FILE)
     store = ResultStore(engine, settings.data_directory / RESULTS_DIRECTORY)
     scheduler = Scheduler(settings, registry, Claims(engine), store)
-    submissions = Submissions(engine, settings.queue_limit)
-    return Context(settings, registry, submissions, scheduler, store, live_desk(settings))
+    return Context(settings, registry, Submissions(engine, settings.queue_limit), scheduler, store)

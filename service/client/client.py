@@ -16,6 +16,7 @@ import httpx2
 from service.client.cache import ResultCache
 from service.client.connection import Connection
 from service.client.portable import CaseLike, SceneLike, case_of, inputs_of, portable_scene, scene_of
+from service.client.raw_columns import query_columns, read_answer
 from service.client.status import JobState, Result
 from service.problems import DamagedFile, JobFailed, Unreachable
 from service.schemas.query import QueryOutput
@@ -363,15 +364,31 @@ class LineOfActionClient:
         position: Sequence[float],
         deflection_um: Sequence[float],
         *,
-        misalignment_um: float = 0.0,
-        center_distance_change_mm: float = 0.0,
+        misalignment_um: float | Sequence[float] = 0.0,
+        center_distance_change_mm: float | Sequence[float] = 0.0,
     ) -> QueryOutput:
-        """Return force, tangent stiffness and validity of a stored database at many points."""
-        body = {
-            "position": list(position),
-            "deflection_um": list(deflection_um),
+        """Return force, tangent stiffness and validity of a stored database at many points.
+
+        Every list has a value for each point, or one for all. Sent and answered as raw float64, so nothing
+        is rounded.
+
+        Raises
+        ------
+        BadInput
+            Lists of different lengths, too many points, a value that is not finite or out of bounds.
+        NotFound, Unreachable, ServiceError
+        """
+        columns = {
+            "position": position,
+            "deflection_um": deflection_um,
             "misalignment_um": misalignment_um,
             "center_distance_change_mm": center_distance_change_mm,
         }
-        response = self._connection.request("POST", f"/v1/databases/{key}/query", json=body)
-        return QueryOutput.model_validate_json(response.content)
+        response = self._connection.request(
+            "POST",
+            f"/v1/databases/{key}/query",
+            params={"columns": ",".join(columns)},
+            content=query_columns(columns),
+            headers={"Content-Type": "application/octet-stream", "Accept": "application/octet-stream"},
+        )
+        return read_answer(response.content)

@@ -1,4 +1,4 @@
-"""Answers of an STE database in boundary units: curves, summaries, batches of forces."""
+"""Answers of an STE database in boundary units: curves, summaries, metadata."""
 
 from __future__ import annotations
 
@@ -7,12 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from fe_contact.ste import Curve, SteDatabase, Validity
+from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from service.convert.case import boundary_errors
-from service.convert.units import MM, N_PER_UM, UM
+from service.convert.units import MM, UM
 from service.problems import JobFailed
-from service.schemas.query import QueryInput, QueryOutput
 
 Json = dict[str, Any]
 
@@ -135,34 +134,3 @@ def metadata_json(database: SteDatabase) -> Json:
         "misalignment_um": (database.misalignment / UM).tolist(),
         "center_distance_change_mm": (database.center_distance_change / MM).tolist(),
     }
-
-
-def force_answer(database: SteDatabase, query: QueryInput) -> QueryOutput:
-    """Return force, tangent stiffness and validity at the points of a query."""
-    with boundary_errors():
-        sample = database.force_at(
-            np.asarray(query.position),
-            np.asarray(query.deflection_um) * UM,
-            query.misalignment_um * UM,
-            query.center_distance_change_mm * MM,
-        )
-    flags = [_validity(int(flag)) for flag in np.atleast_1d(sample.validity).ravel()]
-    return QueryOutput(
-        force_n=_numbers(sample.force),
-        stiffness_n_per_um=_numbers(np.asarray(sample.stiffness) / N_PER_UM),
-        validity=flags,
-    )
-
-
-def _numbers(values: Any) -> list[float]:
-    """Return finite numbers as a list; anything else is a defect of the table."""
-    array = np.atleast_1d(np.asarray(values, dtype=float)).ravel()
-    if not np.all(np.isfinite(array)):
-        raise JobFailed("The table gives no number at some of these points. Compute it again.")
-    return [float(value) for value in array]
-
-
-def _validity(flag: int) -> str:
-    """Return flags in words, such as inside or above_table+outside_misalignment."""
-    words = [known.name.lower() for known in Validity if known and known & flag and known.name]
-    return "+".join(words) or "inside"

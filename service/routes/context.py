@@ -2,44 +2,17 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from dataclasses import dataclass, field
-from threading import Lock
 from typing import Annotated
 
 from fastapi import Depends, Request
 
-from fe_contact.ste import SteDatabase
-from service.jobs.live_desk import LiveDesk
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
+from service.routes.open_databases import OpenDatabases
 from service.settings import Settings
-from service.store import ResultStore, StoredResult
-
-_MOST_OPEN = 16
-
-
-class OpenDatabases:
-    """The databases asked last, read and verified once; they never change."""
-
-    def __init__(self) -> None:
-        self._open: OrderedDict[str, SteDatabase] = OrderedDict()
-        self._lock = Lock()
-
-    def get(self, store: ResultStore, key: str) -> SteDatabase:
-        """Return the database `key`; raises as `ResultStore.verified`."""
-        with self._lock:
-            if key in self._open:
-                self._open.move_to_end(key)
-                return self._open[key]
-        stored: StoredResult = store.verified(key, "database")
-        database = SteDatabase.from_netcdf(stored.path)
-        with self._lock:
-            self._open[key] = database
-            while len(self._open) > _MOST_OPEN:
-                self._open.popitem(last=False)
-        return database
+from service.store import ResultStore
 
 
 @dataclass(frozen=True)
@@ -51,7 +24,6 @@ class Context:
     submissions: Submissions
     scheduler: Scheduler
     store: ResultStore
-    live: LiveDesk
     databases: OpenDatabases = field(default_factory=OpenDatabases)
 
 

@@ -1,4 +1,4 @@
-"""Stored results as metadata or netCDF, and batches of forces."""
+"""Stored results as metadata or netCDF."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from starlette.responses import FileResponse, JSONResponse, Response
 from dynamics.linearize import ForcedResponse, ModalAnalysis
 from dynamics.periodic import SteadyStates
 from fe_contact.analysis import LoadDistribution
-from service.convert.answers import force_answer, metadata_json
+from service.convert.answers import metadata_json
 from service.convert.flanks import flank_json
 from service.convert.modal import modes_json
 from service.convert.response import response_json
@@ -21,7 +21,6 @@ from service.convert.sensitivity_file import read_studies
 from service.convert.steady import steady_json
 from service.routes.context import Ctx
 from service.routes.errors import documented
-from service.schemas.query import QueryInput, QueryOutput
 from service.schemas.result_kinds import NETCDF, RESULT_KINDS
 from service.store import StoredResult
 
@@ -49,7 +48,7 @@ def database(key: Key, request: Request, context: Ctx, accept: Accept = "applica
     stored = context.store.verified(key, "database")
     if _wants_file(accept):
         return _file(stored, request)
-    return _metadata(stored, request, metadata_json(context.databases.get(context.store, key)))
+    return _metadata(stored, request, metadata_json(context.databases.get(context.store, key).database))
 
 
 @router.get("/runs/{key}", summary="A run", response_class=Response, responses=_answers())
@@ -120,15 +119,6 @@ def steady(key: Key, request: Request, context: Ctx, accept: Accept = "applicati
     if _wants_file(accept):
         return _file(stored, request)
     return _metadata(stored, request, steady_json(SteadyStates.from_netcdf(stored.path)))
-
-
-@router.post("/databases/{key}/query", summary="Mesh forces", responses=documented(400, 404, 413, 422, 500))
-def query(key: Key, body: QueryInput, context: Ctx) -> QueryOutput:
-    """Force, tangent stiffness and validity at positions and deflections."""
-    return force_answer(context.databases.get(context.store, key), body)
-
-
-query.body_model = QueryInput  # type: ignore[attr-defined]  # for the suggestions of refused fields
 
 
 def _wants_file(accept: str) -> bool:

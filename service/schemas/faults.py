@@ -62,7 +62,7 @@ def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -
 def _dotted(loc: Loc) -> str:
     """Place as the user writes it: pair.pinion.teeth, load.torque_n_m[2]."""
     text = ""
-    for part in (part for part in loc if part != "[key]"):
+    for part in (part for part in loc if part not in ("[key]", "[one]", "[many]")):
         text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else str(part)
     return text or "input"
 

@@ -2,50 +2,88 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
-from pydantic import Field, Strict, model_validator
+from pydantic import Discriminator, Field, Strict, Tag, model_validator
 
 from service.schemas.model import BoundaryModel, refuse
 
-_MOST_POINTS = 100_000
-Position = Annotated[float, Field(ge=-1e9, le=1e9)]
-Deflection = Annotated[float, Field(ge=-1e6, le=1e6)]
+MOST_POINTS = 100_000
+LIMITS: dict[str, float] = {
+    "position": 1e9,
+    "deflection_um": 1e6,
+    "misalignment_um": 1e4,
+    "center_distance_change_mm": 100.0,
+}
+"""Largest magnitude of each column of a query; the columns in their order."""
+
+VALIDITY = ("lifted_off", "above_table", "outside_misalignment", "outside_center_distance")
+"""Names of the bits of a validity, the lowest first."""
+
+
+def validity_words(flags: int) -> str:
+    """Return flags in words, such as inside or above_table+outside_misalignment."""
+    return "+".join(word for bit, word in enumerate(VALIDITY) if flags >> bit & 1) or "inside"
+
+
+def _limit(name: str) -> Any:
+    """Return the bounds of one value of a column."""
+    return Field(ge=-LIMITS[name], le=LIMITS[name])
+
+
+def _shape(value: object) -> str:
+    """Tell one value from a list of them (the names are left out of what a fault is called)."""
+    return "[many]" if isinstance(value, list | tuple) else "[one]"
+
+
+_List = (Strict(False), Field(min_length=1, max_length=MOST_POINTS, fail_fast=True))
+_Positions = Annotated[tuple[Annotated[float, _limit("position")], ...], *_List]
+_Deflections = Annotated[tuple[Annotated[float, _limit("deflection_um")], ...], *_List]
+_Misalignment = Annotated[float, _limit("misalignment_um")]
+_Change = Annotated[float, _limit("center_distance_change_mm")]
+_Misalignments = Annotated[
+    Annotated[_Misalignment, Tag("[one]")] | Annotated[tuple[_Misalignment, ...], *_List, Tag("[many]")],
+    Discriminator(_shape),
+]
+_Changes = Annotated[
+    Annotated[_Change, Tag("[one]")] | Annotated[tuple[_Change, ...], *_List, Tag("[many]")],
+    Discriminator(_shape),
+]
 
 
 class QueryInput(BoundaryModel):
     """Points at which the mesh force is asked for; a list of one value serves for all points."""
 
-    position: Annotated[tuple[Position, ...], Strict(False)] = Field(
-        min_length=1,
-        max_length=_MOST_POINTS,
+    position: _Positions = Field(
         description="Positions by the driving gear in base pitches, 0 = pitch point",
         examples=[[0.0, 0.25]],
     )
-    deflection_um: Annotated[tuple[Deflection, ...], Strict(False)] = Field(
-        min_length=1,
-        max_length=_MOST_POINTS,
-        description="Deflections along the line of action in um",
-        examples=[[5.0, 7.5]],
+    deflection_um: _Deflections = Field(
+        description="Deflections along the line of action in um", examples=[[5.0, 7.5]]
     )
-    misalignment_um: float = Field(
-        default=0.0, ge=-10_000.0, le=10_000.0, description="Misalignment in um", examples=[0.0]
+    misalignment_um: _Misalignments = Field(
+        default=0.0, description="Misalignment in um, one value or one per point", examples=[0.0]
     )
-    center_distance_change_mm: float = Field(
-        default=0.0, ge=-100.0, le=100.0, description="Change of the centre distance in mm", examples=[0.0]
+    center_distance_change_mm: _Changes = Field(
+        default=0.0,
+        description="Change of the centre distance in mm, one value or one per point",
+        examples=[0.0],
     )
 
     @model_validator(mode="after")
     def _same_length(self) -> Self:
-        """Both lists of one length, or one of them a single value."""
-        lengths = {len(self.position), len(self.deflection_um)} - {1}
-        if len(lengths) > 1:
-            refuse(
-                "deflection_um",
-                f"{len(self.deflection_um)} values",
-                f"a list of {len(self.position)} values, like position, or of one",
-                "Give as many deflections as positions.",
-            )
+        """All lists of one length, but for those of a single value."""
+        points = len(self.position)
+        for name in tuple(LIMITS)[1:]:
+            given = getattr(self, name)
+            count = len(given) if isinstance(given, tuple) else 1
+            if points == 1:
+                points = count
+            elif count not in (1, points):
+                advice = "Give as many values in every list, or one for all points."
+                refuse(
+                    name, f"{count} values", f"a list of {points} values, like position, or of one", advice
+                )
         return self
 
 
@@ -57,6 +95,7 @@ class QueryOutput(BoundaryModel):
         description="Tangent dF/d(deflection) in N/um", examples=[[371.5, 402.3]]
     )
     validity: list[str] = Field(
-        description="inside, or lifted_off, above_table, outside_misalignment ... joined by +",
+        description="inside, or lifted_off, above_table, outside_misalignment, outside_center_distance "
+        "joined by +",
         examples=[["inside", "inside"]],
     )

@@ -1,0 +1,72 @@
+"""The STE databases asked last, kept open."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from functools import cached_property
+from threading import Lock
+from typing import TYPE_CHECKING
+
+from service.store import ResultStore
+
+if TYPE_CHECKING:
+    from fe_contact.ste import SteDatabase
+    from fe_contact.ste.compiled_force import CompiledForce
+
+_MOST_OPEN = 16
+
+
+@dataclass(frozen=True)
+class OpenDatabase:
+    """A database and, once somebody asks for forces, its compiled law."""
+
+    database: SteDatabase
+
+    @property
+    def compiled(self) -> bool:
+        """Whether the law is at hand."""
+        return "law" in self.__dict__
+
+    @cached_property
+    def law(self) -> CompiledForce:
+        """The compiled force; raises as `boundary_errors` of what `CompiledForce.of` raises."""
+        from fe_contact.ste.compiled_force import CompiledForce  # noqa: PLC0415 (loads the compiler)
+        from service.convert.case import boundary_errors  # noqa: PLC0415
+
+        with boundary_errors():
+            return CompiledForce.of(self.database)
+
+
+class OpenDatabases:
+    """The databases asked last, read and verified once; they never change."""
+
+    def __init__(self) -> None:
+        self._open: OrderedDict[str, OpenDatabase] = OrderedDict()
+        self._lock, self._reading = Lock(), Lock()
+
+    def at_hand(self, key: str) -> OpenDatabase | None:
+        """Return the database `key` if it is open: no file is touched, nobody is waited for."""
+        with self._lock:
+            if key in self._open:
+                self._open.move_to_end(key)
+            return self._open.get(key)
+
+    def get(self, store: ResultStore, key: str) -> OpenDatabase:
+        """Return the database `key`, read if it is not open; raises as `ResultStore.verified`."""
+        found = self.at_hand(key)
+        if found is not None:
+            return found
+        with self._reading:  # many ask for a new table at once: it is read once
+            return self.at_hand(key) or self._read(store, key)
+
+    def _read(self, store: ResultStore, key: str) -> OpenDatabase:
+        """Read and verify a database; the one not asked for longest is closed."""
+        from fe_contact.ste import SteDatabase  # noqa: PLC0415 (start-up time)
+
+        found = OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
+        with self._lock:
+            self._open[key] = found
+            while len(self._open) > _MOST_OPEN:
+                self._open.popitem(last=False)
+        return found

@@ -1,0 +1,84 @@
+"""Batches of mesh forces of a stored database."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated
+
+from fastapi import APIRouter, Header, Path, Query
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import Response
+
+from service.convert.force_query import force_answer
+from service.problems import BadInput, NotAcceptable, UnsupportedMediaType
+from service.routes.context import context_of
+from service.routes.direct import DirectRoute, answered_by
+from service.routes.errors import documented
+from service.routes.media_types import CBOR, JSON, RAW, media_type, negotiated
+from service.routes.query_encodings import READ, WRITE
+from service.schemas.query import LIMITS, QueryInput, QueryOutput
+
+KEY_PATTERN = "^[0-9a-f]{64}$"
+_KEY = re.compile(KEY_PATTERN[:-1] + r"\Z")
+_COLUMNS = "position,deflection_um"
+_INLINE_BYTES = (
+    32_768  # beyond it a body is read and answered in a thread, so that others are not kept waiting
+)
+
+router = APIRouter(tags=["results"], route_class=DirectRoute)
+
+
+_BINARY = {"type": "string", "format": "binary"}
+_ANSWERS = {
+    CBOR: {"schema": _BINARY | {"description": "As in JSON"}},
+    RAW: {"schema": _BINARY | {"description": "Columns force_n, stiffness_n_per_um, validity: float64"}},
+}
+_BODIES = {
+    JSON: {"schema": QueryInput.model_json_schema()},
+    CBOR: {"schema": _BINARY | {"description": "As in JSON; lists may be typed arrays (RFC 8746, tag 86)"}},
+    RAW: {"schema": _BINARY | {"description": "Columns of little-endian float64, one after the other"}},
+}
+
+
+async def _answer(request: Request) -> Response:
+    """Answer a query: small ones at once, others in a thread."""
+    key = request.path_params["key"]
+    if _KEY.match(key) is None:
+        raise BadInput.of("key", key, f"a text of the form {KEY_PATTERN}", "Content hash of the input.")
+    sent = media_type(request.headers.get("content-type", ""))
+    if sent not in READ:
+        raise UnsupportedMediaType(f"The body is {sent or 'of no stated type'}. Send {', '.join(READ)}.")
+    offered = (sent, *(kind for kind in READ if kind != sent))
+    wanted = negotiated(request.headers.get("accept", "*/*"), offered)
+    if wanted is None:
+        raise NotAcceptable(f"An answer can be {', '.join(READ)}. Accept one of them.")
+    columns = request.query_params.get("columns", _COLUMNS).split(",")
+    body, context = await request.body(), context_of(request)
+    opened = context.databases.at_hand(key)
+
+    def work() -> bytes:
+        """Read, evaluate, write."""
+        table = opened or context.databases.get(context.store, key)
+        return WRITE[wanted](force_answer(table.law, READ[sent](body, columns)))
+
+    small = len(body) <= _INLINE_BYTES and opened is not None and opened.compiled
+    return Response(work() if small else await run_in_threadpool(work), media_type=wanted)
+
+
+@router.post(
+    "/databases/{key}/query",
+    summary="Mesh forces",
+    response_model=QueryOutput,
+    responses=documented(404, 406, 413, 415, 422, 500) | {200: {"content": _ANSWERS}},
+    openapi_extra={"requestBody": {"required": True, "content": _BODIES}},
+)
+@answered_by(_answer)
+def query(
+    key: Annotated[str, Path(pattern=KEY_PATTERN, description="Content hash of the input")],
+    columns: Annotated[
+        str, Query(description=f"Columns of a raw body, of {', '.join(LIMITS)}", max_length=100)
+    ] = _COLUMNS,
+    accept: Annotated[str, Header(description=f"{JSON}, {CBOR} or {RAW}; default: that of the body")] = "*/*",
+) -> None:
+    """Force, tangent stiffness and validity at positions and deflections."""
