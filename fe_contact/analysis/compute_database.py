@@ -26,7 +26,7 @@ from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 
-SOLVER_VERSION = "6"
+SOLVER_VERSION = "7"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 

@@ -9,19 +9,19 @@ import numpy as np
 
 from fe_contact.analysis.spared_effects import spared_effects
 from fe_contact.checks import increasing, integer, positive, within
+from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth, LedgerEntry, compose
 from fe_contact.effects.sparing import WITHOUT
 from fe_contact.errors import InputError
 from fe_contact.geometry import CLAMPED, ParallelAxes
+from fe_contact.mesh import SectorRecipe
 from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
 from fe_contact.types import FloatArray, Json
 
 LARGEST_DEVIATION = 0.01
 """m; larger values of an axis are micrometres given as metres."""
 LARGEST_PERIOD = 1_000_000
-THINNEST_HELICAL = 40.0
-"""Depth of a helical body, bore to root, over its face width: residuals exceed 1e-8 from 45 on, not at 34."""
 ON_VIOLATION = ("repeat", "fail", "report")
 
 
@@ -230,7 +230,7 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
         request = replace(request, spared=spared_effects(request.scene, ledger, request.accuracy.tolerance))
         composed, ledger = _composed(request) if request.spared else (composed, ledger)
     if composed.across_face:
-        refuse_helical_plates(request.pair)
+        refuse_thin_discs(request.pair, request.accuracy.level)
     _refuse_distances(request)
     _refuse_idle_pitches(request)
     cycle = _cycle_cost(request, composed) if whole_table and composed.period > 1 else None
@@ -345,15 +345,17 @@ def refuse_beyond_plane(scene: ContactScene) -> None:
         raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
 
 
-def refuse_helical_plates(pair: ParallelAxes) -> None:
-    """Refuse helical discs so thin that they bend as plates: the elements lose all digits."""
+def refuse_thin_discs(pair: ParallelAxes, level: str | None) -> None:
+    """Refuse discs so thin that rounding would show; where no mesh is asked for, the finest counts."""
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        least = abs(gear.root_radius - gear.held_radius) / THINNEST_HELICAL
-        if gear.helix_angle != 0.0 and gear.face_width < least:
+        least = least_face_width(gear, getattr(SectorRecipe, level or "fine")(gear).layers)
+        if gear.face_width < least:
+            bends = "bends as a plate under the axial force of its helix" if gear.helix_angle else "gives way"
             bound = (
-                f"at least {least:.6g} m: {THINNEST_HELICAL:g} times as deep a helical body bends as a plate"
+                f"at least {least:.6g} m: a thinner disc {bends}, and rounding of its stiffness changes that "
+                f"by more than {LARGEST_ROUNDING:g}"
             )
-            advice = "Widen the face or the bore, or take a spur gear."
+            advice = "Widen the face or the bore" + (", or take a spur gear." if gear.helix_angle else ".")
             raise InputError(f"{name}.face_width", gear.face_width, bound, advice)
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.linalg import eigh
 
 from fe_contact.compliance.flank import ComplianceChecks
 from fe_contact.compliance.ring_2d import Ring, rotation
+from fe_contact.compliance.rounding import left_by_rounding
 from fe_contact.types import FloatArray
 
 
@@ -89,6 +91,22 @@ def field_under(ring: Ring, tooth_index: int, forces: FloatArray) -> Field:
     return Field(u, load, internal)
 
 
+def stiffness_alone(ring: Ring) -> FloatArray:
+    """Return the stiffness (N,) in Pa of each node with all others held, along its stiffer axis."""
+    mesh = ring.mesh
+    stiffness, own = np.zeros(len(mesh.points)), _larger(ring.sector.matrix)
+    for nodes in mesh.sector_nodes:
+        stiffness[nodes] += own
+    if ring.hub_matrix is not None:
+        stiffness[mesh.hub_nodes] += _larger(ring.hub_matrix)
+    return stiffness
+
+
+def _larger(matrix: sp.csc_array) -> FloatArray:
+    """Return the larger diagonal entry of each node, (n,)."""
+    return np.asarray(matrix.diagonal().reshape(-1, 2).max(axis=1))
+
+
 def _recovered(ring: Ring, u: FloatArray, load: FloatArray) -> FloatArray:
     """Return the displacement of every sector in its tooth frame (2n, t) from that of the shared nodes."""
     mesh, sector = ring.mesh, ring.sector
@@ -124,10 +142,14 @@ def ring_checks(ring: Ring, tooth_index: int, load: FlankLoad, matrix: FloatArra
     moment = float(np.sum(x * reaction[:, 1] - y * reaction[:, 0]))
     works = [float(np.sum(field.displacement * forces)) for forces in (field.internal, field.load)]
     works.append(load.work(matrix))
+    stiffness = np.repeat(stiffness_alone(ring), 2)
+    left = left_by_rounding(stiffness, field.displacement.ravel(), field.load, works[0])
     return ComplianceChecks(
         residual=float(np.linalg.norm(out_of_balance) / np.linalg.norm(field.load)),
         reciprocity=float(np.abs(matrix - matrix.T).max() / np.abs(matrix).max()),
         bore_moment=abs(moment + load.moment) / load.moment,
         energy=float(np.ptp(works) / works[0]),
         least_eigenvalue=float(eigh(matrix, subset_by_index=[0, 0], eigvals_only=True)[0]),
+        residual_rounding=left[0],
+        energy_rounding=left[1],
     )

@@ -9,6 +9,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from fe_contact.compliance.cyclic_ring import HeldSector, RingSolution
 from fe_contact.compliance.flank import ComplianceChecks
+from fe_contact.compliance.rounding import left_by_rounding
 from fe_contact.compliance.sector_stiffness import ElementStiffness
 from fe_contact.compliance.substructure import Condensation
 from fe_contact.mesh.swept_sector import SweptSector
@@ -106,13 +107,24 @@ def gear_checks(gear: CondensedGear, loads: FloatArray, lever: float, bore_radiu
     works = [inside + sum(moved), float(load[:, 0] @ values[: len(load), 0])]
     works.append(float(load[:, 0] @ gear.ring.blocks[0] @ load[:, 0]))
     moment = bore_moment(gear, loads, bore_radius)
+    left = left_by_rounding(stiffness_alone(gear.sector, gear.stiffness), field, load, works[0])
     return ComplianceChecks(
         residual=residual(gear, forces, load[:, 0]),
         reciprocity=reciprocity(gear, loads),
         bore_moment=abs(moment / (lever * float(load.sum())) - 1.0),
         energy=float(np.ptp(works) / works[0]),
         least_eigenvalue=least_eigenvalue(gear.ring.blocks[0]),
+        residual_rounding=left[0],
+        energy_rounding=left[1],
     )
+
+
+def stiffness_alone(sector: SweptSector, stiffness: ElementStiffness) -> FloatArray:
+    """Return the stiffness (n,) of each freedom with all others held: the diagonal, N/m."""
+    free = sector.element_freedoms >= 0
+    diagonals = np.einsum("mii->mi", stiffness.matrices)[stiffness.of_element]
+    added = np.bincount(sector.element_freedoms[free], diagonals[free], minlength=sector.size)
+    return added.astype(float)
 
 
 def element_forces(sector: SweptSector, stiffness: ElementStiffness, field: FloatArray) -> FloatArray:

@@ -13,6 +13,8 @@ from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray
 
 _SAMPLES = 65
+_TIE = 1e-15
+"""Gaps that differ by less, over the largest modification, are equal: a few times their rounding."""
 
 
 @dataclass(frozen=True)
@@ -131,7 +133,7 @@ def _shifted(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[Gap
     if amount == 0.0:
         return touch
     reach = np.sqrt(4.0 * here.radius * amount)
-    shift = _least(gap, np.maximum(low, -reach), np.minimum(high, reach))
+    shift = _least(gap, np.maximum(low, -reach), np.minimum(high, reach), _TIE * float(amount))
     step = 1e-3 * reach
     at = gap(np.stack([shift, np.minimum(shift + step, high), np.maximum(shift - step, low)], axis=1))
     # at an edge the flanks open by the slope of the gap there; elsewhere the distance to it is what matters
@@ -170,12 +172,18 @@ def _gap_beside(
     return np.asarray(rigid + sum(term(pair, roll_1, roll_2, face) for term in gaps))
 
 
-def _least(gap: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
-    """Where the gap is least between `low` and `high` (n,): nested searches; a tie goes to the middle."""
+def _least(
+    gap: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray, tie: float
+) -> FloatArray:
+    """Where the gap is least between `low` and `high` (n,): nested searches.
+
+    A tie, gaps that differ by less than `tie` in m, goes to the middle. It must be in proportion to the gaps:
+    a fixed one takes the contact off the tip edge wherever flanks open by less.
+    """
     fraction = np.linspace(0.0, 1.0, _SAMPLES)
     for _ in range(3):
         shift = low[:, None] + (high - low)[:, None] * fraction
-        best = np.argmin(gap(shift) + 1e-15 * np.abs(fraction - 0.5), axis=1)[:, None]
+        best = np.argmin(gap(shift) + tie * np.abs(fraction - 0.5), axis=1)[:, None]
         low, high = (
             np.take_along_axis(shift, np.clip(best + k, 0, _SAMPLES - 1), axis=1)[:, 0] for k in (-1, 1)
         )

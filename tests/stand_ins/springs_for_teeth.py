@@ -40,7 +40,7 @@ def flank_of_springs(gear: Gear, teeth: int) -> FlankCompliance:
         s_form=profile.s_form,
         s_tip=profile.s_tip,
         contact_modulus=gear.material.plane_strain_modulus,
-        checks=ComplianceChecks(0.0, 0.0, 0.0, 0.0, 1.0),
+        checks=ComplianceChecks(0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0),
         unknowns=0,
         condensed_unknowns=0,
         seconds={},

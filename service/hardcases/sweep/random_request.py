@@ -9,8 +9,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.geometry import FlankModification, Gear, GearPair, InternalGearPair, ParallelAxes, RingGear
 from fe_contact.material import Material
+from service.hardcases.sweep.random_grid import with_random_grid
 
 Kind = Literal["plane", "face"]
 Fields = dict[str, Any]
@@ -19,6 +20,8 @@ _LINE_LOAD = 10e6
 """Nominal force over face width and module in Pa, for steel; loads run from 1e-4 to 1e3 times it."""
 _ASTRAY = ((0.0, 0.4), (0.06, 0.4), (0.5, 0.2))
 """Chances that a field is drawn from everywhere, and how often each chance is taken."""
+_INTERNAL, _FREE_FORM = 0.25, 0.15
+"""Part of the cases with a ring gear; part of the external gears with a free-form flank."""
 
 
 class _Draw:
@@ -43,7 +46,7 @@ class _Draw:
         return bool(self.random.random() < part)
 
 
-def random_request(kind: Kind, seed: int) -> tuple[GearPair, Fields]:
+def random_request(kind: Kind, seed: int) -> tuple[ParallelAxes, Fields]:
     """Return the pair and the other arguments of `analyze` that `seed` picks.
 
     Raises
@@ -54,12 +57,40 @@ def random_request(kind: Kind, seed: int) -> tuple[GearPair, Fields]:
     draw = _Draw(kind, seed)
     rack = _rack(draw)
     pinion = _gear(draw, rack)
-    wheel = replace(pinion, helix_angle=-pinion.helix_angle) if draw.sometimes(0.3) else None
-    pair = GearPair(pinion, wheel or _gear(draw, rack | {"helix_angle": -rack["helix_angle"]}))
+    pair = _internal(draw, rack, pinion) if draw.sometimes(_INTERNAL) else _external(draw, rack, pinion)
     if draw.sometimes(0.5):
-        change = draw.between((0.0, 0.15), (-0.3, 0.8))
+        # gears of an internal pair part, or come closer, the other way round
+        change = draw.between((0.0, 0.15), (-0.3, 0.8)) * pair.wheel.sign
         pair = replace(pair, center_distance=pair.center_distance + change * pinion.normal_module)
     return pair, _arguments(draw, pair)
+
+
+def _external(draw: _Draw, rack: Fields, pinion: Gear) -> GearPair:
+    """Return the pinion with its like, or with another gear."""
+    if draw.sometimes(0.3):
+        return GearPair(pinion, replace(pinion, helix_angle=-pinion.helix_angle))
+    return GearPair(pinion, _gear(draw, rack | {"helix_angle": -rack["helix_angle"]}))
+
+
+def _internal(draw: _Draw, rack: Fields, pinion: Gear) -> InternalGearPair:
+    """Return the pinion inside a ring gear."""
+    module = pinion.normal_module
+    teeth = round(pinion.teeth * draw.between((1.6, 4.0), (0.8, 8.0)))
+    shift = draw.between((-0.3, 0.2), (-2.0, 2.0))
+    root = (teeth / math.cos(rack["helix_angle"]) + 2.0 * (rack["dedendum_coefficient"] - shift)) * module
+    width = pinion.face_width * draw.between((0.8, 1.2), (0.1, 3.0))
+    fields: Fields = {
+        "teeth": teeth,
+        "face_width": width,
+        "rim_diameter": draw.between((1.08, 1.5), (0.9, 3.0)) * root,
+        "profile_shift_coefficient": shift,
+        "addendum_coefficient": draw.between((0.6, 0.9), (0.2, 2.0)),
+        "cutter_teeth": round(draw.between((18.0, 35.0), (5.0, 100.0))),
+        "thickness_allowance": draw.between((0.0, 0.1), (0.0, 0.5)) * module * draw.sometimes(0.5),
+        "material": _material(draw),
+        "modification": _modification(draw, module, width),
+    }
+    return InternalGearPair(pinion, RingGear(**(rack | fields)))
 
 
 def _rack(draw: _Draw) -> Fields:
@@ -91,7 +122,10 @@ def _gear(draw: _Draw, rack: Fields) -> Gear:
         "material": _material(draw),
         "modification": _modification(draw, module, width),
     }
-    return Gear(**(rack | fields))
+    gear = Gear(**(rack | fields))
+    if not draw.sometimes(_FREE_FORM):
+        return gear
+    return with_random_grid(gear, draw.random, draw.power((-4.5, -2.3), (-6.0, -0.5)), draw.across_face)
 
 
 def _material(draw: _Draw) -> Material:
@@ -119,7 +153,7 @@ def _modification(draw: _Draw, module: float, width: float) -> FlankModification
     return FlankModification(**fields)
 
 
-def _arguments(draw: _Draw, pair: GearPair) -> Fields:
+def _arguments(draw: _Draw, pair: ParallelAxes) -> Fields:
     """Return loads, errors and accuracy."""
     module = pair.pinion.normal_module
     softest = min(gear.material.youngs_modulus for gear in (pair.pinion, pair.wheel))

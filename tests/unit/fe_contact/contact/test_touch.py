@@ -119,3 +119,32 @@ def test_corner_contact_keeps_its_gap_and_adds_the_edge_relief():
     plain, modified = touches(gears, [0.81], (Removed(),))
     assert 0.0 < plain.gap[0, 0] < modified.gap[0, 0] <= plain.gap[0, 0] + 2e-6 + 1e-12
     assert modified.offset_1[0, 0] < 0.0
+
+
+def test_the_least_modification_leaves_a_tip_edge_in_contact():
+    """Flanks that open at an edge touch there, however little is removed: 1e-155 m is as good as none."""
+    gears, position = pair(profile_crowning=1e-155), np.linspace(0.65, 0.9, 26)
+    plain, modified = touches(gears, position, (Removed(),))
+    beyond = np.minimum(plain.offset_1, plain.offset_2) < 0.0
+    assert beyond.sum() > 10
+    assert modified.offset_1[beyond] == pytest.approx(plain.offset_1[beyond], rel=1e-12, abs=0.0)
+    assert modified.offset_2[beyond] == pytest.approx(plain.offset_2[beyond], rel=1e-12, abs=0.0)
+
+
+def test_touching_points_scale_with_all_lengths():
+    """By a power of two to the last bit: no length is written into the search."""
+    changes = {"tip_relief": 2e-6, "tip_relief_length": 1.5e-3, "profile_crowning": 3e-6}
+    large, position = pair(**changes), np.linspace(-0.9, 0.9, 61)
+    small = scaled_down(large, 2.0**-12)
+    found, wanted = (touches(gears, position, (Removed(),))[1] for gears in (small, large))
+    for name in ("s_1", "s_2", "offset_1", "offset_2", "gap", "radius"):
+        assert getattr(found, name) == pytest.approx(2.0**-12 * getattr(wanted, name), rel=1e-9, abs=1e-18)
+
+
+def scaled_down(gears, scale):
+    lengths = ("tip_relief", "tip_relief_length", "profile_crowning")
+    gear = gears.pinion
+    modification = FlankModification(**{name: scale * getattr(gear.modification, name) for name in lengths})
+    sizes = {name: scale * getattr(gear, name) for name in ("normal_module", "face_width", "bore_diameter")}
+    small = Gear(teeth=gear.teeth, modification=modification, **sizes)
+    return GearPair(small, small, scale * gears.center_distance)
