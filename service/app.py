@@ -10,10 +10,11 @@ from fastapi import FastAPI
 from service.jobs.catalogue import default_registry
 from service.jobs.claims import Claims
 from service.jobs.key import solver_version
+from service.jobs.live_desk import live_desk
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
-from service.routes import effects, health, jobs, landing, queries, results
+from service.routes import effects, health, jobs, landing, live, queries, results
 from service.routes.context import Context
 from service.routes.errors import install_error_handlers
 from service.routes.metrics import Metrics
@@ -54,6 +55,7 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
         try:
             yield
         finally:
+            context.live.stop()
             context.scheduler.stop()
             lock.release()
 
@@ -69,14 +71,8 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
     app.state.metrics = Metrics(context.submissions)
     install_error_handlers(app)
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
-    for router in (
-        landing.router,
-        processes_router(offered),
-        jobs.router,
-        results.router,
-        queries.router,
-        effects.router,
-    ):
+    shown = (landing.router, jobs.router, results.router, queries.router, effects.router, live.router)
+    for router in (processes_router(offered), *shown):
         app.include_router(router, prefix="/v1")
     app.include_router(health.router)
     return app
@@ -87,4 +83,5 @@ def _context(settings: Settings, registry: Registry) -> Context:
     engine = open_database(settings.data_directory / DATABASE_FILE)
     store = ResultStore(engine, settings.data_directory / RESULTS_DIRECTORY)
     scheduler = Scheduler(settings, registry, Claims(engine), store)
-    return Context(settings, registry, Submissions(engine, settings.queue_limit), scheduler, store)
+    submissions = Submissions(engine, settings.queue_limit)
+    return Context(settings, registry, submissions, scheduler, store, live_desk(settings))

@@ -11,6 +11,9 @@
     |- TooLarge          the request body is beyond the limit
     |- UnsupportedMediaType, NotAcceptable   a body, or an answer, of a type that is not known here
     |- QueueFull         the queue is at its limit; try again later
+    |- Superseded        a later question of the same caller took its place
+    |- NotAnalysed       nothing is kept to answer from; submit a job first
+    |- LiveUnavailable   the live worker ended or took too long; try again
     |- DamagedFile       a file does not hold what its digest says
     |- Unreachable       no service at the address
     `- Unexpected        a defect; carries a reference number, never the text of the exception
@@ -219,6 +222,41 @@ class QueueFull(ServiceError):
     title = "The queue is full"
     exit_code = EXIT_FAILED
     retry_after_s = 10
+
+    @classmethod
+    def after(cls, seconds: int, message: str) -> QueueFull:
+        """Return the error of a queue that moves on in so many seconds."""
+        error = cls(message)
+        error.retry_after_s = seconds
+        return error
+
+
+class Superseded(ServiceError):
+    """A later question of the same caller took the place of this one."""
+
+    status = 409
+    type = "urn:lineofaction:problem:superseded"
+    title = "A later question took its place"
+    exit_code = EXIT_FAILED
+
+
+class NotAnalysed(ServiceError):
+    """There is nothing to answer a live question from."""
+
+    status = 409
+    type = "urn:lineofaction:problem:not-analysed"
+    title = "The pair has to be analysed first"
+    exit_code = EXIT_FAILED
+
+
+class LiveUnavailable(ServiceError):
+    """The live worker ended or took too long."""
+
+    status = 503
+    type = "urn:lineofaction:problem:live-unavailable"
+    title = "No live answer"
+    exit_code = EXIT_FAILED
+    retry_after_s = 1
 
 
 class DamagedFile(ServiceError):

@@ -2,6 +2,7 @@
 
 from fe_contact.analysis.ablation import Ablation, EffectAblation, ablate
 from fe_contact.analysis.analyze import analyze
+from fe_contact.analysis.condensed_pair import CondensedPair, condensed_pair
 from fe_contact.analysis.contact_pattern import ContactPattern, contact_pattern
 from fe_contact.analysis.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.analysis.flank_results import flank_results
@@ -15,6 +16,7 @@ from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sens
 
 __all__ = [
     "Ablation",
+    "CondensedPair",
     "ContactPattern",
     "DeformedPair",
     "EffectAblation",
@@ -30,6 +32,7 @@ __all__ = [
     "ablate",
     "analyze",
     "check_request",
+    "condensed_pair",
     "contact_pattern",
     "deformed_pairs",
     "flank_results",

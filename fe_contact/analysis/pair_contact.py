@@ -13,6 +13,9 @@ from fe_contact.compliance import (
     finite_width_compliances,
     flank_compliances,
     flank_compliances_3d,
+    free_ends_are_kept,
+    is_kept,
+    plane_is_kept,
 )
 from fe_contact.contact import (
     Candidates,
@@ -156,6 +159,22 @@ def pair_contact(
     ends = finite_width_compliances(gears, made.finite_width, flat[0].teeth.size, cache=cache)
     corrected = (ends[0].added_to(flat[0]), ends[1].added_to(flat[1]))
     return PairContact(pair, plan, plane=corrected, uncorrected=flat)
+
+
+def bodies_are_kept(pair: ParallelAxes, plan: Plan, cache: Path | None) -> bool:
+    """Whether `pair_contact` at the nominal centre distance would find both gears in the cache."""
+    made, gears = plan.discretisation, plan.bodies(pair)
+    if isinstance(made, FaceDiscretisation):
+        return all(is_kept(*each, cache) for each in zip(gears, made.recipes, strict=True))
+    teeth = condensed_teeth(pair)
+    kept = [
+        plane_is_kept(*each, made.hypothesis, teeth, cache) for each in zip(gears, made.recipes, strict=True)
+    ]
+    if made.finite_width is not None:
+        kept += [
+            free_ends_are_kept(*each, teeth, cache) for each in zip(gears, made.finite_width, strict=True)
+        ]
+    return all(kept)
 
 
 def _teeth(pair: ParallelAxes, distance_changes: FloatArray | None) -> int:

@@ -97,7 +97,7 @@ def solve_table(
         nodes = table_nodes(places, plan, measured=full)
         report("contact", 0.3)
         solved, support = (_solved(places, nodes, load) for load in (plan.load, plan.support))
-        table = _table(request, places, nodes, solved, support)
+        table = assembled_table(request, places, nodes, solved, support)
         report("contact", 1.0)
     return SolvedTable(decided, prediction, places, nodes, solved, support, table)
 
@@ -134,10 +134,10 @@ def _solved(places: Places, nodes: PositionNodes, load: FloatArray) -> Solved:
     return [place.solve_pitches(nodes.position, load, pitches) for place in places.places]
 
 
-def _table(
+def assembled_table(
     request: Request, places: Places, nodes: PositionNodes, solved: Solved, support: Solved
 ) -> SteDatabase:
-    """Assemble the table, its errors not yet estimated."""
+    """Assemble the table, its errors not yet estimated; `support` may be empty."""
     position = (np.arange(places.period)[:, None] + nodes.position).ravel()
     return SteDatabase(
         position=position,
@@ -150,5 +150,5 @@ def _table(
         error_estimate=np.full((position.size, request.load.size, *places.shape), np.nan),
         metadata=Metadata(),
         **table_fields(places, solved),
-        **table_support(places, support),
+        **(table_support(places, support) if support else {}),
     )

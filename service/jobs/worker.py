@@ -22,7 +22,7 @@ _OF_LITTLE_MEMORY = (signal.SIGKILL, signal.SIGABRT)  # by the system, and by li
 _ROOT = str(Path(__file__).resolve().parents[2])
 
 
-def _environment() -> dict[str, str]:
+def child_environment() -> dict[str, str]:
     """Environment of the child: one thread, and the code we run ourselves, installed or not."""
     path = os.pathsep.join(part for part in (_ROOT, os.environ.get("PYTHONPATH", "")) if part)
     return {**os.environ, **_ONE_THREAD, "PYTHONPATH": path}
@@ -46,7 +46,7 @@ class Worker:
                     stderr=stream,
                     pass_fds=(theirs,),
                     start_new_session=True,
-                    env=_environment(),
+                    env=child_environment(),
                     cwd=order.workspace,
                 )
         except OSError:

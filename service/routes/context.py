@@ -7,6 +7,7 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
+from service.jobs.live_desk import LiveDesk
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
@@ -24,6 +25,7 @@ class Context:
     submissions: Submissions
     scheduler: Scheduler
     store: ResultStore
+    live: LiveDesk
     databases: OpenDatabases = field(default_factory=OpenDatabases)
 
 

@@ -1,0 +1,66 @@
+"""What passes between the service and its live worker: orders one way, answers the other.
+
+An order is a line of JSON. An answer is a line of JSON, its head, and as many bytes as that says: the JSON
+for the caller, which the service passes on without reading it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+Json = dict[str, Any]
+LiveWork = Callable[[Json], Json]
+
+
+@dataclass(frozen=True)
+class LiveOrder:
+    """One question for the live worker.
+
+    Attributes
+    ----------
+    entry : str
+        ``"module:function"``, called as ``function(inputs)``; it returns plain JSON.
+    inputs : dict
+        Plain JSON.
+    """
+
+    entry: str
+    inputs: Json
+
+    def line(self) -> bytes:
+        """Return the order as one line of JSON."""
+        return json.dumps({"entry": self.entry, "inputs": self.inputs}).encode() + b"\n"
+
+    @classmethod
+    def from_line(cls, line: bytes) -> LiveOrder:
+        """Read the line of an order."""
+        return cls(**json.loads(line))
+
+
+@dataclass(frozen=True)
+class AnswerHead:
+    """What goes before the bytes of an answer.
+
+    Attributes
+    ----------
+    kind : str
+        "answer"; "problem": the bytes are problem details; "defect": the log says more, there are no bytes;
+        "memory": none was left, there are no bytes, and the worker ends.
+    length : int
+        Number of bytes that follow.
+    """
+
+    kind: str
+    length: int = 0
+
+    def line(self) -> bytes:
+        """Return the head as one line of JSON."""
+        return json.dumps({"kind": self.kind, "length": self.length}).encode() + b"\n"
+
+    @classmethod
+    def from_line(cls, line: bytes) -> AnswerHead:
+        """Read the line of a head."""
+        return cls(**json.loads(line))

@@ -1,0 +1,46 @@
+"""What the live worker does: curves of other flanks, and plans; in its own process, never the service's."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections import OrderedDict
+from pathlib import Path
+from typing import Any
+
+from fe_contact.analysis import CondensedPair
+from service.convert.live import condensed_of, live_curves
+from service.convert.plan import plan_of
+from service.schemas import Case
+from service.schemas.live import LiveInput
+
+Json = dict[str, Any]
+
+KEPT_PAIRS = 4
+
+_pairs: OrderedDict[str, tuple[Case, CondensedPair]] = OrderedDict()
+
+
+def live_ste(inputs: Json) -> Json:
+    """Return the curves of a question; the compliances asked for last stay in memory."""
+    begin = time.process_time()
+    question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
+    case, bodies = _bodies(inputs["key"], Path(inputs["file"]), Path(inputs["cache"]))
+    answer = live_curves(case, bodies, question)
+    return answer | {"cpu_seconds": time.process_time() - begin}
+
+
+def live_plan(inputs: Json) -> Json:
+    """Return what `loa plan --json` says of a case."""
+    case = Case.model_validate_json(json.dumps(inputs["case"]))
+    return plan_of(case, inputs["time_budget_s"], Path(inputs["cache"])).to_json()
+
+
+def _bodies(key: str, file: Path, cache: Path) -> tuple[Case, CondensedPair]:
+    """Return the condensed pair of a database, from memory or from the cache on disk."""
+    if key not in _pairs:
+        _pairs[key] = condensed_of(file, cache)
+    _pairs.move_to_end(key)
+    while len(_pairs) > KEPT_PAIRS:
+        _pairs.popitem(last=False)
+    return _pairs[key]

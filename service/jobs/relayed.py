@@ -1,0 +1,25 @@
+"""An error of another process, told as that process told it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from service.problems import ServiceError
+
+
+class Relayed(ServiceError):
+    """A problem as the live worker found it."""
+
+    def __init__(self, facts: dict[str, Any]) -> None:
+        self._facts = facts
+        super().__init__(str(facts["detail"]))
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the problem details as they came."""
+        return self._facts
+
+
+def relayed(body: bytes) -> Relayed:
+    """Return the error in the problem details `body`."""
+    return Relayed(json.loads(body))

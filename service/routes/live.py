@@ -1,0 +1,73 @@
+"""Answers while the caller waits: curves of other flanks, and plans. The live worker computes them."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from fastapi import APIRouter
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import Response
+
+from service.jobs.live_order import LiveOrder
+from service.routes.context import Context, Ctx
+from service.routes.errors import documented
+from service.routes.results import Key
+from service.schemas.live import LiveInput, LiveOutput, PlanRequest
+
+router = APIRouter(tags=["live"])
+
+STE, PLAN = "service.jobs.live_work:live_ste", "service.jobs.live_work:live_plan"
+
+_REFUSED = documented(400, 409, 413, 422, 429, 500, 503)
+
+
+@router.post(
+    "/databases/{key}/ste",
+    summary="Transmission error with other flanks",
+    response_class=Response,
+    responses={200: {"model": LiveOutput, "description": "The curves"}, **_REFUSED, **documented(404)},
+)
+async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
+    """Curves of the gears of a database with other flank modifications, torques and misalignment.
+
+    They come from the compliance in the cache, without finite elements and without error estimates.
+    """
+    stored = await run_in_threadpool(context.store.verified, key, "database")
+    question = body.model_dump(mode="json", exclude_none=True)
+    inputs = {"key": key, "file": str(stored.path), "cache": _cache(context), "question": question}
+    return await _answer(context, LiveOrder(STE, inputs), body.caller)
+
+
+@router.post(
+    "/plans",
+    summary="What a run will be and cost",
+    response_class=Response,
+    responses={200: {"description": "The plan", "content": {"application/json": {}}}, **_REFUSED},
+)
+async def plan(body: PlanRequest, context: Ctx) -> Response:
+    """Predicted time by stage, memory and error of every mesh, and the effect ledger; nothing is computed."""
+    asked = body.inputs.model_dump(mode="json")
+    order = LiveOrder(PLAN, {**asked, "cache": _cache(context)})
+    return await _answer(context, order, body.caller)
+
+
+async def _answer(context: Context, order: LiveOrder, caller: str | None) -> Response:
+    """Ask the live worker and pass its answer on."""
+    name = None if caller is None else f"{order.entry} {caller}"
+    body = await asyncio.wrap_future(context.live.ask(order, name))
+    return Response(body, media_type="application/json")
+
+
+def _cache(context: Context) -> str:
+    """Directory of flank compliances, which the jobs fill."""
+    return str(context.settings.data_directory / "compliance")
+
+
+def _documented(handler: Any, model: Any) -> None:
+    """Name the model by which the fields of refused bodies are explained."""
+    handler.body_model = model
+
+
+_documented(live_ste, LiveInput)
+_documented(plan, PlanRequest)

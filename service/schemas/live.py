@@ -1,0 +1,128 @@
+"""Other flanks, another load and alignment for the gears of a stored database; and a case to be planned."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Optional
+
+from pydantic import Field, Strict, create_model
+
+from service.schemas.case import Case, Load
+from service.schemas.gear import ToothingInput
+from service.schemas.model import BoundaryModel
+
+FLANK_FIELDS = tuple(
+    name
+    for name in ToothingInput.model_fields
+    if name.startswith(("tip_relief", "root_relief", "end_relief", "profile_crowning", "profile_slope"))
+    or name.startswith(("helix_", "flank_twist"))
+)
+"""Modifications of a gear that a live question may change: amounts, lengths and shapes."""
+
+
+def _left_out(name: str) -> Any:
+    """Return a field of a gear that may be left out: it is then as in the case."""
+    field = ToothingInput.model_fields[name]
+    kind: Any = Annotated[field.annotation, *field.metadata] if field.metadata else field.annotation
+    text = f"{field.description}; left out: as in the case"
+    return Optional[kind], Field(default=None, description=text, examples=field.examples)  # noqa: UP045
+
+
+FlankChange = create_model(
+    "FlankChange",
+    __base__=BoundaryModel,
+    __doc__="Flank modifications of one gear; > 0 is material removed.",
+    **{name: _left_out(name) for name in FLANK_FIELDS},
+)
+
+Torques = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=16)]
+Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
+
+
+class LiveInput(BoundaryModel):
+    """What is different from the case of the database."""
+
+    torque_n_m: Torques = Field(
+        description="Torques on the driving gear in N m, increasing, at most twice the highest of the case",
+        examples=[[100.0]],
+    )
+    misalignment_um: float = Field(
+        default=0.0,
+        ge=-10_000.0,
+        le=10_000.0,
+        description="Gap growth in um over the common face width in the plane of action, zero at mid-face",
+        examples=[0.0],
+    )
+    pinion: FlankChange = Field(  # type: ignore[valid-type]
+        default=FlankChange(), description="Flanks of the driving gear", examples=[{"tip_relief_um": 10.0}]
+    )
+    wheel: FlankChange = Field(  # type: ignore[valid-type]
+        default=FlankChange(), description="Flanks of the driven gear", examples=[{"tip_relief_um": 10.0}]
+    )
+    caller: Caller | None = Field(
+        default=None,
+        description="A name for whoever asks: a later question under it takes the place of one that waits",
+        examples=["slider-1"],
+    )
+
+
+class LiveCurve(BoundaryModel):
+    """Transmission error over one period at one load; without errors, which are not estimated live."""
+
+    torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])
+    normal_force_n: float = Field(description="Normal tooth force in N", examples=[2660.4])
+    misalignment_um: float = Field(description="Misalignment in um", examples=[0.0])
+    center_distance_change_mm: float = Field(
+        description="Change of the centre distance in mm", examples=[0.0]
+    )
+    period: int = Field(description="Base pitches after which all repeats", examples=[1])
+    position: list[float] = Field(description="Base pitches; 0 = pitch point", examples=[[0.0, 0.5]])
+    ste_um: list[float] = Field(description="Static transmission error in um", examples=[[9.7, 12.1]])
+    pair: list[int] = Field(description="Tooth pair of each column of load_share", examples=[[-1, 0]])
+    load_share: list[list[float]] = Field(
+        description="Share of each pair", examples=[[[0.5, 0.5], [0.0, 1.0]]]
+    )
+    mean_um: float = Field(description="Mean in um", examples=[10.9])
+    peak_to_peak_um: float = Field(description="Peak to peak in um", examples=[2.8])
+    harmonics_um: list[float] = Field(
+        description="Amplitudes of the mesh harmonics in um", examples=[[1.1, 0.4]]
+    )
+    order: list[float] | None = Field(default=None, description="Orders of a period of several base pitches")
+    amplitude_um: list[float] | None = Field(default=None, description="Their amplitudes in um")
+
+
+class LiveOutput(BoundaryModel):
+    """Curves of other flanks."""
+
+    curves: list[LiveCurve] = Field(description="One for each torque")
+    effects: dict[str, bool] = Field(
+        description="Which optional physics was on", examples=[{"corner_contact": True}]
+    )
+    beyond_load_patches: int = Field(
+        description="Points at which a contact strip outgrew its load patch: 0.5 % of the mean there",
+        examples=[0],
+    )
+    cpu_seconds: float = Field(description="Work of the answer", examples=[0.03])
+
+
+class PlanInputs(BoundaryModel):
+    """What is to be planned."""
+
+    case: Case = Field(description="The case, as in a case file")
+    time_budget_s: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e6,
+        description="CPU seconds that may be spent, beside a tolerance or a level of the case",
+        examples=[30.0],
+    )
+
+
+class PlanRequest(BoundaryModel):
+    """The body of an execution of analyze, planned instead of run."""
+
+    inputs: PlanInputs = Field(description="Inputs of the plan")
+    caller: Caller | None = Field(
+        default=None,
+        description="A name for whoever asks: a later question under it takes the place of one that waits",
+        examples=["form-1"],
+    )

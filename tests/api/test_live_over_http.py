@@ -1,0 +1,114 @@
+"""Live curves and plans over HTTP: those of a whole analysis, and clear refusals."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import create_app
+from service.settings import Settings
+
+GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
+RELIEF = {"tip_relief_um": 3.0, "tip_relief_length_mm": 0.4}
+
+
+def case(**pinion: Any) -> dict[str, Any]:
+    """Return a small plane case."""
+    gears = {"pinion": GEAR | pinion, "wheel": GEAR}
+    return {
+        "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, **gears},
+        "load": {"torque_n_m": [0.5, 1.0]},
+        "accuracy": {"level": "draft", "model": "plane_strain", "positions": 64, "receipt": "minimal"},
+        "effects": {"corner_contact": "on"},
+    }
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("service")))) as found:
+        yield found
+
+
+def analysed(client: TestClient, asked: dict[str, Any]) -> str:
+    """Return the hash of the table of a case, computed as a job."""
+    job = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": asked}}).json()
+    end = time.monotonic() + 120.0
+    while (status := client.get(f"/v1/jobs/{job['jobID']}").json())["status"] in ("accepted", "running"):
+        assert time.monotonic() < end
+        time.sleep(0.05)
+    assert status["status"] == "successful", status
+    return str(client.get(f"/v1/jobs/{job['jobID']}/results").json()["database"]["hash"])
+
+
+@pytest.fixture(scope="module")
+def key(client: TestClient) -> str:
+    return analysed(client, case())
+
+
+def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:
+    live = client.post(f"/v1/databases/{key}/ste", json={"torque_n_m": [0.5, 1.0], "pinion": RELIEF}).json()
+    store = client.app.state.context.store  # type: ignore[attr-defined]
+    other = analysed(client, case(**RELIEF))
+    table = client.app.state.context.databases.get(store, other)  # type: ignore[attr-defined]
+    for curve in live["curves"]:
+        whole = table.curve(torque=curve["torque_n_m"])
+        assert curve["ste_um"] == pytest.approx((1e6 * whole.ste).tolist(), rel=1e-12, abs=0.0)
+        assert curve["peak_to_peak_um"] == pytest.approx(1e6 * whole.peak_to_peak.value, rel=1e-12, abs=0.0)
+    assert live["effects"]["profile_modification"] and live["beyond_load_patches"] == 0
+
+
+@pytest.mark.parametrize(
+    ("question", "field"),
+    [
+        ({"torque_n_m": [2.5]}, "torque_n_m[0]"),
+        ({"torque_n_m": [1.0, 0.5]}, "torque_n_m"),
+        ({"torque_n_m": [1.0], "misalignment_um": 5.0}, "misalignment_um"),
+        ({"torque_n_m": [1.0], "wheel": {"helix_crowning_um": 2.0}}, "wheel.helix_crowning_um"),
+        ({"torque_n_m": [1.0], "wheel": {"tip_relief_um": 2.0}}, "wheel.tip_relief_length_mm"),
+        ({"torque_n_m": [1.0], "wheel": {"teeth": 21}}, "wheel.teeth"),
+        ({"torque_n_m": [1.0], "pinion": {"tip_relief_um": -1.0}}, "pinion.tip_relief_um"),
+    ],
+)
+def test_a_question_that_cannot_be_answered_names_its_field(
+    client: TestClient, key: str, question: dict[str, Any], field: str
+) -> None:
+    refused = client.post(f"/v1/databases/{key}/ste", json=question)
+    assert refused.status_code == 422
+    assert refused.headers["content-type"] == "application/problem+json"
+    assert [fault["field"] for fault in refused.json()["errors"]] == [field]
+
+
+def test_without_a_table_or_its_compliance_a_job_is_asked_for(client: TestClient, key: str) -> None:
+    question = {"torque_n_m": [1.0]}
+    missing = client.post(f"/v1/databases/{'0' * 64}/ste", json=question)
+    assert missing.status_code == 404 and "Submit its case" in missing.json()["detail"]
+    context = client.app.state.context  # type: ignore[attr-defined]
+    context.live.stop()  # with its memory
+    for file in (context.settings.data_directory / "compliance").glob("compliance-*"):
+        file.rename(file.with_suffix(".away"))
+    gone = client.post(f"/v1/databases/{key}/ste", json=question)
+    for file in (context.settings.data_directory / "compliance").glob("*.away"):
+        file.rename(file.with_suffix(".npz"))
+    assert (gone.status_code, gone.json()["type"]) == (409, "urn:lineofaction:problem:not-analysed")
+
+
+def test_a_plan_is_that_of_the_command_line(client: TestClient) -> None:
+    found = client.post("/v1/plans", json={"inputs": {"case": case()}}).json()
+    assert [entry["level"] for entry in found["levels"]] == ["draft", "standard", "fine"]
+    assert found["choice"]["level"] == "draft"
+    assert {"corner_contact", "misalignment"} <= {entry["name"] for entry in found["effect_ledger"]}
+
+
+def test_a_plan_of_no_pair_names_the_field_as_an_execution_does(client: TestClient) -> None:
+    asked = {"inputs": {"case": case(bore_diameter_mm=19.0)}}
+    refused, as_job = (
+        client.post(path, json=asked) for path in ("/v1/plans", "/v1/processes/analyze/execution")
+    )
+    assert refused.status_code == as_job.status_code == 422
+    assert refused.json() == as_job.json()
+    typo = client.post("/v1/plans", json={"inputs": {"case": case(teth=3)}}).json()
+    assert [fault["field"] for fault in typo["errors"]] == ["pair.pinion.teth"]

@@ -1,0 +1,49 @@
+"""Stand-ins for live questions: they answer, wait, die, fail or hog memory on request."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+from typing import Any
+
+from service.problems import BadInput
+
+_asked: list[str] = []
+
+
+def echo(inputs: dict[str, Any]) -> dict[str, Any]:
+    """Return what was asked, everything asked before, and who answers."""
+    _asked.append(inputs["word"])
+    if "wait_for" in inputs:
+        while not Path(inputs["wait_for"]).exists():
+            time.sleep(0.005)
+    return {"asked": list(_asked), "pid": os.getpid(), "nice": os.nice(0)}
+
+
+def hang(_inputs: dict[str, Any]) -> dict[str, Any]:
+    """Never answer."""
+    while True:
+        time.sleep(1.0)
+
+
+def die(_inputs: dict[str, Any]) -> dict[str, Any]:
+    """End as the system ends a process."""
+    os.kill(os.getpid(), signal.SIGKILL)
+    return {}
+
+
+def hog(_inputs: dict[str, Any]) -> dict[str, Any]:
+    """Ask for more memory than there may be."""
+    return {"length": len(bytearray(1 << 42))}
+
+
+def refuse(_inputs: dict[str, Any]) -> dict[str, Any]:
+    """Refuse the input."""
+    raise BadInput.of("torque_n_m[0]", 5.0, "at most 4", "Ask for less.")
+
+
+def defect(_inputs: dict[str, Any]) -> dict[str, Any]:
+    """Fail as no code should."""
+    raise RuntimeError("secret text of a defect")

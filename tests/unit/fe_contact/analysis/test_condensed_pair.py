@@ -1,0 +1,108 @@
+"""Curves from a compliance in memory are those of a whole analysis, for any flanks, load and alignment."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair, analyze
+from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.errors import InputError
+from fe_contact.geometry import FlankModification, PitchDeviation
+from fe_contact.ste import SteDatabase
+
+GEAR = Gear(teeth=20, normal_module=1e-3, face_width=4e-3, bore_diameter=10e-3)
+PAIR = GearPair(GEAR, GEAR, center_distance=20e-3)
+RELIEF = FlankModification(tip_relief=3e-6, tip_relief_length=0.4e-3)
+TORQUES = np.array([0.5, 1.0])
+
+
+def with_flank(pair: GearPair, modification: FlankModification) -> GearPair:
+    """Return the pair with another pinion flank."""
+    return replace(pair, pinion=replace(pair.pinion, modification=modification))
+
+
+def table_of(pair: GearPair, cache: Path, model: str = "plane_strain", **wish: object) -> SteDatabase:
+    """Analyse at the positions of a condensed pair."""
+    return analyze(
+        pair,
+        torques=TORQUES,
+        level="draft",
+        model=model,
+        positions=64,
+        receipt="minimal",
+        cache=cache,
+        effects={"corner_contact": "on"},
+        **wish,  # type: ignore[arg-type]
+    )
+
+
+@pytest.fixture(scope="module")
+def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("compliance")
+
+
+def condensed(pair: GearPair, cache: Path, model: str = "plane_strain") -> CondensedPair:
+    """Analyse, then fetch what that left in the cache."""
+    found = condensed_pair(pair, table_of(pair, cache, model), {}, cache)
+    assert found is not None
+    return found
+
+
+def test_a_relieved_flank_has_the_curve_of_its_own_analysis(cache: Path) -> None:
+    relieved = with_flank(PAIR, RELIEF)
+    quick = condensed(PAIR, cache).table(relieved, TORQUES)
+    whole = table_of(relieved, cache)
+    assert np.array_equal(quick.static_transmission_error, whole.static_transmission_error)
+    assert np.array_equal(quick.load_share, whole.load_share)
+    plain = table_of(PAIR, cache)
+    assert abs(quick.peak_to_peak(torque=1.0).value / plain.peak_to_peak(torque=1.0).value - 1.0) > 0.02
+
+
+def test_crowning_and_misalignment_have_the_curve_of_their_own_analysis(cache: Path) -> None:
+    crowned = with_flank(PAIR, FlankModification(helix_crowning=2e-6))
+    quick = condensed(PAIR, cache, "3d").table(crowned, TORQUES, misalignment=5e-6)
+    whole = table_of(crowned, cache, "3d", misalignments=[5e-6])
+    assert np.array_equal(quick.static_transmission_error, whole.static_transmission_error)
+    assert np.array_equal(quick.face_centroid, whole.face_centroid)
+
+
+def test_what_is_assembled_once_serves_all_flanks(cache: Path) -> None:
+    pair = condensed(PAIR, cache)
+    pair.table(PAIR, TORQUES)
+    kept = dict(pair.contact._problems)
+    pair.table(with_flank(PAIR, RELIEF), np.array([0.7]))
+    assert pair.contact._problems == kept and len(kept) == 1
+
+
+def test_a_plane_holds_nothing_across_the_face(cache: Path) -> None:
+    pair = condensed(PAIR, cache)
+    with pytest.raises(InputError, match=r"pinion\.modification"):
+        pair.table(with_flank(PAIR, FlankModification(helix_crowning=2e-6)), TORQUES)
+    with pytest.raises(InputError, match="misalignments"):
+        pair.table(PAIR, TORQUES, misalignment=5e-6)
+
+
+def test_other_bodies_and_loads_beyond_the_patches_are_refused(cache: Path) -> None:
+    pair = condensed(PAIR, cache)
+    with pytest.raises(InputError, match="gears and the centre distance"):
+        pair.table(replace(PAIR, center_distance=20.01e-3), TORQUES)
+    with pytest.raises(InputError, match="at most 2: 2 times"):
+        pair.table(PAIR, np.array([2.001]))
+    assert pair.table(PAIR, np.array([2.0])).n_failed == 0
+
+
+def test_pitch_deviations_stay_with_the_gear(cache: Path) -> None:
+    deviation = PitchDeviation(tuple(2e-6 * np.cos(2.0 * np.pi * np.arange(20) / 20)))
+    uneven = replace(PAIR, pinion=replace(GEAR, pitch_deviation=deviation))
+    quick = condensed(uneven, cache).table(with_flank(uneven, RELIEF), TORQUES)
+    assert quick.period == 20
+    whole = table_of(with_flank(uneven, RELIEF), cache)
+    assert quick.mean(torque=1.0).value == pytest.approx(whole.mean(torque=1.0).value, rel=1e-3, abs=0.0)
+
+
+def test_without_the_compliance_there_is_no_condensed_pair(cache: Path, tmp_path: Path) -> None:
+    assert condensed_pair(PAIR, table_of(PAIR, cache), {}, tmp_path) is None
