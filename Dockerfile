@@ -14,20 +14,33 @@ WORKDIR /source
 COPY requirements.lock pyproject.toml ./
 RUN pip install -c requirements.lock setuptools \
     && python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['dependencies'], sep='\n')" > wanted \
-    && pip install -c requirements.lock -r wanted
+    && pip install --no-compile -c requirements.lock -r wanted
 
 COPY README.md LICENSE ./
 COPY fe_contact fe_contact
 COPY dynamics dynamics
 COPY service service
-RUN pip install --no-deps --no-build-isolation . && pip uninstall --yes pip setuptools
+RUN pip install --no-compile --no-deps --no-build-isolation . && pip uninstall --yes pip setuptools
+
+# What no run reads: tests of the libraries, Python objects for plotly's figures (its JavaScript is what we use), symbols
+# of the compiler. Then byte code of just the modules that the service and its workers load.
+RUN apt-get update && apt-get install -y --no-install-recommends binutils
+COPY scripts/image_modules.py ./
+RUN set -eu; packages=$(python -c "import sysconfig; print(sysconfig.get_path('purelib'))"); \
+    find "$packages" -type d -name tests -prune -exec rm -rf {} +; \
+    rm -rf "$packages"/plotly/graph_objs "$packages"/plotly/labextension /opt/lineofaction/lib/gmsh.jl; \
+    strip --strip-unneeded "$packages"/llvmlite/binding/libllvmlite.so; \
+    env -u PYTHONDONTWRITEBYTECODE python image_modules.py
 
 # ---- run: no compiler, no package manager of Python, no root -------------------------------------------------------
+# gmsh is linked against OpenGL but draws nothing here: Mesa's drivers (200 MB) go again.
 FROM ${BASE} AS run
 RUN apt-get update \
     && apt-get install -y --no-install-recommends \
         tini libglu1-mesa libgl1 libxcursor1 libxft2 libxinerama1 libgomp1 \
-    && rm -rf /var/lib/apt/lists/* \
+    && dpkg --purge --force-depends \
+        $(dpkg-query -W -f '${Package}\n' 'libllvm*' 'libz3*' 'mesa-libgallium' 'libgl1-mesa-dri' 2>/dev/null) \
+    && apt-get clean && rm -rf /var/lib/apt/lists/* \
     && useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin lineofaction \
     && install -d -o lineofaction -g lineofaction /data /data/cache
 COPY --from=build /opt/lineofaction /opt/lineofaction

@@ -9,10 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from plotly.offline import get_plotlyjs
-
 from service.report.figure import Figure, Table
 from service.report.interactive import plotly_figure
+from service.report.plotly_script import plotly_script
 from service.report.style import STYLE
 
 
@@ -80,7 +79,7 @@ def html(page: Page, images: dict[str, bytes]) -> str:
             '<meta name="viewport" content="width=device-width, initial-scale=1">',
             f'<title>{escape(page.title)}</title>\n<link rel="icon" href="data:,">\n<style>{STYLE}</style>',
             "<noscript><style>.plot { display: none; } .still { display: block; }</style></noscript>",
-            f"<script>{get_plotlyjs()}</script>\n</head>\n<body>",
+            f"<script>{plotly_script()}</script>\n</head>\n<body>",
             '<a class="skip" href="#main">Skip to the results</a>',
             _header(page),
             f'<main id="main">\n{body}\n</main>',

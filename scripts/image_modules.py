@@ -1,0 +1,30 @@
+"""Load what the service and its workers load: Python writes the byte code of just that into the image."""
+
+from __future__ import annotations
+
+import compileall
+import importlib
+import pkgutil
+from pathlib import Path
+
+import service.jobs
+
+LOADED_AT_THE_START = ("service.cli", "service.app", "uvicorn.protocols.http.auto", "uvicorn.lifespan.on")
+OURS = ("fe_contact", "dynamics", "service")
+
+
+def main() -> None:
+    """Compile our own packages whole and of the libraries what they import."""
+    for name in OURS:
+        path = importlib.import_module(name).__file__
+        assert path is not None
+        compileall.compile_dir(Path(path).parent, quiet=1)
+    for name in LOADED_AT_THE_START:
+        importlib.import_module(name)
+    for found in pkgutil.iter_modules(service.jobs.__path__, "service.jobs."):
+        if found.name.endswith("_work"):
+            importlib.import_module(found.name)
+
+
+if __name__ == "__main__":
+    main()
