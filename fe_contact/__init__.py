@@ -40,6 +40,7 @@ if TYPE_CHECKING:
         Shaft,
     )
     from fe_contact.material import STEEL, Material
+    from fe_contact.microgeometry import DesignVariable, Limits, Optimisation, Scatter, Search, optimise
     from fe_contact.ste import SteDatabase
     from fe_contact.types import Estimate, Status
 
@@ -49,6 +50,7 @@ __all__ = [
     "BoreSeat",
     "ContactPattern",
     "DeformedPair",
+    "DesignVariable",
     "Estimate",
     "FlankGrid",
     "FlankModification",
@@ -57,11 +59,15 @@ __all__ = [
     "GearBlank",
     "GearPair",
     "InternalGearPair",
+    "Limits",
     "LoadDistribution",
     "Material",
+    "Optimisation",
     "PitchDeviation",
     "RingGear",
     "RootStress",
+    "Scatter",
+    "Search",
     "Sensitivity",
     "Shaft",
     "Status",
@@ -72,6 +78,7 @@ __all__ = [
     "deformed_pairs",
     "flank_results",
     "frontier",
+    "optimise",
     "root_stress",
     "study_sensitivity",
 ]
@@ -104,6 +111,12 @@ _HOME = {
     "Shaft": "fe_contact.geometry",
     "STEEL": "fe_contact.material",
     "Material": "fe_contact.material",
+    "DesignVariable": "fe_contact.microgeometry",
+    "Limits": "fe_contact.microgeometry",
+    "Optimisation": "fe_contact.microgeometry",
+    "optimise": "fe_contact.microgeometry",
+    "Scatter": "fe_contact.microgeometry",
+    "Search": "fe_contact.microgeometry",
     "SteDatabase": "fe_contact.ste",
     "Estimate": "fe_contact.types",
     "Status": "fe_contact.types",

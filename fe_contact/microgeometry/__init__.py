@@ -1,0 +1,33 @@
+"""Studies of micro-geometry: many designs of one pair on one compliance."""
+
+from fe_contact.microgeometry.confirmation import ConfirmedDesign
+from fe_contact.microgeometry.harris_map import HarrisMap
+from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
+from fe_contact.microgeometry.optimisation import Optimisation, Outcome, StepAside
+from fe_contact.microgeometry.optimise import optimise
+from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
+from fe_contact.microgeometry.search import DifferentialEvolution, NelderMead, Search, SearchRun
+from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
+
+__all__ = [
+    "QUANTITIES",
+    "ConfirmedDesign",
+    "DesignVariable",
+    "DifferentialEvolution",
+    "GaussHermite",
+    "HarrisMap",
+    "Limits",
+    "NelderMead",
+    "Objective",
+    "Optimisation",
+    "Outcome",
+    "Scatter",
+    "ScatterNodes",
+    "Search",
+    "SearchRun",
+    "SobolSample",
+    "StepAside",
+    "WeightedMean",
+    "Worst",
+    "optimise",
+]

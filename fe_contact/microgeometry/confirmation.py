@@ -1,0 +1,154 @@
+"""Analyse a design anew as `analyze` would, with the errors of its curves, at every node of the scatter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis.compute_database import compute_database
+from fe_contact.analysis.model_choice import Decided
+from fe_contact.analysis.request import check_asked
+from fe_contact.microgeometry.design_problem import DesignProblem
+from fe_contact.microgeometry.design_study import DesignStudy
+from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
+from fe_contact.microgeometry.harris_map import HarrisMap
+from fe_contact.microgeometry.scatter import ONE_NODE
+from fe_contact.microgeometry.variables import modified
+from fe_contact.ste import SteDatabase
+from fe_contact.types import Estimate, FloatArray, Json
+
+
+@dataclass(frozen=True)
+class ConfirmedDesign:
+    """A design as analysed in full.
+
+    Attributes
+    ----------
+    values : dict of str to float
+        ``gear.quantity`` to m.
+    table : SteDatabase
+        Over torques and misalignments, without scatter of the modifications.
+    harris_map : HarrisMap
+    figures : Evaluation
+        Pressures, factors and curves at the nodes and the torques that count.
+    objective : Estimate
+        Its error adds that of the analysis and that of the scatter's rule.
+    scatter_error : float
+        The latter, m.
+    violation : float
+        Of the limits, in parts of them.
+    """
+
+    values: dict[str, float]
+    table: SteDatabase
+    harris_map: HarrisMap
+    figures: Evaluation
+    objective: Estimate
+    scatter_error: float
+    violation: float
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "values_m": self.values,
+            "objective_m": self.objective.value,
+            "objective_error_m": self.objective.error,
+            "scatter_error_m": self.scatter_error,
+            "violation": self.violation,
+            "peak_to_peak_m": self.figures.peak_to_peak.tolist(),
+            "max_pressure_pa": self.figures.pressure.max(axis=0).tolist(),
+            "face_load_factor": self.figures.face_load_factor.max(axis=0).tolist(),
+            "edge_load_share": self.figures.edge_load_share.max(axis=0).tolist(),
+            "harris_map": self.harris_map.to_json(),
+        }
+
+
+def confirm(
+    problem: DesignProblem, values: Mapping[str, float], study: DesignStudy, cache: Path | None
+) -> ConfirmedDesign:
+    """Analyse a design in full, over all torques of a study.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    values : mapping
+        ``gear.quantity`` to m.
+    study : DesignStudy
+    cache : Path, optional
+        Directory of flank compliances.
+    """
+    search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
+    table = _table(search, values, study.decided, cache)
+    position = table.position[table.position < 1.0]
+    fine = replace(search, position=position, load=table.force)
+    found = fine.evaluate(values)
+    error = _errors(table, search.misalignment + nodes.misalignment)
+    ripple = found.peak_to_peak
+    nominal = replace(fine, nodes=ONE_NODE).evaluate(values)
+    harris = HarrisMap(
+        torque=study.all_torques,
+        position=table.position,
+        ste=nominal.ste[0],
+        nominal=nominal.peak_to_peak[0],
+        nominal_error=_errors(table, np.array([search.misalignment]))[0],
+        peak_to_peak=ripple,
+        error=error,
+        weight=nodes.weight,
+    )
+    counted_figures = Evaluation(
+        found.ste[:, :, counted],
+        *(each[:, counted] for each in (found.pressure, found.face_load_factor, found.edge_load_share)),
+    )
+    rule = _scatter_error(problem, values)
+    own = problem.objective.of(harris.expected_error[counted])
+    objective = Estimate(problem.objective.of(harris.expected[counted]), own + rule, "m")
+    violation = counted_figures.violation(problem.limits)
+    return ConfirmedDesign(dict(values), table, harris, counted_figures, objective, rule, violation)
+
+
+def _table(
+    search: Evaluator, values: Mapping[str, float], decided: Decided, cache: Path | None
+) -> SteDatabase:
+    """Compute the table over torques and the misalignments of all nodes and of none."""
+    request = decided.checked.request
+    skews = np.unique([search.misalignment, *(search.misalignment + search.nodes.misalignment)])
+    asked = replace(
+        request,
+        pair=modified(request.pair, values),
+        misalignment=skews,
+        effects=dict(search.choices),
+        accuracy=replace(request.accuracy, tolerance=None, time_budget=None, level=decided.mesh.level),
+    )
+    checked = check_asked(asked, spare=False)
+    table = compute_database(checked, asked.to_json(), _silent, cache, replace(decided, checked=checked))
+    table.require_complete()
+    return table
+
+
+def _errors(table: SteDatabase, misalignment: FloatArray) -> FloatArray:
+    """Errors of peak-to-peak (S, T) in m at misalignments of the table."""
+    known = {
+        float(skew): [
+            table.peak_to_peak(force=float(load), misalignment=float(skew)).error for load in table.force
+        ]
+        for skew in np.unique(misalignment)
+    }
+    return np.array([known[float(skew)] for skew in misalignment])
+
+
+def _scatter_error(problem: DesignProblem, values: Mapping[str, float]) -> float:
+    """Return by how much a finer rule for the scatter changes the objective, m."""
+    search = problem.evaluator
+    finer = search.nodes.finer
+    if finer is None:
+        return 0.0
+    other = replace(search, nodes=finer)
+    one, two = (problem.objective.of(each.expected(each.evaluate(values))) for each in (search, other))
+    return abs(two - one)
+
+
+def _silent(stage: str, fraction: float) -> None:
+    """Report no progress."""

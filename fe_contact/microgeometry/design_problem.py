@@ -1,0 +1,76 @@
+"""The problem a search solves: places in the unit cube to one number."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.objective import Limits, Objective
+from fe_contact.microgeometry.variables import DesignVariable
+from fe_contact.types import FloatArray
+
+PENALTY = 10.0
+"""Merit of a limit exceeded by its own size, in parts of the scale: 1 % costs a tenth of it."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """One design: its objective in m, by how much it exceeds the limits, and the merit that is minimised."""
+
+    objective: float
+    violation: float
+    merit: float
+
+    @property
+    def order(self) -> tuple[float, float]:
+        """By which designs are ranked: first those that keep the limits, then by the objective."""
+        return self.violation, self.objective
+
+
+@dataclass(frozen=True)
+class DesignProblem:
+    """What is varied, how it is judged, and the scale of the merit.
+
+    Attributes
+    ----------
+    evaluator : Evaluator
+    variables : tuple of DesignVariable
+    objective : Objective
+    limits : Limits
+    scale : float
+        m; merits are in parts of it.
+    """
+
+    evaluator: Evaluator
+    variables: tuple[DesignVariable, ...]
+    objective: Objective
+    limits: Limits
+    scale: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the variables."""
+        return tuple(one.name for one in self.variables)
+
+    def values(self, place: FloatArray) -> dict[str, float]:
+        """Return the design at a place (d,) of the unit cube, ``gear.quantity`` to m."""
+        inside = np.clip(place, 0.0, 1.0).tolist()
+        return {v.name: v.low + x * (v.high - v.low) for v, x in zip(self.variables, inside, strict=True)}
+
+    def place(self, values: tuple[float, ...]) -> FloatArray:
+        """Return the nearest place of the unit cube to a design."""
+        ends = [(v.low, v.high) for v in self.variables]
+        found = [(x - low) / (high - low) for x, (low, high) in zip(values, ends, strict=True)]
+        return np.asarray(np.clip(np.array(found), 0.0, 1.0))
+
+    def judge(self, place: FloatArray) -> Judged:
+        """Evaluate the design at a place; one whose contact cannot be solved has an infinite merit."""
+        found = self.evaluator.evaluate(self.values(place))
+        objective = self.objective.of(self.evaluator.expected(found))
+        if not math.isfinite(objective):
+            return Judged(math.inf, math.inf, math.inf)
+        violation = found.violation(self.limits)
+        return Judged(objective, violation, objective / self.scale + PENALTY * violation)

@@ -1,0 +1,177 @@
+"""What every study of a pair's micro-geometry begins with: one model, one compliance, one evaluator."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis.model_choice import Decided, decide
+from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.request import LARGEST_DEVIATION, Checked, check_asked, check_request
+from fe_contact.analysis.solved_table import Progress
+from fe_contact.checks import increasing, integer, positive, within
+from fe_contact.effects.lead_modification import LeadModification
+from fe_contact.effects.misalignment import Misalignment
+from fe_contact.effects.profile_modification import ProfileModification
+from fe_contact.errors import InputError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
+from fe_contact.microgeometry.variables import ACROSS_FACE, modified
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class DesignStudy:
+    """A pair whose designs can be judged.
+
+    Attributes
+    ----------
+    decided : Decided
+        Model and discretisation, of all designs and all torques.
+    all_torques : ndarray, shape (T,)
+        Of its loads, N m.
+    counted : ndarray of int, shape (L,)
+        Which of them count; the others are for maps.
+    evaluator : Evaluator
+        At the torques that count.
+    """
+
+    decided: Decided
+    all_torques: FloatArray
+    counted: IntArray
+    evaluator: Evaluator
+
+    @property
+    def torque(self) -> FloatArray:
+        """Torques that count (L,), N m."""
+        return np.asarray(self.all_torques[self.counted])
+
+
+@dataclass(frozen=True)
+class Accuracies:
+    """What `analyze` takes of the same names."""
+
+    tolerance: float | None = None
+    level: str | None = None
+    time_budget: float | None = None
+    model: str = "auto"
+    effects: Mapping[str, str] | None = None
+
+
+def design_study(
+    pair: ParallelAxes,
+    torques: Sequence[float] | FloatArray,
+    further_torques: Sequence[float] | FloatArray,
+    varied: Mapping[str, float],
+    scatter: Scatter,
+    misalignment: float,
+    positions: int,
+    accuracy: Accuracies,
+    clock: StageClock,
+    report: Progress,
+    cache: Path | None,
+) -> DesignStudy:
+    """Choose the model and condense the gears.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    torques, further_torques : sequence of float
+        Those that count, and those that only maps show, N m.
+    varied : mapping
+        ``gear.quantity`` to m of a design in which nothing that is varied is zero: by it the effects are
+        decided.
+    scatter : Scatter
+    misalignment : float
+        About which it scatters, m.
+    positions : int
+        Equally spaced in a base pitch.
+    accuracy : Accuracies
+    clock, report, cache
+        See `analyze`.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, or something is varied whose effect is off.
+    """
+    integer("positions", positions, 8, 4096, "64 resolve a spur pair.")
+    within("misalignment", misalignment, -LARGEST_DEVIATION, LARGEST_DEVIATION, "In m: 10 um is 1e-5.")
+    counted = increasing("torques", torques)
+    positive("torques[0]", float(counted[0]))
+    with clock.stage("planning"):
+        everything = np.union1d(counted, further_torques)
+        checked = _checked(pair, everything, varied, scatter, misalignment, accuracy)
+        _refuse_off(checked, varied, scatter)
+        decided = _on_one_mesh(checked, cache)
+    report("compliance", 0.0)
+    with clock.stage("compliance"):
+        contact = pair_contact(pair, decided.plan, cache)
+    report("compliance", 1.0)
+    index = np.searchsorted(everything, counted)
+    load = decided.checked.request.load[index]
+    place = np.arange(positions) / positions
+    evaluator = Evaluator(contact, decided.checked.decided, place, load, misalignment, scatter.nodes())
+    return DesignStudy(decided, everything, index, evaluator)
+
+
+def _checked(
+    pair: ParallelAxes,
+    torques: FloatArray,
+    varied: Mapping[str, float],
+    scatter: Scatter,
+    misalignment: float,
+    accuracy: Accuracies,
+) -> Checked:
+    """Check the request of a design in which everything acts that may act in any."""
+    nodes = scatter.nodes()
+    present = {name: _present(pair, name) for name in scatter.modification} | dict(varied)
+    acting = {name: present[name] + scatter.modification.get(name, 0.0) for name in present}
+    return check_request(
+        modified(pair, acting),
+        torques=torques,
+        tolerance=accuracy.tolerance,
+        level=accuracy.level,
+        time_budget=accuracy.time_budget,
+        model=accuracy.model,
+        misalignments=np.unique(misalignment + nodes.misalignment),
+        effects=accuracy.effects,
+        on_violation="report",
+        spare=False,
+    )
+
+
+def _present(pair: ParallelAxes, name: str) -> float:
+    """Return a figure of the pair's own modifications, m."""
+    gear, _, quantity = name.partition(".")
+    return float(getattr(getattr(pair, gear).modification, quantity))
+
+
+def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
+    """Return model and mesh by the asked accuracy, every effect decided for good."""
+    decided = decide(checked, cache)
+    request = decided.checked.request
+    fixed = replace(request, effects=decided.checked.decided, spared={}, turned_on={})
+    return replace(decided, checked=check_asked(fixed, spare=False))
+
+
+def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter) -> None:
+    """Refuse to vary what an effect that is off would hide."""
+    shown = {name: _effect_of(name) for name in (*varied, *scatter.modification)}
+    if scatter.misalignment:
+        shown[MISALIGNMENT] = Misalignment.name
+    for name, effect in shown.items():
+        if checked.decided[effect] == "off":
+            bound = f'"on" or "auto" where {name} is varied'
+            raise InputError(f"effects.{effect}", "off", bound, "Or leave it out of the variables.")
+
+
+def _effect_of(name: str) -> str:
+    """Return the effect by which a figure of a modification acts."""
+    across = name.partition(".")[2] in ACROSS_FACE
+    return LeadModification.name if across else ProfileModification.name

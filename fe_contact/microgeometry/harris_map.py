@@ -1,0 +1,68 @@
+"""Harris map of a design: transmission error over position at several loads, and its ripple over load.
+
+Harris, S. L.: "Dynamic loads on the teeth of spur gears", Proceedings of the Institution of Mechanical
+Engineers 172 (1958), 87-112.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.types import FloatArray, Json
+
+
+@dataclass(frozen=True)
+class HarrisMap:
+    """Curves of one design at T torques, and their ripple at S nodes of the scatter.
+
+    Attributes
+    ----------
+    torque : ndarray, shape (T,)
+        On the driving gear, N m, increasing.
+    position : ndarray, shape (P,)
+        Base pitches.
+    ste : ndarray, shape (P, T)
+        Without scatter, m.
+    nominal, nominal_error : ndarray, shape (T,)
+        Peak-to-peak without scatter and its error, m.
+    peak_to_peak, error : ndarray, shape (S, T)
+        At the nodes, m. The error is that of the table at the node's misalignment: deviations of the
+        modification change the ripple, not the discretisation.
+    weight : ndarray, shape (S,)
+        Of the nodes.
+    """
+
+    torque: FloatArray
+    position: FloatArray
+    ste: FloatArray
+    nominal: FloatArray
+    nominal_error: FloatArray
+    peak_to_peak: FloatArray
+    error: FloatArray
+    weight: FloatArray
+
+    @property
+    def expected(self) -> FloatArray:
+        """Expectation over the scatter (T,), m."""
+        return np.asarray(self.weight @ self.peak_to_peak)
+
+    @property
+    def expected_error(self) -> FloatArray:
+        """Its error (T,) in m: errors of the nodes may all have the same sign."""
+        return np.asarray(self.weight @ self.error)
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "torque_n_m": self.torque.tolist(),
+            "position": self.position.tolist(),
+            "ste_m": self.ste.T.tolist(),
+            "nominal_peak_to_peak_m": self.nominal.tolist(),
+            "nominal_error_m": self.nominal_error.tolist(),
+            "expected_peak_to_peak_m": self.expected.tolist(),
+            "expected_error_m": self.expected_error.tolist(),
+            "peak_to_peak_m": self.peak_to_peak.tolist(),
+            "error_m": self.error.tolist(),
+        }

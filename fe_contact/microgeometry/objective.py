@@ -1,0 +1,114 @@
+"""What a design is judged by: expected peak-to-peak over the loads, and limits it has to keep."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from fe_contact.checks import finite, positive
+from fe_contact.errors import InputError
+from fe_contact.types import FloatArray, Json
+
+
+class Objective(Protocol):
+    """One number of the expected peak-to-peak STE at all loads."""
+
+    def check(self, loads: int) -> None:
+        """Raise `InputError` if it is not for that many loads."""
+        ...
+
+    def of(self, expected: FloatArray) -> float:
+        """Return the number in m of the expectations (L,) in m."""
+        ...
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        ...
+
+
+@dataclass(frozen=True)
+class WeightedMean:
+    """Mean over the loads; `weights` (L,) >= 0 need not sum to 1, none are equal ones."""
+
+    weights: tuple[float, ...] = ()
+
+    def check(self, loads: int) -> None:
+        """Refuse another number of weights, negative ones, and nothing but zeros."""
+        if not self.weights:
+            return
+        for index, weight in enumerate(self.weights):
+            if finite(f"objective.weights[{index}]", weight) < 0.0:
+                raise InputError(f"objective.weights[{index}]", weight, "at least 0")
+        if len(self.weights) != loads or sum(self.weights) == 0.0:
+            bound = f"{loads} numbers, one for each torque, not all 0"
+            raise InputError("objective.weights", list(self.weights), bound)
+
+    def of(self, expected: FloatArray) -> float:
+        """Return the mean."""
+        return float(np.average(expected, weights=self.weights or None))
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"objective": "weighted_mean", "weights": list(self.weights)}
+
+
+@dataclass(frozen=True)
+class Worst:
+    """The load with the largest expectation."""
+
+    def check(self, loads: int) -> None:
+        """Every number of loads will do."""
+
+    def of(self, expected: FloatArray) -> float:
+        """Return the largest."""
+        return float(expected.max())
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"objective": "worst"}
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a design must keep at every load and every node of the scatter; None: no limit.
+
+    Attributes
+    ----------
+    max_pressure : float, optional
+        Largest Hertzian pressure, Pa.
+    face_load_factor : float, optional
+        K_Hbeta of the mean over a mesh cycle, > 1 (ISO 6336-1).
+    edge_load_share : float, optional
+        Largest part of the load that tip edges carry at any position; 0 forbids their contact.
+    """
+
+    max_pressure: float | None = None
+    face_load_factor: float | None = None
+    edge_load_share: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.max_pressure is not None:
+            positive("limits.max_pressure", self.max_pressure, "In Pa: 1500 MPa is 1.5e9.")
+        if (
+            self.face_load_factor is not None
+            and finite("limits.face_load_factor", self.face_load_factor) <= 1
+        ):
+            raise InputError("limits.face_load_factor", self.face_load_factor, "above 1")
+        if (
+            self.edge_load_share is not None
+            and not 0.0 <= finite("limits.edge_load_share", self.edge_load_share) < 1.0
+        ):
+            raise InputError("limits.edge_load_share", self.edge_load_share, "from 0 to below 1")
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "max_pressure_pa": self.max_pressure,
+            "face_load_factor": self.face_load_factor,
+            "edge_load_share": self.edge_load_share,
+        }
+
+
+NO_LIMITS = Limits()

@@ -1,0 +1,126 @@
+"""What an optimisation found: both designs, what the gain is worth, and how it was come by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from fe_contact.microgeometry.confirmation import ConfirmedDesign
+from fe_contact.microgeometry.scatter import ScatterNodes
+from fe_contact.microgeometry.search import SearchRun
+from fe_contact.microgeometry.variables import DesignVariable
+from fe_contact.types import Estimate, FloatArray, Json
+
+
+class Outcome(StrEnum):
+    """What an optimisation came to."""
+
+    IMPROVED = "improved"  # by more than the errors of both designs
+    WITHIN_ERROR = "within_error"  # lower, but no more than the errors
+    NOT_IMPROVED = "not_improved"  # the full analysis does not find it lower
+    LIMITS_KEPT = "limits_kept"  # no lower beyond the errors, but the start exceeds the limits
+    LIMITS_EXCEEDED = "limits_exceeded"  # no design was found that keeps the limits
+
+
+@dataclass(frozen=True)
+class StepAside:
+    """What a small step of one variable from the optimum changes.
+
+    Attributes
+    ----------
+    name : str
+    low, high : float
+        Values of the variable on both sides, m: a standard deviation away where it scatters, else a twentieth
+        of its range, kept within its bounds.
+    change_low, change_high : float
+        Of the objective there, m.
+    """
+
+    name: str
+    low: float
+    high: float
+    change_low: float
+    change_high: float
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "name": self.name,
+            "low_m": self.low,
+            "high_m": self.high,
+            "change_low_m": self.change_low,
+            "change_high_m": self.change_high,
+        }
+
+
+@dataclass(frozen=True)
+class Optimisation:
+    """Result of `optimise`.
+
+    Attributes
+    ----------
+    outcome : Outcome
+    reason : str
+        The outcome, and how the search ended, in words.
+    variables : tuple of DesignVariable
+    torque : ndarray, shape (L,)
+        Torques that count, N m.
+    misalignment : float
+        About which it scatters, m.
+    nodes : ScatterNodes
+    start, optimum : ConfirmedDesign
+    runs : tuple of SearchRun
+        One for each start; `best_run` is the index of the best.
+    best_run : int
+    sensitivity : tuple of StepAside
+    cost : dict
+        Evaluations and CPU seconds by stage; the search's are those of all its processes.
+    asked : dict
+        What was asked for, in SI units.
+    """
+
+    outcome: Outcome
+    reason: str
+    variables: tuple[DesignVariable, ...]
+    torque: FloatArray
+    misalignment: float
+    nodes: ScatterNodes
+    start: ConfirmedDesign
+    optimum: ConfirmedDesign
+    runs: tuple[SearchRun, ...]
+    best_run: int
+    sensitivity: tuple[StepAside, ...]
+    cost: Json
+    asked: Json
+
+    @property
+    def gain(self) -> Estimate:
+        """By how much the objective fell, m; both errors count in full, though one mesh serves both."""
+        one, two = self.start.objective, self.optimum.objective
+        return Estimate(one.value - two.value, one.error + two.error, "m")
+
+    @property
+    def evaluations(self) -> int:
+        """Designs that the search evaluated."""
+        return sum(run.evaluations for run in self.runs)
+
+    def to_json(self) -> Json:
+        """Return plain JSON in SI units."""
+        return {
+            "outcome": self.outcome.value,
+            "reason": self.reason,
+            "variables": [one.to_json() for one in self.variables],
+            "torque_n_m": self.torque.tolist(),
+            "misalignment_m": self.misalignment,
+            "nodes": self.nodes.to_json(),
+            "gain_m": self.gain.value,
+            "gain_error_m": self.gain.error,
+            "start": self.start.to_json(),
+            "optimum": self.optimum.to_json(),
+            "evaluations": self.evaluations,
+            "runs": [run.to_json() for run in self.runs],
+            "best_run": self.best_run,
+            "sensitivity": [one.to_json() for one in self.sensitivity],
+            "cost": self.cost,
+            "asked": self.asked,
+        }

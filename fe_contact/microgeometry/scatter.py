@@ -1,0 +1,200 @@
+"""Scatter of assembly and manufacture: what is normally distributed, and at which nodes it is taken."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from scipy.special import roots_hermitenorm
+from scipy.stats import norm, qmc
+
+from fe_contact.checks import finite, integer, positive
+from fe_contact.errors import InputError
+from fe_contact.microgeometry.variables import gear_and_quantity
+from fe_contact.types import FloatArray, Json
+
+MISALIGNMENT = "misalignment"
+MOST_NODES = 1024
+
+
+class ScatterRule(Protocol):
+    """Nodes and weights for the expectation over independent standard normal deviates."""
+
+    def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
+        """Return nodes (S, d) in standard deviations and weights (S,) that sum to 1."""
+        ...
+
+    def finer(self) -> ScatterRule:
+        """Return a rule by which the error of this one can be told."""
+        ...
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        ...
+
+
+@dataclass(frozen=True)
+class GaussHermite:
+    """Tensor product of Gauss-Hermite rules: exact for polynomials of degree 2 `points` - 1 in each deviate.
+
+    Attributes
+    ----------
+    points : int
+        In each dimension, 1 to 33.
+    """
+
+    points: int = 5
+
+    def __post_init__(self) -> None:
+        integer("scatter.rule.points", self.points, 1, 33)
+
+    def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
+        """Return the nodes, the last dimension running fastest."""
+        if self.points**dimensions > MOST_NODES:
+            advice = "Take fewer points, or a SobolSample."
+            raise InputError("scatter.rule.points", self.points, f"at most {MOST_NODES} nodes in all", advice)
+        place, weight = roots_hermitenorm(self.points)
+        grid = np.meshgrid(*[place] * dimensions, indexing="ij")
+        weights = np.meshgrid(*[weight / weight.sum()] * dimensions, indexing="ij")
+        return np.stack([axis.ravel() for axis in grid], axis=1), np.prod(weights, axis=0).ravel()
+
+    def finer(self) -> GaussHermite:
+        """Return the rule of one point and a half as many."""
+        return GaussHermite(1 + self.points + self.points // 2)
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"rule": "gauss_hermite", "points": self.points}
+
+
+@dataclass(frozen=True)
+class SobolSample:
+    """Fixed sample of equal weights: a scrambled Sobol' sequence through the normal quantile.
+
+    Attributes
+    ----------
+    log2_size : int
+        The sample has 2**log2_size points, 0 to 10.
+    seed : int
+        Of the scrambling.
+    """
+
+    log2_size: int = 4
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        integer("scatter.rule.log2_size", self.log2_size, 0, 10)
+        integer("scatter.rule.seed", self.seed, 0, 2**63 - 1)
+
+    def nodes(self, dimensions: int) -> tuple[FloatArray, FloatArray]:
+        """Return the sample."""
+        size = 2**self.log2_size
+        uniform = qmc.Sobol(dimensions, rng=self.seed).random_base2(self.log2_size)
+        return np.asarray(norm.ppf(uniform)), np.full(size, 1.0 / size)
+
+    def finer(self) -> SobolSample:
+        """Return the sample of four times the size, of the same sequence."""
+        return SobolSample(min(self.log2_size + 2, 10), self.seed)
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"rule": "sobol_sample", "log2_size": self.log2_size, "seed": self.seed}
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """Independent normal deviations from what is designed.
+
+    Attributes
+    ----------
+    misalignment : float
+        Standard deviation of the misalignment in m, >= 0.
+    modification : mapping
+        ``gear.quantity`` to the standard deviation of that figure in m, > 0. Material removed is not
+        scattered below zero: such a deviate is taken as zero removed.
+    rule : ScatterRule
+        Nodes of the expectation.
+    """
+
+    misalignment: float = 0.0
+    modification: Mapping[str, float] = field(default_factory=dict)
+    rule: ScatterRule = GaussHermite()
+
+    def __post_init__(self) -> None:
+        if finite("scatter.misalignment", self.misalignment, "In m: 10 um is 1e-5.") < 0.0:
+            raise InputError("scatter.misalignment", self.misalignment, "at least 0")
+        for name, deviation in self.modification.items():
+            gear_and_quantity(f"scatter.modification.{name}", name)
+            positive(f"scatter.modification.{name}", deviation, "A standard deviation in m.")
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        spread = {"misalignment_m": self.misalignment, "modification_m": dict(self.modification)}
+        return spread | self.rule.to_json()
+
+    def nodes(self) -> ScatterNodes:
+        """Return deviations and weights; without any scatter one node."""
+        spread = {MISALIGNMENT: self.misalignment} if self.misalignment else {}
+        spread |= dict(sorted(self.modification.items()))
+        if not spread:
+            return ONE_NODE
+        return self._of(spread, self.rule, self._of(spread, self.rule.finer()))
+
+    @staticmethod
+    def _of(
+        spread: Mapping[str, float], rule: ScatterRule, finer: ScatterNodes | None = None
+    ) -> ScatterNodes:
+        """Return the nodes of a rule."""
+        place, weight = rule.nodes(len(spread))
+        return ScatterNodes(tuple(spread), place * np.array(list(spread.values())), weight, finer)
+
+
+NO_SCATTER = Scatter()
+
+
+@dataclass(frozen=True)
+class ScatterNodes:
+    """Nodes at which a design is judged.
+
+    Attributes
+    ----------
+    names : tuple of str
+        What deviates: "misalignment" and ``gear.quantity``.
+    deviation : ndarray, shape (S, d)
+        m.
+    weight : ndarray, shape (S,)
+        Of the expectation, sum 1.
+    finer : ScatterNodes or None
+        By which the error of the expectation can be told; None where nothing scatters.
+    """
+
+    names: tuple[str, ...]
+    deviation: FloatArray
+    weight: FloatArray
+    finer: ScatterNodes | None = None
+
+    @property
+    def misalignment(self) -> FloatArray:
+        """Deviation of the misalignment at each node (S,), m."""
+        if MISALIGNMENT not in self.names:
+            return np.zeros(self.weight.size)
+        return np.asarray(self.deviation[:, self.names.index(MISALIGNMENT)])
+
+    def modification(self, node: int) -> dict[str, float]:
+        """Deviation of every scattered figure of the modifications at a node, m."""
+        found = zip(self.names, self.deviation[node], strict=True)
+        return {name: float(value) for name, value in found if name != MISALIGNMENT}
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "names": list(self.names),
+            "deviation_m": self.deviation.tolist(),
+            "weight": self.weight.tolist(),
+        }
+
+
+ONE_NODE = ScatterNodes((), np.zeros((1, 0)), np.ones(1))
+"""Nothing scatters."""

@@ -1,0 +1,158 @@
+"""Design variables: figures of the flank modifications that may be chosen, each between bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import reduce
+
+from fe_contact.checks import finite
+from fe_contact.errors import InputError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import Json
+
+GEARS = ("pinion", "wheel")
+SLOPES = ("profile_slope", "helix_slope", "flank_twist")
+"""Quantities with a sign; all others are material removed."""
+ACROSS_FACE = ("helix_crowning", "helix_slope", "end_relief", "end_relief_length", "flank_twist")
+LENGTHS = ("tip_relief_length", "root_relief_length", "end_relief_length")
+QUANTITIES = (
+    "tip_relief",
+    "tip_relief_length",
+    "root_relief",
+    "root_relief_length",
+    "profile_crowning",
+    "profile_slope",
+    "helix_crowning",
+    "helix_slope",
+    "end_relief",
+    "end_relief_length",
+    "flank_twist",
+)
+"""Fields of `FlankModification` that can be varied."""
+
+
+@dataclass(frozen=True)
+class DesignVariable:
+    """One figure of one gear's modification, free between bounds.
+
+    Attributes
+    ----------
+    name : str
+        ``gear.quantity``, such as ``"pinion.tip_relief"``: a gear of `GEARS` and a field of
+        `FlankModification` among `QUANTITIES`.
+    low, high : float
+        Bounds in m, low < high.
+    """
+
+    name: str
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        gear_and_quantity(f"variables.{self.name}", self.name)
+        where, what = f"variables.{self.name}", self.quantity
+        finite(f"{where}.low", self.low)
+        finite(f"{where}.high", self.high)
+        if what in LENGTHS and self.low <= 0.0:
+            raise InputError(f"{where}.low", self.low, "above 0, as it is a length", "0.0005 is 0.5 mm.")
+        if what not in SLOPES and self.low < 0.0:
+            raise InputError(f"{where}.low", self.low, "at least 0, as it is material removed")
+        if self.high <= self.low:
+            raise InputError(f"{where}.high", self.high, f"above the lower bound {self.low:g}")
+
+    @property
+    def gear(self) -> str:
+        """One of `GEARS`."""
+        return self.name.partition(".")[0]
+
+    @property
+    def quantity(self) -> str:
+        """Field of the modification."""
+        return self.name.partition(".")[2]
+
+    @property
+    def acting(self) -> float:
+        """A value at which the variable acts: the middle of its bounds, or the upper one if that is zero."""
+        return 0.5 * (self.low + self.high) or self.high
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"name": self.name, "low_m": self.low, "high_m": self.high}
+
+
+def gear_and_quantity(field: str, name: str) -> tuple[str, str]:
+    """Split ``gear.quantity``.
+
+    Raises
+    ------
+    InputError
+        It is neither; `field` names where it was given.
+    """
+    gear, _, quantity = name.partition(".")
+    if gear not in GEARS or quantity not in QUANTITIES:
+        bound = f"one of {' and '.join(GEARS)}, a dot, and one of {', '.join(QUANTITIES)}"
+        raise InputError(field, name, bound, 'For example "pinion.tip_relief".')
+    return gear, quantity
+
+
+def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> None:
+    """Refuse none, one twice, reliefs without a length, and bounds that the gears have no room for.
+
+    Raises
+    ------
+    InputError
+    """
+    names = [one.name for one in variables]
+    if not names:
+        raise InputError("variables", names, "at least one", 'For example "pinion.tip_relief".')
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("variables", name, "given once")
+    for one in variables:
+        length = f"{one.quantity}_length"
+        given = getattr(getattr(pair, one.gear).modification, length, None)
+        if given == 0.0 and f"{one.gear}.{length}" not in names:
+            advice = f"Give {one.gear}.{length} a value in the case, or make it a variable."
+            raise InputError(f"variables.{one.name}", "free", "beside the length of that relief", advice)
+    for end in ("low", "high"):
+        at_end = {one.name: float(getattr(one, end)) for one in variables}
+        try:
+            modified(pair, at_end)
+        except InputError as error:
+            raise InputError(f"variables ({end})", at_end, f"bounds with {error}") from None
+
+
+def start_of(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> tuple[float, ...]:
+    """Return the values of the variables in the pair as it is, m; they may lie outside their bounds."""
+    return tuple(float(getattr(getattr(pair, v.gear).modification, v.quantity)) for v in variables)
+
+
+def modified(pair: ParallelAxes, values: Mapping[str, float]) -> ParallelAxes:
+    """Return the pair with other figures of its modifications.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    values : mapping
+        ``gear.quantity`` to m.
+
+    Raises
+    ------
+    InputError
+        No such modification fits the gear.
+    """
+    return reduce(lambda one, gear: _with_gear(one, gear, values), GEARS, pair)
+
+
+def _with_gear(pair: ParallelAxes, name: str, values: Mapping[str, float]) -> ParallelAxes:
+    """Return the pair with one gear modified."""
+    mine = {key.partition(".")[2]: float(value) for key, value in values.items() if key.startswith(name)}
+    if not mine:
+        return pair
+    gear = getattr(pair, name)
+    try:
+        changed = replace(gear, modification=replace(gear.modification, **mine))
+    except InputError as error:
+        raise error.within(name) from None
+    return replace(pair, **{name: changed})

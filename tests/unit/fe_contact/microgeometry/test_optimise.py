@@ -1,0 +1,247 @@
+"""Optimised micro-geometry against scans, known trends, and the analysis that judges it in the end."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fe_contact import GearPair, analyze
+from fe_contact.errors import InputError
+from fe_contact.microgeometry import (
+    DesignVariable,
+    Limits,
+    NelderMead,
+    Optimisation,
+    Outcome,
+    Scatter,
+    Search,
+    WeightedMean,
+    Worst,
+    optimise,
+)
+from fe_contact.microgeometry.design_study import Accuracies, design_study
+from fe_contact.microgeometry.variables import modified
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray
+
+TORQUE = 200.0
+DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
+RELIEF, LENGTH = "pinion.tip_relief", "pinion.tip_relief_length"
+FREE = (DesignVariable(RELIEF, 0.0, 60e-6), DesignVariable(LENGTH, 0.5e-3, 3e-3))
+AMOUNTS = (DesignVariable(RELIEF, 0.0, 60e-6), DesignVariable("wheel.tip_relief", 0.0, 60e-6))
+FEW = Search(evaluations=250, positions=32)
+QUICK = Search(NelderMead(), evaluations=150, positions=32)
+NONE = {"map_torques": [TORQUE]}
+
+
+@pytest.fixture(scope="module")
+def found(long_reliefs: GearPair, compliances: Path) -> Optimisation:
+    return optimise(long_reliefs, [TORQUE], AMOUNTS, search=FEW, cache=compliances, **DRAFT, **NONE)
+
+
+def test_no_design_of_a_fine_scan_is_better(
+    found: Optimisation, long_reliefs: GearPair, compliances: Path
+) -> None:
+    names = [one.name for one in AMOUNTS]
+    study = design_study(
+        long_reliefs, [TORQUE], [], dict.fromkeys(names, 30e-6), Scatter(), 0.0, FEW.positions,
+        Accuracies(level="draft", model="plane_strain"), StageClock(), lambda *_: None, compliances,
+    )  # fmt: skip
+    scan = [
+        float(study.evaluator.evaluate(dict(zip(names, values, strict=True))).peak_to_peak[0, 0])
+        for values in itertools.product(np.linspace(0.0, 60e-6, 25), repeat=2)
+    ]
+    assert found.runs[0].judged.objective <= min(scan)
+    assert found.runs[0].judged.objective > 0.5 * min(scan)  # the scan is fine
+
+
+def test_it_is_judged_by_what_analyze_finds(
+    found: Optimisation, long_reliefs: GearPair, compliances: Path
+) -> None:
+    for design in (found.start, found.optimum):
+        made = modified(long_reliefs, design.values)
+        judged = analyze(made, torques=[TORQUE], cache=compliances, **DRAFT).peak_to_peak(torque=TORQUE)
+        # the objective is read off the nodes, the curve also between them
+        assert abs(design.objective.value - judged.value) <= judged.error
+        assert design.objective.error == pytest.approx(judged.error, rel=1e-2, abs=0.0)
+
+
+def test_a_relieved_spur_pair_loses_most_of_its_ripple(found: Optimisation) -> None:
+    assert found.outcome is Outcome.IMPROVED
+    assert found.gain.error < 0.05 * found.gain.value
+    assert found.start.objective.value > 4.0 * found.optimum.objective.value
+
+
+def test_equal_gears_are_relieved_alike(found: Optimisation) -> None:
+    first, second = found.optimum.values.values()
+    assert first == pytest.approx(second, rel=0.05)
+
+
+def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(
+    long_reliefs: GearPair, compliances: Path
+) -> None:
+    """Harris's rule: long linear reliefs about as deep as the teeth give way at the design load."""
+    reliefs, deflections = [], []
+    for torque in (100.0, 200.0):
+        best = optimise(
+            long_reliefs, [torque], AMOUNTS, search=FEW, map_torques=[torque], cache=compliances, **DRAFT
+        ).optimum
+        reliefs.append(np.mean(list(best.values.values())))
+        deflections.append(best.table.mean(torque=torque).value)
+    ratio = np.array(reliefs) / np.array(deflections)
+    assert 0.6 < ratio[0] < 1.2
+    assert ratio[0] == pytest.approx(ratio[1], rel=0.05, abs=0.0)
+    assert reliefs[1] > 1.8 * reliefs[0]
+
+
+def test_wider_bounds_never_end_worse(found: Optimisation, long_reliefs: GearPair, compliances: Path) -> None:
+    narrow = [replace(one, low=5e-6, high=9e-6) for one in AMOUNTS]
+    held = optimise(long_reliefs, [TORQUE], narrow, search=QUICK, cache=compliances, **DRAFT, **NONE)
+    assert all(v.low <= held.optimum.values[v.name] <= v.high for v in held.variables)
+    assert found.runs[0].judged.objective < held.runs[0].judged.objective
+    best = modified(long_reliefs, held.optimum.values)
+    once = Search(NelderMead(), evaluations=1, positions=32)
+    further = optimise(best, [TORQUE], AMOUNTS, search=once, cache=compliances, **DRAFT, **NONE)
+    assert further.runs[0].judged.objective == pytest.approx(held.runs[0].judged.objective, rel=1e-9, abs=0.0)
+
+
+def test_equal_seeds_give_equal_results(
+    found: Optimisation, long_reliefs: GearPair, compliances: Path
+) -> None:
+    again, other = (
+        optimise(
+            long_reliefs,
+            [TORQUE],
+            AMOUNTS,
+            search=replace(FEW, seed=seed),
+            cache=compliances,
+            **DRAFT,
+            **NONE,
+        )
+        for seed in (FEW.seed, 7)
+    )
+    assert again.optimum.values == found.optimum.values
+    assert again.optimum.objective == found.optimum.objective
+    assert other.optimum.values != found.optimum.values
+    assert other.optimum.objective.value == pytest.approx(found.optimum.objective.value, rel=0.02)
+
+
+def test_the_best_of_all_starts_is_taken(pair: GearPair, compliances: Path) -> None:
+    search = Search(NelderMead(), starts=3, evaluations=60, positions=32)
+    best = optimise(pair, [TORQUE], FREE, search=search, cache=compliances, **DRAFT, **NONE)
+    reached = [run.judged.objective for run in best.runs]
+    assert len(set(reached)) > 1
+    assert best.best_run == int(np.argmin(reached))
+    assert best.evaluations == sum(run.evaluations for run in best.runs) <= 180
+    assert ("all its evaluations" in best.reason) is not best.runs[best.best_run].converged
+
+
+def test_the_optimum_is_no_lower_to_either_side(found: Optimisation) -> None:
+    for step in found.sensitivity:
+        assert step.low < found.optimum.values[step.name] < step.high
+        assert min(step.change_low, step.change_high) > 0.0
+
+
+def test_tip_edges_can_be_kept_from_contact(
+    found: Optimisation, long_reliefs: GearPair, compliances: Path
+) -> None:
+    assert found.start.figures.edge_load_share.max() > 0.05  # before A and after E
+    limits = Limits(edge_load_share=0.0)
+    small = [replace(one, high=12e-6) for one in AMOUNTS]
+    held = optimise(
+        long_reliefs, [TORQUE], small, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
+    )
+    assert held.start.violation == pytest.approx(held.start.figures.edge_load_share.max(), rel=1e-9, abs=0.0)
+    wide = optimise(
+        long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
+    )
+    assert held.outcome is Outcome.LIMITS_EXCEEDED
+    assert wide.outcome is Outcome.IMPROVED and wide.optimum.violation < 0.005
+
+
+def test_a_pressure_limit_is_kept(found: Optimisation, long_reliefs: GearPair, compliances: Path) -> None:
+    reached = float(found.optimum.figures.pressure.max())
+    limits = Limits(max_pressure=0.9 * reached)
+    held = optimise(
+        long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
+    )
+    assert held.optimum.figures.pressure.max() < reached
+    assert held.runs[0].judged.violation < found.optimum.figures.violation(limits)
+    assert (held.outcome is Outcome.LIMITS_EXCEEDED) == (held.optimum.violation > 0.005)
+
+
+def test_a_gain_smaller_than_the_errors_is_not_claimed(pair: GearPair, compliances: Path) -> None:
+    tiny = [DesignVariable("pinion.profile_slope", -1e-10, 1e-10)]
+    best = optimise(pair, [TORQUE], tiny, search=QUICK, cache=compliances, **DRAFT, **NONE)
+    assert best.outcome in (Outcome.WITHIN_ERROR, Outcome.NOT_IMPROVED)
+    assert abs(best.gain.value) <= best.gain.error
+
+
+def test_objectives_differ_over_loads(long_reliefs: GearPair, compliances: Path) -> None:
+    torques = [80.0, 240.0]
+
+    def best(objective: Any) -> FloatArray:
+        both: dict[str, Any] = {"objective": objective, "map_torques": torques}
+        result = optimise(long_reliefs, torques, AMOUNTS, search=QUICK, cache=compliances, **both, **DRAFT)
+        return result.optimum.harris_map.expected
+
+    light, heavy, worst = best(WeightedMean((1.0, 0.0))), best(WeightedMean((0.0, 1.0))), best(Worst())
+    assert light[0] < worst[0] and heavy[1] < worst[1]
+    assert worst.max() < min(light.max(), heavy.max())
+
+
+def test_the_map_runs_over_all_torques(pair: GearPair, compliances: Path) -> None:
+    once = Search(NelderMead(), evaluations=2, positions=16)
+    best = optimise(pair, [100.0, 200.0], FREE, search=once, cache=compliances, **DRAFT)
+    harris = best.optimum.harris_map
+    assert {100.0, 200.0} <= set(harris.torque) and harris.torque[-1] == 250.0 and harris.torque.size > 8
+    assert harris.ste.shape == (harris.position.size, harris.torque.size)
+    np.testing.assert_array_equal(np.ptp(harris.ste, axis=0), harris.nominal)
+    assert np.all(np.diff(harris.ste.mean(axis=0)) > 0.0)
+
+
+@pytest.mark.parametrize(
+    ("further", "field"),
+    [
+        ({"variables": []}, "variables"),
+        ({"variables": [FREE[0]]}, "variables.pinion.tip_relief"),  # no length
+        ({"variables": [*FREE, FREE[0]]}, "variables"),
+        ({"variables": [DesignVariable(LENGTH, 1e-3, 0.1)]}, "variables (high)"),
+        ({"variables": [DesignVariable("pinion.helix_crowning", 0.0, 1e-5)]}, "pinion.modification"),
+        ({"effects": {"profile_modification": "off"}}, "effects.profile_modification"),
+        ({"scatter": Scatter(1e-5)}, "misalignments"),
+        ({"objective": WeightedMean((1.0, 2.0))}, "objective.weights"),
+        ({"torques": [200.0, 100.0]}, "torques"),
+        ({"misalignment": 30.0}, "misalignment"),
+    ],
+)
+def test_what_cannot_be_optimised_is_refused_by_name(
+    pair: GearPair, further: dict[str, Any], field: str
+) -> None:
+    asked: dict[str, Any] = {"torques": [TORQUE], "variables": FREE, **DRAFT, **further}
+    with pytest.raises(InputError) as caught:
+        optimise(pair, asked.pop("torques"), asked.pop("variables"), asked.pop("scatter", Scatter()), **asked)
+    assert caught.value.field == field, caught.value
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high", "field"),
+    [
+        ("pinion.colour", 0.0, 1e-5, "variables.pinion.colour"),
+        ("sun.tip_relief", 0.0, 1e-5, "variables.sun.tip_relief"),
+        (RELIEF, -1e-6, 1e-5, f"variables.{RELIEF}.low"),
+        (RELIEF, 1e-5, 1e-5, f"variables.{RELIEF}.high"),
+        (LENGTH, 0.0, 1e-3, f"variables.{LENGTH}.low"),
+        (RELIEF, 0.0, math.nan, f"variables.{RELIEF}.high"),
+    ],
+)
+def test_variables_have_names_and_bounds(name: str, low: float, high: float, field: str) -> None:
+    with pytest.raises(InputError) as caught:
+        DesignVariable(name, low, high)
+    assert caught.value.field == field
