@@ -9,6 +9,7 @@ from pathlib import Path
 
 from benchmarks import (
     corrected_plane,
+    dynamic_worth_estimates,
     dynamics_cost,
     effects_off,
     error_honesty,
@@ -42,6 +43,7 @@ SUBJECTS = (
     error_honesty,
     tolerance_promise,
     worth_estimates,
+    dynamic_worth_estimates,
     effects_off,
 )
 
@@ -68,6 +70,8 @@ def main(arguments: Sequence[str]) -> int:
             tolerance_promise.publish(tolerance_promise.study())
         if "worth_estimates" in record:
             worth_estimates.publish(worth_estimates.judged(), machine)
+        if "dynamic_worth_estimates" in record:
+            dynamic_worth_estimates.publish(dynamic_worth_estimates.judged(), machine)
     measured = [figure for part in record.values() for figure in part.figures]
     return 0 if all(figure.met is not False for figure in measured) else 1
 

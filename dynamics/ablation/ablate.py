@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.ablation.figures import RunFigures, run_figures
+from dynamics.ablation.figures import SETTLED, RunFigures, run_figures
 from dynamics.checks import one_of
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import Progress
@@ -17,6 +17,7 @@ from dynamics.simulate import simulate
 from dynamics.system import Scene
 from dynamics.system.effects import EFFECTS, MESH_EFFECTS
 from dynamics.types import FloatArray, Json
+from dynamics.worth import Worth, decide_effects, estimate_worths
 
 WARM_UP = 0.01
 """Part of the duration that a scene runs for before it is timed."""
@@ -35,6 +36,8 @@ class EffectAblation:
         Of the first part that has it, from the ledger.
     worth : float
         Largest static displacement that the ledger says it is worth, m.
+    estimate : Worth or None
+        What leaving it out is estimated to change in that part of the run; None: nothing is known.
     with_effect, without_effect : RunFigures
         One of them is the scene itself.
     """
@@ -43,6 +46,7 @@ class EffectAblation:
     on: bool
     reason: str
     worth: float
+    estimate: Worth | None
     with_effect: RunFigures
     without_effect: RunFigures
 
@@ -78,6 +82,7 @@ class EffectAblation:
             "on": self.on,
             "reason": self.reason,
             "worth_m": self.worth,
+            "estimate": None if self.estimate is None else self.estimate.to_json(),
             "with": self.with_effect.to_json(),
             "without": self.without_effect.to_json(),
             "mean_change_m": self.mean_change.tolist(),
@@ -126,7 +131,8 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
     Parameters
     ----------
     scene : Scene
-        Its ``on_violation`` plays no part: runs are taken as they are.
+        Its ``on_violation`` plays no part: runs are taken as they are. Its tolerance decides once, for the
+        scene itself.
     only : sequence of str, optional
         Effects to switch over; default all.
     progress : callable, optional
@@ -149,8 +155,9 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
     for name in only or ():
         one_of("only", name, known)
     asked = known if only is None else [name for name in known if name in only]
-    scene = replace(scene, on_violation="report")
+    scene = replace(decide_effects(scene).scene, on_violation="report", tolerance=None)
     result, seconds = _timed(scene)
+    worths = estimate_worths(scene, SETTLED)
     nominal, found, left_out = run_figures(result, seconds), [], {}
     for count, name in enumerate(asked):
         if progress is not None:
@@ -161,13 +168,15 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
             left_out[name] = parts[0]["reason"] if parts else "no part of the scene has it"
             continue
         try:
-            found.append(_switched(scene, name, able, nominal))
+            found.append(_switched(scene, name, able, nominal, worths.get(name)))
         except (InputError, SolveError) as error:
             left_out[name] = str(error)
     return Ablation(result.mesh, result.bearing, nominal, tuple(found), left_out)
 
 
-def _switched(scene: Scene, name: str, parts: Sequence[Json], nominal: RunFigures) -> EffectAblation:
+def _switched(
+    scene: Scene, name: str, parts: Sequence[Json], nominal: RunFigures, estimate: Worth | None
+) -> EffectAblation:
     """Run with one effect switched over; what is on anywhere goes off everywhere."""
     on = any(part["on"] for part in parts)
     choice = "off" if on else "on"
@@ -175,7 +184,7 @@ def _switched(scene: Scene, name: str, parts: Sequence[Json], nominal: RunFigure
     first = next((part for part in parts if part["on"] == on), parts[0])
     worth = float(np.max([part["worth"] for part in parts]))
     both = (nominal, other) if on else (other, nominal)
-    return EffectAblation(name, on, first["reason"], worth, *both)
+    return EffectAblation(name, on, first["reason"], worth, estimate, *both)
 
 
 def _timed(scene: Scene) -> tuple[RunResult, float]:

@@ -9,8 +9,9 @@ import numpy as np
 from dynamics.orders import order_track
 from dynamics.results import RunResult
 from dynamics.types import FloatArray, Json
+from dynamics.worth.linear_figures import COMPARED
 
-HIGHEST = 5
+HIGHEST = COMPARED
 """Mesh orders that are compared."""
 PITCHES = 16
 SETTLED = 0.5

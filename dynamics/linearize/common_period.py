@@ -40,6 +40,11 @@ class CommonPeriod:
     revolutions: Fraction
     pitches: tuple[int, ...]
 
+    @property
+    def counted(self) -> int:
+        """Base pitches in one common period of the first mesh that turns, by which orders are counted."""
+        return abs(next(pitches for pitches in self.pitches if pitches))
+
     def duration(self, speed: float) -> float:
         """Return the common period in s at the law's speed in rad/s."""
         return 2.0 * math.pi * float(self.revolutions) / abs(speed)

@@ -12,7 +12,7 @@ from dynamics.linearize.linear_system import LinearSystem
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
 from dynamics.system.freedoms import row_reach
-from dynamics.system.observation import local_state, observe, static_deflections
+from dynamics.system.observation import Watch, local_state, observe, static_deflections
 from dynamics.types import FloatArray
 
 SAMPLES, LEAST_SAMPLES, MOST_POSITIONS = 512, 64, 8192
@@ -36,6 +36,8 @@ class FlankCycle:
         Derivatives of the forces in the coordinates, mean over the positions, N/m.
     blocked : (T, p) array
         Forces while the transmission error is held at its mean, N.
+    stiffness : (T,) array
+        Derivative of the mesh force in the transmission error, N/m.
     """
 
     rows: slice
@@ -43,6 +45,7 @@ class FlankCycle:
     force: FloatArray
     tangent: FloatArray
     blocked: FloatArray
+    stiffness: FloatArray
 
     @property
     def static_error(self) -> FloatArray:
@@ -51,22 +54,23 @@ class FlankCycle:
 
 
 def flank_cycles(
-    system: System, linear: LinearSystem, time: float = 0.0, orders: int = 1
+    system: System, linear: LinearSystem, time: float = 0.0, orders: int = 1, samples: int = SAMPLES
 ) -> tuple[FlankCycle, ...]:
     """Return the cycle of every driving flank about the equilibrium of `linear`, loads taken at `time`.
 
     The coordinates beside the transmission error (misalignment, centre distance, sliding) are those of the
-    bodies at rest, so tables are read where these are. `orders` harmonics per base pitch are wanted.
+    bodies at rest, so tables are read where these are. `orders` harmonics per base pitch are wanted, at up to
+    `samples` positions per base pitch.
     """
     arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
     at_rest = local_state(arrays, time, linear.equilibrium.displacement, rest)
     probe = by_address(_by_coordinates(arrays))  # laid out once for thousands of look-ups
     origin = local_state(probe, time, *_states(probe, np.zeros(at_rest.coordinate.size), 0.0)).position
+    force = linear.equilibrium.mesh_force
+    places = [positions(mesh.table.period, orders, samples) for mesh in system.scene.meshes]
     return tuple(
-        _cycle(
-            system, probe, time, at_rest, origin, index, float(linear.equilibrium.mesh_force[index]), orders
-        )
-        for index in range(len(system.scene.meshes))
+        _cycle(system, probe, time, at_rest, origin, index, float(force[index]), position)
+        for index, position in enumerate(places)
     )
 
 
@@ -110,49 +114,50 @@ def _cycle(
     origin: FloatArray,
     index: int,
     force: float,
-    orders: int,
+    position: FloatArray,
 ) -> FlankCycle:
-    """Walk one flank over its positions."""
+    """Walk one flank over the positions (T,)."""
     first, end = (int(row) for row in system.arrays.elements.first[index : index + 2])
-    rows, period = slice(first, end), system.scene.meshes[index].table.period
-    position = positions(period, orders)
+    rows = slice(first, end)
     level = system.flanks.tables[index].level
     force = max(force, LEAST_FORCE * float(level[1] - level[0]))
     guess = np.empty_like(position)
     static_deflections(system.flanks.law.table, index, position, force, guess)
+    watch = Watch(probe)
     found = [
-        _held(probe, time, at_rest, x - origin[index], first, force, d)
+        _held(watch, rows, time, *_states(probe, at_rest.coordinate, x - origin[index]), force, d)
         for x, d in zip(position, guess, strict=True)
     ]
-    coordinate = np.array([state.coordinate[rows] for state in found])
-    tangent = np.mean([state.tangent[rows, : end - first] for state in found], axis=0)
+    coordinate, force_here, tangents = (np.array(part) for part in zip(*found, strict=True))
+    tangent = np.mean(tangents, axis=0)
     held = np.tile(_states(probe, at_rest.coordinate, 0.0)[0], (position.size, 1))
     held[:, first] = np.mean(coordinate[:, 0])
     held[:, -origin.size :] = (position - origin[index])[:, None]
     seen = observe(probe, np.full(position.size, time), held, np.zeros_like(held))
-    return FlankCycle(
-        rows, coordinate, np.array([state.force[rows] for state in found]), tangent, seen.force[rows].T
-    )
+    return FlankCycle(rows, coordinate, force_here, tangent, seen.force[rows].T, tangents[:, 0, 0])
 
 
-def positions(period: int, orders: int) -> FloatArray:
+def positions(period: int, orders: int, most: int = SAMPLES) -> FloatArray:
     """Return uniform positions over `period` base pitches, enough of them for `orders` per pitch."""
-    samples = max(min(SAMPLES, MOST_POSITIONS // period), LEAST_SAMPLES, 4 * orders)
+    samples = max(min(most, MOST_POSITIONS // period), min(most, LEAST_SAMPLES), 4 * orders)
     return np.arange(samples * period) / samples
 
 
 def _held(
-    probe: SystemArrays, time: float, at_rest: LocalState, moved: float, row: int, force: float, guess: float
-) -> LocalState:
-    """Return the state in which `row` carries `force`: Newton's method, pressed on where flanks part."""
-    q, v = _states(probe, at_rest.coordinate, moved)
+    watch: Watch, rows: slice, time: float, q: FloatArray, v: FloatArray, force: float, guess: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return coordinates (p,), forces (p,) and tangents (p, p) of `rows` where the first carries `force`.
+
+    Newton's method, from `guess`; pressed on where flanks part.
+    """
+    row, size = rows.start, rows.stop - rows.start
     q[row] = guess
     step = abs(guess)
     for _ in range(ITERATIONS):
-        found = local_state(probe, time, q, v)
+        found = watch.look(time, q, v)
         left = force - found.force[row]
         if abs(left) <= HELD * force:
             break
         stiffness = found.tangent[row, 0]
         q[row] += left / stiffness if stiffness > 0.0 else step
-    return found
+    return found.coordinate[rows].copy(), found.force[rows].copy(), found.tangent[rows, :size].copy()

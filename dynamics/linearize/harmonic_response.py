@@ -7,23 +7,22 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dynamics.checks import integer, one_of, positive
-from dynamics.linearize.common_period import CommonPeriod, common_period
-from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
-from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.flank_cycles import SAMPLES
+from dynamics.linearize.steady_vibration import (
+    EXCITATIONS,
+    ComplexArray,
+    Excited,
+    Steady,
+    excited,
+    steady_vibration,
+)
 from dynamics.results.histories import bearing_force
 from dynamics.system.assemble import System
 from dynamics.system.force_balance import block_diagonal
 from dynamics.system.observation import local_state
-from dynamics.types import BoolArray, FloatArray, IntArray
-
-ComplexArray = NDArray[np.complex128]
-
-EXCITATIONS = ("static_error", "blocked_force")
-BLOCK = 1_000_000  # entries of the matrices solved at once
-NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
+from dynamics.types import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -125,156 +124,56 @@ def harmonic_response(
     speed = np.atleast_1d(np.asarray(speed, dtype=float))
     for index, value in enumerate(np.abs(speed)):
         positive(f"speed[{index}]", float(value))
-    period, linear = common_period(system), linearize(system, time)
-    cycles = flank_cycles(system, linear, time, orders)
-    linear = averaged(system, linear, cycles, time)
-    counted = next(pitches for pitches in period.pitches if pitches)
-    harmonics: IntArray = np.arange(1, orders * abs(counted) + 1, dtype=np.int64)
-    static, force = _excitation(system, cycles, period, harmonics, excitation)
-    heard = np.max(np.abs(force), axis=0)
-    kept = np.flatnonzero(heard > NOTHING * np.max(heard, initial=0.0))
-    harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
-    omega = 2.0 * math.pi * harmonics / np.array([[period.duration(w)] for w in speed])
-    u, residual = _solve(system, linear, force, omega, progress)
-    order = harmonics / abs(counted)
-    return _result(system, linear, cycles, time, speed, order, omega, static, force, u, residual)
+    at = excited(system, time, orders)
+    harmonics = np.arange(1, orders * at.period.counted + 1, dtype=np.int64)
+    return told(at, speed, steady_vibration(at, speed, harmonics, excitation, progress=progress))
 
 
-def _excitation(
-    system: System, cycles: tuple[FlankCycle, ...], period: CommonPeriod, harmonics: IntArray, kind: str
-) -> tuple[ComplexArray, ComplexArray]:
-    """STE (m, H) and exciting force on the driving flanks' rows (R', H): it pushes d up with the STE.
-
-    Where the other forces of a flank (a moment as its load moves along the face, friction) vary while the
-    mesh force is held, they excite too.
-    """
-    static = np.zeros((len(cycles), harmonics.size), dtype=complex)
-    force = np.zeros((cycles[-1].rows.stop, harmonics.size), dtype=complex)
-    for f, (mesh, cycle) in enumerate(zip(system.scene.meshes, cycles, strict=True)):
-        place = period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
-        static[f] = _harmonics(cycle.static_error, *place)
-        for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
-            if kind == "static_error":
-                held = (
-                    _harmonics(cycle.force[:, p], *place) if p else 0.0
-                )  # the first force is the same all along
-                force[row] = cycle.tangent[p, 0] * static[f] - held
-            else:
-                force[row] = -_harmonics(cycle.blocked[:, p], *place)
-    return static, force
-
-
-def _harmonics(
-    values: FloatArray, pitches: int, period: int, offset: float, harmonics: IntArray
-) -> ComplexArray:
-    """Amplitudes (H,) in multiples of the common period of a function of position, known over its table."""
-    lines = 2.0 * np.fft.rfft(values) / values.size
-    found = np.zeros(harmonics.size, dtype=complex)
-    cycles = abs(pitches) // period
-    if cycles == 0:
-        return found
-    which, rest = np.divmod(harmonics, cycles)
-    there = (rest == 0) & (which < lines.size - 1)
-    turned = lines[which[there]] * np.exp(2j * math.pi * which[there] * offset / period)
-    found[there] = turned if pitches > 0 else turned.conj()
-    return found
-
-
-def _solve(
-    system: System,
-    linear: LinearSystem,
-    force: ComplexArray,
-    omega: FloatArray,
-    progress: Callable[[float], None] | None,
-) -> tuple[ComplexArray, float]:
-    """Displacements, (S, H, n), and the relative residual; a block of speeds at a time."""
-    g = system.arrays.direction[: force.shape[0]]
-    per_metre = 1.0 / linear.scale
-    mass, damping, total = (
-        per_metre[:, None] * a * per_metre for a in (linear.mass, linear.damping, linear.stiffness)
-    )
-    pushed = (force.T @ g * per_metre)[None, :, :, None]
-    found = np.empty((*omega.shape, g.shape[1]), dtype=complex)
-    block = max(BLOCK // max(omega.shape[1] * g.shape[1] ** 2, 1), 1)
-    left = 0.0
-    for start in range(0, omega.shape[0], block):
-        part = slice(start, start + block)
-        w = omega[part, :, None, None]
-        matrix = total - w * w * mass + 1j * w * damping
-        right = np.broadcast_to(pushed, (*matrix.shape[:-1], 1))
-        solved = np.linalg.solve(matrix, right)
-        left = max(left, float(np.max(np.abs(matrix @ solved - right), initial=0.0)))
-        found[part] = solved[..., 0] * per_metre
-        if progress is not None:
-            progress(min(start + block, omega.shape[0]) / omega.shape[0])
-    return found, left / max(float(np.max(np.abs(pushed), initial=0.0)), 1e-300)
-
-
-def _result(
-    system: System,
-    linear: LinearSystem,
-    cycles: tuple[FlankCycle, ...],
-    time: float,
-    speed: FloatArray,
-    order: FloatArray,
-    omega: FloatArray,
-    static: ComplexArray,
-    force: ComplexArray,
-    u: ComplexArray,
-    residual: float,
-) -> HarmonicResponse:
-    """Put the result together from displacements (S, H, n)."""
-    scene = system.scene
-    dte = np.moveaxis(u @ system.arrays.direction[system.driving_rows].T, 2, 0)
-    mesh_force = _mesh_force(system, linear, cycles, time, omega, force, u)
-    mean = linear.equilibrium.mesh_force
+def told(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
+    """Say what a vibration at `speed` (S,) does to meshes and bearings."""
+    system, linear = at.system, at.linear
+    dte = np.moveaxis(steady.displacement @ system.arrays.direction[system.driving_rows].T, 2, 0)
+    mesh_force, mean = _mesh_force(at, steady), linear.equilibrium.mesh_force
+    order = steady.harmonics / at.period.counted
     return HarmonicResponse(
-        tuple(mesh.name for mesh in scene.meshes),
+        tuple(mesh.name for mesh in system.scene.meshes),
         system.supports.name,
         linear.freedom,
         speed,
         order,
-        omega / (2.0 * math.pi),
-        static,
+        steady.omega / (2.0 * math.pi),
+        steady.static,
         np.ascontiguousarray(dte),
         mesh_force,
-        _bearing_force(system, linear, time, omega, u),
-        np.ascontiguousarray(np.moveaxis(u, 2, 0)),
+        _bearing_force(at, steady.omega, steady.displacement),
+        np.ascontiguousarray(np.moveaxis(steady.displacement, 2, 0)),
         mean,
-        np.array([cycle.tangent[0, 0] for cycle in cycles]),
-        mean[:, None] + _least(mesh_force, order),
-        residual,
+        np.array([cycle.tangent[0, 0] for cycle in at.cycles]),
+        mean[:, None] + extremes(mesh_force, order)[0],
+        steady.residual,
     )
 
 
-def _mesh_force(
-    system: System,
-    linear: LinearSystem,
-    cycles: tuple[FlankCycle, ...],
-    time: float,
-    omega: FloatArray,
-    force: ComplexArray,
-    u: ComplexArray,
-) -> ComplexArray:
+def _mesh_force(at: Excited, steady: Steady) -> ComplexArray:
     """Transverse mesh forces, (m, S, H): mean tangent and damping on the coordinates, less what excites."""
+    system, u, omega = at.system, steady.displacement, steady.omega
     rest = np.zeros(u.shape[2])
-    viscous = local_state(system.arrays, time, linear.equilibrium.displacement, rest).viscous
-    found = np.empty((len(cycles), *omega.shape), dtype=complex)
-    for f, cycle in enumerate(cycles):
+    viscous = local_state(system.arrays, at.time, at.linear.equilibrium.displacement, rest).viscous
+    found = np.empty((len(at.cycles), *omega.shape), dtype=complex)
+    for f, cycle in enumerate(at.cycles):
         first, p = cycle.rows.start, cycle.tangent.shape[0]
         local = u @ system.arrays.direction[cycle.rows].T
-        found[f] = local @ cycle.tangent[0] + 1j * omega * (local @ viscous[first, :p]) - force[first]
+        found[f] = local @ cycle.tangent[0] + 1j * omega * (local @ viscous[first, :p]) - steady.force[first]
     return found
 
 
-def _bearing_force(
-    system: System, linear: LinearSystem, time: float, omega: FloatArray, u: ComplexArray
-) -> ComplexArray:
+def _bearing_force(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexArray:
     """Bearing forces (b, 3, S, H): those of a motion less those of none, real and imaginary parts apart."""
+    system = at.system
     q = u.reshape(-1, u.shape[2])
     rate = 1j * omega.reshape(-1, 1) * q
     elements, rest = system.arrays.elements, np.zeros(q.shape[1])
-    at_rest = local_state(system.arrays, time, linear.equilibrium.displacement, rest)
+    at_rest = local_state(system.arrays, at.time, at.linear.equilibrium.displacement, rest)
     rows = system.arrays.direction.T
     local = (q @ rows) @ block_diagonal(elements, at_rest.tangent).T
     local = local + (rate @ rows) @ block_diagonal(elements, at_rest.viscous).T
@@ -287,11 +186,12 @@ def _bearing_force(
     return np.asarray(found.reshape(*found.shape[:2], *u.shape[:2]))
 
 
-def _least(amplitude: ComplexArray, order: FloatArray) -> FloatArray:
-    """Return the least sum of all harmonics over the period, (m, S)."""
+def extremes(amplitude: ComplexArray, order: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the least and the largest sum of all harmonics (m, S, H) over the period, (m, S) each."""
     base = float(np.min(np.diff(order, prepend=0.0))) if order.size else 1.0
     harmonic = np.rint(order / base).astype(int)
     samples = 8 * int(harmonic[-1] + 1) if order.size else 1
     lines = np.zeros((*amplitude.shape[:2], samples // 2 + 1), dtype=complex)
     lines[..., harmonic] = amplitude * (samples / 2.0)
-    return np.asarray(np.min(np.fft.irfft(lines, samples, axis=-1), axis=-1))
+    wave = np.fft.irfft(lines, samples, axis=-1)
+    return np.asarray(np.min(wave, axis=-1)), np.asarray(np.max(wave, axis=-1))

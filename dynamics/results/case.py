@@ -37,6 +37,7 @@ def resolved_case(system: System) -> Json:
         "flexible_shafts": flexible_shafts(system.rotors),
         "duration": scene.duration,
         "effects": dict(scene.effects),
+        "tolerance": scene.tolerance,
         "outputs": asdict(scene.outputs),
         "integration": asdict(scene.integration),
         "freedoms": list(system.freedoms.name),

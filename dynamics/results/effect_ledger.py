@@ -14,21 +14,29 @@ NOT_CHECKED = "no; switching it over measures it (ablation)"
 POSITIONS = 32
 
 
-def effect_ledger(system: System, checks: Sequence[Json], turned_on: Mapping[str, str]) -> Json:
-    """Return entries, what the model leaves out, and the checks.
+def effect_ledger(
+    system: System,
+    checks: Sequence[Json],
+    automatic: Mapping[str, str],
+    worths: Mapping[str, Json],
+) -> Json:
+    """Return entries, estimates, what the model leaves out, and the checks.
 
     Parameters
     ----------
     system : System
     checks : sequence of dict
         What `RunChecks` found.
-    turned_on : mapping of str to str
-        Automatic effects that are on because a run without them showed that they are needed, and why.
+    automatic : mapping of str to str
+        Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
+        or because a run without them showed that they are needed.
+    worths : mapping of str to dict
+        What leaving effects out in all their parts is estimated to change, with `words`.
     """
     deflection = mean_deflection(system)
     whole = system.ledger.to_json()
-    entries = [_entry(entry, deflection, checks, turned_on) for entry in whole["entries"]]
-    return {**whole, "entries": entries, "checks": list(checks)}
+    entries = [_entry(entry, deflection, checks, automatic, worths) for entry in whole["entries"]]
+    return {**whole, "entries": entries, "worths": dict(worths), "checks": list(checks)}
 
 
 def mean_deflection(system: System) -> float:
@@ -42,15 +50,23 @@ def mean_deflection(system: System) -> float:
     return max(found)
 
 
-def _entry(entry: Json, deflection: float, checks: Sequence[Json], turned_on: Mapping[str, str]) -> Json:
+def _entry(
+    entry: Json,
+    deflection: float,
+    checks: Sequence[Json],
+    automatic: Mapping[str, str],
+    worths: Mapping[str, Json],
+) -> Json:
     """One effect of one part."""
+    name = entry["effect"]
     own = [one for one in checks if (one["effect"], one["part"]) == (entry["effect"], entry["part"])]
     found = {
         "worth_relative": entry["worth"] / deflection if deflection > 0.0 else None,
         "checked": "; ".join(one["reason"] for one in own) or NOT_CHECKED,
         "holds": all(one["holds"] for one in own) if own else None,
     }
-    if entry["effect"] in turned_on and entry["on"]:
-        reason = f"on after a run without it: {turned_on[entry['effect']]}"
-        found |= {"choice": "auto", "reason": reason, "price": ""}
+    if entry["price"] and not entry["on"] and name in worths:
+        found["price"] = f"left out: {worths[name]['words']}"
+    if name in automatic and entry["possible"]:
+        found |= {"choice": "auto", "reason": automatic[name], "price": ""}
     return {**entry, **found}

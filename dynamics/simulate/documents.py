@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time as clock
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -26,9 +28,12 @@ from dynamics.system import Integration
 from dynamics.system.assemble import System
 from dynamics.system.effects.gyroscopic import Gyroscopic
 from dynamics.types import FloatArray, Json
+from dynamics.worth import Decided, Worth, estimate_worths
 
 ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5
+LEAST_WORK = 500_000
+"""Steps times freedoms of a run whose ledger has estimates that no tolerance asked for."""
 WHIRL_SPEEDS = 33
 
 
@@ -38,19 +43,33 @@ def documents(
     checks: RunChecks,
     seconds: dict[str, float],
     error: Json,
+    decided: Decided,
     before: EarlierRun = FIRST,
 ) -> dict[str, Any]:
     """Return the fields of `RunResult` that are no series; `before` is the run that this one repeats."""
+    automatic = {**decided.automatic, **before.reasons}
+    began = clock.process_time()
+    worths = {name: worth.to_json() for name, worth in known_worths(decided, system, end).items()}
+    seconds = {**seconds, "worth_estimates": clock.process_time() - began + decided.seconds}
     audit = EnergyAudit.from_arrays(end.work, end.stored)
     return {
         "status": end.status,
         "statistics": _statistics(system, end),
         "energy": audit if system.scene.outputs.energy_audit else None,
-        "effect_ledger": effect_ledger(system, checks.found(), before.turned_on),
+        "effect_ledger": effect_ledger(system, checks.found(), automatic, worths),
         "receipt": {"seconds": seconds, "error": error} | before.to_json(),
         "case": resolved_case(system),
         "modes": _modes(system),
     }
+
+
+def known_worths(decided: Decided, system: System, end: Ending) -> Mapping[str, Worth]:
+    """Return what effects are worth: as decided by, else estimated if the run was worth it."""
+    scene = decided.scene
+    work = int(end.count[Count.ACCEPTED]) * len(system.freedoms.name)
+    if decided.worths or scene.outputs.receipt != "full" or work < LEAST_WORK:
+        return decided.worths
+    return estimate_worths(scene)
 
 
 def series_of(system: System, time: FloatArray, states: States) -> dict[str, Any]:

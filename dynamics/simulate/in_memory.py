@@ -29,6 +29,7 @@ from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
 from dynamics.system.static_reference import with_static_reference
 from dynamics.types import FloatArray, Json, RunStatus
+from dynamics.worth import Decided, decide_effects
 
 
 def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
@@ -58,38 +59,41 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
         it took for granted is wrong and the scene's ``on_violation`` is "fail"; ``partial`` is the result up
         to there.
     """
-    result = _run(scene, FIRST, progress, cancel)
+    decided = decide_effects(scene)
+    result = _run(decided, FIRST, progress, cancel)
     wrong = said(result.effect_ledger)
     if wrong and scene.on_violation == "fail":
         raise SolveError(f"assumptions of the run that do not hold: {wrong}", result)
     needed = needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
     if needed:
         before = EarlierRun(needed, sum(result.receipt["seconds"].values()))
-        result = _run(before.of(scene), before, progress, cancel)
+        result = _run(before.of(decided), before, progress, cancel)
     if progress is not None:
         progress(1.0, "done")
     return result
 
 
-def _run(scene: Scene, before: EarlierRun, progress: Progress | None, cancel: Cancel | None) -> RunResult:
+def _run(decided: Decided, before: EarlierRun, progress: Progress | None, cancel: Cancel | None) -> RunResult:
     """Run a scene once; `before` is the run that this one repeats."""
-    began = clock.perf_counter()
+    began, scene = clock.perf_counter(), decided.scene
     system = assemble(scene)
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
-    require_equilibrium(system, start, seconds)
+    require_equilibrium(system, start, seconds, decided)
     system = with_static_reference(system, start.displacement)
     trajectory = integrate(system, start, scene.integration, progress, cancel=cancel)
     seconds["integration"] = trajectory.seconds
     error = _error_estimate(system, start, trajectory, progress)
-    result = _result(system, trajectory, seconds, error, before)
+    result = _result(system, trajectory, seconds, error, decided, before)
     if not trajectory.status.usable:
         reached = f"at {trajectory.end:.6g} s of {scene.duration:g} s"
         raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
     return result
 
 
-def require_equilibrium(system: System, start: StaticSolution, seconds: dict[str, float]) -> None:
+def require_equilibrium(
+    system: System, start: StaticSolution, seconds: dict[str, float], decided: Decided
+) -> None:
     """Refuse to start from anything but an equilibrium.
 
     Raises
@@ -99,7 +103,7 @@ def require_equilibrium(system: System, start: StaticSolution, seconds: dict[str
     """
     if not start.status.usable:
         message = f"no static equilibrium at t = 0: {start.status.name.lower()}, {start.residual:.3g} N left"
-        raise SolveError(message, _result(system, _no_trajectory(system, start), seconds, {}))
+        raise SolveError(message, _result(system, _no_trajectory(system, start), seconds, {}, decided))
 
 
 def _result(
@@ -107,6 +111,7 @@ def _result(
     trajectory: Trajectory,
     seconds: dict[str, float],
     error: Json,
+    decided: Decided,
     before: EarlierRun = FIRST,
 ) -> RunResult:
     """Put the result together."""
@@ -119,7 +124,8 @@ def _result(
         parts.append(series_of(system, trajectory.time[part], states))
         see(checks, parts[-1])
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
-    return RunResult(**_joined(parts), **documents(system, trajectory, checks, seconds, error, before))
+    about = documents(system, trajectory, checks, seconds, error, decided, before)
+    return RunResult(**_joined(parts), **about)
 
 
 def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:

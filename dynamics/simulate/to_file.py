@@ -37,6 +37,7 @@ from dynamics.system import Integration, Scene
 from dynamics.system.assemble import System, assemble
 from dynamics.system.static_reference import with_static_reference
 from dynamics.types import Json, RunStatus
+from dynamics.worth import Decided, decide_effects
 
 CHECKPOINT_EVERY = 5.0  # s of wall time
 REPEATED = "repeated.json"
@@ -95,7 +96,8 @@ def simulate_to_file(
     folder = interrupted_run(path)
     how = _How(resume, progress, cancel, checkpoint_every)
     before = _read_earlier(folder) if resume else FIRST
-    status, ledger, seconds = _run_to_file(scene, path, before, how)
+    decided = decide_effects(scene)
+    status, ledger, seconds = _run_to_file(before.of(decided), path, before, how)
     wrong = said(ledger) if status.usable else ""
     if wrong and scene.on_violation == "fail":
         raise SolveError(f"assumptions of the run that do not hold: {wrong}. It is in {path}")
@@ -104,7 +106,7 @@ def simulate_to_file(
         again = EarlierRun(needed, seconds)
         folder.mkdir(exist_ok=True)
         (folder / REPEATED).write_text(json.dumps(again.to_json()), encoding="utf-8")
-        status, _, _ = _run_to_file(scene, path, again, replace(how, resume=False))
+        status, _, _ = _run_to_file(again.of(decided), path, again, replace(how, resume=False))
     if progress is not None:
         progress(1.0, "done" if status.usable else status.name.lower())
     return status
@@ -120,13 +122,15 @@ class _How:
     checkpoint_every: float
 
 
-def _run_to_file(scene: Scene, path: Path, before: EarlierRun, how: _How) -> tuple[RunStatus, Json, float]:
+def _run_to_file(
+    decided: Decided, path: Path, before: EarlierRun, how: _How
+) -> tuple[RunStatus, Json, float]:
     """Run once, `before` being the run that this one repeats; return status, ledger and wall time, s."""
-    began = clock.perf_counter()
-    system = assemble(before.of(scene))
+    began, scene = clock.perf_counter(), decided.scene
+    system = assemble(scene)
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
-    require_equilibrium(system, start, seconds)
+    require_equilibrium(system, start, seconds, decided)
     system = with_static_reference(system, start.displacement)
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
@@ -143,7 +147,7 @@ def _run_to_file(scene: Scene, path: Path, before: EarlierRun, how: _How) -> tup
             end = replace(end, status=other.status)
             error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         seconds["integration"] = end.seconds
-        ledger = _write(path, system, leg, end, seconds, error, before)
+        ledger = _write(path, system, leg, end, seconds, error, decided, before)
     if end.status is not RunStatus.CANCELLED:
         _remove(folder)
     return end.status, ledger, sum(seconds.values())
@@ -238,6 +242,7 @@ def _write(
     end: Ending,
     seconds: dict[str, float],
     error: Json,
+    decided: Decided,
     before: EarlierRun,
 ) -> Json:
     """Make the series from the states, block by block, into the file; return the effect ledger."""
@@ -248,7 +253,7 @@ def _write(
             see(checks, series)
             file.append(series)
         seconds["outputs"] = clock.perf_counter() - began
-        about = documents(system, end, checks, seconds, error, before)
+        about = documents(system, end, checks, seconds, error, decided, before)
         file.publish(attributes(about))
     return dict(about["effect_ledger"])
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from dynamics.system import Scene
 from dynamics.types import Json
+from dynamics.worth import Decided
 
 
 @dataclass(frozen=True)
@@ -24,15 +24,21 @@ class EarlierRun:
     turned_on: Mapping[str, str] = field(default_factory=dict)
     seconds: float = 0.0
 
+    @property
+    def reasons(self) -> dict[str, str]:
+        """Why the effects are on, for the ledger."""
+        return {name: f"on after a run without it: {reason}" for name, reason in self.turned_on.items()}
+
     def to_json(self) -> Json:
         """Return what the receipt of the repetition says; nothing for a first run."""
         if not self.turned_on:
             return {}
         return {"repeated": {"turned_on": dict(self.turned_on), "seconds": self.seconds}}
 
-    def of(self, scene: Scene) -> Scene:
+    def of(self, decided: Decided) -> Decided:
         """Return the scene with these effects on."""
-        return replace(scene, effects={**scene.effects, **dict.fromkeys(self.turned_on, "on")})
+        effects = {**decided.scene.effects, **dict.fromkeys(self.turned_on, "on")}
+        return replace(decided, scene=replace(decided.scene, effects=effects))
 
 
 FIRST = EarlierRun()
@@ -48,11 +54,13 @@ def needed_effects(ledger: Json) -> dict[str, str]:
         for entry in ledger["entries"]
         if entry["choice"] == "auto" and not entry["on"] and entry["possible"]
     }
-    wrong = [one for one in ledger["checks"] if not one["holds"] and (one["effect"], one["part"]) in able]
+    wrong = [
+        one for one in ledger["checks"] if one["holds"] is False and (one["effect"], one["part"]) in able
+    ]
     return {one["effect"]: f"{one['part']}: {one['reason']}" for one in wrong}
 
 
 def said(ledger: Json) -> str:
     """Say which assumptions do not hold; empty if all do."""
-    wrong = [one for one in ledger["checks"] if not one["holds"]]
+    wrong = [one for one in ledger["checks"] if one["holds"] is False]
     return "; ".join(f"{one['assumption']} ({one['part']}): {one['reason']}" for one in wrong)

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
-from dynamics.checks import distinct, integer, not_negative, one_of, positive
+from dynamics.checks import distinct, integer, not_negative, one_of, positive, within
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
 from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
@@ -20,6 +20,7 @@ from dynamics.system.housing_check import alike_across, check_housings
 METHODS = ("implicit", "explicit")
 ON_VIOLATION = ("repeat", "fail", "report")
 RECEIPTS = ("full", "minimal")
+TOLERANCES = (1e-6, 0.5)
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
 AXIS_AGREEMENT = 1e-9  # of a shaft's length: shafts nearer than this share an axis
 
@@ -150,6 +151,9 @@ class Scene:
     on_violation : str
         Where a run shows that something it took for granted is wrong: ``"repeat"`` runs again with the
         automatic effect that it needs, ``"fail"`` raises, ``"report"`` says so in the ledger's checks.
+    tolerance : float or None
+        Relative change of mean and peak-to-peak transmission error and of bearing forces that automatic
+        effects may make by being off; None: they are as the scene calls for them. Runs decide by it.
     """
 
     shafts: tuple[Shaft, ...]
@@ -170,10 +174,13 @@ class Scene:
     outputs: Outputs = Outputs()
     integration: Integration = Integration()
     on_violation: str = "repeat"
+    tolerance: float | None = None
 
     def __post_init__(self) -> None:
         not_negative("duration", self.duration)
         one_of("on_violation", self.on_violation, ON_VIOLATION)
+        if self.tolerance is not None:
+            within("tolerance", self.tolerance, *TOLERANCES)
         if self.duration * self.outputs.sample_rate > SAMPLE_LIMIT:
             bound = f"at most {SAMPLE_LIMIT:g} samples at {self.outputs.sample_rate:g} Hz"
             raise InputError("duration", self.duration, bound, "Shorten the run or lower the sample rate.")

@@ -7,13 +7,24 @@ from typing import Any
 
 
 def effect_lines(ledger: Mapping[str, Any]) -> list[str]:
-    """Return one line per effect that is on, or off though it is worth something: part, worth in um, why.
+    """Return a line per effect that is on, or off though it moves something: part, worth in um, why.
 
-    `ledger` is that of a run: what it is worth is the static displacement along the line of action, in m.
+    `ledger` is that of a run: worth is the static displacement along the line of action, in m. Then the price
+    of choices against the scene, and what leaving an effect out in all its parts is estimated to change.
     """
     entries = [entry for entry in ledger.get("entries", ()) if entry["on"] or entry["worth"] > 0.0]
-    return [
+    lines = [
         f"effect {entry['effect']}, {entry['part']}: {'on' if entry['on'] else 'off'}, "
         f"worth {1e6 * entry['worth']:.3g} um: {entry['reason']}"
         for entry in entries
     ]
+    prices = [
+        f"       {entry['effect']}, {entry['part']}: price of the choice: {entry['price']}"
+        for entry in entries
+        if entry.get("price")
+    ]
+    worths = [
+        f"without {name} about {one['words']} ({one['freedoms']:+d} freedoms, {one['rows']:+d} rows with it)"
+        for name, one in ledger.get("worths", {}).items()
+    ]
+    return [*lines, *prices, *worths]

@@ -112,6 +112,7 @@ def _assembled(scene: SceneInput, facts: Mapping[str, PairFacts], meshes: tuple[
             outputs=_outputs(scene),
             integration=_integration(scene),
             on_violation=scene.run.on_violation,
+            tolerance=scene.accuracy.tolerance,
         )
 
 

@@ -18,8 +18,8 @@ _CASE_HEAD = (
     "estimated, %", "first harmonic, µm", "cost, x",
 )  # fmt: skip
 _SCENE_HEAD = (
-    "effect", "scene has it", "worth, µm", "mean DTE, µm", "peak to peak, µm", "order 1, µm",
-    "bearing force, order 1, N", "cost, x",
+    "effect", "scene has it", "worth, µm", "mean DTE, µm", "estimated", "peak to peak, µm", "estimated",
+    "order 1, µm", "bearing force, order 1, N", "cost, x",
 )  # fmt: skip
 _SMALLEST = 1e-3  # per cent; smaller changes are nothing
 
@@ -155,7 +155,9 @@ def scene_ablation_table(found: SceneAblation) -> Table:
             "on" if one.on else "off",
             number(1e6 * one.worth, 3),
             _signed(1e6 * _most(one.mean_change)),
+            "" if one.estimate is None else _signed(1e6 * _most(one.estimate.mean)),
             _signed(1e6 * _most(one.peak_to_peak_change)),
+            "" if one.estimate is None else _signed(1e6 * _most(one.estimate.peak_to_peak)),
             _signed(1e6 * _most(one.order_change[:, 0])),
             _signed(_most(one.bearing_order_change[:, 0])) if one.bearing_order_change.size else "",
             number(one.cost_ratio, 3),

@@ -141,6 +141,19 @@ class RunInput(BoundaryModel):
     )
 
 
+class SceneAccuracyInput(BoundaryModel):
+    """What automatic effects are decided by."""
+
+    tolerance: float | None = Field(
+        default=None,
+        ge=1e-6,
+        le=0.5,
+        description="Relative, on mean and peak-to-peak transmission error and on bearing forces: effects "
+        "worth less are left off, those worth more are on; left out: as the scene calls for them",
+        examples=[0.01],
+    )
+
+
 class OutputsInput(BoundaryModel):
     """What to store."""
 
@@ -202,6 +215,9 @@ class SceneInput(BoundaryModel):
     housings: Annotated[tuple[HousingInput, ...], Strict(False)] = Field(default=(), max_length=100)
     planets: Annotated[tuple[PlanetsInput, ...], Strict(False)] = Field(default=(), max_length=100)
     loads: Annotated[tuple[LoadTorqueInput, ...], Strict(False)] = Field(default=(), max_length=1000)
+    accuracy: SceneAccuracyInput = Field(
+        default=SceneAccuracyInput(), description="What automatic effects are decided by", examples=[{}]
+    )
     outputs: OutputsInput = Field(default=OutputsInput(), description="What to store", examples=[{}])
     integration: IntegrationInput = Field(
         default=IntegrationInput(), description="How to integrate", examples=[{}]

@@ -1,0 +1,174 @@
+"""Scenes on which the worth of dynamic effects is estimated and measured."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from benchmarks.honesty_cases import M, gear_of, spur_pair
+from dynamics.bodies import BeamSection, Inertia, TimeLaw, hollow_cylinder
+from dynamics.forces import CoastFlank, MeshTable, RollingContact
+from dynamics.system import Outputs, Scene, pair_scene
+from fe_contact import GearPair, analyze
+from service.cli.scene_tables import scene_with_tables
+from service.client.portable import scene_of
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+RPM = math.pi / 30.0
+TORQUES = (10.0, 30.0, 60.0, 100.0, 160.0, 240.0)
+LENGTH = 0.2
+PLAY = {"thickness_allowance": 40e-6}
+HELIX = math.radians(20.0)
+SPUR = spur_pair(gear_of(18, **PLAY), gear_of(27, **PLAY))
+HELICAL = spur_pair(gear_of(18, helix_angle=HELIX, **PLAY), gear_of(23, helix_angle=-HELIX, **PLAY))
+AXES = {"misalignments": (-40e-6, 0.0, 40e-6), "center_distance_changes": (-40e-6, 0.0, 40e-6)}
+CONSTANT = TimeLaw.constant
+SHORT = {"flexible_shafts_scene": 1.0, "wind_turbine_scene": 0.4}
+"""Seconds of the examples that run too long to be switched over seven times."""
+
+
+@cache
+def table(pair: GearPair, axes: bool, folder: Path) -> MeshTable:
+    """Return the mesh force of a pair by draft finite elements, with both axes or none."""
+    how = {"level": "draft", "positions": 64, "receipt": "minimal", "cache": folder}
+    asked = AXES if axes else {}
+    return analyze(pair, torques=list(TORQUES), **how, **asked).force_table()  # type: ignore[arg-type]
+
+
+def example_scenes() -> dict[str, Scene]:
+    """Return the scenes of the folder of examples, the long ones cut."""
+    found = {}
+    for file in sorted(EXAMPLES.glob("*_scene.toml")):
+        given, folder = scene_of(file)
+        scene = scene_with_tables(given, folder, None, lambda _stage, _fraction: None)
+        seconds = SHORT.get(file.stem, scene.duration)
+        outputs = replace(scene.outputs, energy_audit=False, receipt="minimal")
+        changes = {"duration": seconds, "outputs": outputs, "on_violation": "report"}
+        found[f"example {file.stem}"] = replace(scene, **changes)  # type: ignore[arg-type]
+    return found
+
+
+def worth_scenes(folder: Path) -> dict[str, Scene]:
+    """Return scenes by name; every effect has something to do in several of them."""
+    slow, fast = CONSTANT(600.0 * RPM), CONSTANT(4000.0 * RPM)
+    up = TimeLaw((0.0, 0.6), (1000.0 * RPM, 5000.0 * RPM))
+    spur, helical = _scene(SPUR, table(SPUR, False, folder)), _scene(HELICAL, table(HELICAL, False, folder))
+    spur_axes, helical_axes = (_scene(pair, table(pair, True, folder)) for pair in (SPUR, HELICAL))
+    rubbing = _with_mesh(spur, friction=0.08)
+    rolling = _on_rollers(_off_middle(spur, 0.06), 15e-6)
+    return {
+        "spur, 600 rpm": _turning(spur, slow),
+        "spur, 4000 rpm": _turning(spur, fast),
+        "spur, run-up": _turning(spur, up, 0.6),
+        "spur off the middle, 4000 rpm": _turning(_off_middle(spur, 0.06), fast),
+        "spur off the middle, soft bearings, 1500 rpm": _turning(
+            _off_middle(_scene(SPUR, table(SPUR, False, folder), 2e7), 0.05), CONSTANT(1500.0 * RPM)
+        ),
+        "spur on shafts, 2500 rpm": _turning(
+            _sections(_off_middle(spur, 0.06), 0.03), CONSTANT(2500.0 * RPM)
+        ),
+        "spur on stiff shafts, 2500 rpm": _turning(
+            _sections(_off_middle(spur, 0.06), 0.08), CONSTANT(2500.0 * RPM)
+        ),
+        "spur, friction, 600 rpm": _turning(rubbing, slow),
+        "spur, friction, 4000 rpm": _turning(rubbing, fast),
+        "spur, axes, off the middle, 2000 rpm": _turning(
+            _off_middle(spur_axes, 0.04), CONSTANT(2000.0 * RPM)
+        ),
+        "spur, axes, overhung, 1200 rpm": _turning(_overhung(spur_axes), CONSTANT(1200.0 * RPM)),
+        "helical, 3000 rpm": _turning(helical, CONSTANT(3000.0 * RPM)),
+        "helical, run-up": _turning(helical, up, 0.6),
+        "helical on shafts, 3000 rpm": _turning(_sections(helical, 0.03), CONSTANT(3000.0 * RPM)),
+        "helical, axes, friction, 1500 rpm": _turning(
+            _with_mesh(helical_axes, friction=0.06), CONSTANT(1500.0 * RPM)
+        ),
+        "helical, axes, overhung, 3000 rpm": _turning(_overhung(helical_axes), CONSTANT(3000.0 * RPM)),
+        "helical, overhung disc, 12000 rpm": _turning(_disc(helical), CONSTANT(12000.0 * RPM)),
+        "spur on rollers with clearance, 2000 rpm": _turning(rolling, CONSTANT(2000.0 * RPM)),
+        "spur on rollers, lightly loaded, 4000 rpm": _turning(rolling, fast, torque=8.0),
+        "spur, light load, backlash, 4000 rpm": _turning(
+            _with_mesh(spur, coast=CoastFlank(60e-6), damping_ratio=0.03), fast, torque=12.0
+        ),
+    }
+
+
+def _scene(pair: GearPair, mesh_table: MeshTable, stiffness: float = 2e8) -> Scene:
+    """Return the pair in the middle of two rigid shafts."""
+    gears = (pair.pinion, pair.wheel)
+    width = pair.pinion.face_width
+    scene = pair_scene(
+        mesh_table,
+        teeth=(gears[0].teeth, gears[1].teeth),
+        base_radius=(gears[0].base_radius, gears[1].base_radius),
+        face_width=(width, width),
+        center_distance=pair.center_distance,
+        gear_inertia=(_body(gears[0].teeth, width), _body(gears[1].teeth, width)),
+        speed=CONSTANT(100.0),
+        resisting_torque=CONSTANT(90.0),
+        duration=0.2,
+        base_helix_angle=gears[0].base_helix_angle,
+        shaft_length=LENGTH,
+        shaft_inertia=hollow_cylinder(0.03, LENGTH),
+        bushing_stiffness=stiffness,
+    )
+    return _with_mesh(scene, damping_ratio=0.06)
+
+
+def _body(teeth: int, width: float) -> Inertia:
+    """Return the inertia of a disc of so many teeth."""
+    return hollow_cylinder(teeth * M, width, 0.5 * teeth * M)
+
+
+def _turning(scene: Scene, speed: TimeLaw, duration: float = 0.2, torque: float = 90.0) -> Scene:
+    """Return the scene at a speed, its results taken as they are."""
+    drive, load = scene.drives[0], scene.loads[0]
+    return replace(
+        scene,
+        drives=(replace(drive, speed=speed),),
+        loads=(replace(load, torque=CONSTANT(torque)),),
+        duration=duration,
+        outputs=Outputs(sample_rate=50e3, energy_audit=False, receipt="minimal"),
+        on_violation="report",
+    )
+
+
+def _with_mesh(scene: Scene, **changes: object) -> Scene:
+    """Change the mesh."""
+    return replace(scene, meshes=(replace(scene.meshes[0], **changes),))  # type: ignore[arg-type]
+
+
+def _off_middle(scene: Scene, place: float) -> Scene:
+    """Put both gears at `place` along their shafts, m."""
+    return replace(scene, gears=tuple(replace(gear, position=place) for gear in scene.gears))
+
+
+def _overhung(scene: Scene) -> Scene:
+    """Put both gears outside their bearings."""
+    bushings = tuple(
+        replace(part, position=0.04 if part.name.endswith("left") else 0.14) for part in scene.bushings
+    )
+    return replace(_off_middle(scene, 0.19), bushings=bushings)
+
+
+def _disc(scene: Scene) -> Scene:
+    """Put a large disc on the end of the overhung driven shaft."""
+    overhung = _overhung(scene)
+    shaft = overhung.shafts[1]
+    heavy = Inertia(4.0, 2.5e-2, 1.6e-2)
+    return replace(overhung, shafts=(overhung.shafts[0], replace(shaft, inertia=heavy)))
+
+
+def _sections(scene: Scene, diameter: float) -> Scene:
+    """Make the shafts of one section each."""
+    section = BeamSection(LENGTH, diameter)
+    bare = [replace(shaft, sections=(section,), inertia=Inertia()) for shaft in scene.shafts]
+    return replace(scene, shafts=tuple(bare))
+
+
+def _on_rollers(scene: Scene, clearance: float) -> Scene:
+    """Put the shafts on roller bearings."""
+    bushings = tuple(replace(part, radial_stiffness=0.0) for part in scene.bushings)
+    contacts = tuple(RollingContact(part.name, 6e8, clearance=clearance) for part in bushings)
+    return replace(scene, bushings=bushings, rolling_contacts=contacts)

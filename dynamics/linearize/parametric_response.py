@@ -1,0 +1,166 @@
+"""Forced response with a mesh stiffness that varies along the pitch: harmonic balance of Hill's equation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.linearize.harmonic_response import HarmonicResponse, extremes, told
+from dynamics.linearize.steady_vibration import ComplexArray, Excited, Steady, swept_vibration
+from dynamics.types import FloatArray, IntArray
+
+MOST_UNKNOWNS = 150
+LEAST_ORDERS = 8
+
+
+@dataclass(frozen=True)
+class ParametricResponse:
+    """Steady vibration in which flanks have the stiffness of the position they are at; m meshes, S speeds.
+
+    Attributes
+    ----------
+    harmonics : HarmonicResponse
+    mean_shift : (m, S) array
+        By how much the mean transmission error differs from the mean static one, m.
+    """
+
+    harmonics: HarmonicResponse
+    mean_shift: FloatArray
+
+
+@dataclass(frozen=True)
+class Family:
+    """Meshes that pass equally many base pitches in the common period, on tables of one pitch.
+
+    Attributes
+    ----------
+    meshes : (f,) int array
+    place : (H,) int array
+        Of the harmonics 1 to H of the mesh frequency among those of the vibration.
+    stiffness : (f, 4 H + 1) complex array
+        Fourier coefficients -2 H to 2 H of the tangent stiffness less its mean, N/m.
+    """
+
+    meshes: IntArray
+    place: IntArray
+    stiffness: ComplexArray
+
+
+def parametric_response(
+    at: Excited, speed: FloatArray, rate: FloatArray, orders: int = 10, turning: bool = False
+) -> ParametricResponse:
+    """Return the response of a system to its transmission errors, the stiffness varying with position.
+
+    M u'' + C u' + (K + sum k(t) g^T g) u = sum k(t) g STE(t). With k = k_0 + dk(t) and the receptances A of
+    the system of mean stiffness, what makes force, w = g u - STE, is sought in the harmonics -H to H of the
+    mesh frequency:
+
+        w_i + A_i sum_j dk_(i-j) w_j = (response of the mean stiffness)_i - STE_i.
+
+    Left out: what the varying stiffness of one mesh makes of vibration at another one's frequency, flanks
+    that part, how stiffness varies with load. Tables of several pitches keep their mean stiffness.
+
+    Parameters
+    ----------
+    at : Excited
+    speed, rate : (S,) arrays
+        Of the leading law, rad/s, and how fast it changes, rad/s^2.
+    orders : int
+        H; fewer where many meshes share a frequency.
+    turning : bool
+        With gyroscopic and frame terms.
+    """
+    harmonics, meshes = _all_harmonics(at, orders), len(at.cycles)
+    steady = swept_vibration(at, speed, rate, harmonics, turning)
+    u, extra = steady.displacement.copy(), np.zeros((meshes, *steady.omega.shape), dtype=complex)
+    shift = np.zeros((meshes, speed.size))
+    row = at.system.arrays.direction[at.system.driving_rows]
+    still = _at_rest(at, row)
+    for family in _families(at, harmonics, orders):
+        for s in range(speed.size):
+            moved = np.concatenate([still[None], steady.receptance[s, family.place]])[..., family.meshes]
+            push = _push(family, row[family.meshes] @ moved, _made(family, row, steady, s))
+            u[s, family.place] -= 2.0 * np.einsum("hnf,hf->hn", moved[1:], push[1:])
+            extra[family.meshes[:, None], s, family.place] += 2.0 * push[1:].T
+            shift[:, s] -= row @ np.real(moved[0] @ push[0])
+    found = told(at, speed, replace(steady, displacement=u))
+    force = found.mesh_force + extra
+    least = found.mean_force[:, None] + extremes(force, found.order)[0]
+    return ParametricResponse(replace(found, mesh_force=force, least_mesh_force=least), shift)
+
+
+def _all_harmonics(at: Excited, orders: int) -> IntArray:
+    """Return the multiples of the common period's frequency at which any mesh excites, up to `orders`."""
+    found: set[int] = set()
+    for pitches, mesh in zip(at.period.pitches, at.system.scene.meshes, strict=True):
+        period = mesh.table.period
+        step = abs(pitches) // period
+        found |= {step * k for k in range(1, orders * period + 1)} if step else set()
+    return np.array(sorted(found), dtype=np.int64)
+
+
+def _families(at: Excited, harmonics: IntArray, orders: int) -> list[Family]:
+    """Gather the meshes whose stiffness varies, by their frequency."""
+    by_pitches: dict[int, list[int]] = {}
+    for index, (pitches, mesh) in enumerate(zip(at.period.pitches, at.system.scene.meshes, strict=True)):
+        if pitches and mesh.table.period == 1:
+            by_pitches.setdefault(abs(pitches), []).append(index)
+    found = []
+    for pitches, meshes in by_pitches.items():
+        count = min(orders, max(LEAST_ORDERS, MOST_UNKNOWNS // (2 * len(meshes))))
+        place = np.searchsorted(harmonics, pitches * np.arange(1, count + 1))
+        stiffness = np.array([_coefficients(at, mesh, 2 * count) for mesh in meshes])
+        found.append(Family(np.array(meshes), place, stiffness))
+    return found
+
+
+def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
+    """Fourier coefficients (2 highest + 1,) over time of a mesh's tangent stiffness, its mean left out."""
+    values = at.cycles[mesh].stiffness
+    lines = np.fft.rfft(values) / values.size
+    count = min(highest, lines.size - 2)
+    found = np.zeros(2 * highest + 1, dtype=complex)
+    order = np.arange(1, count + 1)
+    turned = lines[order] * np.exp(2j * np.pi * order * at.system.scene.meshes[mesh].position_offset)
+    turned = turned if at.period.pitches[mesh] > 0 else turned.conj()
+    found[highest + order], found[highest - order] = turned, turned.conj()
+    return found
+
+
+def _made(family: Family, row: FloatArray, steady: Steady, s: int) -> ComplexArray:
+    """Fourier coefficients 1 to H (H, f) of what makes force with the mean stiffness, m."""
+    response = steady.displacement[s, family.place] @ row[family.meshes].T
+    return np.asarray(0.5 * (response - steady.static[family.meshes][:, family.place].T))
+
+
+def _push(family: Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray:
+    """Solve the balance at one speed.
+
+    Parameters
+    ----------
+    family : Family
+    receptance : (H + 1, f, f) complex array
+        Of the meshes, harmonics 0 to H, m/N.
+    made : (H, f) complex array
+
+    Returns
+    -------
+    (H + 1, f) complex array
+        Fourier coefficients 0 to H of the force by which the varying part of the stiffness presses, N.
+    """
+    count = family.place.size
+    whole = np.concatenate([receptance[:0:-1].conj(), receptance])
+    given = np.concatenate([made[::-1].conj(), np.zeros((1, made.shape[1])), made])
+    step = np.arange(2 * count + 1)
+    varying = family.stiffness[:, step[:, None] - step[None, :] + 2 * count]  # (f, 2 H + 1, 2 H + 1)
+    matrix = np.einsum("iab,bij->iajb", whole, varying).reshape(given.size, given.size)
+    w = np.linalg.solve(matrix + np.eye(given.size), given.reshape(-1)).reshape(given.shape)
+    return np.asarray(np.einsum("bij,jb->ib", varying, w)[count:])
+
+
+def _at_rest(at: Excited, row: FloatArray) -> ComplexArray:
+    """Displacements per static force along rows (f, n), (n, f)."""
+    per_metre = 1.0 / at.linear.scale
+    held = per_metre[:, None] * at.linear.stiffness * per_metre
+    return np.asarray(np.linalg.solve(held, (row * per_metre).T) * per_metre[:, None], dtype=complex)

@@ -1,0 +1,225 @@
+"""Steady vibration about the static equilibrium: what excites it, and the displacements at every harmonic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dynamics.linearize.common_period import CommonPeriod, common_period
+from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.speeds import law_speeds
+from dynamics.linearize.whirl import terms_at
+from dynamics.system.assemble import System
+from dynamics.types import FloatArray, IntArray
+
+ComplexArray = NDArray[np.complex128]
+Terms = tuple[FloatArray, FloatArray]
+
+EXCITATIONS = ("static_error", "blocked_force")
+BLOCK = 1_000_000  # entries of the matrices solved at once
+NOTHING = 1e-12  # of the largest exciting force: harmonics below it are left out
+SWEPT = 0.34
+"""Rate of decay over the root of the rate of the circular frequency that limits a resonance as a sweep does:
+1.17 sqrt(2 pi/h)/(2 m w) is the largest amplitude of an undamped oscillator per force (Lewis, 1932)."""
+
+
+@dataclass(frozen=True)
+class Excited:
+    """A system about its equilibrium under the loads at a time, and what excites it there.
+
+    Attributes
+    ----------
+    system : System
+    time : float
+        s.
+    period : CommonPeriod
+    linear : LinearSystem
+        With the mean tangents of the flanks.
+    cycles : tuple of FlankCycle
+    """
+
+    system: System
+    time: float
+    period: CommonPeriod
+    linear: LinearSystem
+    cycles: tuple[FlankCycle, ...]
+
+
+@dataclass(frozen=True)
+class Steady:
+    """Displacements of n freedoms at S speeds in H harmonics of the common period.
+
+    Attributes
+    ----------
+    harmonics : (H,) int array
+        Multiples of the common period's frequency.
+    omega : (S, H) array
+        rad/s.
+    static : (m, H) complex array
+        Static transmission errors, m.
+    force : (R', H) complex array
+        What excites the driving flanks' rows, N.
+    displacement : (S, H, n) complex array
+        m and rad.
+    residual : float
+        Largest force left by the linear solves, of the largest exciting force.
+    receptance : (S, H, n, m) complex array
+        Displacements per force along each mesh's line of action; empty where not asked for.
+    """
+
+    harmonics: IntArray
+    omega: FloatArray
+    static: ComplexArray
+    force: ComplexArray
+    displacement: ComplexArray
+    residual: float
+    receptance: ComplexArray
+
+
+def excited(system: System, time: float = 0.0, orders: int = 10, samples: int = SAMPLES) -> Excited:
+    """Look at `system` under the loads at `time`; flanks at up to `samples` positions per base pitch.
+
+    Raises
+    ------
+    InputError
+        If the meshes have no common period.
+    SolveError
+        If there is no static equilibrium.
+    """
+    period, linear = common_period(system), linearize(system, time)
+    cycles = flank_cycles(system, linear, time, orders, samples)
+    return Excited(system, time, period, averaged(system, linear, cycles, time), cycles)
+
+
+def steady_vibration(
+    at: Excited,
+    speed: FloatArray,
+    harmonics: IntArray,
+    excitation: str = "static_error",
+    progress: Callable[[float], None] | None = None,
+) -> Steady:
+    """Return the vibration at `speed` (S,), of `harmonics` (H,) those that are excited."""
+    static, force = _excitation(at.system, at.cycles, at.period, harmonics, excitation)
+    heard = np.max(np.abs(force), axis=0)
+    kept = np.flatnonzero(heard > NOTHING * np.max(heard, initial=0.0))
+    harmonics, static, force = harmonics[kept], static[:, kept], force[:, kept]
+    omega = _omega(at, speed, harmonics)
+    u, residual = _solve(at, force, omega, progress=progress)
+    return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
+
+
+def swept_vibration(
+    at: Excited, speed: FloatArray, rate: FloatArray, harmonics: IntArray, turning: bool = False
+) -> Steady:
+    """Return the vibration at `speed` (S,) with the receptances of the meshes, all `harmonics` (H,).
+
+    Where the speed changes at a `rate` (S,), rad/s^2, resonances are as high as they can grow while they are
+    passed. With `turning`, gyroscopic and frame terms are in.
+    """
+    static, force = _excitation(at.system, at.cycles, at.period, harmonics, "static_error")
+    omega = _omega(at, speed, harmonics)
+    decay = SWEPT * np.sqrt(omega * (np.abs(rate) / np.abs(speed))[:, None])
+    rows = at.system.arrays.direction[at.system.driving_rows]
+    terms = turning_terms(at.system, speed) if turning else []
+    u, residual = _solve(at, force, omega - 1j * decay, terms, rows)
+    return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
+
+
+def _omega(at: Excited, speed: FloatArray, harmonics: IntArray) -> FloatArray:
+    """Circular frequencies (S, H), rad/s."""
+    duration = np.array([[at.period.duration(w)] for w in speed])
+    return np.asarray(2.0 * math.pi * harmonics / duration)
+
+
+def turning_terms(system: System, speed: FloatArray) -> list[Terms]:
+    """Return what turning adds to damping and stiffness (n, n) where the leading law has each `speed`."""
+    return [terms_at(system, law_speeds(system, abs(float(w)))) for w in speed]
+
+
+def _excitation(
+    system: System, cycles: tuple[FlankCycle, ...], period: CommonPeriod, harmonics: IntArray, kind: str
+) -> tuple[ComplexArray, ComplexArray]:
+    """STE (m, H) and exciting force on the driving flanks' rows (R', H): it pushes d up with the STE.
+
+    Where the other forces of a flank (a moment as its load moves along the face, friction) vary while the
+    mesh force is held, they excite too.
+    """
+    static = np.zeros((len(cycles), harmonics.size), dtype=complex)
+    force = np.zeros((cycles[-1].rows.stop, harmonics.size), dtype=complex)
+    for f, (mesh, cycle) in enumerate(zip(system.scene.meshes, cycles, strict=True)):
+        place = period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
+        static[f] = harmonics_of(cycle.static_error, *place)
+        for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
+            if kind == "static_error":
+                held = (
+                    harmonics_of(cycle.force[:, p], *place) if p else 0.0
+                )  # the first force is the same all along
+                force[row] = cycle.tangent[p, 0] * static[f] - held
+            else:
+                force[row] = -harmonics_of(cycle.blocked[:, p], *place)
+    return static, force
+
+
+def harmonics_of(
+    values: FloatArray, pitches: int, period: int, offset: float, harmonics: IntArray
+) -> ComplexArray:
+    """Amplitudes (H,) in multiples of the common period of a function of position, known over its table."""
+    lines = 2.0 * np.fft.rfft(values) / values.size
+    found = np.zeros(harmonics.size, dtype=complex)
+    cycles = abs(pitches) // period
+    if cycles == 0:
+        return found
+    which, rest = np.divmod(harmonics, cycles)
+    there = (rest == 0) & (which < lines.size - 1)
+    turned = lines[which[there]] * np.exp(2j * math.pi * which[there] * offset / period)
+    found[there] = turned if pitches > 0 else turned.conj()
+    return found
+
+
+def _solve(
+    at: Excited,
+    force: ComplexArray,
+    omega: FloatArray | ComplexArray,
+    terms: Sequence[Terms] = (),
+    rows: FloatArray | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> tuple[ComplexArray, float]:
+    """Displacements (S, H, n, 1 + f), and the relative residual; a block of speeds at a time.
+
+    The first are those of `force` (R', H) on the driving flanks' rows, the others per force along each of
+    `rows` (f, n). `terms` are what turning adds to damping and stiffness at each speed; none: nothing.
+    """
+    linear, per_metre = at.linear, 1.0 / at.linear.scale
+    g = at.system.arrays.direction[: force.shape[0]]
+    mass, damping, total = (
+        per_metre[:, None] * a * per_metre for a in (linear.mass, linear.damping, linear.stiffness)
+    )
+    pushed = (force.T @ g * per_metre)[None, :, :, None]
+    if rows is not None:
+        each = np.broadcast_to((rows * per_metre).T, (*pushed.shape[:3], rows.shape[0]))
+        pushed = np.concatenate([pushed, each], axis=-1)
+    found = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
+    block = max(BLOCK // max(omega.shape[1] * g.shape[1] ** 2, 1), 1)
+    left = 0.0
+    for start in range(0, omega.shape[0], block):
+        part = slice(start, start + block)
+        w = omega[part, :, None, None]
+        matrix = np.asarray(total - w * w * mass + 1j * w * damping, dtype=complex)
+        if terms:
+            swept = [
+                np.stack([per_metre[:, None] * term[k] * per_metre for term in terms[part]]) for k in (0, 1)
+            ]
+            matrix += 1j * w * swept[0][:, None] + swept[1][:, None]
+        right = np.broadcast_to(pushed, (*matrix.shape[:-1], pushed.shape[-1]))
+        solved = np.linalg.solve(matrix, right)
+        miss = np.abs(matrix @ solved - right)[..., 0]
+        left = max(left, float(np.max(miss, initial=0.0)))
+        found[part] = solved * per_metre[:, None]
+        if progress is not None:
+            progress(min(start + block, omega.shape[0]) / omega.shape[0])
+    return found, left / max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)

@@ -1,0 +1,55 @@
+"""The study of worth estimates of dynamic effects counts what it says it counts."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from geared_scenes import gear_pair_scene
+
+from benchmarks import dynamic_worth_cases
+from benchmarks.dynamic_worth_estimates import JudgedWorth, counts, judge, markdown
+from dynamics.ablation import ablate
+from dynamics.forces import straight_table
+from dynamics.system.assemble import assemble
+from dynamics.system.effects import EFFECTS, MESH_EFFECTS
+
+
+def test_counts_and_tables_are_those_of_the_ablations() -> None:
+    right = JudgedWorth("one", "tilt", True, (0.1, 0.2, 0.3), (0.11, 0.19, 0.5))
+    wrong = JudgedWorth("two", "tilt", True, (0.1, 0.2, 0.3), (0.11, -0.19, 0.3))
+    off = JudgedWorth("two", "axial", True, (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,))
+    rows = {figure.what: figure for figure in counts([right, right, wrong, off])}
+    assert rows["any quantity beyond a factor 2"].value == pytest.approx(50.0)
+    assert rows["bearing forces: beyond a factor 2, of the 4 changes above 1 %"].value == pytest.approx(25.0)
+    left = [
+        rows[f"largest change by what auto leaves off at {text}"]
+        for text in ("1 % (0 ablations)", "5 % (1 ablations)")
+    ]
+    assert [figure.value for figure in left] == pytest.approx([0.0, 3.0])
+    text = markdown([right, wrong, off])
+    assert "| two | tilt | +10 / +11 | **+20 / -19** | +30 / +30 |" in text
+    assert "| tilt | 2 | 100 % | 50 % | 100 % |" in text
+
+
+def test_an_ablation_is_judged_beside_its_estimate() -> None:
+    made = ablate(gear_pair_scene(duration=0.06), only=["lateral"])
+    one = judge("pair", made.effects[0])
+    whole = made.nominal
+    assert one.measured[1] == made.effects[0].peak_to_peak_change[0] / whole.peak_to_peak[0]
+    assert all(one.right)
+    assert one.measured[2] == pytest.approx(-1.0)
+
+
+def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On tables in closed form: what needs a table's axes or its ripple is left to the study itself."""
+    monkeypatch.setattr(dynamic_worth_cases, "table", lambda *_: straight_table(3e8))
+    on = {
+        entry.effect
+        for scene in dynamic_worth_cases.worth_scenes(Path()).values()
+        for entry in assemble(scene).ledger.entries
+        if entry.on
+    }
+    names = {effect.name for effect in EFFECTS} | {effect.name for effect in MESH_EFFECTS}
+    by_tables = {"dynamic_misalignment", "dynamic_center_distance", "moving_application_point", "friction"}
+    assert on >= names - by_tables - {"backlash"}
