@@ -20,6 +20,7 @@ from service.routes.errors import install_error_handlers
 from service.routes.metrics import Metrics
 from service.routes.middleware import Guard
 from service.routes.processes import processes_router
+from service.routes.warm_up import warm_up
 from service.settings import Settings
 from service.store import DATABASE_FILE, RESULTS_DIRECTORY, DirectoryLock, ResultStore, open_database
 
@@ -52,6 +53,7 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
         lock.acquire()
         context.scheduler.start()
+        warm_up()
         try:
             yield
         finally:

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_contact.ste.compiled_force import CompiledForce
 from fe_contact.types import FloatArray
 from service.convert.units import N_PER_UM, factor
 from service.problems import BadInput, JobFailed
 from service.schemas.query import LIMITS, MOST_POINTS, QueryInput
+
+if TYPE_CHECKING:
+    from fe_contact.ste.compiled_force import CompiledForce
 
 _ROW = {"position": 0, "misalignment_um": 1, "center_distance_change_mm": 2, "deflection_um": 3}
 _REQUIRED = ("position", "deflection_um")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from service.jobs.key import content_key
@@ -77,6 +78,17 @@ class Process:
                 return min(1.0, done + known.share * fraction)
             done += known.share
         return None
+
+
+def on_demand(entry: str) -> Callable[..., Any]:
+    """Return a function that calls ``"module:function"``, imported when it is called first."""
+
+    def call(*arguments: object) -> Any:
+        """Import, then call."""
+        module, _, name = entry.partition(":")
+        return getattr(import_module(module), name)(*arguments)
+
+    return call
 
 
 class Registry(Mapping[str, Process]):

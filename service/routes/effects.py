@@ -5,8 +5,6 @@ from __future__ import annotations
 from fastapi import APIRouter
 from pydantic import BaseModel
 
-from fe_contact.effects import EFFECTS
-
 router = APIRouter(tags=["effects"])
 
 
@@ -24,6 +22,8 @@ class EffectBody(BaseModel):
 @router.get("/effects", summary="Optional physics")
 def effects() -> list[EffectBody]:
     """All effects; a case switches them in its table [effects]."""
+    from fe_contact.effects import EFFECTS  # noqa: PLC0415 (start-up time)
+
     return [
         EffectBody(
             name=effect.name,

@@ -30,13 +30,14 @@ router = APIRouter(tags=["results"], route_class=DirectRoute)
 
 
 _BINARY = {"type": "string", "format": "binary"}
+_QUERY, _ANSWER = QueryInput.model_json_schema(), QueryOutput.model_json_schema()
 _ANSWERS = {
-    CBOR: {"schema": _BINARY | {"description": "As in JSON"}},
+    CBOR: {"schema": _ANSWER},
     RAW: {"schema": _BINARY | {"description": "Columns force_n, stiffness_n_per_um, validity: float64"}},
 }
 _BODIES = {
-    JSON: {"schema": QueryInput.model_json_schema()},
-    CBOR: {"schema": _BINARY | {"description": "As in JSON; lists may be typed arrays (RFC 8746, tag 86)"}},
+    JSON: {"schema": _QUERY},
+    CBOR: {"schema": _QUERY | {"description": "Lists may be typed arrays (RFC 8746, tag 86)"}},
     RAW: {"schema": _BINARY | {"description": "Columns of little-endian float64, one after the other"}},
 }
 

@@ -53,7 +53,7 @@ def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key:
     live = client.post(f"/v1/databases/{key}/ste", json={"torque_n_m": [0.5, 1.0], "pinion": RELIEF}).json()
     store = client.app.state.context.store  # type: ignore[attr-defined]
     other = analysed(client, case(**RELIEF))
-    table = client.app.state.context.databases.get(store, other)  # type: ignore[attr-defined]
+    table = client.app.state.context.databases.get(store, other).database  # type: ignore[attr-defined]
     for curve in live["curves"]:
         whole = table.curve(torque=curve["torque_n_m"])
         assert curve["ste_um"] == pytest.approx((1e6 * whole.ste).tolist(), rel=1e-12, abs=0.0)

@@ -17,11 +17,12 @@ from structlog.testing import capture_logs
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from service.hardcases.scene import TIME_LIMIT
-from service.jobs.catalogue import ANALYZE, AnalyzeInputs, default_registry
+from service.jobs.catalogue import ANALYZE, default_registry
 from service.jobs.claims import Claims
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Job, Submissions
 from service.schemas import Case, validated
+from service.schemas.process_inputs import AnalyzeInputs
 from service.settings import Settings
 from service.store import DATABASE_FILE, RESULTS_DIRECTORY, ResultStore, open_database
 

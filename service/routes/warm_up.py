@@ -1,0 +1,28 @@
+"""Loading what requests will need, while the service answers already."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from importlib import import_module
+
+HEAVY = (
+    "service.jobs.preparations",
+    "service.convert.answers",
+    "service.convert.result_figures",
+    "fe_contact.ste.compiled_force",
+)
+"""The modules that handlers import when they are asked: both libraries."""
+
+
+def warm_up(modules: Sequence[str] = HEAVY) -> threading.Thread:
+    """Import modules in a thread; a request that needs one before waits for the rest of its import only."""
+    thread = threading.Thread(target=_load, args=(modules,), name="warm-up", daemon=True)
+    thread.start()
+    return thread
+
+
+def _load(modules: Sequence[str]) -> None:
+    """Import one after the other."""
+    for module in modules:
+        import_module(module)
