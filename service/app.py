@@ -8,21 +8,19 @@ from contextlib import asynccontextmanager
 from fastapi import FastAPI
 
 from service.jobs.catalogue import default_registry
-from service.jobs.claims import Claims
 from service.jobs.key import solver_version
 from service.jobs.live_desk import live_desk
+from service.jobs.machinery import job_machinery
 from service.jobs.process import Registry
-from service.jobs.scheduler import Scheduler
-from service.jobs.submissions import Submissions
 from service.routes import effects, health, jobs, landing, live, queries, results
 from service.routes.context import Context
-from service.routes.errors import install_error_handlers
+from service.routes.errors import documented, install_error_handlers
 from service.routes.metrics import Metrics
 from service.routes.middleware import Guard
 from service.routes.processes import processes_router
 from service.routes.warm_up import warm_up
 from service.settings import Settings
-from service.store import DATABASE_FILE, RESULTS_DIRECTORY, DirectoryLock, ResultStore, open_database
+from service.store import DirectoryLock
 
 _DESCRIPTION = (
     "Contact analysis of gear pairs and the dynamics it excites. Jobs follow OGC API - Processes 1.0; "
@@ -30,7 +28,7 @@ _DESCRIPTION = (
 )
 
 
-def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
+def create_app(settings: Settings, registry: Registry | None = None, *, works: bool = True) -> FastAPI:
     """Return the application; it opens its data directory and starts its scheduler when it is started.
 
     Parameters
@@ -44,14 +42,16 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
     BadInput
         Another service works in the data directory, or it cannot be written.
     """
-    lock = DirectoryLock(settings.data_directory)
-    lock.acquire()
+    lock = DirectoryLock(settings.data_directory) if works else None
+    if lock is not None:
+        lock.acquire()
     offered = registry or default_registry()
-    context = _context(settings, offered)
+    context = _context(settings, offered, works)
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
-        lock.acquire()
+        if lock is not None:
+            lock.acquire()
         context.scheduler.start()
         warm_up()
         try:
@@ -59,7 +59,9 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
         finally:
             context.live.stop()
             context.scheduler.stop()
-            lock.release()
+            context.close()
+            if lock is not None:
+                lock.release()
 
     app = FastAPI(
         title="lineofaction",
@@ -75,15 +77,13 @@ def create_app(settings: Settings, registry: Registry | None = None) -> FastAPI:
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     shown = (landing.router, jobs.router, results.router, queries.router, effects.router, live.router)
     for router in (processes_router(offered), *shown):
-        app.include_router(router, prefix="/v1")
+        app.include_router(router, prefix="/v1", responses=documented(503))
     app.include_router(health.router)
     return app
 
 
-def _context(settings: Settings, registry: Registry) -> Context:
+def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     """Open the store and put the parts together."""
-    engine = open_database(settings.data_directory / DATABASE_FILE)
-    store = ResultStore(engine, settings.data_directory / RESULTS_DIRECTORY)
-    scheduler = Scheduler(settings, registry, Claims(engine), store)
-    submissions = Submissions(engine, settings.queue_limit)
-    return Context(settings, registry, submissions, scheduler, store, live_desk(settings))
+    parts = job_machinery(settings, registry, works=works)
+    live, engine = live_desk(settings), parts.engine
+    return Context(settings, registry, parts.submissions, parts.scheduler, parts.store, live, engine)

@@ -14,6 +14,7 @@
     |- Superseded        a later question of the same caller took its place
     |- NotAnalysed       nothing is kept to answer from; submit a job first
     |- LiveUnavailable   the live worker ended or took too long; try again
+    |- DatabaseUnavailable  the database does not answer; try again later
     |- DamagedFile       a file does not hold what its digest says
     |- Unreachable       no service at the address
     `- Unexpected        a defect; carries a reference number, never the text of the exception
@@ -257,6 +258,16 @@ class LiveUnavailable(ServiceError):
     title = "No live answer"
     exit_code = EXIT_FAILED
     retry_after_s = 1
+
+
+class DatabaseUnavailable(ServiceError):
+    """The database of the service does not answer."""
+
+    status = 503
+    type = "urn:lineofaction:problem:database-unavailable"
+    title = "The database cannot be reached"
+    exit_code = EXIT_UNREACHABLE
+    retry_after_s = 5
 
 
 class DamagedFile(ServiceError):

@@ -6,7 +6,7 @@ import ipaddress
 import os
 from pathlib import Path
 
-from pydantic import Field, ValidationError, field_validator
+from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from service.problems import BadInput, Fault
@@ -39,6 +39,8 @@ class Settings(BaseSettings):
         Where it listens; loopback only.
     data_directory : Path
         Jobs, results and the compliance cache.
+    database_url : str or None
+        Database of jobs and of the index of results; None: a SQLite file in the data directory.
     workers : int
         Jobs that run at the same time.
     queue_limit : int
@@ -49,6 +51,8 @@ class Settings(BaseSettings):
         Longest run of one computation.
     memory_limit_mb : int or None
         Memory that one computation may have, MB; None: the machine's over the number of workers.
+    lease_s : float
+        How long a scheduler holds a computation without a sign of life.
     attempts : int
         How often a computation whose worker died is started.
     """
@@ -58,12 +62,19 @@ class Settings(BaseSettings):
     host: str = "127.0.0.1"
     port: int = Field(8321, ge=0, le=65535)
     data_directory: Path = Field(default_factory=data_home)
+    database_url: SecretStr | None = None
     workers: int = Field(1, ge=1, le=256)
     queue_limit: int = Field(100, ge=1, le=100_000)
     body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)
     deadline_s: float = Field(3600.0, gt=0.0, le=1e6)
     memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
+    lease_s: float = Field(60.0, ge=1.0, le=86_400.0)
     attempts: int = Field(2, ge=1, le=10)
+
+    @property
+    def database_address(self) -> str | None:
+        """The database's URL, with its password."""
+        return None if self.database_url is None else self.database_url.get_secret_value()
 
     @field_validator("host")
     @classmethod

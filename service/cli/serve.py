@@ -2,29 +2,28 @@
 
 from __future__ import annotations
 
-import logging
 import signal
 import socket
 import sys
 from types import FrameType
 from typing import NoReturn
 
-import structlog
 import uvicorn
 
 from service.app import create_app
+from service.cli.log import log_to_standard_error
 from service.problems import BadInput
 from service.settings import Settings, load_settings
 
 _STOPPING_S = 2
 
 
-def run_serve(**given: object) -> None:
-    """Serve until stopped by SIGTERM or SIGINT; workers end with the service."""
+def run_serve(*, works: bool = True, **given: object) -> None:
+    """Serve until stopped by SIGTERM or SIGINT; workers, if it `works`, end with it."""
     settings = load_settings(**given)
-    _log_to_standard_error()
+    log_to_standard_error()
     with _listener(settings) as listener:
-        app = create_app(settings)
+        app = create_app(settings, works=works)
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, _stopped)
         _announce(listener)
@@ -60,17 +59,3 @@ def _listener(settings: Settings) -> socket.socket:
         suggestion = f"{error.strerror}. Choose another with --port, or 0 for a free one."
         raise BadInput.of("port", settings.port, "a free port", suggestion) from None
     return listener
-
-
-def _log_to_standard_error() -> None:
-    """Write one line of JSON per event to standard error."""
-    structlog.configure(
-        processors=[
-            structlog.processors.add_log_level,
-            structlog.processors.TimeStamper(fmt="iso", utc=True),
-            structlog.processors.format_exc_info,
-            structlog.processors.JSONRenderer(),
-        ],
-        logger_factory=structlog.PrintLoggerFactory(sys.stderr),
-    )
-    logging.basicConfig(level=logging.WARNING, stream=sys.stderr)

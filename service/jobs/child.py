@@ -1,25 +1,29 @@
 """The worker process: one order in, progress and one outcome out, then the end.
 
 Started as ``python -m service.jobs.child DESCRIPTOR`` in a session of its own. The order is the first line of
-standard input, which then stays open and silent: when it closes, the service is gone, and the whole process
-group (gmsh's process included) is killed. Progress and outcome are lines of JSON on DESCRIPTOR. Standard
-error is the log.
+standard input, which then stays open; on it comes a byte whenever the lease of the computation was renewed.
+When it closes, the service is gone; when it is silent for too long, another scheduler may have taken the
+computation up: then the whole process group (gmsh's process included) is killed. Progress and outcome are
+lines of JSON on DESCRIPTOR. Standard error is the log.
 """
 
 from __future__ import annotations
 
+import fcntl
 import importlib
 import json
 import os
+import select
 import signal
 import sys
 import threading
 import time
 import traceback
+from pathlib import Path
 from typing import Any, TextIO
 
 from service.jobs.memory import hold_to, machine_memory_mb, out_of_memory
-from service.jobs.order import Product, WorkOrder
+from service.jobs.order import USABLE, Product, WorkOrder
 from service.problems import ServiceError
 
 _NICENESS = 10
@@ -30,7 +34,8 @@ def main() -> None:
     """Run one order."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
     order = WorkOrder.from_line(_first_line())
-    threading.Thread(target=_watch_parent, daemon=True).start()
+    threading.Thread(target=_watch_parent, args=(order.lease_s,), daemon=True).start()
+    _alone_in(order.workspace)
     os.nice(_NICENESS)
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
@@ -39,21 +44,28 @@ def main() -> None:
 
 
 def _first_line() -> bytes:
-    """Read the order without taking anything beyond it."""
+    """Read the order; signs of renewed leases may have come behind it."""
     line = b""
-    while not line.endswith(b"\n"):
+    while b"\n" not in line:
         piece = os.read(0, 65536)
         if not piece:
             sys.exit("The service closed the channel before it gave an order.")
         line += piece
-    return line
+    return line.partition(b"\n")[0]
 
 
-def _watch_parent() -> None:
-    """Kill the process group when the service is gone."""
-    while os.read(0, 1):
+def _watch_parent(lease_s: float | None) -> None:
+    """Kill the process group when the service is gone, or the lease was not renewed in time."""
+    patience = None if lease_s is None else USABLE * lease_s
+    while select.select([0], [], [], patience)[0] and os.read(0, 4096):
         pass
     os.killpg(os.getpgrp(), signal.SIGKILL)
+
+
+def _alone_in(workspace: Path) -> None:
+    """Wait until an earlier worker in the workspace, killed a moment ago, is gone."""
+    descriptor = os.open(workspace, os.O_RDONLY | os.O_CLOEXEC)  # open, and so locked, until we end
+    fcntl.flock(descriptor, fcntl.LOCK_EX)
 
 
 class _Reporter:

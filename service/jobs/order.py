@@ -10,6 +10,9 @@ from typing import Any
 
 Progress = Callable[[str, float], None]
 
+USABLE = 0.9
+"""Part of a lease that its holder works under; the rest is for clocks and for ending the work."""
+
 
 @dataclass(frozen=True)
 class WorkOrder:
@@ -30,6 +33,10 @@ class WorkOrder:
         Where results and the compliance cache are, to read.
     memory_limit_mb : int, optional
         Memory the work may have, MB.
+    database_url : str, optional
+        Where the index of results is, if not in the data directory.
+    lease_s : float, optional
+        How long the worker may go on without hearing that its lease was renewed.
     """
 
     entry: str
@@ -38,6 +45,8 @@ class WorkOrder:
     workspace: Path
     data_directory: Path
     memory_limit_mb: int | None = None
+    database_url: str | None = None
+    lease_s: float | None = None
 
     def line(self) -> bytes:
         """Return the order as one line of JSON."""

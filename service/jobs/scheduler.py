@@ -1,4 +1,4 @@
-"""The scheduler: one thread that claims computations, minds their workers and stores what they make."""
+"""The scheduler: one thread that claims computations, minds their workers and settles how they end."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import os
 import selectors
 import shutil
 import threading
+import time
 import uuid
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,10 +15,13 @@ from pathlib import Path
 import structlog
 
 from service.jobs.claims import Claim, Claims
+from service.jobs.leases import RENEWALS, Leases
 from service.jobs.memory import machine_memory_mb
 from service.jobs.order import Outcome, WorkOrder
 from service.jobs.process import Registry
+from service.jobs.settlement import Ended, Settlement
 from service.jobs.worker import Worker
+from service.problems import ServiceError
 from service.settings import LEAST_MEMORY_MB, Settings
 from service.store import ResultStore
 
@@ -35,21 +39,25 @@ class _Running:
 
 
 class Scheduler:
-    """Runs what waits, at most `settings.workers` at a time."""
+    """Runs what waits, at most `settings.workers` at a time; others may run on the same database."""
 
     def __init__(self, settings: Settings, registry: Registry, claims: Claims, store: ResultStore) -> None:
-        self._settings, self._registry, self._claims, self._store = settings, registry, claims, store
+        self._settings, self._registry, self._claims = settings, registry, claims
+        self._settlement = Settlement(claims, store, settings.attempts)
+        self._leases = Leases(claims, settings.lease_s)
         self._running: dict[int, _Running] = {}
+        self._unsettled: list[Ended] = []
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
         self._wake_in: int | None = None
+        self._looked_at = 0.0
 
     def start(self) -> None:
         """Take up what a dead service left behind, then begin; may be started again after a stop."""
         for name in ("work", "log"):
             (self._settings.data_directory / name).mkdir(parents=True, exist_ok=True)
-        for claim in self._claims.running():
-            self._again_or_fail(claim, "The service ended while it ran.")
+        for claim in self._claims.left():
+            self._settlement.again_or_fail(claim, "The service ended while it ran.")
         self._clear(self._claims.waiting())
         self._selector = selectors.DefaultSelector()
         self._wake_out, self._wake_in = os.pipe()
@@ -57,8 +65,10 @@ class Scheduler:
             os.set_blocking(end, False)
         self._selector.register(self._wake_out, selectors.EVENT_READ)
         self._stopping.clear()
+        self._leases.start()
         self._thread = threading.Thread(target=self._loop, name="scheduler", daemon=True)
         self._thread.start()
+        self.wake()
 
     def stop(self) -> None:
         """Kill the workers, let their computations wait for the next start, and end the thread."""
@@ -88,79 +98,113 @@ class Scheduler:
         while not self._stopping.is_set():
             try:
                 self._turn()
-            except Exception:
-                logger.exception("scheduler turn failed")
+            except Exception as error:
+                if isinstance(error, ServiceError) and error.retry_after_s is not None:
+                    logger.warning("scheduler turn failed", error=str(error))
+                else:
+                    logger.exception("scheduler turn failed")
                 self._stopping.wait(_HEARTBEAT_S)
-        for running in list(self._running.values()):
-            self._forget(running).kill()
-            self._claims.put_back(running.claim.id, "Waits: the service was stopped.", counted=False)
+        self._put_all_back()
+        self._leases.stop()
+
+    def _put_all_back(self) -> None:
+        """End all workers; without a database the leases end by themselves."""
+        running = list(self._running.values())
+        for one in running:
+            self._forget(one).kill()
+        with contextlib.suppress(ServiceError):
+            self._settle_all()
+            for one in running:
+                self._claims.put_back(one.claim, "Waits: the service was stopped.", counted=False)
 
     def _turn(self) -> None:
-        """Do one round."""
+        """Do one round; what needs no database comes first."""
+        self._listen_to_all()
+        self._enforce_deadline()
+        self._settle_all()
+        self._enforce_dismissals()
+        self._take_up()
         while len(self._running) < self._settings.workers and (claim := self._claims.claim()) is not None:
             self._begin(claim)
-        for key, _ in self._selector.select(_HEARTBEAT_S):
+
+    def _listen_to_all(self) -> None:
+        """Hear workers and wake-ups; wait for one if there is none."""
+        heard = self._selector.select(_HEARTBEAT_S)
+        self._enforce_leases()  # a worker may have ended because its lease did
+        for key, _ in heard:
             if key.fd == self._wake_out:
                 os.read(self._wake_out, 65536)
             elif key.fd in self._running:
                 self._listen(self._running[key.fd])
-        self._enforce()
 
     def _begin(self, claim: Claim) -> None:
         """Start a worker for a claim."""
-        workspace = self._settings.data_directory / "work" / claim.id
-        log = self._settings.data_directory / "log" / f"{claim.id}.log"
+        workspace, log = self._workspace(claim), self._settings.data_directory / "log" / f"{claim.id}.log"
         try:
-            entry = self._registry[claim.process].entry
             workspace.mkdir(parents=True, exist_ok=True)
-            data, memory_mb = self._settings.data_directory, _memory_mb(self._settings)
-            order = WorkOrder(entry, claim.inputs, claim.key, workspace, data, memory_mb)
-            worker = Worker(order, log)
+            worker = Worker(self._order(claim, workspace), log)
         except Exception:
             reference = uuid.uuid4().hex[:12]
             logger.exception("no worker could be started", computation=claim.id, reference=reference)
             text = f"No worker could be started. The log has the details under {reference}."
-            self._claims.fail(claim.id, text, reference=reference)
+            self._claims.fail(claim, text, reference=reference)
             return
+        self._leases.hold(claim, worker.beat)
         self._running[worker.channel] = _Running(claim, worker, log)
         self._selector.register(worker.channel, selectors.EVENT_READ)
         logger.info("worker started", computation=claim.id, process=claim.process, pid=worker.pid)
+
+    def _order(self, claim: Claim, workspace: Path) -> WorkOrder:
+        """Return the order of a claim."""
+        return WorkOrder(
+            entry=self._registry[claim.process].entry,
+            inputs=claim.inputs,
+            key=claim.key,
+            workspace=workspace,
+            data_directory=self._settings.data_directory,
+            memory_limit_mb=_memory_mb(self._settings),
+            database_url=self._settings.database_address,
+            lease_s=self._settings.lease_s,
+        )
+
+    def _workspace(self, claim: Claim) -> Path:
+        """Directory of a computation."""
+        return self._settings.data_directory / "work" / claim.id
 
     def _listen(self, running: _Running) -> None:
         """Note progress; take the outcome when the channel ends."""
         steps, ended = running.worker.listen()
         process = self._registry[running.claim.process]
-        if steps and not ended:
-            stage, fraction = steps[-1]
-            self._claims.progress(running.claim.id, stage, fraction, process.overall(stage, fraction))
         if ended:
-            self._settle(running.claim, self._forget(running).finish(), running.log)
+            self._end(running, self._forget(running, keep_lease=True).finish())
+        elif steps:
+            stage, fraction = steps[-1]
+            self._claims.progress(running.claim, stage, fraction, process.overall(stage, fraction))
 
-    def _forget(self, running: _Running) -> Worker:
+    def _end(self, running: _Running, outcome: Outcome) -> None:
+        """Let an attempt be settled; its lease is held until then."""
+        self._unsettled.append(Ended(running.claim, outcome, self._workspace(running.claim), running.log))
+
+    def _forget(self, running: _Running, *, keep_lease: bool = False) -> Worker:
         """Stop listening to a worker."""
         self._selector.unregister(running.worker.channel)
         del self._running[running.worker.channel]
+        if not keep_lease:
+            self._leases.drop(running.claim)
         return running.worker
 
-    def _settle(self, claim: Claim, outcome: Outcome, log: Path) -> None:
-        """Store what was made, or note why there is nothing."""
-        try:
-            if outcome.died:
-                self._again_or_fail(claim, outcome.failure)
-            elif outcome.unexpected:
-                reference = uuid.uuid4().hex[:12]
-                logger.error("worker failed", computation=claim.id, reference=reference, log=str(log))
-                text = f"Something failed that should not. The log has the details under {reference}."
-                self._claims.fail(claim.id, text, reference=reference)
-            elif outcome.failure:
-                self._claims.fail(claim.id, outcome.failure, outcome.faults)
-            else:
-                for product in outcome.products:
-                    self._store.put(product.key, product.kind, product.file)
-                self._claims.succeed(claim.id)
-        finally:
-            if not outcome.died or claim.attempts >= self._settings.attempts:
-                shutil.rmtree(self._settings.data_directory / "work" / claim.id, ignore_errors=True)
+    def _settle_all(self) -> None:
+        """Settle what has ended, in its turn; what the database or the store do not take waits for them."""
+        while self._unsettled:
+            ended = self._unsettled[0]
+            try:
+                self._settlement.settle(ended)
+            except ServiceError as error:
+                if error.retry_after_s is not None:
+                    raise
+                logger.exception("outcome could not be settled", computation=ended.claim.id)
+            self._unsettled.pop(0)
+            self._leases.drop(ended.claim)
 
     def _clear(self, waiting: set[str]) -> None:
         """Remove the workspaces of all but those that wait: they may go on from what is there."""
@@ -168,26 +212,37 @@ class Scheduler:
             if workspace.name not in waiting:
                 shutil.rmtree(workspace, ignore_errors=True)
 
-    def _again_or_fail(self, claim: Claim, reason: str) -> None:
-        """Give work that died another attempt, as long as there are any."""
-        most = self._settings.attempts
-        if claim.attempts < most:
-            self._claims.put_back(
-                claim.id, f"{reason} Waits for attempt {claim.attempts + 1} of {most}.", counted=True
-            )
-        else:
-            self._claims.fail(claim.id, f"{reason} That was attempt {claim.attempts} of {most}.")
+    def _take_up(self) -> None:
+        """Take up what dead schedulers hold, now and then."""
+        if time.monotonic() - self._looked_at < self._settings.lease_s / RENEWALS:
+            return
+        for claim in self._claims.take_up():
+            self._settlement.again_or_fail(claim, "The scheduler that ran it was lost.")
+        self._looked_at = time.monotonic()
 
-    def _enforce(self) -> None:
-        """End workers that are past the deadline or that nobody wants."""
-        unwanted = self._claims.dismissed({running.claim.id for running in self._running.values()})
+    def _enforce_leases(self) -> None:
+        """End workers whose lease lapsed: by now another scheduler may run their computations."""
         for running in list(self._running.values()):
-            late = running.worker.age > self._settings.deadline_s
-            if late or running.claim.id in unwanted:
+            if self._leases.lapsed(running.claim):
                 self._forget(running).kill()
-                shutil.rmtree(self._settings.data_directory / "work" / running.claim.id, ignore_errors=True)
-            if late:
-                self._claims.fail(running.claim.id, _too_late(self._settings.deadline_s))
+                logger.warning("lease lost", computation=running.claim.id)
+                with contextlib.suppress(ServiceError):
+                    self._claims.put_back(running.claim, "Waits: the database was lost.", counted=False)
+
+    def _enforce_deadline(self) -> None:
+        """End workers that are past the deadline."""
+        for running in list(self._running.values()):
+            if running.worker.age > self._settings.deadline_s:
+                self._forget(running, keep_lease=True).kill()
+                self._end(running, Outcome(failure=_too_late(self._settings.deadline_s)))
+
+    def _enforce_dismissals(self) -> None:
+        """End workers of computations that nobody wants, or that another scheduler has."""
+        held = self._claims.held([running.claim for running in self._running.values()])
+        for running in list(self._running.values()):
+            if running.claim.id not in held:
+                self._forget(running).kill()
+                shutil.rmtree(self._workspace(running.claim), ignore_errors=True)
 
 
 def _memory_mb(settings: Settings) -> int:

@@ -11,7 +11,7 @@ from sqlalchemy import Connection, Engine, func, insert, select, tuple_, update
 
 from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, QueueFull
-from service.store import now, reading, writing
+from service.store import now, reading, retried, writing
 
 _ENDED = ("successful", "failed", "dismissed")
 
@@ -57,16 +57,23 @@ class Submissions:
         QueueFull
             New work, and as many computations wait as the limit allows.
         """
-        with writing(self._engine) as connection:
+        identifier = str(uuid.uuid4())
+        self._submit(identifier, process, key, inputs, stored)
+        return self.find(identifier)
+
+    @retried
+    def _submit(self, identifier: str, process: str, key: str, inputs: dict[str, Any], stored: bool) -> None:
+        """Enter a job of this identifier, unless it is in already."""
+        with writing(self._engine, in_turn=True) as connection:
+            if connection.execute(select(jobs.c.id).where(jobs.c.id == identifier)).first() is not None:
+                return
             computation = _shared(connection, key, stored)
             if computation is None:
                 if not stored:
                     self._refuse_if_full(connection)
                 computation = _enter(connection, process, key, inputs, stored)
-            identifier = str(uuid.uuid4())
             row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
             connection.execute(insert(jobs).values(**row))
-        return self.find(identifier)
 
     def _refuse_if_full(self, connection: Connection) -> None:
         """Raise if the queue is at its limit."""
@@ -74,6 +81,7 @@ class Submissions:
         if connection.execute(count).scalar_one() >= self._queue_limit:
             raise QueueFull(f"{self._queue_limit} computations wait already. Try again in a while.")
 
+    @retried
     def find(self, identifier: str) -> Job:
         """Return a job.
 
@@ -82,16 +90,21 @@ class Submissions:
         NoSuchJob
             There is none of this identifier.
         """
-        with reading(self._engine) as connection:
-            row = connection.execute(_jobs().where(jobs.c.id == identifier)).one_or_none()
+        row = None
+        if _is_identifier(identifier):
+            with reading(self._engine) as connection:
+                row = connection.execute(_jobs().where(jobs.c.id == identifier)).one_or_none()
         if row is None:
             raise NoSuchJob(f"There is no job {identifier!r}.")
         return _job(row)
 
+    @retried
     def page(self, limit: int, after: str | None = None) -> list[Job]:
         """Return up to `limit` jobs, the newest first, those older than the job `after`."""
         statement = _jobs().order_by(jobs.c.created.desc(), jobs.c.id.desc()).limit(limit)
         if after is not None:
+            if not _is_identifier(after):
+                return []
             created = select(jobs.c.created).where(jobs.c.id == after).scalar_subquery()
             statement = statement.where(tuple_(jobs.c.created, jobs.c.id) < tuple_(created, after))
         with reading(self._engine) as connection:
@@ -100,22 +113,36 @@ class Submissions:
     def dismiss(self, identifier: str) -> Job:
         """Dismiss one caller's job, unless it ended; the work goes on while other jobs share it."""
         job = self.find(identifier)
-        if job.ended:
-            return job
-        with writing(self._engine) as connection:
+        if not job.ended:
+            self._dismiss(identifier)
+        return self.find(identifier)
+
+    @retried
+    def _dismiss(self, identifier: str) -> None:
+        """Dismiss a job, and its computation if no other wants that."""
+        with writing(self._engine, in_turn=True) as connection:
             mine = jobs.c.id == identifier
-            connection.execute(update(jobs).where(mine).values(dismissed=now()))
+            undismissed = jobs.c.dismissed.is_(None)
+            connection.execute(update(jobs).where(mine, undismissed).values(dismissed=now()))
             owner = select(jobs.c.computation_id).where(mine).scalar_subquery()
             others = select(jobs.c.id).where(jobs.c.computation_id == owner, jobs.c.dismissed.is_(None))
             if connection.execute(others.limit(1)).first() is None:
                 _abandon(connection, owner)
-        return self.find(identifier)
 
+    @retried
     def counts(self) -> dict[str, int]:
         """Return how many computations are in each state."""
         statement = select(computations.c.state, func.count()).group_by(computations.c.state)
         with reading(self._engine) as connection:
             return {row[0]: row[1] for row in connection.execute(statement)}
+
+
+def _is_identifier(text: str) -> bool:
+    """Whether `text` can be the identifier of a job; a database need not take all others."""
+    try:
+        return str(uuid.UUID(text)) == text
+    except ValueError:
+        return False
 
 
 def _shared(connection: Connection, key: str, stored: bool) -> str | None:

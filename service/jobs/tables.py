@@ -6,6 +6,8 @@ from sqlalchemy import Column, Float, ForeignKey, Index, Integer, String, Table,
 
 from service.store.database import metadata
 
+_LIVE = text("state IN ('accepted', 'running')")
+
 computations = Table(
     "computation",
     metadata,
@@ -25,6 +27,9 @@ computations = Table(
     Column("started", String),
     Column("finished", String),
     Column("updated", String, nullable=False),
+    Column("owner", String, nullable=False, default=""),
+    Column("lease", String, nullable=False, default=""),
+    Column("leased_until", Float, nullable=False, default=0.0),
 )
 
 # Single flight: at most one computation of a key waits or runs.
@@ -32,8 +37,10 @@ Index(
     "computation_in_flight",
     computations.c.key,
     unique=True,
-    sqlite_where=text("state IN ('accepted', 'running')"),
+    sqlite_where=_LIVE,
+    postgresql_where=_LIVE,
 )
+Index("computation_by_lease", computations.c.lease)
 Index("computation_by_state", computations.c.state, computations.c.created)
 
 jobs = Table(

@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,7 @@ class Worker:
         self.started = time.monotonic()
         self._outcome: Outcome | None = None
         self._rest = b""
+        self._giving = threading.Lock()
         self.channel, theirs = os.pipe()
         os.set_blocking(self.channel, False)
         try:
@@ -63,6 +65,7 @@ class Worker:
         with contextlib.suppress(BrokenPipeError):
             stream.write(order.line())
             stream.flush()
+        os.set_blocking(stream.fileno(), False)
 
     @property
     def pid(self) -> int:
@@ -73,6 +76,12 @@ class Worker:
     def age(self) -> float:
         """Seconds since the start."""
         return time.monotonic() - self.started
+
+    def beat(self) -> None:
+        """Tell the child that its lease was renewed; it ends itself if it does not hear of that in time."""
+        with self._giving, contextlib.suppress(BrokenPipeError, BlockingIOError):
+            if self._process.stdin is not None and not self._process.stdin.closed:
+                os.write(self._process.stdin.fileno(), b".")
 
     def listen(self) -> tuple[list[tuple[str, float]], bool]:
         """Return the progress since the last call, and whether the child closed its channel."""
@@ -124,7 +133,7 @@ class Worker:
                 os.killpg(self.pid, signal.SIGKILL)
             self._process.wait()
         if self._process.stdin is not None:
-            with contextlib.suppress(BrokenPipeError):
+            with self._giving, contextlib.suppress(BrokenPipeError):
                 self._process.stdin.close()
         if self.channel >= 0:
             os.close(self.channel)

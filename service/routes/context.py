@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from fastapi import Depends, Request
+from sqlalchemy import Engine
 
+from service.jobs.elsewhere import WorkElsewhere
 from service.jobs.live_desk import LiveDesk
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
@@ -23,10 +25,15 @@ class Context:
     settings: Settings
     registry: Registry
     submissions: Submissions
-    scheduler: Scheduler
+    scheduler: Scheduler | WorkElsewhere
     store: ResultStore
     live: LiveDesk
+    engine: Engine
     databases: OpenDatabases = field(default_factory=OpenDatabases)
+
+    def close(self) -> None:
+        """Close what is open; it opens again when it is needed."""
+        self.engine.dispose()
 
 
 def context_of(request: Request) -> Context:

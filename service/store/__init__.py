@@ -1,7 +1,9 @@
-"""What is kept: one SQLite file and content-addressed result files."""
+"""What is kept: a database, and content-addressed result files."""
 
 from service.store.database import now, open_database, reading, writing
-from service.store.directory import DirectoryLock
+from service.store.dialects import dialect_of
+from service.store.directory import DirectoryLock, identity_of
+from service.store.outages import retried
 from service.store.results import DATABASE_FILE, RESULTS_DIRECTORY, ResultStore, StoredResult, stored_results
 
 __all__ = [
@@ -10,9 +12,12 @@ __all__ = [
     "DirectoryLock",
     "ResultStore",
     "StoredResult",
+    "dialect_of",
+    "identity_of",
     "now",
     "open_database",
     "reading",
+    "retried",
     "stored_results",
     "writing",
 ]

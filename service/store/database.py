@@ -1,4 +1,4 @@
-"""The SQLite file: write-ahead log, synchronous FULL, immediate write transactions."""
+"""The database: a SQLite file or a PostgreSQL server, by URL."""
 
 from __future__ import annotations
 
@@ -6,55 +6,83 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
 
-from sqlalchemy import Connection, Engine, MetaData, NullPool, create_engine, event
+from sqlalchemy import URL, Connection, Engine, MetaData, make_url
+from sqlalchemy.exc import ArgumentError
+
+from service.problems import BadInput
+from service.store.dialects import dialect_of
+from service.store.schema import prepare_schema
 
 metadata = MetaData()
 
-_PRAGMAS = (
-    "PRAGMA journal_mode=WAL",
-    "PRAGMA synchronous=FULL",
-    "PRAGMA busy_timeout=10000",
-    "PRAGMA foreign_keys=ON",
-)
+_DRIVERS = {"sqlite": "sqlite", "postgresql": "postgresql+psycopg"}
 
 
-def open_database(file: Path) -> Engine:
-    """Return an engine on the SQLite file, made with its tables if it does not exist."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    # no pool: a connection kept for a thread that has ended is closed by nobody, and opening one costs little
-    engine = create_engine(f"sqlite:///{file}", poolclass=NullPool)
-    event.listen(engine, "connect", _prepare)
-    event.listen(engine, "begin", _begin)
-    with writing(engine) as connection:
-        metadata.create_all(connection)
+def open_database(where: Path | str, *, pooled: bool = True) -> Engine:
+    """Return an engine on the database, its schema of this program.
+
+    Parameters
+    ----------
+    where : Path or str
+        A SQLite file, made if it does not exist, or a URL: ``sqlite:///FILE`` or ``postgresql://...``.
+    pooled : bool
+        Keep connections for the next transaction, where opening one costs much.
+
+    Raises
+    ------
+    BadInput
+        The URL is none, its driver is not installed, or the schema is another program's: a SQLite file is
+        brought up to date by this call, a server by ``loa database upgrade``.
+    DatabaseUnavailable
+        The server does not answer.
+    """
+    engine = database_engine(where, pooled=pooled)
+    try:
+        prepare_schema(engine)
+    except BaseException:
+        engine.dispose()
+        raise
     return engine
 
 
-def _prepare(connection: Any, _record: object) -> None:
-    """Set a new connection up: we begin transactions ourselves (see `_begin`)."""
-    connection.isolation_level = None
-    for pragma in _PRAGMAS:
-        connection.execute(pragma)
+def database_engine(where: Path | str, *, pooled: bool = True) -> Engine:
+    """Return an engine on the database, whatever its schema; raises `BadInput` as `open_database`."""
+    url = _file_url(where) if isinstance(where, Path) else _url(where)
+    return dialect_of(url).engine(url, pooled=pooled)
 
 
-def _begin(connection: Connection) -> None:
-    """Begin; a writer takes the lock at once, since a lock upgrade in mid-transaction can only fail."""
-    immediate = connection.get_execution_options().get("immediate", False)
-    connection.exec_driver_sql("BEGIN IMMEDIATE" if immediate else "BEGIN")
+def _file_url(file: Path) -> URL:
+    """URL of a SQLite file, whatever characters its name has."""
+    return URL.create("sqlite", database=str(file))
+
+
+def _url(text: str) -> URL:
+    """Read a URL; the driver is ours to choose."""
+    try:
+        url = make_url(text.replace("postgres://", "postgresql://", 1))
+        return url.set(drivername=_DRIVERS[url.get_backend_name()])
+    except (ArgumentError, KeyError, ValueError):
+        bound = "a URL such as sqlite:////srv/loa.sqlite3 or postgresql://user:password@host/name"
+        raise BadInput.of("database_url", "(not shown)", bound) from None
 
 
 @contextmanager
-def writing(engine: Engine) -> Iterator[Connection]:
-    """Open a transaction that may write."""
+def writing(engine: Engine, *, in_turn: bool = False) -> Iterator[Connection]:
+    """Open a transaction that may write.
+
+    With `in_turn` it is alone among all that take turns: what it has read stays so until it ends. Others
+    rely on the rows they lock.
+    """
     with engine.execution_options(immediate=True).begin() as connection:
+        if in_turn:
+            dialect_of(connection).take_turn(connection)
         yield connection
 
 
 @contextmanager
 def reading(engine: Engine) -> Iterator[Connection]:
-    """Open a transaction that reads one consistent state."""
+    """Open a transaction that reads."""
     with engine.begin() as connection:
         yield connection
 

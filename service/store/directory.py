@@ -1,16 +1,20 @@
-"""One service per data directory."""
+"""One scheduler per data directory, and its name."""
 
 from __future__ import annotations
 
 import fcntl
 import os
+import uuid
 from pathlib import Path
 
 from service.problems import BadInput
 
 
 class DirectoryLock:
-    """An advisory lock on a data directory; the system lifts it when the process dies, however it dies."""
+    """An advisory lock on a data directory; the system lifts it when the process dies, however it dies.
+
+    A process that runs jobs takes it: workspaces, logs and memory are one scheduler's. Others need none.
+    """
 
     def __init__(self, directory: Path) -> None:
         self._directory = directory
@@ -53,3 +57,14 @@ class DirectoryLock:
         if self._descriptor is not None:
             os.close(self._descriptor)
             self._descriptor = None
+
+
+def identity_of(directory: Path) -> str:
+    """Return the name of whoever holds the lock of a data directory: the same after a restart."""
+    directory.mkdir(parents=True, exist_ok=True)
+    file = directory / "service.id"
+    if not file.is_file():
+        draft = directory / f".service.id.{os.getpid()}"
+        draft.write_text(uuid.uuid4().hex, encoding="ascii")
+        draft.replace(file)
+    return file.read_text(encoding="ascii").strip()

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from sqlalchemy import Column, Engine, Integer, String, Table, delete, select
-from sqlalchemy.dialects.sqlite import insert
+from sqlalchemy import BigInteger, Column, Engine, String, Table, delete, select
 
 from service.problems import DamagedFile, NotFound
 from service.schemas.result_kinds import suffix_of
 from service.store.database import metadata, now, open_database, reading, writing
+from service.store.dialects import dialect_of
+from service.store.outages import retried
 
 DATABASE_FILE = "service.sqlite3"
 RESULTS_DIRECTORY = "results"
@@ -23,7 +25,7 @@ results = Table(
     Column("key", String, primary_key=True),
     Column("kind", String, primary_key=True),
     Column("sha256", String, nullable=False),
-    Column("size", Integer, nullable=False),
+    Column("size", BigInteger, nullable=False),
     Column("created", String, nullable=False),
 )
 
@@ -67,18 +69,22 @@ class ResultStore:
         _sync(file)
         file.replace(stored.path)
         _sync(stored.path.parent)
-        row = {"key": key, "kind": kind, "sha256": stored.sha256, "size": stored.size, "created": now()}
-        with writing(self._engine) as connection:
-            statement = insert(results).values(**row)
-            connection.execute(
-                statement.on_conflict_do_update(
-                    index_elements=["key", "kind"], set_={**row, "created": now()}
-                )
-            )
+        self._enter(stored)
         return stored
 
+    @retried
+    def _enter(self, stored: StoredResult) -> None:
+        """Enter a result into the index."""
+        row = {"sha256": stored.sha256, "size": stored.size, "created": now()}
+        statement = dialect_of(self._engine).insert(results).values(key=stored.key, kind=stored.kind, **row)
+        with writing(self._engine) as connection:
+            connection.execute(statement.on_conflict_do_update(index_elements=["key", "kind"], set_=row))
+
+    @retried
     def find(self, key: str, kind: str) -> StoredResult | None:
         """Return the index's line, None if there is none or its file is gone."""
+        if not _is_key(key):
+            return None
         with reading(self._engine) as connection:
             statement = select(results).where(results.c.key == key, results.c.kind == kind)
             row = connection.execute(statement).one_or_none()
@@ -105,27 +111,30 @@ class ResultStore:
             )
         return stored
 
+    @retried
     def _set_aside(self, stored: StoredResult) -> None:
         """Take a damaged file out of service."""
         with writing(self._engine) as connection:
             connection.execute(
                 delete(results).where(results.c.key == stored.key, results.c.kind == stored.kind)
             )
-        stored.path.replace(stored.path.with_suffix(".damaged"))
+        with contextlib.suppress(FileNotFoundError):  # another was quicker
+            stored.path.replace(stored.path.with_suffix(".damaged"))
 
     def _path(self, key: str, kind: str) -> Path:
-        """File of a key; a key that is no hexadecimal digest names no file."""
-        name = (
-            key
-            if len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
-            else "none"
-        )
-        return self._directory / kind / name[:2] / f"{name}{suffix_of(kind)}"
+        """File of a key."""
+        return self._directory / kind / key[:2] / f"{key}{suffix_of(kind)}"
 
 
-def stored_results(data_directory: Path) -> ResultStore:
-    """Return the store in a data directory."""
-    return ResultStore(open_database(data_directory / DATABASE_FILE), data_directory / RESULTS_DIRECTORY)
+def stored_results(data_directory: Path, database_url: str | None = None) -> ResultStore:
+    """Return the store in a data directory, its index in that directory or in the database at a URL."""
+    engine = open_database(database_url or data_directory / DATABASE_FILE, pooled=False)
+    return ResultStore(engine, data_directory / RESULTS_DIRECTORY)
+
+
+def _is_key(key: str) -> bool:
+    """Whether `key` is a SHA-256 in hexadecimal."""
+    return len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
 
 
 def digest_of(file: Path) -> str:

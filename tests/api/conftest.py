@@ -8,6 +8,9 @@ from pathlib import Path
 
 import pytest
 import structlog.testing
+from postgres_server import database_url, postgres
+
+__all__ = ["database_url", "postgres"]
 
 STAND_INS = str(Path(__file__).resolve().parents[1] / "stand_ins")
 

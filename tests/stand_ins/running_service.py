@@ -8,12 +8,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from sqlalchemy import Engine
+
 from service.jobs.claims import Claims
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Job, Submissions
 from service.settings import Settings
-from service.store import ResultStore, open_database
+from service.store import ResultStore, identity_of, open_database
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,7 @@ class Bench:
     claims: Claims
     store: ResultStore
     scheduler: Scheduler
+    engine: Engine
 
     def submit(self, **wish: Any) -> Job:
         """Enter a wish as the execution route does."""
@@ -40,6 +43,12 @@ class Bench:
         until(lambda: self.submissions.find(job.id).ended)
         return self.submissions.find(job.id)
 
+    def close(self) -> None:
+        """Stop what runs and close what is open."""
+        if self.scheduler.alive:
+            self.scheduler.stop()
+        self.engine.dispose()
+
     def starts(self, job: Job) -> list[str]:
         """Return one line per time the work was started."""
         file = self.settings.data_directory / f"started_{job.key[:8]}"
@@ -54,13 +63,14 @@ class Bench:
         return self.scheduler._registry
 
 
-def bench(directory: Path, registry: Registry, **settings: Any) -> Bench:
+def bench(directory: Path, registry: Registry, results: Path | None = None, **settings: Any) -> Bench:
     """Return the machinery on a directory; its scheduler is not started."""
     chosen = Settings(data_directory=directory, **settings)
-    engine = open_database(directory / "service.sqlite3")
-    store, claims = ResultStore(engine, directory / "results"), Claims(engine)
+    engine = open_database(chosen.database_address or directory / "service.sqlite3")
+    store = ResultStore(engine, results or directory / "results")
+    claims = Claims(engine, identity_of(directory), chosen.lease_s)
     scheduler = Scheduler(chosen, registry, claims, store)
-    return Bench(chosen, Submissions(engine, chosen.queue_limit), claims, store, scheduler)
+    return Bench(chosen, Submissions(engine, chosen.queue_limit), claims, store, scheduler, engine)
 
 
 def until(condition: Callable[[], bool], seconds: float = 30.0) -> None:

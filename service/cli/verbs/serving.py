@@ -22,11 +22,28 @@ def serve(
         Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
     ] = None,
     workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
+    no_work: Annotated[
+        bool, typer.Option("--no-work", help="Only serve; jobs are run by loa work on the same database.")
+    ] = False,
 ) -> None:
     """Serve jobs and results over HTTP on this machine, until stopped."""
     from service.cli.serve import run_serve  # noqa: PLC0415 (start-up time)
 
-    run_serve(host=host, port=port, data_directory=data_directory, workers=workers)
+    run_serve(host=host, port=port, data_directory=data_directory, workers=workers, works=not no_work)
+
+
+@verbs.command(epilog="Example: LOA_DATABASE_URL=postgresql://loa@db/loa loa work --workers 4")
+@guarded
+def work(
+    data_directory: Annotated[
+        Path | None, typer.Option(help="Directory of workspaces, one for each loa work [LOA_DATA_DIRECTORY].")
+    ] = None,
+    workers: Annotated[int | None, typer.Option(help="Jobs at the same time [LOA_WORKERS].")] = None,
+) -> None:
+    """Run the jobs of a database that others serve, until stopped."""
+    from service.cli.work import run_work  # noqa: PLC0415 (start-up time)
+
+    run_work(data_directory=data_directory, workers=workers)
 
 
 @verbs.command(epilog="Example: loa submit examples/palermo_spur_20_20.toml --wait -o ste.nc")

@@ -18,13 +18,14 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from service.hardcases.scene import TIME_LIMIT
 from service.jobs.catalogue import ANALYZE, default_registry
-from service.jobs.claims import Claims
+from service.jobs.elsewhere import WorkElsewhere
+from service.jobs.machinery import job_machinery
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Job, Submissions
 from service.schemas import Case, validated
 from service.schemas.process_inputs import AnalyzeInputs
 from service.settings import Settings
-from service.store import DATABASE_FILE, RESULTS_DIRECTORY, ResultStore, open_database
+from service.store import ResultStore
 
 LOOK_S = 0.02
 """Between two looks at a job: a mesher needs several times as long to load."""
@@ -49,7 +50,7 @@ class JobService:
     directory: Path
     submissions: Submissions
     store: ResultStore
-    scheduler: Scheduler
+    scheduler: Scheduler | WorkElsewhere
     log: list[Any]
 
     def submit(self, case: dict[str, Any]) -> Job:
@@ -118,7 +119,5 @@ def fresh_service(**settings: Any) -> Iterator[JobService]:
 def _service(directory: Path, log: list[Any], settings: dict[str, Any]) -> JobService:
     """Put the machinery together; it is not started."""
     chosen = Settings(data_directory=directory, workers=1, **settings)
-    engine = open_database(directory / DATABASE_FILE)
-    store = ResultStore(engine, directory / RESULTS_DIRECTORY)
-    scheduler = Scheduler(chosen, default_registry(), Claims(engine), store)
-    return JobService(directory, Submissions(engine, chosen.queue_limit), store, scheduler, log)
+    parts = job_machinery(chosen, default_registry())
+    return JobService(directory, parts.submissions, parts.store, parts.scheduler, log)

@@ -21,8 +21,7 @@ def machine(tmp_path: Path) -> Iterator[Bench]:
     found = bench(tmp_path, REGISTRY, workers=2)
     found.scheduler.start()
     yield found
-    if found.scheduler.alive:
-        found.scheduler.stop()
+    found.close()
 
 
 def grandchild(machine: Bench, key: str) -> int:
@@ -191,8 +190,9 @@ def test_what_a_dead_service_left_running_is_taken_up_again(tmp_path: Path) -> N
 def test_a_service_that_dies_with_its_job_again_and_again_gives_it_up(tmp_path: Path) -> None:
     dead = bench(tmp_path, REGISTRY)
     job = dead.submit()
-    dead.claims.claim()
-    dead.claims.put_back(dead.claims.running()[0].id, "died", counted=True)
+    claim = dead.claims.claim()
+    assert claim is not None
+    dead.claims.put_back(claim, "died", counted=True)
     dead.claims.claim()
     alive = dead.again()
     alive.scheduler.start()

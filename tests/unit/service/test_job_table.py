@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import uuid
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -13,9 +15,11 @@ from service.problems import NoSuchJob, QueueFull
 
 
 @pytest.fixture
-def machine(tmp_path: Path) -> Bench:
-    """The table without a running scheduler."""
-    return bench(tmp_path, REGISTRY, queue_limit=3)
+def machine(tmp_path: Path, database_url: str | None) -> Iterator[Bench]:
+    """The table without a running scheduler, on each database."""
+    found = bench(tmp_path, REGISTRY, queue_limit=3, database_url=database_url)
+    yield found
+    found.close()
 
 
 def test_equal_work_is_one_computation_for_many_jobs(machine: Bench) -> None:
@@ -66,7 +70,7 @@ def test_failed_work_may_be_tried_anew(machine: Bench) -> None:
     first = machine.submit(text="a")
     claim = machine.claims.claim()
     assert claim is not None
-    machine.claims.fail(claim.id, "no mesh")
+    machine.claims.fail(claim, "no mesh")
     assert machine.submissions.find(first.id).status == "failed"
     assert machine.submit(text="a").status == "accepted"
     assert machine.submissions.find(first.id).status == "failed"
@@ -77,10 +81,10 @@ def test_dismissed_work_cannot_end_otherwise(machine: Bench) -> None:
     claim = machine.claims.claim()
     assert claim is not None
     machine.submissions.dismiss(job.id)
-    machine.claims.progress(claim.id, "first", 1.0, 1.0)
-    machine.claims.succeed(claim.id)
-    machine.claims.put_back(claim.id, "again", counted=True)
-    assert machine.claims.dismissed([claim.id, "other"]) == {claim.id}
+    machine.claims.progress(claim, "first", 1.0, 1.0)
+    machine.claims.succeed(claim)
+    machine.claims.put_back(claim, "again", counted=True)
+    assert machine.claims.held([claim]) == machine.claims.renew([claim]) == set()
     assert machine.submissions.find(job.id).status == "dismissed"
     assert machine.claims.claim() is None
 
@@ -89,7 +93,7 @@ def test_ended_jobs_stay_as_they_are(machine: Bench) -> None:
     job = machine.submit(text="a")
     claim = machine.claims.claim()
     assert claim is not None
-    machine.claims.succeed(claim.id)
+    machine.claims.succeed(claim)
     assert machine.submissions.dismiss(job.id).status == "successful"
 
 
@@ -109,9 +113,14 @@ def test_pages_hold_every_job_once_the_newest_first(machine: Bench) -> None:
 def test_an_unknown_job_is_said_to_be_unknown(machine: Bench) -> None:
     with pytest.raises(NoSuchJob, match="'nothing'"):
         machine.submissions.find("nothing")
+    for odd in ("\x00", "\ud800", "a" * 36, str(uuid.uuid4())):
+        with pytest.raises(NoSuchJob):
+            machine.submissions.find(odd)
+        assert machine.submissions.page(3, odd) == []
 
 
 def test_jobs_survive_a_restart(machine: Bench, tmp_path: Path) -> None:
     job = machine.submit(text="durable")
-    again = bench(tmp_path, REGISTRY)
+    again = bench(tmp_path, REGISTRY, database_url=machine.settings.database_address)
     assert again.submissions.find(job.id) == machine.submissions.find(job.id)
+    again.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -15,9 +16,11 @@ KEY = hashlib.sha256(b"input").hexdigest()
 
 
 @pytest.fixture
-def store(tmp_path: Path) -> ResultStore:
-    """An empty store."""
-    return ResultStore(open_database(tmp_path / "index.sqlite3"), tmp_path / "results")
+def store(tmp_path: Path, database_url: str | None) -> Iterator[ResultStore]:
+    """An empty store, its index in each database."""
+    engine = open_database(database_url or tmp_path / "index.sqlite3")
+    yield ResultStore(engine, tmp_path / "results")
+    engine.dispose()
 
 
 def put(store: ResultStore, tmp_path: Path, content: bytes, key: str = KEY) -> None:

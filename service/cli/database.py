@@ -1,0 +1,54 @@
+"""``loa database``."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import typer
+
+from service.cli.output import print_json
+from service.problems import EXIT_FAILED
+from service.settings import load_settings
+from service.store import DATABASE_FILE
+from service.store.database import database_engine
+from service.store.migrations import REVISIONS
+from service.store.schema import Schema, shown
+
+Json = dict[str, Any]
+
+
+def run_upgrade(*, as_json: bool, **given: object) -> None:
+    """Upgrade, and tell from which schema to which."""
+    schema, name = _schema(given)
+    before = schema.revision()
+    schema.upgrade()
+    facts: Json = {"database": name, "before": before, "schema": REVISIONS[-1]}
+    _tell(facts, f"{name}: {before or 'no tables'} -> {REVISIONS[-1]}", as_json=as_json)
+
+
+def run_status(*, as_json: bool, **given: object) -> None:
+    """Tell both schemas; fail if they differ."""
+    schema, name = _schema(given)
+    found, current = schema.revision(), REVISIONS[-1]
+    facts: Json = {"database": name, "schema": found, "program": current, "up_to_date": found == current}
+    state = "up to date" if found == current else f"this program needs {current}"
+    _tell(facts, f"{name}: {found or 'no tables'}, {state}", as_json=as_json)
+    if found != current:
+        raise typer.Exit(EXIT_FAILED)
+
+
+def _schema(given: dict[str, object]) -> tuple[Schema, str]:
+    """Return the schema of the database of the settings, and the database's name."""
+    settings = load_settings(**given)
+    engine = database_engine(
+        settings.database_address or settings.data_directory / DATABASE_FILE, pooled=False
+    )
+    return Schema(engine), shown(engine)
+
+
+def _tell(facts: Json, line: str, *, as_json: bool) -> None:
+    """Print for a program or for people."""
+    if as_json:
+        print_json(facts)
+    else:
+        typer.echo(line)

@@ -1,0 +1,19 @@
+"""A process that only serves: the work is done by schedulers elsewhere."""
+
+from __future__ import annotations
+
+
+class WorkElsewhere:
+    """Stands where the scheduler is in a process that works; others look at the table by themselves."""
+
+    alive = True
+    """Nothing here can be dead; whether others work shows in the figures of the table."""
+
+    def start(self) -> None:
+        """Do nothing."""
+
+    def stop(self) -> None:
+        """Do nothing."""
+
+    def wake(self) -> None:
+        """Do nothing: schedulers elsewhere look every half second."""

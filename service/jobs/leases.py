@@ -1,0 +1,109 @@
+"""Leases of a scheduler on its computations: renewed by a heartbeat, and heeded by whoever works under them.
+
+While a scheduler renews its leases nobody else takes up its computations. One that cannot (it died, was
+stopped, or lost the database) loses them: its workers end by themselves before the lease does, because what
+keeps them alive is the scheduler's word that it was renewed.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import structlog
+
+from service.jobs.claims import Claim, Claims
+from service.jobs.order import USABLE
+
+RENEWALS = 4
+"""Renewals in the time of one lease."""
+
+logger = structlog.get_logger(__name__)
+
+
+@dataclass(frozen=True)
+class _Held:
+    """A claim, the end of its lease on our own clock, and how its worker is told of renewals."""
+
+    claim: Claim
+    until: float
+    beat: Callable[[], None]
+
+
+class Leases:
+    """What one scheduler holds; renewed in a thread of its own, whatever the scheduler waits for.
+
+    Parameters
+    ----------
+    claims : Claims
+    lease_s : float
+        Duration of a lease.
+    """
+
+    def __init__(self, claims: Claims, lease_s: float) -> None:
+        self._claims, self._lease_s = claims, lease_s
+        self._held: dict[str, _Held] = {}
+        self._lock = threading.Lock()
+        self._stopping = threading.Event()
+        self._thread: threading.Thread | None = None
+
+    def start(self) -> None:
+        """Begin to renew."""
+        self._stopping.clear()
+        self._thread = threading.Thread(target=self._loop, name="leases", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Cease to renew, and hold nothing."""
+        self._stopping.set()
+        if self._thread is not None:
+            self._thread.join()
+        with self._lock:
+            self._held.clear()
+
+    def hold(self, claim: Claim, beat: Callable[[], None]) -> None:
+        """Renew the lease of a fresh claim from now on; `beat` is called after each renewal."""
+        with self._lock:
+            self._held[claim.lease] = _Held(claim, claim.asked + USABLE * self._lease_s, beat)
+
+    def drop(self, claim: Claim) -> None:
+        """Cease to renew the lease of a claim."""
+        with self._lock:
+            self._held.pop(claim.lease, None)
+
+    def lapsed(self, claim: Claim) -> bool:
+        """Whether the lease of a claim that was held ended, or is about to."""
+        with self._lock:
+            held = self._held.get(claim.lease)
+        return held is None or time.monotonic() > held.until
+
+    def _loop(self) -> None:
+        """Until stopped: renew."""
+        while not self._stopping.wait(self._lease_s / RENEWALS):
+            try:
+                self._renew()
+            except Exception as error:  # noqa: BLE001 (the next one may succeed; if none does, leases lapse)
+                logger.warning("leases not renewed", error=type(error).__name__)
+
+    def _renew(self) -> None:
+        """Renew all; a lease that is another's by now, or of work that ended, stays as it is."""
+        with self._lock:
+            held = list(self._held.values())
+        if not held:
+            return
+        asked = time.monotonic()
+        ours = self._claims.renew([one.claim for one in held])
+        usable = asked + USABLE * self._lease_s
+        for one in held:
+            if one.claim.id in ours and time.monotonic() < min(one.until, usable):
+                self._extend(one, usable)
+
+    def _extend(self, one: _Held, until: float) -> None:
+        """Note a renewal that came in time, and tell the worker."""
+        with self._lock:
+            if one.claim.lease not in self._held:
+                return
+            self._held[one.claim.lease] = _Held(one.claim, until, one.beat)
+        one.beat()

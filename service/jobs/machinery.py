@@ -1,0 +1,53 @@
+"""Job table, store and scheduler of one process, put together from its settings."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sqlalchemy import Engine
+
+from service.jobs.claims import Claims
+from service.jobs.elsewhere import WorkElsewhere
+from service.jobs.process import Registry
+from service.jobs.scheduler import Scheduler
+from service.jobs.submissions import Submissions
+from service.settings import Settings
+from service.store import DATABASE_FILE, RESULTS_DIRECTORY, ResultStore, identity_of, open_database
+
+
+@dataclass(frozen=True)
+class Machinery:
+    """What works on one database and one store.
+
+    Attributes
+    ----------
+    engine : Engine
+    store : ResultStore
+    submissions : Submissions
+    scheduler : Scheduler or WorkElsewhere
+        Not started.
+    """
+
+    engine: Engine
+    store: ResultStore
+    submissions: Submissions
+    scheduler: Scheduler | WorkElsewhere
+
+
+def job_machinery(settings: Settings, registry: Registry, *, works: bool = True) -> Machinery:
+    """Open the database and put the parts together; a process that `works` has locked its data directory.
+
+    Raises
+    ------
+    BadInput
+        The database is none, or its schema another program's.
+    DatabaseUnavailable
+        It does not answer.
+    """
+    engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
+    store = ResultStore(engine, settings.data_directory / RESULTS_DIRECTORY)
+    scheduler: Scheduler | WorkElsewhere = WorkElsewhere()
+    if works:
+        claims = Claims(engine, identity_of(settings.data_directory), settings.lease_s)
+        scheduler = Scheduler(settings, registry, claims, store)
+    return Machinery(engine, store, Submissions(engine, settings.queue_limit), scheduler)

@@ -1,0 +1,157 @@
+"""All that differs between SQLite and PostgreSQL."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, Protocol
+
+from sqlalchemy import URL, Connection, Engine, NullPool, Table, create_engine, event, func, select, text
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import TimeoutError as PoolTimeout
+
+from service.problems import BadInput
+
+_PRAGMAS = (
+    "PRAGMA journal_mode=WAL",
+    "PRAGMA synchronous=FULL",
+    "PRAGMA busy_timeout=10000",
+    "PRAGMA foreign_keys=ON",
+)
+_TURN = 0x6C6F61  # "loa": any number that all our processes know
+_CONNECT_TIMEOUT_S = 5
+_STALLED = "-c idle_in_transaction_session_timeout=30s"  # a stalled process must not hold rows for ever
+_POOL: Mapping[str, Any] = {"pool_size": 5, "max_overflow": 15, "pool_timeout": 5.0, "pool_pre_ping": True}
+
+
+class Dialect(Protocol):
+    """What the store and the job table ask of a database beyond SQL that all understand."""
+
+    upgrades_itself: bool
+
+    def engine(self, url: URL, *, pooled: bool) -> Engine:
+        """Return an engine; `pooled` keeps connections for the next transaction where that pays."""
+
+    def insert(self, table: Table) -> sqlite.Insert | postgresql.Insert:
+        """Return an insert that can say what happens on a conflict."""
+
+    def take_turn(self, connection: Connection) -> None:
+        """Let this transaction be the only one of those that take turns, until it ends."""
+
+    def clock(self, connection: Connection) -> float:
+        """Return the seconds since 1970 on the one clock that all users of the database read."""
+
+    def lost(self, error: DBAPIError) -> bool:
+        """Whether the database, not the statement, is why it failed: another attempt may succeed."""
+
+
+class SQLite:
+    """One file with a write-ahead log, synchronous FULL, and one writer at a time."""
+
+    upgrades_itself = True
+
+    def engine(self, url: URL, *, pooled: bool) -> Engine:
+        """Return an engine on the file."""
+        if url.database:
+            Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+        # no pool: a connection kept for a thread that has ended is closed by nobody, and opening one is cheap
+        engine = create_engine(url, poolclass=NullPool)
+        event.listen(engine, "connect", _prepare)
+        event.listen(engine, "begin", _begin)
+        return engine
+
+    def insert(self, table: Table) -> sqlite.Insert:
+        """Return SQLite's insert."""
+        return sqlite.insert(table)
+
+    def take_turn(self, connection: Connection) -> None:
+        """Do nothing: who writes is alone from the start (see `_begin`)."""
+
+    def clock(self, connection: Connection) -> float:
+        """Return the machine's time: all users are on it."""
+        return time.time()
+
+    def lost(self, error: DBAPIError) -> bool:
+        """Whether others held the file for too long."""
+        return any(word in str(error.orig) for word in ("locked", "busy"))
+
+
+def _prepare(connection: Any, _record: object) -> None:
+    """Set a new connection up: we begin transactions ourselves (see `_begin`)."""
+    connection.isolation_level = None
+    for pragma in _PRAGMAS:
+        connection.execute(pragma)
+
+
+def _begin(connection: Connection) -> None:
+    """Begin; a writer takes the lock at once, since a lock upgrade in mid-transaction can only fail."""
+    immediate = connection.get_execution_options().get("immediate", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if immediate else "BEGIN")
+
+
+class PostgreSQL:
+    """A server: many writers, read committed, rows and turns locked where it matters."""
+
+    upgrades_itself = False
+
+    def engine(self, url: URL, *, pooled: bool) -> Engine:
+        """Return an engine on the server; it is not spoken to yet.
+
+        Raises
+        ------
+        BadInput
+            The driver is not installed.
+        """
+        arguments = {
+            "connect_timeout": _CONNECT_TIMEOUT_S,
+            "application_name": "lineofaction",
+            "options": _STALLED,
+        }
+        pool: Mapping[str, Any] = _POOL if pooled else {"poolclass": NullPool}
+        try:
+            return create_engine(url, connect_args=arguments, **pool)
+        except ModuleNotFoundError:
+            shown = url.render_as_string(hide_password=True)
+            tip = "Install it: pip install 'lineofaction[postgres]'."
+            raise BadInput.of("database_url", shown, "one whose driver is installed", tip) from None
+
+    def insert(self, table: Table) -> postgresql.Insert:
+        """Return PostgreSQL's insert."""
+        return postgresql.insert(table)
+
+    def take_turn(self, connection: Connection) -> None:
+        """Wait for the lock that all who take turns need; the transaction's end gives it back."""
+        connection.execute(select(func.pg_advisory_xact_lock(_TURN)))
+
+    def clock(self, connection: Connection) -> float:
+        """Return the server's time."""
+        return float(connection.execute(text("SELECT extract(epoch FROM clock_timestamp())")).scalar_one())
+
+    def lost(self, error: DBAPIError) -> bool:
+        """Whether the connection broke or never was, or the server asks to try again.
+
+        Classes of SQLSTATE: 08 connection, 40 rolled back (deadlock), 53 out of resources, 57P server ends.
+        """
+        state = getattr(error.orig, "sqlstate", None)
+        if state is None:
+            return type(error.orig).__name__ in ("OperationalError", "InterfaceError", "ConnectionTimeout")
+        return error.connection_invalidated or state.startswith(("08", "40", "53", "57P"))
+
+
+_DIALECTS: Mapping[str, Dialect] = {"sqlite": SQLite(), "postgresql": PostgreSQL()}
+
+
+def dialect_of(database: Engine | Connection | URL) -> Dialect:
+    """Return what is particular to the database."""
+    if isinstance(database, URL):
+        return _DIALECTS[database.get_backend_name()]
+    return _DIALECTS[database.dialect.name]
+
+
+def is_lost(error: BaseException, database: Engine) -> bool:
+    """Whether `error` says that the database cannot be reached or asks to try again."""
+    if isinstance(error, DBAPIError):
+        return dialect_of(database).lost(error)
+    return isinstance(error, PoolTimeout)

@@ -1,0 +1,71 @@
+"""Steps that outlast a lost connection: tried again for a while, then refused for the caller to try later."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Concatenate, ParamSpec, Protocol, TypeVar, cast
+
+import structlog
+from sqlalchemy import Engine
+from sqlalchemy.exc import SQLAlchemyError
+from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt
+from tenacity.wait import wait_exponential, wait_random
+
+from service.problems import DatabaseUnavailable
+from service.store.dialects import is_lost
+
+_ATTEMPTS = 6
+_FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
+
+P = ParamSpec("P")
+R = TypeVar("R")
+logger = structlog.get_logger(__name__)
+
+
+class _OnDatabase(Protocol):
+    """What works on a database."""
+
+    _engine: Engine
+
+
+S = TypeVar("S", bound=_OnDatabase)
+
+
+def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P], R]:
+    """Let a method outlast a lost connection.
+
+    The method may be run again after its transaction was committed, when the answer to that was lost: a
+    second run must change nothing.
+
+    Raises
+    ------
+    DatabaseUnavailable
+        The database has not come back after about two seconds.
+    """
+
+    @functools.wraps(step)
+    def run(self: S, *args: P.args, **kwargs: P.kwargs) -> R:
+        engine = self._engine
+        attempts = Retrying(
+            retry=retry_if_exception(lambda error: is_lost(error, engine)),
+            stop=stop_after_attempt(_ATTEMPTS),
+            wait=wait_exponential(_FIRST_WAIT_S, _LONGEST_WAIT_S) + wait_random(0.0, _FIRST_WAIT_S),
+            before_sleep=_note,
+            reraise=True,
+        )
+        try:
+            return attempts(step, self, *args, **kwargs)
+        except SQLAlchemyError as error:
+            if is_lost(error, engine):
+                raise DatabaseUnavailable("The database cannot be reached. Try again in a while.") from error
+            raise
+
+    return cast(Callable[Concatenate[S, P], R], run)
+
+
+def _note(state: RetryCallState) -> None:
+    """Log that a step is tried again."""
+    outcome = state.outcome
+    error = outcome.exception() if outcome is not None else None
+    logger.warning("database lost", attempt=state.attempt_number, error=type(error).__name__)

@@ -1,0 +1,148 @@
+"""A PostgreSQL server of the tests' own: made from what is installed, on a socket of its own."""
+
+from __future__ import annotations
+
+import os
+import pwd
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import psycopg
+import pytest
+from psycopg import sql
+
+_FAST = (
+    "fsync=off",
+    "full_page_writes=off",
+    "listen_addresses=",
+    "max_connections=60",
+    "shared_buffers=16MB",
+)
+_ABSENT = "PostgreSQL is not installed (Debian: apt-get install postgresql); initdb and postgres were sought"
+
+
+@dataclass(frozen=True)
+class PostgresServer:
+    """A running server; whoever may reach its socket is its superuser."""
+
+    directory: Path
+
+    def new_database(self) -> str:
+        """Return the URL of a new, empty database."""
+        name = f"loa_{uuid.uuid4().hex[:12]}"
+        with self.administration() as connection:
+            connection.execute(sql.SQL("CREATE DATABASE {} ENCODING 'UTF8'").format(sql.Identifier(name)))
+        return f"postgresql://postgres@/{name}?host={self.directory}"
+
+    def end_connections(self, url: str) -> int:
+        """End all connections to a database as an administrator would; return how many."""
+        name = url.rpartition("/")[2] if "?" not in url else url.partition("?")[0].rpartition("/")[2]
+        with self.administration() as connection:
+            ended = "SELECT count(pg_terminate_backend(pid)) FROM pg_stat_activity WHERE datname = %s"
+            row = connection.execute(ended, (name,)).fetchone()
+        assert row is not None
+        return int(row[0])
+
+    @contextmanager
+    def administration(self) -> Iterator[psycopg.Connection[Any]]:
+        """Connect beside all databases of tests."""
+        with psycopg.connect(
+            f"host={self.directory} user=postgres dbname=postgres", autocommit=True
+        ) as found:
+            yield found
+
+
+def _program(name: str) -> str | None:
+    """Find a program of the server: Debian keeps them off the path."""
+    found = sorted(Path("/usr/lib/postgresql").glob(f"*/bin/{name}"))
+    return shutil.which(name) or (str(found[-1]) if found else None)
+
+
+def _other_user() -> dict[str, Any]:
+    """Return whom the server runs as: it refuses root."""
+    if os.getuid() != 0:
+        return {}
+    names = {entry.pw_name: entry for entry in pwd.getpwall()}
+    entry = names.get("postgres") or names.get("nobody")
+    if entry is None:
+        pytest.skip("PostgreSQL refuses to run as root, and there is no user postgres or nobody")
+    return {"user": entry.pw_uid, "group": entry.pw_gid, "extra_groups": []}
+
+
+@contextmanager
+def running_server() -> Iterator[PostgresServer]:
+    """Run a server; skip if none is installed."""
+    initdb, postgres = _program("initdb"), _program("postgres")
+    if initdb is None or postgres is None:
+        pytest.skip(_ABSENT)
+    user = _other_user()
+    directory = Path(tempfile.mkdtemp(prefix="loa-pg-"))
+    try:
+        if user:
+            os.chown(directory, user["user"], user["group"])
+            directory.chmod(0o711)
+        data = directory / "data"
+        made = [initdb, "-D", str(data), "-U", "postgres", "-A", "trust", "-E", "UTF8", "--no-sync"]
+        subprocess.run(made, check=True, capture_output=True, cwd="/", **user)
+        options = [part for setting in _FAST for part in ("-c", setting)]
+        with (directory / "log").open("wb") as log:
+            arguments = [postgres, "-D", str(data), "-k", str(directory), *options]
+            server = subprocess.Popen(arguments, stdout=log, stderr=log, cwd="/", **user)
+        try:
+            found = PostgresServer(directory)
+            _await(found, server)
+            yield found
+        finally:
+            server.send_signal(signal.SIGQUIT)  # at once
+            server.wait()
+    finally:
+        shutil.rmtree(directory, ignore_errors=True)
+
+
+def _await(server: PostgresServer, process: subprocess.Popen[bytes]) -> None:
+    """Wait until the server answers."""
+    end = time.monotonic() + 60.0
+    while True:
+        try:
+            with server.administration():
+                return
+        except psycopg.OperationalError:
+            log = (server.directory / "log").read_text(errors="replace")
+            assert process.poll() is None, f"PostgreSQL ended: {log}"
+            assert time.monotonic() < end, f"PostgreSQL does not answer: {log}"
+            time.sleep(0.05)
+
+
+@pytest.fixture(scope="session")
+def postgres() -> Iterator[PostgresServer]:
+    """A server for all tests of a process."""
+    with running_server() as found:
+        yield found
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def database_url(request: pytest.FixtureRequest) -> str | None:
+    """What the job table and the index are kept in: a file in the data directory, or a server.
+
+    Tests that ask for it run once on each.
+    """
+    if request.param == "sqlite":
+        return None
+    from service.store.database import database_engine  # noqa: PLC0415 (skipped tests need none of it)
+    from service.store.schema import Schema  # noqa: PLC0415
+
+    server: PostgresServer = request.getfixturevalue("postgres")
+    url = server.new_database()
+    engine = database_engine(url)
+    Schema(engine).upgrade()
+    engine.dispose()
+    return url

@@ -1,0 +1,135 @@
+"""A lost connection: outlasted if it comes back, answered with a time to try again if it does not."""
+
+from __future__ import annotations
+
+import sqlite3
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from fastapi.testclient import TestClient
+from postgres_server import PostgresServer, running_server
+from running_service import Bench, bench
+from service_stand_ins import REGISTRY
+from sqlalchemy import event
+
+from service.app import create_app
+from service.problems import BadInput, DatabaseUnavailable
+from service.settings import Settings, load_settings
+from service.store import open_database
+from service.store.database import database_engine
+from service.store.schema import Schema
+
+
+@pytest.fixture
+def server_url(postgres: PostgresServer) -> str:
+    """A database of this program's schema on the server."""
+    url = postgres.new_database()
+    engine = database_engine(url)
+    Schema(engine).upgrade()
+    engine.dispose()
+    return url
+
+
+@pytest.fixture
+def machine(tmp_path: Path, server_url: str) -> Iterator[Bench]:
+    """The job machinery on the server."""
+    found = bench(tmp_path, REGISTRY, database_url=server_url)
+    yield found
+    found.close()
+
+
+def test_steps_go_on_when_their_connections_are_ended(machine: Bench, postgres: PostgresServer) -> None:
+    """Connections that wait in the pool, and one in mid-transaction whose commit is never answered."""
+    job = machine.submit(text="kept")
+    url = str(machine.settings.database_address)
+    assert postgres.end_connections(url) > 0
+    assert machine.submissions.find(job.id).status == "accepted"
+
+    ended: list[int] = []
+
+    def end_once(_connection: object) -> None:
+        if not ended:
+            ended.append(postgres.end_connections(url))
+
+    event.listen(machine.engine, "commit", end_once)
+    again = machine.submit(text="another")
+    assert ended and ended[0] > 0
+    assert [found.id for found in machine.submissions.page(10)] == [again.id, job.id]
+    assert machine.submissions.counts() == {"accepted": 2}
+
+
+def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) -> None:
+    """The transaction was committed; the connection broke before the answer came: the step runs again."""
+    submit = machine.submissions._submit.__wrapped__  # type: ignore[attr-defined]
+    arguments = ("7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f", "standin", "ab" * 32, {"wish": {}}, False)
+    for _ in range(2):
+        submit(machine.submissions, *arguments)
+    assert len(machine.submissions.page(10)) == 1
+    assert machine.submissions.counts() == {"accepted": 1}
+
+
+def test_jobs_end_while_connections_are_ended_all_the_time(machine: Bench, postgres: PostgresServer) -> None:
+    machine.scheduler.start()
+    url, stop = str(machine.settings.database_address), threading.Event()
+
+    def disturb() -> None:
+        while not stop.wait(0.2):
+            postgres.end_connections(url)
+
+    disturber = threading.Thread(target=disturb)
+    disturber.start()
+    try:
+        ended = [machine.ended(machine.submit(text=text)) for text in ("one", "two")]
+    finally:
+        stop.set()
+        disturber.join()
+    assert [(job.status, job.attempts) for job in ended] == [("successful", 1)] * 2
+
+
+def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_path: Path) -> None:
+    with running_server() as server:
+        url = server.new_database()
+        Schema(engine := database_engine(url)).upgrade()
+        engine.dispose()
+        app = create_app(Settings(data_directory=tmp_path, database_url=url), REGISTRY)
+        client = TestClient(app, raise_server_exceptions=False)
+        assert client.get("/v1/jobs").json()["jobs"] == []
+    answer = client.get("/v1/jobs")
+    assert (answer.status_code, answer.headers["retry-after"]) == (503, "5")
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert answer.json()["type"] == "urn:lineofaction:problem:database-unavailable"
+    app.state.context.close()
+
+
+def test_a_file_that_another_holds_is_waited_for_and_then_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.store.dialects._PRAGMAS", ("PRAGMA busy_timeout=20",))
+    machine = bench(tmp_path, REGISTRY)
+    holder = sqlite3.connect(tmp_path / "service.sqlite3", isolation_level=None, check_same_thread=False)
+    holder.execute("BEGIN IMMEDIATE")
+    with pytest.raises(DatabaseUnavailable):
+        machine.submit(text="refused")
+    timer = threading.Timer(0.2, holder.rollback)
+    timer.start()
+    assert machine.submit(text="waits").status == "accepted"
+    timer.join()
+    holder.close()
+
+
+def test_a_database_that_is_none_is_refused_without_its_password(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LOA_DATABASE_URL", "mysql://user:geheim@host/name")
+    with pytest.raises(BadInput) as caught:
+        open_database(str(load_settings(data_directory=tmp_path).database_address))
+    assert "geheim" not in str(caught.value)
+    assert [fault.field for fault in caught.value.faults] == ["database_url"]
+    assert "geheim" not in repr(load_settings(data_directory=tmp_path))
+
+
+def test_a_server_is_not_upgraded_by_the_way(postgres: PostgresServer) -> None:
+    with pytest.raises(BadInput, match=r"it has no tables\. Run loa database upgrade first"):
+        open_database(postgres.new_database())

@@ -1,0 +1,177 @@
+"""Several schedulers on one database: none is run by two, none is lost with its holder."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from running_service import Bench, bench, lives, until
+from service_stand_ins import REGISTRY
+
+from service.app import create_app
+from service.settings import Settings
+
+Schedulers = Callable[..., Bench]
+
+
+@pytest.fixture
+def schedulers(tmp_path: Path, database_url: str | None) -> Iterator[Schedulers]:
+    """Return what makes schedulers on one database and one store, each with a data directory of its own."""
+    made: list[Bench] = []
+    database = database_url or f"sqlite:///{tmp_path / 'shared.sqlite3'}"
+
+    def make(name: str, **settings: Any) -> Bench:
+        facts = {"database_url": database, "lease_s": 1.0, **settings}
+        made.append(bench(tmp_path / name, REGISTRY, results=tmp_path / "results", **facts))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.close()
+
+
+def test_a_claim_without_a_sign_of_life_is_taken_up_and_its_holder_is_refused(schedulers: Schedulers) -> None:
+    dead, alive = schedulers("dead"), schedulers("alive")
+    job = dead.submit(text="taken up")
+    claim = dead.claims.claim()
+    assert claim is not None and dead.claims.renew([claim]) == {claim.id}
+    assert alive.claims.take_up() == []
+    time.sleep(1.1)
+    (taken,) = alive.claims.take_up()
+    assert (taken.id, taken.attempts) == (claim.id, 1)
+    assert dead.claims.renew([claim]) == dead.claims.held([claim]) == set()
+    dead.claims.succeed(claim)
+    dead.claims.fail(claim, "late")
+    dead.claims.put_back(claim, "late", counted=False)
+    assert dead.submissions.find(job.id).status == "running"
+    assert alive.claims.held([taken]) == {claim.id}
+
+
+def test_work_of_a_scheduler_that_died_is_done_by_another(schedulers: Schedulers) -> None:
+    dead, alive = schedulers("dead"), schedulers("alive")
+    job = dead.submit(text="done elsewhere")
+    assert dead.claims.claim() is not None
+    alive.scheduler.start()
+    ended = alive.ended(job)
+    assert (ended.status, ended.attempts) == ("successful", 2)
+    assert dead.store.verified(job.key, "database").path.read_text() == "done elsewhere"
+
+
+def test_schedulers_that_live_share_the_work_and_take_none_from_each_other(schedulers: Schedulers) -> None:
+    """One job outlasts its lease threefold; of the others each is started once, by one or the other."""
+    pair = [schedulers(name, workers=2) for name in ("one", "other")]
+    long = pair[0].submit(mode="hang")
+    for one in pair:
+        one.scheduler.start()
+    jobs = [pair[0].submit(text=str(n)) for n in range(4)]
+    assert [pair[0].ended(job).status for job in jobs] == ["successful"] * 4
+    assert [len(pair[0].starts(job)) + len(pair[1].starts(job)) for job in jobs] == [1] * 4
+    began = time.monotonic()
+    until(lambda: time.monotonic() > began + 3.0)
+    assert (pair[0].submissions.find(long.id).status, pair[0].submissions.find(long.id).attempts) == (
+        "running",
+        1,
+    )
+    pair[0].submissions.dismiss(long.id)
+    until(lambda: all(not list((one.settings.data_directory / "work").iterdir()) for one in pair))
+
+
+SCHEDULER = """
+import sys
+from pathlib import Path
+from running_service import bench
+from service_stand_ins import REGISTRY
+directory, database, results = sys.argv[1:]
+machine = bench(Path(directory), REGISTRY, results=Path(results), database_url=database, lease_s=1.0)
+machine.scheduler.start()
+machine.scheduler._thread.join()
+"""
+
+
+def stop_between_transactions(pid: int, other: Bench) -> None:
+    """Stop a process; one that holds SQLite's lock just then would stop all others with it."""
+    file = Path(str(other.engine.url.database))
+    while True:
+        os.kill(pid, signal.SIGSTOP)
+        if other.engine.dialect.name != "sqlite":
+            return
+        with closing(sqlite3.connect(file, timeout=0.2, isolation_level=None)) as connection:
+            try:
+                connection.execute("BEGIN IMMEDIATE")
+                return
+            except sqlite3.OperationalError:
+                os.kill(pid, signal.SIGCONT)
+                time.sleep(0.05)
+
+
+def test_the_worker_of_a_stalled_scheduler_ends_before_another_takes_up_its_work(
+    tmp_path: Path, schedulers: Schedulers
+) -> None:
+    """SIGSTOP: the scheduler neither renews nor kills; its worker and its children must end by themselves."""
+    alive = schedulers("alive")
+    job = alive.submit(mode="hang")
+    place = tmp_path / "stalled"
+    arguments = [place, alive.settings.database_address, tmp_path / "results"]
+    root = str(Path(__file__).parents[3])
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([root, os.environ["PYTHONPATH"]])}
+    stalled = subprocess.Popen(
+        [sys.executable, "-c", SCHEDULER, *map(str, arguments)], env=environment, stdout=subprocess.DEVNULL
+    )
+    try:
+        grandchild = place / f"grandchild_{job.key[:8]}"
+        until(lambda: grandchild.exists() and grandchild.read_text() != "")
+        child = int((place / f"started_{job.key[:8]}").read_text().split()[0])
+        stop_between_transactions(stalled.pid, alive)
+        until(lambda: alive.claims.take_up() != [])
+        assert not lives(child)
+        assert not lives(int(grandchild.read_text()))
+    finally:
+        stalled.kill()
+        stalled.wait()
+
+
+def test_a_process_that_only_serves_leaves_the_work_to_another(
+    tmp_path: Path, schedulers: Schedulers
+) -> None:
+    elsewhere = schedulers("elsewhere")
+    settings = Settings(data_directory=tmp_path, database_url=elsewhere.settings.database_url, lease_s=1.0)
+    with TestClient(create_app(settings, REGISTRY, works=False)) as client:
+        execution = "/v1/processes/standin/execution"
+        location = client.post(execution, json={"inputs": {"wish": {"text": "far"}}}).headers["location"]
+        assert client.get("/ready").json()["computations"] == {"accepted": 1}
+        elsewhere.scheduler.start()
+        until(lambda: client.get(location).json()["status"] == "successful")
+        href = client.get(f"{location}/results").json()["database"]["href"]
+        assert client.get(href, headers={"Accept": "application/x-netcdf"}).content == b"far"
+
+        hangs = client.post(execution, json={"inputs": {"wish": {"mode": "hang"}}}).headers["location"]
+        until(lambda: client.get(hangs).json()["progress"] == 12)
+        assert client.delete(hangs).json()["status"] == "dismissed"
+        until(lambda: not list((elsewhere.settings.data_directory / "work").iterdir()))
+
+
+def test_a_worker_waits_until_the_earlier_one_in_its_workspace_is_gone(schedulers: Schedulers) -> None:
+    machine = schedulers("one", lease_s=60.0)
+    job = machine.submit(text="after")
+    (row,) = machine.claims.waiting()
+    workspace = machine.settings.data_directory / "work" / row
+    workspace.mkdir(parents=True)
+    earlier = os.open(workspace, os.O_RDONLY)
+    fcntl.flock(earlier, fcntl.LOCK_EX)
+    machine.scheduler.start()
+    until(lambda: machine.submissions.find(job.id).status == "running")
+    time.sleep(1.0)
+    assert machine.starts(job) == []
+    os.close(earlier)
+    assert machine.ended(job).status == "successful"

@@ -1,0 +1,156 @@
+"""Upgrades of the schema: nothing is lost, and what a newer program made is left alone."""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from alembic.config import Config
+from alembic.script import ScriptDirectory
+from postgres_server import PostgresServer
+from running_service import bench
+from service_stand_ins import REGISTRY
+from sqlalchemy import Engine, inspect, text
+
+import service.jobs.tables
+import service.store.results
+from service.problems import BadInput
+from service.store import open_database, writing
+from service.store.database import database_engine, metadata
+from service.store.migrations import REVISIONS
+from service.store.schema import Schema
+
+OLD = """
+CREATE TABLE computation (
+    id VARCHAR NOT NULL, process VARCHAR NOT NULL, "key" VARCHAR NOT NULL, inputs TEXT NOT NULL,
+    state VARCHAR NOT NULL, stage VARCHAR NOT NULL, stage_fraction FLOAT NOT NULL, fraction FLOAT NOT NULL,
+    message TEXT NOT NULL, faults TEXT NOT NULL, reference VARCHAR NOT NULL, attempts INTEGER NOT NULL,
+    created VARCHAR NOT NULL, started VARCHAR, finished VARCHAR, updated VARCHAR NOT NULL, PRIMARY KEY (id));
+CREATE UNIQUE INDEX computation_in_flight ON computation ("key") WHERE state IN ('accepted', 'running');
+CREATE INDEX computation_by_state ON computation (state, created);
+CREATE TABLE result (
+    "key" VARCHAR NOT NULL, kind VARCHAR NOT NULL, sha256 VARCHAR NOT NULL, size INTEGER NOT NULL,
+    created VARCHAR NOT NULL, PRIMARY KEY ("key", kind));
+CREATE TABLE job (
+    id VARCHAR NOT NULL, computation_id VARCHAR NOT NULL, created VARCHAR NOT NULL, dismissed VARCHAR,
+    PRIMARY KEY (id), FOREIGN KEY(computation_id) REFERENCES computation (id));
+CREATE INDEX job_by_computation ON job (computation_id);
+CREATE INDEX job_by_time ON job (created);
+"""
+"""The tables of a data directory before their schema had a number, as SQLite wrote them down."""
+
+KEYS = ["ab" * 32, "cd" * 32, "ef" * 32]
+TIME = "2026-11-01T00:00:00.000000Z"
+IDENTIFIERS = [f"00000000-0000-4000-8000-00000000000{n}" for n in range(4)]
+
+
+def fill(file: Path, results: Path) -> None:
+    """Make a data directory of the old schema: work that waits, runs and is done, and two results."""
+    states = ["accepted", "running", "successful"]
+    with closing(sqlite3.connect(file)) as old:
+        old.executescript(OLD)
+        for n, (key, state) in enumerate(zip(KEYS, states, strict=True)):
+            facts = (f"c{n}", "standin", key, '{"wish": {}}', state, "", 0.0, 0.5, "m", "[]", "", n)
+            old.execute(
+                f"INSERT INTO computation VALUES ({','.join('?' * 16)})", (*facts, TIME, None, None, TIME)
+            )
+            old.execute("INSERT INTO job VALUES (?, ?, ?, NULL)", (IDENTIFIERS[n], f"c{n}", TIME))
+        old.execute("INSERT INTO job VALUES (?, 'c2', ?, ?)", (IDENTIFIERS[3], TIME, TIME))
+        for kind, suffix in (("database", ".nc"), ("ablation", ".json")):
+            place = results / kind / KEYS[2][:2] / f"{KEYS[2]}{suffix}"
+            place.parent.mkdir(parents=True)
+            place.write_bytes(b"kept")
+            digest = "79f076abdd19a752db7267bfff2f9022161d120dea919fdaca2ffdfc24ca8c96"
+            facts = (KEYS[2], kind, digest, 4, TIME)
+            old.execute("INSERT INTO result VALUES (?, ?, ?, ?, ?)", facts)
+        old.commit()
+
+
+def test_a_data_directory_without_numbers_is_upgraded_and_keeps_all(tmp_path: Path) -> None:
+    fill(tmp_path / "service.sqlite3", tmp_path / "results")
+    machine = bench(tmp_path, REGISTRY)
+    assert Schema(machine.engine).revision() == REVISIONS[-1]
+    seen = [machine.submissions.find(identifier) for identifier in IDENTIFIERS]
+    assert [job.status for job in seen] == ["accepted", "running", "successful", "dismissed"]
+    assert [job.attempts for job in seen] == [0, 1, 2, 2]
+    assert [job.key for job in seen] == [*KEYS, KEYS[2]]
+    for kind in ("database", "ablation"):
+        assert machine.store.verified(KEYS[2], kind).path.read_bytes() == b"kept"
+    machine.scheduler.start()
+    assert [machine.ended(job).attempts for job in seen[:2]] == [1, 2]
+    machine.close()
+
+
+@pytest.fixture
+def fresh(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Engine]:
+    """A database without tables: a file, or on a server."""
+    server: PostgresServer | None = request.getfixturevalue("postgres") if request.param else None
+    engine = database_engine(server.new_database() if server else tmp_path / "new.sqlite3")
+    yield engine
+    engine.dispose()
+
+
+both = pytest.mark.parametrize("fresh", [False, True], ids=["sqlite", "postgresql"], indirect=True)
+
+
+@both
+def test_upgrades_at_the_same_time_are_one(fresh: Engine) -> None:
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda _: Schema(fresh).upgrade(), range(4)))
+    assert Schema(fresh).revision() == REVISIONS[-1]
+
+
+@both
+def test_the_steps_make_the_tables_that_the_program_declares(fresh: Engine) -> None:
+    assert Schema(fresh).revision() is None
+    Schema(fresh).upgrade()
+    found = inspect(fresh)
+    assert set(found.get_table_names()) == set(metadata.tables) | {"alembic_version"}
+    for table in metadata.sorted_tables:
+        columns = {column["name"]: column["nullable"] for column in found.get_columns(table.name)}
+        assert columns == {column.name: column.nullable for column in table.columns}, table.name
+        indices = {
+            (i["name"], tuple(i["column_names"]), bool(i["unique"])) for i in found.get_indexes(table.name)
+        }
+        declared = {(i.name, tuple(c.name for c in i.columns), bool(i.unique)) for i in table.indexes}
+        assert indices == declared, table.name
+
+
+@both
+def test_a_newer_schema_is_refused_and_left_alone(fresh: Engine) -> None:
+    Schema(fresh).upgrade()
+    with writing(fresh) as connection:
+        connection.execute(text("UPDATE alembic_version SET version_num = '9999'"))
+    url = fresh.url.render_as_string(hide_password=False)
+    for refused in (lambda: open_database(url), Schema(fresh).upgrade):
+        with pytest.raises(BadInput, match=f"of schema {REVISIONS[-1]} or older: it has 9999"):
+            refused()
+    assert Schema(fresh).revision() == "9999"
+
+
+def test_a_step_that_fails_leaves_the_old_schema(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All or nothing: the tables made before the failure are gone again."""
+
+    def upgrade_and_fail(config: Config, revision: str) -> None:
+        made(config, revision)
+        raise RuntimeError("in mid-upgrade")
+
+    from alembic import command  # noqa: PLC0415
+
+    made = command.upgrade
+    monkeypatch.setattr(command, "upgrade", upgrade_and_fail)
+    engine = database_engine(tmp_path / "index.sqlite3")
+    with pytest.raises(RuntimeError):
+        Schema(engine).upgrade()
+    assert Schema(engine).revision() is None
+    assert inspect(engine).get_table_names() == []
+
+
+def test_the_numbers_are_those_of_the_steps() -> None:
+    folder = Path(service.store.results.__file__).with_name("migrations")
+    steps = [step.revision for step in ScriptDirectory(str(folder)).walk_revisions()]
+    assert tuple(reversed(steps)) == REVISIONS
