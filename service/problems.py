@@ -15,6 +15,7 @@
     |- NotAnalysed       nothing is kept to answer from; submit a job first
     |- LiveUnavailable   the live worker ended or took too long; try again
     |- DatabaseUnavailable  the database does not answer; try again later
+    |- StoreUnavailable  the store of results does not answer; try again later
     |- DamagedFile       a file does not hold what its digest says
     |- Unreachable       no service at the address
     `- Unexpected        a defect; carries a reference number, never the text of the exception
@@ -266,6 +267,16 @@ class DatabaseUnavailable(ServiceError):
     status = 503
     type = "urn:lineofaction:problem:database-unavailable"
     title = "The database cannot be reached"
+    exit_code = EXIT_UNREACHABLE
+    retry_after_s = 5
+
+
+class StoreUnavailable(ServiceError):
+    """The store of results does not answer."""
+
+    status = 503
+    type = "urn:lineofaction:problem:store-unavailable"
+    title = "The store of results cannot be reached"
     exit_code = EXIT_UNREACHABLE
     retry_after_s = 5
 

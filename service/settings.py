@@ -41,6 +41,10 @@ class Settings(BaseSettings):
         Jobs, results and the compliance cache.
     database_url : str or None
         Database of jobs and of the index of results; None: a SQLite file in the data directory.
+    results_url : str or None
+        Place of the files of results: ``s3://bucket/prefix`` or ``file:///folder``; None: the data directory.
+    results_cache_mb : int
+        What the cache of files from elsewhere may hold, MB.
     workers : int
         Jobs that run at the same time.
     queue_limit : int
@@ -63,6 +67,8 @@ class Settings(BaseSettings):
     port: int = Field(8321, ge=0, le=65535)
     data_directory: Path = Field(default_factory=data_home)
     database_url: SecretStr | None = None
+    results_url: str | None = None
+    results_cache_mb: int = Field(10_000, ge=1, le=1_000_000_000)
     workers: int = Field(1, ge=1, le=256)
     queue_limit: int = Field(100, ge=1, le=100_000)
     body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)

@@ -12,7 +12,7 @@ from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
 from service.settings import Settings
-from service.store import DATABASE_FILE, RESULTS_DIRECTORY, ResultStore, identity_of, open_database
+from service.store import DATABASE_FILE, ResultStore, identity_of, open_database, result_store
 
 
 @dataclass(frozen=True)
@@ -40,12 +40,17 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
     Raises
     ------
     BadInput
-        The database is none, or its schema another program's.
+        The database or the place of results is none, or the schema another program's.
     DatabaseUnavailable
         It does not answer.
     """
     engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
-    store = ResultStore(engine, settings.data_directory / RESULTS_DIRECTORY)
+    try:
+        place = (settings.results_url, settings.results_cache_mb)
+        store = result_store(engine, settings.data_directory, *place)
+    except BaseException:
+        engine.dispose()
+        raise
     scheduler: Scheduler | WorkElsewhere = WorkElsewhere()
     if works:
         claims = Claims(engine, identity_of(settings.data_directory), settings.lease_s)

@@ -35,6 +35,8 @@ class WorkOrder:
         Memory the work may have, MB.
     database_url : str, optional
         Where the index of results is, if not in the data directory.
+    results_url : str, optional
+        Where the files of results are, if not in the data directory.
     lease_s : float, optional
         How long the worker may go on without hearing that its lease was renewed.
     """
@@ -46,6 +48,7 @@ class WorkOrder:
     data_directory: Path
     memory_limit_mb: int | None = None
     database_url: str | None = None
+    results_url: str | None = None
     lease_s: float | None = None
 
     def line(self) -> bytes:

@@ -164,6 +164,7 @@ class Scheduler:
             data_directory=self._settings.data_directory,
             memory_limit_mb=_memory_mb(self._settings),
             database_url=self._settings.database_address,
+            results_url=self._settings.results_url,
             lease_s=self._settings.lease_s,
         )
 

@@ -52,7 +52,7 @@ def _table(
     order: WorkOrder, index: int, mesh: MeshInput, products: list[Product], progress: Progress
 ) -> SteDatabase:
     """Return the database of a mesh, from the store or computed now; what is computed joins `products`."""
-    store = stored_results(order.data_directory, order.database_url)
+    store = stored_results(order.data_directory, order.database_url, order.results_url)
     if mesh.case is None:
         return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path)
     key = ANALYZE.key({"case": case_json(mesh.case)})

@@ -50,6 +50,8 @@ jobs = Table(
     Column("computation_id", String, ForeignKey("computation.id"), nullable=False),
     Column("created", String, nullable=False),
     Column("dismissed", String),
+    Column("asked", String),
 )
 Index("job_by_computation", jobs.c.computation_id)
+Index("job_by_use", jobs.c.asked)
 Index("job_by_time", jobs.c.created)

@@ -1,22 +1,26 @@
 """What is kept: a database, and content-addressed result files."""
 
-from service.store.database import now, open_database, reading, writing
+from service.store.database import instant, now, open_database, reading, writing
 from service.store.dialects import dialect_of
 from service.store.directory import DirectoryLock, identity_of
 from service.store.outages import retried
-from service.store.results import DATABASE_FILE, RESULTS_DIRECTORY, ResultStore, StoredResult, stored_results
+from service.store.places import DATABASE_FILE, RESULTS_DIRECTORY, result_store, stored_results
+from service.store.results import IndexLine, ResultStore, StoredResult
 
 __all__ = [
     "DATABASE_FILE",
     "RESULTS_DIRECTORY",
     "DirectoryLock",
+    "IndexLine",
     "ResultStore",
     "StoredResult",
     "dialect_of",
     "identity_of",
+    "instant",
     "now",
     "open_database",
     "reading",
+    "result_store",
     "retried",
     "stored_results",
     "writing",

@@ -89,4 +89,9 @@ def reading(engine: Engine) -> Iterator[Connection]:
 
 def now() -> str:
     """Return this instant as RFC 3339 in UTC, sortable as text."""
-    return datetime.now(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
+    return instant(datetime.now(UTC))
+
+
+def instant(time: datetime) -> str:
+    """Return an instant in UTC as RFC 3339, sortable as text."""
+    return time.isoformat(timespec="microseconds").replace("+00:00", "Z")

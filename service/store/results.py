@@ -1,23 +1,38 @@
-"""Result files named by the hash of their input, verified by the digest of their contents."""
+"""The store of results: named by the hash of their input, verified by the digest of their contents."""
 
 from __future__ import annotations
 
-import contextlib
 import hashlib
-import os
+import time
+import uuid
 from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import Any
 
-from sqlalchemy import BigInteger, Column, Engine, String, Table, delete, select
+from sqlalchemy import (
+    BigInteger,
+    Column,
+    Connection,
+    Engine,
+    Index,
+    Row,
+    String,
+    Table,
+    delete,
+    select,
+    update,
+)
 
 from service.problems import DamagedFile, NotFound
 from service.schemas.result_kinds import suffix_of
-from service.store.database import metadata, now, open_database, reading, writing
+from service.store.database import instant, metadata, now, reading, writing
 from service.store.dialects import dialect_of
+from service.store.files import ResultFiles, WrongContent, digest_of
 from service.store.outages import retried
 
-DATABASE_FILE = "service.sqlite3"
-RESULTS_DIRECTORY = "results"
+USE_NOTED_EVERY_S = 3600.0
+"""A result that is read all the time is noted as used this often."""
 
 results = Table(
     "result",
@@ -27,11 +42,14 @@ results = Table(
     Column("sha256", String, nullable=False),
     Column("size", BigInteger, nullable=False),
     Column("created", String, nullable=False),
+    Column("file", String, nullable=False, default=""),
+    Column("used", String, nullable=False, default=""),
 )
+Index("result_by_use", results.c.used)
 
 
 @dataclass(frozen=True)
-class StoredResult:
+class IndexLine:
     """One line of the index.
 
     Attributes
@@ -44,8 +62,30 @@ class StoredResult:
         Digest of the file's bytes, hexadecimal.
     size : int
         Bytes.
+    file : str
+        Name of the file in its place.
+    used : str
+        When it was last asked for, within an hour.
+    """
+
+    key: str
+    kind: str
+    sha256: str
+    size: int
+    file: str
+    used: str
+
+
+@dataclass(frozen=True)
+class StoredResult:
+    """A result whose bytes were compared with its digest.
+
+    Attributes
+    ----------
+    key, kind, sha256, size
+        As in the index.
     path : Path
-        The file.
+        The file on this machine.
     """
 
     key: str
@@ -56,40 +96,65 @@ class StoredResult:
 
 
 class ResultStore:
-    """Write once, read verified."""
+    """Write once, read verified: the first result of a key stays, whoever computes it again.
 
-    def __init__(self, engine: Engine, directory: Path) -> None:
-        self._engine = engine
-        self._directory = directory
+    Parameters
+    ----------
+    engine : Engine
+        Database of the index.
+    files : ResultFiles
+        Place of the files.
+    """
 
-    def put(self, key: str, kind: str, file: Path) -> StoredResult:
-        """Move `file` (on the same file system) into the store: first the bytes, then the index."""
-        stored = StoredResult(key, kind, digest_of(file), file.stat().st_size, self._path(key, kind))
-        stored.path.parent.mkdir(parents=True, exist_ok=True)
-        _sync(file)
-        file.replace(stored.path)
-        _sync(stored.path.parent)
-        self._enter(stored)
-        return stored
+    def __init__(self, engine: Engine, files: ResultFiles) -> None:
+        self._engine, self.files = engine, files
+        self._noted: dict[tuple[str, str], float] = {}
+
+    def put(self, key: str, kind: str, file: Path) -> IndexLine:
+        """Take `file` into the store: first the bytes, then the index; may be repeated if it failed."""
+        known = self.find(key, kind)
+        if known is None:
+            known = self._put(key, kind, file)
+        else:
+            self._note_use(key, kind)
+        file.unlink(missing_ok=True)
+        return known
+
+    def _put(self, key: str, kind: str, file: Path) -> IndexLine:
+        """Place the file under a name of its own, and enter it if nobody was quicker."""
+        name = f"{kind}/{key[:2]}/{key}.{uuid.uuid4().hex[:8]}{suffix_of(kind)}"
+        line = IndexLine(key, kind, digest_of(file), file.stat().st_size, name, now())
+        self.files.put(name, file, line.sha256)
+        entered = self._enter(line)
+        if entered.file != name:
+            self.files.delete(name)
+        return entered
 
     @retried
-    def _enter(self, stored: StoredResult) -> None:
-        """Enter a result into the index."""
-        row = {"sha256": stored.sha256, "size": stored.size, "created": now()}
-        statement = dialect_of(self._engine).insert(results).values(key=stored.key, kind=stored.kind, **row)
-        with writing(self._engine) as connection:
-            connection.execute(statement.on_conflict_do_update(index_elements=["key", "kind"], set_=row))
+    def _enter(self, line: IndexLine) -> IndexLine:
+        """Enter a result, unless there is one whose file is there; return the one there is now."""
+        with writing(self._engine, in_turn=True) as connection:
+            before = _line(connection, line.key, line.kind)
+            if before is not None and (before.file == line.file or self.files.has(before.file)):
+                return before
+            facts = {"sha256": line.sha256, "size": line.size, "file": line.file, "used": line.used}
+            insert = dialect_of(connection).insert(results)
+            statement = insert.values(key=line.key, kind=line.kind, created=line.used, **facts)
+            connection.execute(statement.on_conflict_do_update(index_elements=["key", "kind"], set_=facts))
+        return line
 
-    @retried
-    def find(self, key: str, kind: str) -> StoredResult | None:
+    def find(self, key: str, kind: str) -> IndexLine | None:
         """Return the index's line, None if there is none or its file is gone."""
-        if not _is_key(key):
+        if not is_key(key):
             return None
+        line = self._find(key, kind)
+        return line if line is not None and self.files.has(line.file) else None
+
+    @retried
+    def _find(self, key: str, kind: str) -> IndexLine | None:
+        """Return the index's line."""
         with reading(self._engine) as connection:
-            statement = select(results).where(results.c.key == key, results.c.kind == kind)
-            row = connection.execute(statement).one_or_none()
-        path = self._path(key, kind)
-        return StoredResult(key, kind, row.sha256, row.size, path) if row and path.is_file() else None
+            return _line(connection, key, kind)
 
     def verified(self, key: str, kind: str) -> StoredResult:
         """Return the result after comparing its bytes with its digest.
@@ -100,53 +165,78 @@ class ResultStore:
             No such result.
         DamagedFile
             The bytes changed; the file is set aside, so that a new job computes it again.
+        StoreUnavailable, DatabaseUnavailable
+            Its place, or the index, does not answer.
         """
-        stored = self.find(key, kind)
-        if stored is None:
-            raise NotFound(f"There is no {kind} {key!r}. Submit its case again to compute it.")
-        if digest_of(stored.path) != stored.sha256:
-            self._set_aside(stored)
-            raise DamagedFile(
-                f"The file of {kind} {key} was damaged and is set aside. Submit its case again."
-            )
-        return stored
+        line = self._find(key, kind) if is_key(key) else None
+        if line is None:
+            raise self._missing(key, kind)
+        try:
+            path = self.files.local(line.file, line.sha256)
+        except FileNotFoundError:
+            raise self._missing(key, kind) from None
+        except WrongContent:
+            self.set_aside(line)
+            text = f"The file of {kind} {key} was damaged and is set aside. Submit its case again."
+            raise DamagedFile(text) from None
+        self.note_use(key, kind)
+        return StoredResult(key, kind, line.sha256, line.size, path)
+
+    @staticmethod
+    def _missing(key: str, kind: str) -> NotFound:
+        """Return the error of a result that is not there."""
+        return NotFound(f"There is no {kind} {key!r}. Submit its case again to compute it.")
+
+    def note_use(self, key: str, kind: str) -> None:
+        """Note that a result was asked for; cheap, and written once an hour."""
+        last = self._noted.get((key, kind), -USE_NOTED_EVERY_S)
+        if time.monotonic() - last >= USE_NOTED_EVERY_S:
+            self._note_use(key, kind)
 
     @retried
-    def _set_aside(self, stored: StoredResult) -> None:
-        """Take a damaged file out of service."""
+    def _note_use(self, key: str, kind: str) -> None:
+        """Write down that a result was asked for."""
+        mine = (results.c.key == key, results.c.kind == kind)
+        before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         with writing(self._engine) as connection:
-            connection.execute(
-                delete(results).where(results.c.key == stored.key, results.c.kind == stored.kind)
-            )
-        with contextlib.suppress(FileNotFoundError):  # another was quicker
-            stored.path.replace(stored.path.with_suffix(".damaged"))
+            connection.execute(update(results).where(*mine, results.c.used < before).values(used=now()))
+        self._noted[(key, kind)] = time.monotonic()
 
-    def _path(self, key: str, kind: str) -> Path:
-        """File of a key."""
-        return self._directory / kind / key[:2] / f"{key}{suffix_of(kind)}"
+    def set_aside(self, line: IndexLine) -> None:
+        """Take a damaged file out of service."""
+        self.strike(line)
+        self.files.set_aside(line.file)
+
+    @retried
+    def strike(self, line: IndexLine, *, unused_since: str | None = None) -> bool:
+        """Remove a line from the index, if it is still that one and, given an instant, was not used since."""
+        mine = [results.c.key == line.key, results.c.kind == line.kind, results.c.file == line.file]
+        if unused_since is not None:
+            mine.append(results.c.used < unused_since)
+        with writing(self._engine) as connection:
+            return connection.execute(delete(results).where(*mine)).rowcount > 0
+
+    @retried
+    def lines(self) -> list[IndexLine]:
+        """Return the whole index."""
+        with reading(self._engine) as connection:
+            rows = connection.execute(select(results).order_by(results.c.key, results.c.kind)).all()
+        return [_read(row) for row in rows]
 
 
-def stored_results(data_directory: Path, database_url: str | None = None) -> ResultStore:
-    """Return the store in a data directory, its index in that directory or in the database at a URL."""
-    engine = open_database(database_url or data_directory / DATABASE_FILE, pooled=False)
-    return ResultStore(engine, data_directory / RESULTS_DIRECTORY)
-
-
-def _is_key(key: str) -> bool:
+def is_key(key: str) -> bool:
     """Whether `key` is a SHA-256 in hexadecimal."""
     return len(key) == hashlib.sha256().digest_size * 2 and set(key) <= set("0123456789abcdef")
 
 
-def digest_of(file: Path) -> str:
-    """Return the SHA-256 of a file's bytes, hexadecimal."""
-    with file.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+def _line(connection: Connection, key: str, kind: str) -> IndexLine | None:
+    """Return one line of the index."""
+    row = connection.execute(
+        select(results).where(results.c.key == key, results.c.kind == kind)
+    ).one_or_none()
+    return None if row is None else _read(row)
 
 
-def _sync(path: Path) -> None:
-    """Force a file or a directory to disk."""
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+def _read(row: Row[Any]) -> IndexLine:
+    """Return a row as a line."""
+    return IndexLine(row.key, row.kind, row.sha256, row.size, row.file, row.used)

@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 import structlog.testing
 from postgres_server import database_url, postgres
+from s3_server import s3_objects, s3_url
 
-__all__ = ["database_url", "postgres"]
+__all__ = ["database_url", "postgres", "s3_objects", "s3_url"]
 
 STAND_INS = str(Path(__file__).resolve().parents[1] / "stand_ins")
 

@@ -15,7 +15,7 @@ from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Job, Submissions
 from service.settings import Settings
-from service.store import ResultStore, identity_of, open_database
+from service.store import ResultStore, identity_of, open_database, result_store
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def bench(directory: Path, registry: Registry, results: Path | None = None, **se
     """Return the machinery on a directory; its scheduler is not started."""
     chosen = Settings(data_directory=directory, **settings)
     engine = open_database(chosen.database_address or directory / "service.sqlite3")
-    store = ResultStore(engine, results or directory / "results")
+    store = result_store(engine, directory, results.as_uri() if results else chosen.results_url)
     claims = Claims(engine, identity_of(directory), chosen.lease_s)
     scheduler = Scheduler(chosen, registry, claims, store)
     return Bench(chosen, Submissions(engine, chosen.queue_limit), claims, store, scheduler, engine)

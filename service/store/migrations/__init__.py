@@ -1,4 +1,4 @@
 """Steps from schema to schema of the database, in order."""
 
-REVISIONS = ("0001", "0002")
+REVISIONS = ("0001", "0002", "0003")
 """All schemas there have been, the newest last."""

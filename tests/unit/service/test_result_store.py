@@ -1,25 +1,38 @@
-"""The result store: what is read is what was written, or it is refused."""
+"""The result store: what is read is what was written, or it is refused; the same in every place."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
+from s3_server import Objects
 from sqlalchemy import event
 
-from service.problems import BadInput, DamagedFile, NotFound
-from service.store import DirectoryLock, ResultStore, open_database, reading, writing
+from service.problems import BadInput, DamagedFile, NotFound, StoreUnavailable
+from service.store import DirectoryLock, ResultStore, open_database, reading, stored_results, writing
+from service.store.files import DirectoryFiles
+from service.store.object_files import object_files
+from service.store.places import result_files, result_store
 
 KEY = hashlib.sha256(b"input").hexdigest()
+OTHER = hashlib.sha256(b"other").hexdigest()
+
+
+@pytest.fixture(params=["directory", "s3"])
+def place(request: pytest.FixtureRequest) -> str | None:
+    """Where the files are."""
+    return None if request.param == "directory" else str(request.getfixturevalue("s3_url"))
 
 
 @pytest.fixture
-def store(tmp_path: Path, database_url: str | None) -> Iterator[ResultStore]:
-    """An empty store, its index in each database."""
+def store(tmp_path: Path, database_url: str | None, place: str | None) -> Iterator[ResultStore]:
+    """An empty store, its index in each database and its files in each place."""
     engine = open_database(database_url or tmp_path / "index.sqlite3")
-    yield ResultStore(engine, tmp_path / "results")
+    yield result_store(engine, tmp_path, place)
     engine.dispose()
 
 
@@ -28,6 +41,17 @@ def put(store: ResultStore, tmp_path: Path, content: bytes, key: str = KEY) -> N
     file = tmp_path / "made"
     file.write_bytes(content)
     store.put(key, "database", file)
+
+
+def damage(store: ResultStore, tmp_path: Path, content: bytes) -> None:
+    """Change the bytes behind the store's back, in its place and in the cache."""
+    (line,) = store.lines()
+    if isinstance(store.files, DirectoryFiles):
+        store.verified(line.key, line.kind).path.write_bytes(content)
+        return
+    file = tmp_path / "damage"
+    file.write_bytes(content)
+    store.files.put(line.file, file, line.sha256)
 
 
 def test_a_result_is_found_by_its_key_and_kind(store: ResultStore, tmp_path: Path) -> None:
@@ -44,30 +68,144 @@ def test_a_damaged_file_is_never_served_and_makes_room_for_a_new_one(
     store: ResultStore, tmp_path: Path
 ) -> None:
     put(store, tmp_path, b"table")
-    store.verified(KEY, "database").path.write_bytes(b"tabla")
+    damage(store, tmp_path, b"tabla")
     with pytest.raises(DamagedFile):
         store.verified(KEY, "database")
     assert store.find(KEY, "database") is None
+    assert [file.name for file in store.files.files() if file.name.endswith(".damaged")] != []
     put(store, tmp_path, b"table")
     assert store.verified(KEY, "database").path.read_bytes() == b"table"
 
 
-def test_a_second_result_of_a_key_replaces_the_first(store: ResultStore, tmp_path: Path) -> None:
+def test_the_first_result_of_a_key_stays(store: ResultStore, tmp_path: Path) -> None:
+    """What was served never changes, though a second computation may differ in its times."""
     put(store, tmp_path, b"one")
     put(store, tmp_path, b"two")
-    assert store.verified(KEY, "database").path.read_bytes() == b"two"
+    assert store.verified(KEY, "database").path.read_bytes() == b"one"
+    assert not (tmp_path / "made").exists()
 
 
-@pytest.mark.parametrize("key", ["../../etc/passwd", "", KEY.upper(), KEY[:-1] + "/", "a" * 63])
-def test_what_is_no_hash_names_no_file(store: ResultStore, key: str) -> None:
+def test_of_results_put_at_the_same_time_one_stays(store: ResultStore, tmp_path: Path) -> None:
+    """Each has a file of its own, and the one that lost is gone."""
+
+    def put_one(number: int) -> None:
+        file = tmp_path / f"made_{number}"
+        file.write_bytes(b"%d" % number)
+        store._put(KEY, "database", file)
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(put_one, range(4)))
+    assert store.verified(KEY, "database").path.read_bytes() in (b"0", b"1", b"2", b"3")
+    assert len(list(store.files.files())) == len(store.lines()) == 1
+
+
+@pytest.mark.parametrize("key", ["../../etc/passwd", "", KEY.upper(), KEY[:-1] + "/", "a" * 63, "\x00" * 64])
+def test_what_is_no_hash_names_no_file(tmp_path: Path, key: str) -> None:
     with pytest.raises(NotFound):
-        store.verified(key, "database")
+        stored_results(tmp_path).verified(key, "database")
 
 
 def test_a_lost_file_counts_as_no_result(store: ResultStore, tmp_path: Path) -> None:
     put(store, tmp_path, b"table")
-    store.verified(KEY, "database").path.unlink()
+    (line,) = store.lines()
+    store.files.delete(line.file)
     assert store.find(KEY, "database") is None
+    put(store, tmp_path, b"again")
+    assert store.verified(KEY, "database").path.read_bytes() == b"again"
+
+
+def test_a_failed_put_may_be_repeated(
+    store: ResultStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The bytes were placed, the index was not told: the file of the work is still there."""
+
+    def fail(*_: object) -> None:
+        raise StoreUnavailable("in mid-put")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(store, "_enter", fail)
+        with pytest.raises(StoreUnavailable):
+            put(store, tmp_path, b"table")
+    assert store.find(KEY, "database") is None
+    store.put(KEY, "database", tmp_path / "made")
+    assert store.verified(KEY, "database").path.read_bytes() == b"table"
+    store.put(KEY, "database", tmp_path / "made")  # is gone, and need not be there
+
+
+def test_a_copy_that_is_cut_off_leaves_no_result(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On another file system the bytes are copied; the name comes when all are there."""
+    store = stored_results(tmp_path)
+
+    def refuse(*_: object) -> None:
+        raise OSError("another file system")
+
+    def cut_off(_file: Path, target: Path) -> None:
+        target.write_bytes(b"tab")
+        raise OSError("no space left")
+
+    monkeypatch.setattr(os, "link", refuse)
+    with monkeypatch.context() as broken:
+        broken.setattr("service.store.files.shutil.copyfile", cut_off)
+        with pytest.raises(OSError, match="no space left"):
+            put(store, tmp_path, b"table")
+    assert store.find(KEY, "database") is None
+    assert [file.name.endswith(".part") for file in store.files.files()] == [True]
+    put(store, tmp_path, b"table")
+    assert store.verified(KEY, "database").path.read_bytes() == b"table"
+
+
+def test_what_was_fetched_is_kept_and_a_damaged_copy_is_fetched_anew(tmp_path: Path, s3_url: str) -> None:
+    put(result_store(open_database(tmp_path / "index.sqlite3"), tmp_path / "one", s3_url), tmp_path, b"table")
+    other = result_store(open_database(tmp_path / "index.sqlite3"), tmp_path / "other", s3_url)
+    cached = other.verified(KEY, "database").path
+    assert cached.is_relative_to(tmp_path / "other" / "cache") and cached.read_bytes() == b"table"
+    cached.write_bytes(b"tabla")
+    assert other.verified(KEY, "database").path.read_bytes() == b"table"
+
+
+def test_the_cache_is_bounded_and_spares_what_is_being_read(tmp_path: Path, s3_url: str) -> None:
+    files = object_files(s3_url, tmp_path / "cache", 250)
+    for number in range(4):
+        made = tmp_path / f"made_{number}"
+        made.write_bytes(bytes([number]) * 100)
+        files.put(f"database/{number}.nc", made, hashlib.sha256(made.read_bytes()).hexdigest())
+    held = sorted((tmp_path / "cache").rglob("*.nc"))
+    assert len(held) == 4
+    for path in held[:3]:
+        os.utime(path, (0.0, 0.0))
+    files.put("database/5.nc", made, "5" * 64)
+    left = sorted((tmp_path / "cache").rglob("*.nc"))
+    assert len(left) == 2 and held[3] in left
+
+
+def test_a_store_that_does_not_answer_is_said(
+    tmp_path: Path, s3_objects: Objects, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("service.store.object_files.RETRIES", {"max_retries": 1})
+    store = result_store(open_database(tmp_path / "index.sqlite3"), tmp_path, "s3://bucket/prefix")
+    put(store, tmp_path, b"table")
+    s3_objects.down = True
+    for asked in (lambda: put(store, tmp_path, b"other", OTHER), lambda: store.find(KEY, "database")):
+        with pytest.raises(StoreUnavailable):
+            asked()
+    assert store.verified(KEY, "database").path.read_bytes() == b"table"  # from the cache
+    s3_objects.down = False
+    store.put(OTHER, "database", tmp_path / "made")
+    assert store.verified(OTHER, "database").path.read_bytes() == b"other"
+
+
+@pytest.mark.parametrize("url", ["s3://", "ftp://host/folder", "file://host/folder", "results"])
+def test_a_place_that_is_none_is_refused(tmp_path: Path, url: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        result_files(tmp_path, url)
+    assert [fault.field for fault in caught.value.faults] == ["results_url"]
+
+
+@pytest.mark.parametrize("make", [lambda path: f"file://{path}/shared%20results"])
+def test_a_folder_may_be_elsewhere(tmp_path: Path, make: Callable[[Path], str]) -> None:
+    store = stored_results(tmp_path / "data", results_url=make(tmp_path))
+    put(store, tmp_path, b"table")
+    assert store.verified(KEY, "database").path.is_relative_to(tmp_path / "shared results")
 
 
 def test_a_data_directory_serves_one_service_at_a_time(tmp_path: Path) -> None:

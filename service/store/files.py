@@ -1,0 +1,133 @@
+"""Where the files of results are kept: what any place must do, and a directory that does it."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import shutil
+import uuid
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+SET_ASIDE = ".damaged"
+"""Ending of what was found damaged: kept for a person to look at, never served."""
+PARTIAL = ".part"
+"""Ending of what is being written."""
+
+
+class WrongContent(Exception):
+    """The bytes of a file are not those that were put."""
+
+
+@dataclass(frozen=True)
+class KeptFile:
+    """A file in its place: its name, bytes, and time of its last change, s since 1970."""
+
+    name: str
+    size: int
+    modified: float
+
+
+class ResultFiles(Protocol):
+    """A place for files by name. What has a name is whole: nobody sees a file that is being written."""
+
+    def put(self, name: str, file: Path, sha256: str) -> None:
+        """Keep the bytes of `file`, durably when this returns; `file` stays."""
+
+    def has(self, name: str) -> bool:
+        """Whether there is a file of this name."""
+
+    def local(self, name: str, sha256: str) -> Path:
+        """Return a path with the bytes of this digest, read and compared now.
+
+        Raises
+        ------
+        FileNotFoundError
+            There is no file of this name.
+        WrongContent
+            Its bytes are others.
+        """
+
+    def set_aside(self, name: str) -> None:
+        """Rename a damaged file, so that it is not served; it may be gone already."""
+
+    def delete(self, name: str) -> None:
+        """Remove a file; it may be gone already."""
+
+    def files(self) -> Iterator[KeptFile]:
+        """Return all there are, those set aside or left half-written too."""
+
+
+class DirectoryFiles:
+    """Files in a directory; several processes may use it at once."""
+
+    def __init__(self, directory: Path) -> None:
+        self._directory = directory
+
+    def put(self, name: str, file: Path, sha256: str) -> None:
+        """Link the file to its name, or copy it where that cannot be."""
+        target = self._directory / name
+        target.parent.mkdir(parents=True, exist_ok=True)
+        place_whole(file, target)
+
+    def has(self, name: str) -> bool:
+        """Whether there is a file of this name."""
+        return (self._directory / name).is_file()
+
+    def local(self, name: str, sha256: str) -> Path:
+        """Return the file itself, its bytes compared; raises as `ResultFiles.local`."""
+        path = self._directory / name
+        if digest_of(path) != sha256:
+            raise WrongContent
+        return path
+
+    def set_aside(self, name: str) -> None:
+        """Rename."""
+        path = self._directory / name
+        with contextlib.suppress(FileNotFoundError):
+            path.replace(path.with_name(path.name + SET_ASIDE))
+
+    def delete(self, name: str) -> None:
+        """Remove."""
+        (self._directory / name).unlink(missing_ok=True)
+
+    def files(self) -> Iterator[KeptFile]:
+        """Walk through the directory."""
+        for path in sorted(self._directory.rglob("*")):
+            with contextlib.suppress(FileNotFoundError):  # removed meanwhile
+                if path.is_file():
+                    facts = path.stat()
+                    yield KeptFile(
+                        path.relative_to(self._directory).as_posix(), facts.st_size, facts.st_mtime
+                    )
+
+
+def place_whole(file: Path, target: Path) -> None:
+    """Give a file a second name, its bytes on disk first; on another file system a copy gets the name."""
+    draft = target.with_name(f"{target.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
+    try:
+        os.link(file, draft)
+    except OSError:
+        shutil.copyfile(file, draft)
+    sync(draft)
+    os.utime(draft)
+    draft.replace(target)
+    sync(target.parent)
+
+
+def digest_of(file: Path) -> str:
+    """Return the SHA-256 of a file's bytes, hexadecimal."""
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def sync(path: Path) -> None:
+    """Force a file or a directory to disk."""
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,171 @@
+"""Files of results in an object store that speaks S3, read through a cache on disk."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import timedelta
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from service.problems import BadInput, StoreUnavailable
+from service.store.files import PARTIAL, SET_ASIDE, KeptFile, WrongContent, digest_of, place_whole
+
+if TYPE_CHECKING:
+    from obstore.store import ClientConfig, RetryConfig, S3Store
+
+RETRIES: RetryConfig = {"max_retries": 4, "retry_timeout": timedelta(seconds=10.0)}
+_IN_USE_S = 600.0
+"""What was read this lately stays in the cache, however full that is: an answer may be sending it."""
+
+
+class ObjectFiles:
+    """Objects below a prefix of a bucket.
+
+    An object appears when all its bytes are there (S3), and a file of the cache when its digest was compared.
+
+    Parameters
+    ----------
+    store : S3Store
+    cache : Path
+        Directory of files under their digests, shared by all processes of a machine.
+    cache_bytes : int
+        What it may hold.
+    """
+
+    def __init__(self, store: S3Store, cache: Path, cache_bytes: int) -> None:
+        self._store, self._cache, self._cache_bytes = store, cache, cache_bytes
+
+    def put(self, name: str, file: Path, sha256: str) -> None:
+        """Send the file, in parts if it is long, and keep it in the cache."""
+        import obstore  # noqa: PLC0415 (an extra)
+
+        with _answering():
+            obstore.put(self._store, name, file)
+        cached = self._cached(name, sha256)
+        cached.parent.mkdir(parents=True, exist_ok=True)
+        place_whole(file, cached)
+        self._evict()
+
+    def has(self, name: str) -> bool:
+        """Whether there is an object of this name."""
+        import obstore  # noqa: PLC0415 (an extra)
+
+        with _answering(), contextlib.suppress(FileNotFoundError):
+            obstore.head(self._store, name)
+            return True
+        return False
+
+    def local(self, name: str, sha256: str) -> Path:
+        """Return the cached file, fetched if it is missing or damaged; raises as `ResultFiles.local`."""
+        cached = self._cached(name, sha256)
+        with contextlib.suppress(FileNotFoundError):
+            if digest_of(cached) == sha256:
+                os.utime(cached)
+                return cached
+        self._fetch(name, sha256, cached)
+        self._evict()
+        return cached
+
+    def _fetch(self, name: str, sha256: str, cached: Path) -> None:
+        """Fetch an object into the cache, if its bytes have the digest."""
+        import obstore  # noqa: PLC0415 (an extra)
+
+        cached.parent.mkdir(parents=True, exist_ok=True)
+        draft = cached.with_name(f"{cached.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
+        digest = hashlib.sha256()
+        try:
+            with _answering(), draft.open("wb") as stream:
+                for piece in obstore.get(self._store, name).stream():
+                    digest.update(piece)
+                    stream.write(piece)
+            if digest.hexdigest() != sha256:
+                raise WrongContent
+            draft.replace(cached)
+        finally:
+            draft.unlink(missing_ok=True)
+
+    def _cached(self, name: str, sha256: str) -> Path:
+        """Return the path of a digest in the cache."""
+        return self._cache / sha256[:2] / f"{sha256}{PurePosixPath(name).suffix}"
+
+    def _evict(self) -> None:
+        """Remove what was not read for longest, until the rest fits."""
+        found = []
+        for path in self._cache.rglob("*"):
+            with contextlib.suppress(FileNotFoundError):  # another process was quicker
+                if path.is_file():
+                    facts = path.stat()
+                    found.append((facts.st_mtime, facts.st_size, path))
+        excess = sum(size for _, size, _ in found) - self._cache_bytes
+        for modified, size, path in sorted(found):
+            if excess <= 0 or time.time() - modified < _IN_USE_S:
+                return
+            path.unlink(missing_ok=True)
+            excess -= size
+
+    def set_aside(self, name: str) -> None:
+        """Rename."""
+        import obstore  # noqa: PLC0415 (an extra)
+
+        with _answering(), contextlib.suppress(FileNotFoundError):
+            obstore.copy(self._store, name, name + SET_ASIDE)
+            obstore.delete(self._store, name)
+
+    def delete(self, name: str) -> None:
+        """Remove."""
+        import obstore  # noqa: PLC0415 (an extra)
+
+        with _answering(), contextlib.suppress(FileNotFoundError):
+            obstore.delete(self._store, name)
+
+    def files(self) -> Iterator[KeptFile]:
+        """List the objects, page by page."""
+        import obstore  # noqa: PLC0415 (an extra)
+
+        with _answering():
+            for page in obstore.list(self._store):
+                for facts in page:
+                    yield KeptFile(facts["path"], facts["size"], facts["last_modified"].timestamp())
+
+
+@contextmanager
+def _answering() -> Iterator[None]:
+    """Let a store that does not answer, or refuses us, be one to try later; FileNotFoundError passes."""
+    from obstore.exceptions import BaseError  # noqa: PLC0415 (an extra)
+
+    try:
+        yield
+    except (BaseError, PermissionError) as error:
+        raise StoreUnavailable("The store of results cannot be reached. Try again in a while.") from error
+
+
+def object_files(url: str, cache: Path, cache_bytes: int) -> ObjectFiles:
+    """Return the place ``s3://bucket/prefix``; endpoint, region and keys are read from the AWS_ variables.
+
+    Raises
+    ------
+    BadInput
+        The library is not installed, or the URL or a variable is none that it knows.
+    """
+    try:
+        from obstore.exceptions import BaseError  # noqa: PLC0415 (an extra)
+        from obstore.store import S3Store  # noqa: PLC0415 (an extra)
+    except ModuleNotFoundError:
+        tip = "Install it: pip install 'lineofaction[s3]'."
+        raise BadInput.of("results_url", url, "one whose library is installed", tip) from None
+    plain = any(os.environ.get(name, "").startswith("http://") for name in _ENDPOINTS)
+    client: ClientConfig = {"allow_http": plain, "timeout": "60s"}
+    try:
+        store = S3Store.from_url(url, client_options=client, retry_config=RETRIES)
+    except (BaseError, ValueError) as error:
+        raise BadInput.of("results_url", url, f"of a bucket we can use ({error})") from None
+    return ObjectFiles(store, cache, cache_bytes)
+
+
+_ENDPOINTS = ("AWS_ENDPOINT_URL", "AWS_ENDPOINT_URL_S3", "AWS_ENDPOINT")

@@ -1,0 +1,55 @@
+"""Where a service keeps its things: from its settings to a database and a store of results."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+from sqlalchemy import Engine
+
+from service.problems import BadInput
+from service.store.database import open_database
+from service.store.files import DirectoryFiles, ResultFiles
+from service.store.object_files import object_files
+from service.store.results import ResultStore
+
+DATABASE_FILE = "service.sqlite3"
+RESULTS_DIRECTORY = "results"
+CACHE_DIRECTORY = "cache"
+DEFAULT_CACHE_MB = 10_000
+
+
+def result_files(
+    data_directory: Path, results_url: str | None = None, cache_mb: int = DEFAULT_CACHE_MB
+) -> ResultFiles:
+    """Return the place of result files: in the data directory, ``file:///FOLDER``, or ``s3://BUCKET/PREFIX``.
+
+    Raises
+    ------
+    BadInput
+        The URL is none of these.
+    """
+    if results_url is None:
+        return DirectoryFiles(data_directory / RESULTS_DIRECTORY)
+    parts = urlsplit(results_url)
+    if parts.scheme == "file" and parts.netloc in ("", "localhost") and parts.path.startswith("/"):
+        return DirectoryFiles(Path(unquote(parts.path)))
+    if parts.scheme == "s3" and parts.netloc:
+        cache = data_directory / CACHE_DIRECTORY / RESULTS_DIRECTORY
+        return object_files(results_url, cache, cache_mb * 1_000_000)
+    raise BadInput.of("results_url", results_url, "s3://bucket/prefix or file:///folder")
+
+
+def result_store(
+    engine: Engine, data_directory: Path, results_url: str | None = None, cache_mb: int = DEFAULT_CACHE_MB
+) -> ResultStore:
+    """Return the store whose index is in a database; raises as `result_files`."""
+    return ResultStore(engine, result_files(data_directory, results_url, cache_mb))
+
+
+def stored_results(
+    data_directory: Path, database_url: str | None = None, results_url: str | None = None
+) -> ResultStore:
+    """Return the store of a data directory, or of what the URLs name, for one who reads now and then."""
+    engine = open_database(database_url or data_directory / DATABASE_FILE, pooled=False)
+    return result_store(engine, data_directory, results_url)
