@@ -16,6 +16,7 @@ from benchmarks import (
     finite_width,
     long_phase,
     other_engine,
+    page_redraw,
     predictions,
     reference_errors,
     run_up,
@@ -45,6 +46,7 @@ SUBJECTS = (
     worth_estimates,
     dynamic_worth_estimates,
     effects_off,
+    page_redraw,
 )
 
 

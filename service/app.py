@@ -12,9 +12,10 @@ from service.jobs.key import solver_version
 from service.jobs.live_desk import live_desk
 from service.jobs.machinery import job_machinery
 from service.jobs.process import Registry
-from service.routes import effects, health, jobs, landing, live, queries, results
+from service.routes import cases, effects, health, jobs, landing, live, page, queries, results
 from service.routes.context import Context
 from service.routes.errors import documented, install_error_handlers
+from service.routes.figures import figures_router
 from service.routes.metrics import Metrics
 from service.routes.middleware import Guard
 from service.routes.processes import processes_router
@@ -75,9 +76,11 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.state.metrics = Metrics(context.submissions)
     install_error_handlers(app)
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
-    shown = (landing.router, jobs.router, results.router, queries.router, effects.router, live.router)
+    stored = (results.router, figures_router(), queries.router, live.router)
+    shown = (landing.router, jobs.router, *stored, cases.router, effects.router)
     for router in (processes_router(offered), *shown):
         app.include_router(router, prefix="/v1", responses=documented(503))
+    app.include_router(page.router)
     app.include_router(health.router)
     return app
 

@@ -28,8 +28,9 @@ from fe_contact.planning.plan import LARGEST_SUPPORT
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.types import FloatArray
 
-POSITIONS = 64
-"""Of a base pitch, equally spaced: the compliance at them is assembled once for all flanks."""
+PLANE_POSITIONS, FACE_POSITIONS = 192, 64
+"""Of a base pitch, equally spaced: the compliance at them is assembled once for all flanks. In the plane
+handovers are steep, and positions cost little."""
 MOST_ROWS, FEWEST_POSITIONS = 4096, 16
 """Of longer periods, which repeat the positions in every base pitch."""
 OF_BODIES = (FaceLoadDistribution.name, FiniteWidth.name, ThinRim.name, BoreSeatElasticity.name)
@@ -83,7 +84,8 @@ class CondensedPair:
         self._refuse_other_bodies(pair)
         load = self._levels(pair, torques)
         checked = self._checked(pair, load, misalignment)
-        count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, POSITIONS))
+        most = FACE_POSITIONS if checked.model.across_face else PLANE_POSITIONS
+        count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, most))
         nodes = unmeasured_nodes(count, load.size)
         plan = replace(self.contact.plan, load=load, positions=count)
         contact = replace(self.contact, pair=pair, plan=plan)

@@ -22,7 +22,7 @@ def case(**pinion: Any) -> dict[str, Any]:
     return {
         "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, **gears},
         "load": {"torque_n_m": [0.5, 1.0]},
-        "accuracy": {"level": "draft", "model": "plane_strain", "positions": 64, "receipt": "minimal"},
+        "accuracy": {"level": "draft", "model": "plane_strain", "positions": 192, "receipt": "minimal"},
         "effects": {"corner_contact": "on"},
     }
 

@@ -1,0 +1,338 @@
+/** The case as a form, made from the schema that the service checks cases with. */
+
+import { byId, folded, make } from "./elements.js";
+
+const UNITS = [
+  ["_n_per_um", "N/µm"], ["_n_per_mm3", "N/mm³"], ["_n_m", "N m"], ["_gpa", "GPa"], ["_deg", "°"], ["_mm", "mm"],
+  ["_um", "µm"], ["_rpm", "rpm"], ["_hz", "Hz"], ["_percent", "%"], ["_n", "N"], ["_s", "s"],
+];
+const SYMBOLS = [[/\bin um\b/g, "in µm"], [/\bN\/um\b/g, "N/µm"]];
+/** Rows of the table of gears that are always shown; the others open when asked for. */
+const MAIN = new Set([
+  "teeth", "face_width_mm", "bore_diameter_mm", "rim_diameter_mm", "profile_shift_coefficient", "tip_relief_um",
+  "tip_relief_length_mm", "helix_crowning_um", "internal",
+]);
+const GROUPS = {
+  "More of the teeth": /^(addendum|dedendum|root_radius|tip_diameter|thickness|cutter)/,
+  "More flank modifications": /^(tip_relief_shape|root_relief|profile_|helix_slope|end_relief|flank_|pitch_)/,
+  "Body, seat, shaft and material": /./,
+};
+
+export function unitOf(name) {
+  return (UNITS.find(([suffix]) => name.endsWith(suffix)) || ["", ""])[1];
+}
+
+export function wordsOf(name) {
+  const suffix = (UNITS.find(([ending]) => name.endsWith(ending)) || [""])[0];
+  const bare = suffix ? name.slice(0, -suffix.length) : name;
+  const text = bare.replaceAll("_", " ").replace(/\bcenter\b/g, "centre");
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** The schema behind references and "or nothing". */
+function resolved(schema, root) {
+  let found = schema;
+  let nullable = false;
+  for (;;) {
+    if (found.$ref) {
+      const { $ref, ...rest } = found;
+      found = { ...root.$defs[$ref.split("/").pop()], ...rest };
+    } else if (found.anyOf) {
+      nullable = found.anyOf.some((one) => one.type === "null");
+      const { anyOf, ...rest } = found;
+      found = { ...anyOf.find((one) => one.type !== "null"), ...rest };
+    } else {
+      return { schema: found, nullable };
+    }
+  }
+}
+
+/** All fields below a schema, in its order, as {path, schema, nullable}. */
+function leaves(given, root, path = []) {
+  const { schema, nullable } = resolved(given, root);
+  if (schema.type === "object" && schema.properties) {
+    return Object.entries(schema.properties).flatMap(([name, inner]) => leaves(inner, root, [...path, name]));
+  }
+  return [{ path, schema, nullable }];
+}
+
+function kindOf(schema) {
+  if (schema.enum) return "choice";
+  if (schema.type === "boolean") return "switch";
+  if (schema.type === "integer" || schema.type === "number") return "number";
+  if (schema.type === "array" && ["number", "integer"].includes(schema.items?.type)) return "list";
+  return "json";
+}
+
+function at(content, path) {
+  return path.reduce((inner, name) => (inner === null || inner === undefined ? undefined : inner[name]), content);
+}
+
+function put(content, path, value) {
+  const last = path.length - 1;
+  path.slice(0, last).reduce((inner, name) => (inner[name] ??= {}), content)[path[last]] = value;
+}
+
+const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);
+
+/** A number as typed; text that is none passes as it is, for the service to refuse by name. */
+function typed(text) {
+  const value = Number(text.replace(",", "."));
+  return text !== "" && Number.isFinite(value) ? value : text;
+}
+
+class Field {
+  constructor(leaf, label) {
+    Object.assign(this, leaf);
+    this.key = leaf.path.join(".");
+    this.id = `f-${this.key.replaceAll(".", "-")}`;
+    this.name = leaf.path.at(-1);
+    this.kind = kindOf(leaf.schema);
+    this.label = label;
+    this.input = this.control();
+    this.message = make("p", { class: "fault", id: `${this.id}-fault`, hidden: true });
+    const unit = unitOf(this.name);
+    this.wide = this.kind === "list" || this.kind === "json";
+    const shown = unit ? make("span", { class: "unit", "aria-hidden": "true" }, unit) : null;
+    this.entry = make("div", { class: "entry" }, this.input, shown);
+  }
+
+  get hint() {
+    const full = SYMBOLS.reduce((found, [from, to]) => found.replace(from, to), this.schema.description || "");
+    const text = full.replace(/ in (mm|µm|degrees|N m|GPa)\b/, "");
+    return text.toLowerCase() === this.label.toLowerCase() ? "" : text;
+  }
+
+  get spoken() {
+    const unit = unitOf(this.name);
+    return unit ? `${this.label}, ${unit}` : this.label;
+  }
+
+  get defaultText() {
+    const value = this.schema.default;
+    if (value === null || value === undefined) return "";
+    return Array.isArray(value) ? value.join(", ") : String(value);
+  }
+
+  control() {
+    const common = { id: this.id, "aria-describedby": `${this.id}-fault`, name: this.key };
+    if (this.kind === "choice" || this.kind === "switch") {
+      const options = this.kind === "switch" ? ["true", "false"] : this.schema.enum;
+      const said = (text) => ({ true: "yes", false: "no" })[text] ?? text.replaceAll("_", " ");
+      const none = this.defaultText ? said(this.defaultText) : "not chosen";
+      return make(
+        "select", common, make("option", { value: "" }, none),
+        ...options.filter((text) => text !== this.defaultText).map((text) => make("option", { value: text }, said(text))),
+      );
+    }
+    const placeholder = this.kind === "json" ? "none" : this.defaultText;
+    const keys = this.kind === "number" ? "decimal" : "text";
+    return make("input", { ...common, type: "text", inputmode: keys, autocomplete: "off", placeholder });
+  }
+
+  set value(value) {
+    const plain = value === undefined || value === null || same(value, this.schema.default);
+    if (plain) this.input.value = "";
+    else if (this.kind === "list") this.input.value = value.join(", ");
+    else if (this.kind === "json") this.input.value = JSON.stringify(value);
+    else this.input.value = String(value);
+  }
+
+  get value() {
+    const text = this.input.value.trim();
+    if (text === "") return undefined;
+    if (this.kind === "number") return typed(text);
+    if (this.kind === "switch") return text === "true";
+    if (this.kind === "list") return text.split(/[,;\s]+/).filter(Boolean).map(typed);
+    if (this.kind === "json") {
+      try {
+        return JSON.parse(text);
+      } catch {
+        return text;
+      }
+    }
+    return text;
+  }
+
+  fault(text) {
+    this.input.setAttribute("aria-invalid", text ? "true" : "false");
+    this.message.textContent = text || "";
+    this.message.hidden = !text;
+  }
+}
+
+export class CaseForm {
+  /**
+   * @param {object} root schema of a case
+   * @param {object[]} effects what the service offers
+   * @param {() => void} changed called after every edit
+   */
+  constructor(root, effects, changed) {
+    this.fields = new Map();
+    this.changed = changed;
+    const { schema } = resolved(root, root);
+    const part = (name) => resolved(schema.properties[name], root).schema;
+    byId("fields").replaceChildren(
+      this.pair(part("pair"), root),
+      this.plain("Loads", "load", part("load"), root),
+      this.plain("Errors of assembly", "errors", part("errors"), root),
+      this.plain("Accuracy", "accuracy", part("accuracy"), root, ["tolerance", "level", "model"]),
+      folded("Material of both gears", this.plain("Material", "material", part("material"), root)),
+      folded("Effects", this.effects(effects)),
+    );
+    byId("case-form").addEventListener("input", (event) => {
+      this.fields.get(event.target.name)?.fault("");
+      if (event.target.closest("#fields")) changed();
+    });
+    byId("case-form").addEventListener("submit", (event) => event.preventDefault());
+  }
+
+  add(leaf, label) {
+    const field = new Field(leaf, label);
+    this.fields.set(field.key, field);
+    return field;
+  }
+
+  /** One field under its label. */
+  block(field) {
+    const unit = unitOf(field.name);
+    const spoken = unit ? make("span", { class: "unseen" }, `, ${unit}`) : null;
+    return make(
+      "div", { class: field.wide ? "field wide" : "field" },
+      make("label", { for: field.id }, field.label, spoken), field.entry,
+      make("span", { class: "hint" }, field.hint), field.message,
+    );
+  }
+
+  plain(title, name, schema, root, main = null) {
+    const found = leaves(schema, root, [name]).map((leaf) => this.add(leaf, wordsOf(leaf.path.at(-1))));
+    const shown = main ? found.filter((field) => main.includes(field.name)) : found;
+    const rest = found.filter((field) => !shown.includes(field));
+    const grid = (fields) => make("div", { class: "fields" }, ...fields.map((field) => this.block(field)));
+    return make(
+      "fieldset", {}, make("legend", {}, title), grid(shown), rest.length ? folded("More", grid(rest)) : null,
+    );
+  }
+
+  pair(schema, root) {
+    const shared = Object.entries(schema.properties).filter(([name]) => !["pinion", "wheel"].includes(name));
+    const fields = shared.map(([name, inner]) => {
+      const leaf = { path: ["pair", name], ...resolved(inner, root) };
+      return this.block(this.add(leaf, wordsOf(name)));
+    });
+    const gears = ["pinion", "wheel"].map((gear) => new Map(
+      leaves(schema.properties[gear], root, ["pair", gear]).map((leaf) => [leaf.path.slice(2).join("."), leaf]),
+    ));
+    const names = [...new Set([...gears[0].keys(), ...gears[1].keys()])];
+    const order = [...MAIN].filter((name) => names.includes(name));
+    const left = new Set(names.filter((name) => !MAIN.has(name)));
+    const groups = Object.entries(GROUPS).map(([title, pattern]) => {
+      const mine = [...left].filter((name) => pattern.test(name));
+      mine.forEach((name) => left.delete(name));
+      return folded(title, this.gearTable(title, mine, gears));
+    });
+    return make(
+      "fieldset", {}, make("legend", {}, "Gears"), make("div", { class: "fields" }, ...fields),
+      this.gearTable("Main data of both gears", order, gears), ...groups,
+    );
+  }
+
+  gearTable(caption, names, gears) {
+    const heads = ["", "Pinion (drives)", "Wheel"].map((text, k) => (
+      k === 0 ? make("td") : make("th", { scope: "col" }, text)));
+    const rows = names.map((name) => {
+      const words = name.split(".").map(wordsOf).join(" · ");
+      const cells = gears.map((gear, k) => {
+        if (!gear.has(name)) return make("td");
+        const field = this.add(gear.get(name), words);
+        field.input.setAttribute("aria-label", `${field.spoken}, ${["pinion", "wheel"][k]}`);
+        return make("td", {}, field.entry, field.message);
+      });
+      const field = this.fields.get((gears[0].get(name) || gears[1].get(name)).path.join("."));
+      const label = make("th", { scope: "row" }, words, make("span", { class: "hint" }, field.hint));
+      return make("tr", {}, label, ...cells);
+    });
+    return make(
+      "table", { class: "gears", "aria-label": caption },
+      make("thead", {}, make("tr", {}, ...heads)), make("tbody", {}, ...rows),
+    );
+  }
+
+  effects(effects) {
+    const fields = effects.map((effect) => {
+      const leaf = {
+        path: ["effects", effect.name],
+        schema: { enum: ["auto", "on", "off"], default: "auto", description: `Costs ${effect.cost}` },
+        nullable: false,
+      };
+      return this.block(this.add(leaf, wordsOf(effect.name)));
+    });
+    const note = make("p", { class: "hint" }, "auto: on where the case calls for it and the accuracy asked for needs it.");
+    return make("fieldset", {}, make("legend", {}, "Effects"), note, make("div", { class: "fields" }, ...fields));
+  }
+
+  /** Show a case. */
+  set case(content) {
+    for (const field of this.fields.values()) {
+      field.value = at(content, field.path);
+      field.fault("");
+    }
+    this.clear();
+  }
+
+  /** The case as typed: what is empty is left out. */
+  get case() {
+    const content = {};
+    for (const field of this.fields.values()) {
+      const value = field.value;
+      if (value !== undefined) put(content, field.path, value);
+    }
+    return content;
+  }
+
+  set(key, value) {
+    const field = this.fields.get(key);
+    if (field) field.value = value;
+  }
+
+  clear() {
+    for (const field of this.fields.values()) field.fault("");
+    byId("form-errors").hidden = true;
+    byId("form-errors").replaceChildren();
+  }
+
+  /** Show a refusal: each fault at its field, all of them in a list that leads there. */
+  refuse(problem, { focus = false } = {}) {
+    this.clear();
+    const box = byId("form-errors");
+    const items = problem.errors.map((fault) => {
+      const field = this.nearest(fault.field);
+      const text = `must be ${fault.bound}${fault.suggestion ? `. ${fault.suggestion}` : ""}`;
+      if (!field) return make("li", {}, `${fault.field} ${text}`);
+      field.fault(text);
+      const open = (event) => {
+        event.preventDefault();
+        this.reveal(field);
+      };
+      return make("li", {}, make("a", { href: `#${field.id}`, onclick: open }, fault.field), ` ${text}`);
+    });
+    box.replaceChildren(
+      make("strong", {}, items.length ? "This case cannot be computed:" : problem.message),
+      ...(items.length ? [make("ul", {}, ...items)] : []),
+    );
+    box.hidden = false;
+    if (focus) box.focus();
+  }
+
+  nearest(name) {
+    const bare = name.replace(/\[.*$/, "");
+    return this.fields.get(bare) || [...this.fields.values()].find((field) => field.key.startsWith(`${bare}.`));
+  }
+
+  reveal(field) {
+    for (let node = field.input; node; node = node.parentElement) {
+      if (node.tagName === "DETAILS") node.open = true;
+    }
+    field.input.focus();
+  }
+}

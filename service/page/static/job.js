@@ -1,0 +1,91 @@
+/** A job: submitted, watched with its stage and the time that remains, cancelled on request. */
+
+import { Problem, dismiss, get, pause, post } from "./api.js";
+import { duration, make } from "./elements.js";
+
+const ENDED = new Set(["successful", "failed", "dismissed"]);
+const FIRST_LOOK = 150;
+const LONGEST_LOOK = 1000;
+
+/**
+ * Run a process and show how far it is.
+ * @param {HTMLElement} target where progress is shown
+ * @param {string} process
+ * @param {object} inputs
+ * @param {{expected?: number}} options seconds that the plan predicts
+ * @returns {Promise<{href: string, type: string, hash: string}>} reference to the result
+ */
+export async function runJob(target, process, inputs, { expected } = {}) {
+  const status = await post(`/v1/processes/${process}/execution`, { inputs });
+  const card = new JobCard(target, process, status, expected);
+  const ended = await watched(status, (now) => card.show(now));
+  if (ended.status === "dismissed") throw new Problem({ title: "Cancelled", detail: "The job was cancelled.", status: 410 });
+  const results = await get(`/v1/jobs/${status.jobID}/results`);
+  return Object.values(results)[0];
+}
+
+async function watched(status, show) {
+  let now = status;
+  let wait = FIRST_LOOK;
+  while (!ENDED.has(now.status)) {
+    show(now);
+    await pause(wait);
+    wait = Math.min(1.3 * wait, LONGEST_LOOK);
+    now = await get(`/v1/jobs/${status.jobID}`);
+  }
+  show(now);
+  return now;
+}
+
+const WORDS = { accepted: "waits for its turn", running: "runs", successful: "done", failed: "failed", dismissed: "cancelled" };
+
+class JobCard {
+  constructor(target, process, status, expected) {
+    this.process = process;
+    this.expected = expected;
+    this.said = "";
+    this.bar = make("progress", { max: "100", "aria-label": `Progress of ${process}` });
+    this.line = make("p", {});
+    this.spoken = make("p", { class: "hint", role: "status" });
+    this.cancel = make("button", {
+      type: "button", class: "small", onclick: () => dismiss(`/v1/jobs/${status.jobID}`),
+    }, `Cancel ${process}`);
+    target.replaceChildren(make("div", { class: "job" }, this.line, this.bar, this.spoken, this.cancel));
+  }
+
+  show(now) {
+    const ended = ENDED.has(now.status);
+    this.bar.value = now.status === "successful" ? 100 : now.progress ?? 0;
+    this.cancel.hidden = ended;
+    this.bar.hidden = ended;
+    this.line.textContent = `${this.process} ${WORDS[now.status]}${ended ? this.spent(now) : `, ${Math.round(now.progress ?? 0)} %`}`;
+    const remaining = this.remaining(now);
+    const text = ended ? "" : [now.stage ? `stage: ${now.stage}` : "", remaining].filter(Boolean).join("; ");
+    if (text !== this.said) this.spoken.textContent = text; // a screen reader hears changes only
+    this.said = text;
+  }
+
+  spent(now) {
+    if (!now.started || !now.finished) return "";
+    const seconds = (new Date(now.finished) - new Date(now.started)) / 1000;
+    return seconds < 0.5 ? " (from the store)" : ` after ${duration(seconds)}`;
+  }
+
+  /** Seconds that remain: the service's own figure, else by what is done, else by the plan. */
+  remaining(now) {
+    if (now.status !== "running") return "";
+    if (Number.isFinite(now.remaining_s)) return `about ${duration(now.remaining_s)} remain`;
+    const spent = now.started ? (Date.now() - new Date(now.started)) / 1000 : 0;
+    if (now.progress > 5 && spent > 1) return `about ${duration((spent * (100 - now.progress)) / now.progress)} remain`;
+    return this.expected ? `planned: about ${duration(this.expected)}` : "";
+  }
+}
+
+/** Say why there is no result. */
+export function showFailure(target, problem) {
+  const faults = problem.errors.map((fault) => make("li", {}, `${fault.field} must be ${fault.bound}. ${fault.suggestion || ""}`));
+  target.replaceChildren(make(
+    "div", { role: "alert" }, make("strong", {}, problem.facts.title || "It failed"), make("p", {}, problem.message),
+    faults.length ? make("ul", {}, ...faults) : null,
+  ));
+}

@@ -1,0 +1,141 @@
+/** Plots by plotly.js: in the colours of the page, with their numbers beside them. */
+
+/* global Plotly */
+
+import { csv, dataTable, folded, make, save } from "./elements.js";
+
+const DARK = window.matchMedia("(prefers-color-scheme: dark)");
+// without the bar of buttons: a plot is an image to a screen reader, and an image holds no controls
+const CONFIG = { responsive: true, displaylogo: false, displayModeBar: false };
+const shown = new Map();
+
+function channels(colour) {
+  return [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16) / 255);
+}
+
+function luminance(colour) {
+  const [r, g, b] = channels(colour).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
+
+/** A colour that stays legible on dark paper: what is too dark has its lightness turned over. */
+export function onDark(colour) {
+  if (!/^#[0-9a-f]{6}$/i.test(colour) || luminance(colour) > 0.16) return colour;
+  const rgb = channels(colour);
+  const shift = 1 - Math.max(...rgb) - Math.min(...rgb);
+  return `#${rgb.map((c) => Math.round(255 * Math.min(Math.max(c + shift, 0), 1)).toString(16).padStart(2, "0")).join("")}`;
+}
+
+function recoloured(value) {
+  if (Array.isArray(value)) return value.map(recoloured);
+  if (typeof value === "string") {
+    if (value === "rgba(255,255,255,0.8)") return "rgba(20,24,29,0.8)";
+    return onDark(value);
+  }
+  return value;
+}
+
+/** Colours in a trace or a layout, turned for dark paper; scales of surfaces and maps stay. */
+function darkened(content) {
+  if (Array.isArray(content)) return content.map((item) => (typeof item === "object" && item ? darkened(item) : item));
+  return Object.fromEntries(Object.entries(content).map(([key, value]) => {
+    if (key === "colorscale") return [key, value];
+    if (/color$/.test(key)) return [key, recoloured(value)];
+    return [key, value && typeof value === "object" && !["x", "y", "z"].includes(key) ? darkened(value) : value];
+  }));
+}
+
+function themed({ data, layout }) {
+  const paper = { paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)" };
+  if (!DARK.matches) return { data, layout: { ...layout, ...paper } };
+  const dark = darkened(layout);
+  for (const [name, axis] of Object.entries(dark)) {
+    if (/^[xy]axis/.test(name)) Object.assign(axis, { gridcolor: "#333b44", linecolor: "#77818c", tickcolor: "#77818c" });
+  }
+  for (const axis of Object.values(dark.scene || {})) if (axis.title) axis.gridcolor = "#4a545f";
+  const ink = { font: { ...layout.font, color: "#e6e9ed" }, hoverlabel: { font: { color: "#14181d" } } };
+  return { data: data.map(darkened), layout: { ...dark, ...paper, ...ink } };
+}
+
+/** Let the legend and the labels fit a narrow screen. */
+function fitted({ data, layout }, width) {
+  if (width > 560) return { data, layout };
+  const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: 52, r: 8 } };
+  for (const [name, axis] of Object.entries(narrow)) {
+    if (/^[xy]axis/.test(name) && axis.title) {
+      const text = name.startsWith("x") ? axis.title.text.replace(/ \(.*\)$/, "") : axis.title.text;
+      narrow[name] = { ...axis, title: { ...axis.title, text, font: { size: 11 } } };
+    }
+  }
+  if (narrow.scene) narrow.scene = { ...narrow.scene, camera: { ...narrow.scene.camera, eye: { x: -1.9, y: -2.2, z: 1.1 } } };
+  return { data: data.map((trace) => (trace.type === "surface" ? { ...trace, showscale: false } : trace)), layout: narrow };
+}
+
+function drawable(figure) {
+  if (!figure.data.some((trace) => trace.type === "surface")) return true;
+  return Boolean(document.createElement("canvas").getContext("webgl"));
+}
+
+/** Draw or redraw a figure {data, layout} in a node. */
+export async function plot(node, figure) {
+  if (!drawable(figure)) {
+    node.replaceChildren(make("p", { class: "hint" }, "This browser draws no surfaces (WebGL); the file and the CSV have it."));
+    node.dataset.drawn = "words";
+    return;
+  }
+  shown.set(node, figure);
+  const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
+  await Plotly.react(node, data, layout, CONFIG);
+  node.dataset.drawn = "yes";
+}
+
+DARK.addEventListener("change", () => {
+  for (const [node, figure] of shown) {
+    if (node.isConnected) plot(node, figure);
+    else shown.delete(node);
+  }
+});
+
+async function savePng(node, name) {
+  const { data, layout } = node;
+  const paper = DARK.matches ? "#14181d" : "#ffffff";
+  const size = { width: Math.max(node.clientWidth, 900), height: layout.height || node.clientHeight };
+  const url = await Plotly.toImage({ data, layout: { ...layout, paper_bgcolor: paper } }, { format: "png", scale: 2, ...size });
+  save(await (await imageOf(url)), `${name}.png`, "image/png");
+}
+
+/** Bytes behind a data URL, without fetching it. */
+function imageOf(url) {
+  const bytes = atob(url.split(",")[1]);
+  return new Blob([Uint8Array.from(bytes, (letter) => letter.charCodeAt(0))], { type: "image/png" });
+}
+
+function columnsOf(figure) {
+  return figure.data.filter((trace) => trace.x?.length > 1 || trace.z).flatMap((trace, k) => {
+    const name = trace.name || trace.type || `curve ${k + 1}`;
+    if (!trace.z) return [[`${name}, x`, trace.x], [`${name}, y`, trace.y]];
+    const rows = trace.z.map((row, r) => [`${name}, y = ${trace.y[r]}`, row]);
+    return [[`${name}, x`, trace.x], ...rows];
+  });
+}
+
+/** A plot with its words, its numbers and its files. */
+export function figureBlock(figure, level = "h4") {
+  const label = `${figure.title}. ${figure.alternative}`;
+  const node = make("div", { class: "plot", role: "img", "aria-label": label });
+  const tool = (text, action) => make(
+    "button", { type: "button", class: "small", "aria-label": `${text} of: ${figure.title}`, onclick: action }, text,
+  );
+  const tools = make(
+    "div", { class: "plot-tools" },
+    tool("PNG", () => savePng(node, figure.key)),
+    tool("CSV", () => save(csv(columnsOf(figure.plot)), `${figure.key}.csv`, "text/csv")),
+    tool("JSON", () => save(JSON.stringify(figure.plot), `${figure.key}.json`, "application/json")),
+  );
+  const block = make(
+    "figure", { id: `figure-${figure.key}` }, make(level, {}, figure.title), node, tools,
+    make("figcaption", {}, `${figure.caption} ${figure.alternative}`),
+    figure.table ? folded("Numbers", dataTable(figure.table)) : null,
+  );
+  return { block, node };
+}

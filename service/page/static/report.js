@@ -1,0 +1,54 @@
+/** A stored result as the service's report describes it: main results, figures, tables, files. */
+
+import { file, get } from "./api.js";
+import { dataTable, figures, folded, make, save } from "./elements.js";
+import { figureBlock, plot } from "./plots.js";
+
+/**
+ * Show the report of a result.
+ * @param {HTMLElement} target
+ * @param {{href: string, type: string, hash: string}} result reference to it
+ * @param {{making?: boolean, after?: Node}} options with the tables that say how it was made
+ */
+export async function showReport(target, result, { making = false } = {}) {
+  target.setAttribute("aria-busy", "true");
+  const report = await get(`${result.href}/figures`);
+  const head = make("dl", { class: "headline" });
+  figures(head, report.headlines.map(({ name, value, remark }) => [name, value, remark]));
+  const alarms = report.alarms.map((text) => make("p", { class: "alarm", role: "alert" }, text));
+  const drawn = [];
+  const sections = report.sections.filter((one) => making || one.figures.length).map((one) => sectionBlock(one, drawn));
+  const lead = report.lead ? `${report.title}: ${report.lead}.` : `${report.title}.`;
+  target.replaceChildren(
+    make("p", { class: "lead" }, lead), ...alarms, head, files(result), ...sections,
+  );
+  for (const [node, figure] of drawn) await plot(node, figure);
+  target.setAttribute("aria-busy", "false");
+  return report;
+}
+
+function sectionBlock(section, drawn) {
+  const parts = section.figures.map((figure) => {
+    const { block, node } = figureBlock(figure);
+    drawn.push([node, figure.plot]);
+    return block;
+  });
+  const tables = section.tables.map((table) => dataTable(table));
+  const more = section.folded.map((table) => folded(table.caption, dataTable(table)));
+  const text = section.text ? make("p", {}, section.text) : null;
+  if (!parts.length) return folded(section.title, ...(text ? [text] : []), ...tables, ...more);
+  return make("div", {}, make("h3", {}, section.title), text ?? "", ...parts, ...tables, ...more);
+}
+
+/** Buttons for the files of a result. */
+function files(result) {
+  const name = `lineofaction_${result.hash.slice(0, 12)}`;
+  const row = make("div", { class: "row" }, make("span", { class: "hint" }, "Save"));
+  const button = (text, action) => row.append(make("button", { type: "button", onclick: action }, text));
+  if (result.type === "application/x-netcdf") {
+    button("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
+  }
+  button("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
+  button("Figures as JSON", async () => save(await file(`${result.href}/figures`, "application/json"), `${name}_figures.json`));
+  return row;
+}

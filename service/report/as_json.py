@@ -1,0 +1,86 @@
+"""The content of a report as plain JSON: figures as plotly.js takes them, tables, main results.
+
+It is what the page of the service shows, so that every plot is described once.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from service.problems import NotFound
+from service.report.content import page_of
+from service.report.figure import Figure, Table
+from service.report.frontier import frontier_page
+from service.report.inputs import read_inputs
+from service.report.interactive import plotly_figure
+from service.report.page import Page, Section
+from service.report.stored_ladder import case_ladder
+
+Json = dict[str, Any]
+
+_LADDER_TITLE = "What accuracy costs in time"
+
+
+def stored_figures(inputs: Json) -> Json:
+    """Return the report on a stored result: ``{"kind": ..., "file": ...}``; work of the live worker.
+
+    Raises
+    ------
+    NotFound
+        There are no figures of this kind of result.
+    """
+    kind, file = inputs["kind"], Path(inputs["file"])
+    if kind == "frontier":
+        content = json.loads(file.read_text(encoding="utf-8"))
+        if (found := case_ladder(content)) is not None:
+            return page_json(frontier_page(found, _LADDER_TITLE))
+    elif file.suffix == ".nc":
+        return page_json(page_of(read_inputs([file])))
+    raise NotFound(f"There are no figures of this {kind}; its JSON has all numbers.")
+
+
+def page_json(page: Page) -> Json:
+    """Return a report as plain JSON."""
+    return {
+        "title": page.title,
+        "lead": page.lead,
+        "alarms": list(page.alarms),
+        "headlines": [{"name": h.name, "value": h.value, "remark": h.remark} for h in page.headlines],
+        "sections": [_section(section) for section in page.sections],
+    }
+
+
+def _section(section: Section) -> Json:
+    """One part with its figures and tables."""
+    return {
+        "title": section.title,
+        "text": section.text,
+        "figures": [_figure(figure) for figure in section.figures],
+        "tables": _tables(section.tables),
+        "folded": _tables(section.folded),
+    }
+
+
+def _figure(figure: Figure) -> Json:
+    """One plot, with what stands in for it where it cannot be seen."""
+    return {
+        "key": figure.key,
+        "title": figure.title,
+        "caption": figure.caption,
+        "alternative": figure.alternative,
+        "plot": plotly_figure(figure),
+        "table": None if figure.table is None else _table(figure.table),
+    }
+
+
+def _tables(tables: Iterable[Table]) -> list[Json]:
+    """Several tables."""
+    return [_table(table) for table in tables]
+
+
+def _table(table: Table) -> Json:
+    """One table, its cells as they are read."""
+    return {"caption": table.caption, "head": list(table.head), "rows": [list(row) for row in table.rows]}

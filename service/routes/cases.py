@@ -1,0 +1,98 @@
+"""Cases before anything is computed: examples, drawing, TOML in and out."""
+
+from __future__ import annotations
+
+import tomllib
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from service.convert.case import case_json
+from service.convert.outline import outline_json
+from service.convert.toml import toml_text
+from service.page.examples import Example, examples
+from service.problems import BadInput
+from service.routes.errors import documented
+from service.schemas import Case
+from service.schemas.model import BoundaryModel
+from service.schemas.reading import validated
+
+router = APIRouter(tags=["cases"])
+
+
+class CaseInputs(BoundaryModel):
+    """A case."""
+
+    case: Case = Field(description="The case, as in a case file")
+
+
+class CaseRequest(BoundaryModel):
+    """A case, where an execution of analyze has it."""
+
+    inputs: CaseInputs = Field(description="The case, as in an execution of analyze")
+
+
+class TomlBody(BoundaryModel):
+    """The text of a case file."""
+
+    toml: str = Field(max_length=4_000_000, description="TOML", examples=["[pair]\nnormal_module_mm = 4.0\n"])
+
+
+class CaseBody(BaseModel):
+    """A case with all defaults."""
+
+    case: dict[str, Any]
+
+
+class ExampleBody(BaseModel):
+    """A case to begin with."""
+
+    name: str
+    title: str
+    note: str
+    case: dict[str, Any]
+
+
+@router.get("/examples", summary="Cases to begin with")
+def example_cases() -> list[ExampleBody]:
+    """List the pairs that the page offers."""
+    return [_example(found) for found in examples()]
+
+
+@router.post("/cases/outline", summary="Drawing of the two gears", responses=documented(400, 413, 422))
+def outline(body: CaseRequest) -> dict[str, Any]:
+    """Transverse outlines of both gears in mm, the path of contact, and the figures of the pair."""
+    return outline_json(body.inputs.case)
+
+
+@router.post("/cases/from-toml", summary="Read a case file", responses=documented(400, 413, 422))
+def from_toml(body: TomlBody) -> CaseBody:
+    """Read the case in a file's text, with all defaults; files that it names cannot be read here."""
+    try:
+        content = tomllib.loads(body.toml)
+    except tomllib.TOMLDecodeError as error:
+        raise BadInput.of("toml", None, "well-formed TOML", f"{error}.") from None
+    return CaseBody(case=case_json(validated(Case, content)))
+
+
+@router.post("/cases/to-toml", summary="Write a case file", responses=documented(400, 413, 422))
+def to_toml(body: CaseRequest) -> TomlBody:
+    """Write the case with all defaults as a file's text."""
+    return TomlBody(toml=toml_text(case_json(body.inputs.case)))
+
+
+def _example(found: Example) -> ExampleBody:
+    """Return an example with all defaults."""
+    case = case_json(validated(Case, found.content))
+    return ExampleBody(name=found.name, title=found.title, note=found.note, case=case)
+
+
+def _explained(handler: Any, model: type[BaseModel]) -> None:
+    """Name the model that explains refused fields."""
+    handler.body_model = model
+
+
+_explained(outline, CaseRequest)
+_explained(from_toml, TomlBody)
+_explained(to_toml, CaseRequest)

@@ -1,0 +1,69 @@
+"""Figures and tables of stored results, as `loa report` draws them."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, Field
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import Response
+
+from service.jobs.key import solver_version
+from service.jobs.live_order import LiveOrder
+from service.routes.context import Ctx
+from service.routes.errors import documented
+from service.routes.results import Key
+from service.schemas.result_kinds import RESULT_KINDS, ResultKind
+
+FIGURES = "service.report.as_json:stored_figures"
+
+
+class ReportBody(BaseModel):
+    """A report: main results, and sections with figures and tables."""
+
+    title: str
+    lead: str
+    alarms: list[str]
+    headlines: list[dict[str, str]]
+    sections: list[dict[str, Any]] = Field(
+        description="title, text, figures (key, title, caption, alternative, plot, table), tables, folded"
+    )
+
+
+def figures_router() -> APIRouter:
+    """Return the routes, one for each kind of results."""
+    router = APIRouter(tags=["results"])
+    for kind in RESULT_KINDS.values():
+        router.add_api_route(
+            f"{kind.path.removeprefix('/v1')}/{{key}}/figures",
+            _handler(kind),
+            methods=["GET"],
+            name=f"figures_{kind.name}",
+            summary=f"Figures of a result: {kind.name}",
+            response_class=Response,
+            responses={
+                200: {"model": ReportBody, "description": "The report"},
+                304: {"description": "Not modified"},
+                **documented(404, 422, 429, 500, 503),
+            },
+        )
+    return router
+
+
+def _handler(kind: ResultKind) -> Any:
+    """Return the handler of one kind of results."""
+
+    async def figures(key: Key, request: Request, context: Ctx) -> Response:
+        """Every plot as data and layout for plotly.js, with its words and numbers."""
+        stored = await run_in_threadpool(context.store.verified, key, kind.name)
+        tag = f'"{stored.sha256}-figures-{solver_version()}"'
+        headers = {"ETag": tag, "Cache-Control": "no-cache"}
+        if tag in request.headers.get("if-none-match", ""):
+            return Response(status_code=304, headers=headers)
+        order = LiveOrder(FIGURES, {"kind": kind.name, "file": str(stored.path)})
+        body = await asyncio.wrap_future(context.live.ask(order))
+        return Response(body, media_type="application/json", headers=headers)
+
+    return figures

@@ -1,0 +1,56 @@
+"""The page at ``/``: plain files, nothing from elsewhere, and a policy by which browsers hold it to that."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, Request
+from starlette.responses import Response
+
+from service.page.files import PageFile, page_file
+from service.problems import NotFound
+
+router = APIRouter(include_in_schema=False)
+
+_POLICY = "; ".join(
+    (
+        "default-src 'none'",
+        "script-src 'self'",
+        "style-src 'self' 'unsafe-inline'",  # plotly.js writes its styles into what it draws
+        "img-src 'self' data: blob:",  # a plot becomes a PNG by way of them
+        "connect-src 'self'",
+        "base-uri 'none'",
+        "form-action 'none'",
+        "frame-ancestors 'none'",
+    )
+)
+_HEADERS = {
+    "Content-Security-Policy": _POLICY,
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cache-Control": "no-cache",
+    "Vary": "Accept-Encoding",
+}
+
+
+@router.get("/")
+def page(request: Request) -> Response:
+    """Return the page."""
+    return _served(page_file("index.html"), request)
+
+
+@router.get("/page/{name}")
+def part(name: str, request: Request) -> Response:
+    """Return a style sheet, a module or plotly.js."""
+    return _served(page_file(name), request)
+
+
+def _served(file: PageFile | None, request: Request) -> Response:
+    """Return a file, compressed if the caller takes that, or 304."""
+    if file is None:
+        raise NotFound("The page has no such file.")
+    headers = _HEADERS | {"ETag": file.tag}
+    if file.tag in request.headers.get("if-none-match", ""):
+        return Response(status_code=304, headers=headers)
+    if "gzip" in request.headers.get("accept-encoding", ""):
+        return Response(file.packed, 200, headers | {"Content-Encoding": "gzip"}, file.media_type)
+    return Response(file.content, 200, headers, file.media_type)

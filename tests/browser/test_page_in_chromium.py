@@ -1,0 +1,246 @@
+"""The page of the service in a real browser: from a case to live flanks by keyboard, nothing foreign."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, Page, expect
+from running_service import until
+
+GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
+CASE = {
+    "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": GEAR, "wheel": GEAR},
+    "load": {"torque_n_m": [0.5, 1.0]},
+    "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16, "receipt": "minimal"},
+}
+FIGURES = (
+    "ste",
+    "load_sharing",
+    "mesh_stiffness",
+    "database",
+    "live_ste",
+    "live_harmonics",
+    "live_load_share",
+)
+PATIENCE = 120_000.0  # milliseconds; what never comes fails, what is slow does not
+
+
+@dataclass
+class Visit:
+    """An opened page and what it did."""
+
+    page: Page
+    console: list[str] = field(default_factory=list)
+    requests: list[str] = field(default_factory=list)
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Serve on a free port and an empty directory."""
+    home = tmp_path_factory.mktemp("service")
+    root = str(Path(__file__).parents[2])
+    path = os.pathsep.join(part for part in (root, os.environ.get("PYTHONPATH", "")) if part)
+    environment = {**os.environ, "PYTHONPATH": path, "XDG_DATA_HOME": str(home)}
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    with (
+        (home / "log").open("wb") as log,
+        subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=log, text=True) as service,
+    ):
+        assert service.stdout is not None
+        yield service.stdout.readline().split()[-1]
+        service.terminate()
+
+
+def opened(browser: Browser, address: str, scheme: str, width: int) -> Visit:
+    """Open the page and note what it does."""
+    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)  # type: ignore[arg-type]
+    page.set_default_timeout(PATIENCE)
+    seen = Visit(page)
+    page.on("console", lambda message: seen.console.append(f"{message.type}: {message.text}"))
+    page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
+    page.on("request", lambda request: seen.requests.append(request.url))
+    page.goto(address)
+    page.wait_for_selector("html[data-ready=yes]")
+    return seen
+
+
+def choose_case(page: Page, folder: Path) -> None:
+    """Open the small case as a file."""
+    file = folder / "case.json"
+    file.write_text(json.dumps(CASE), encoding="utf-8")
+    page.locator("#import-file").set_input_files(file)
+    expect(page.locator("#example-note")).to_have_text("case.json")
+    expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
+    expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
+
+
+def tab_to(page: Page, target: str, most: int = 120) -> None:
+    """Press Tab until the element has the focus."""
+    for _ in range(most):
+        page.keyboard.press("Tab")
+        if page.evaluate("selector => document.activeElement?.matches(selector)", target):
+            return
+    raise AssertionError(f"{target} is not reached by {most} tabs")
+
+
+@pytest.fixture(scope="module")
+def visit(browser: Browser, address: str, tmp_path_factory: pytest.TempPathFactory) -> Visit:
+    """Walk the main path with the keyboard alone, but for the dialogue that opens a file."""
+    seen = opened(browser, address, "light", 1400)
+    page = seen.page
+    choose_case(page, tmp_path_factory.mktemp("case"))
+    page.wait_for_selector("#plan dl")
+    page.keyboard.press("Tab")
+    tab_to(page, "#analyze")
+    page.keyboard.press("Enter")
+    page.wait_for_selector("#live-body[data-answers]")
+    return seen
+
+
+def answers(page: Page) -> int:
+    """Count the live answers so far."""
+    return int(page.locator("#live-body").get_attribute("data-answers") or 0)
+
+
+def peak_to_peak(page: Page) -> str:
+    """Return what the page says of the live curve."""
+    return page.locator("#live-figures dd").first.text_content() or ""
+
+
+@pytest.mark.parametrize("key", FIGURES)
+def test_every_plot_is_drawn_and_has_words(visit: Visit, key: str) -> None:
+    node = visit.page.locator(f"#figure-{key} .plot")
+    expect(node).to_have_attribute("data-drawn", re.compile("yes|words"), timeout=PATIENCE)
+    if key != "database":  # a surface is drawn by WebGL, or said in words where there is none
+        lines = node.locator(".scatterlayer .trace path.js-line, .barlayer .point path")
+        assert lines.count() >= 2
+    assert len(node.get_attribute("aria-label") or "") > 20
+
+
+def test_a_slider_redraws_the_curve_by_arrow_keys(visit: Visit) -> None:
+    page = visit.page
+    before, count = peak_to_peak(page), answers(page)
+    page.locator("#live-pinion-tip_relief_um").focus()
+    for _ in range(8):
+        page.keyboard.press("ArrowRight")
+    until(lambda: answers(page) > count)
+    expect(page.locator("#live-figures dd").first).not_to_have_text(before)
+    now = page.locator("#figure-live_ste .scatterlayer .trace path.js-line")
+    assert now.nth(0).get_attribute("d") != now.nth(1).get_attribute("d")
+    page.get_by_role("button", name="As analysed").press("Enter")
+    expect(page.locator("#live-figures dd").first).to_have_text(before)
+
+
+def test_flanks_go_from_the_sliders_into_the_case(visit: Visit) -> None:
+    page = visit.page
+    page.locator("#live-wheel-tip_relief_um").focus()
+    page.keyboard.press("End")
+    most = page.locator("#live-wheel-tip_relief_um").input_value()
+    page.get_by_role("button", name="Take these flanks").press("Enter")
+    expect(page.locator("#f-pair-wheel-tip_relief_um")).to_have_value(most)
+    assert float(page.locator("#f-pair-wheel-tip_relief_length_mm").input_value()) > 0.0
+
+
+def test_in_the_plane_nothing_across_the_face_is_offered(visit: Visit) -> None:
+    assert visit.page.locator("#live-misalignment_um").is_disabled()
+    assert visit.page.locator("#live-pinion-helix_crowning_um").is_disabled()
+
+
+def test_a_fault_is_said_at_its_field_and_the_list_leads_there(
+    browser: Browser, address: str, visit: Visit, tmp_path: Path
+) -> None:
+    page = opened(browser, address, "light", 1400).page  # a refusal is an error on a console
+    choose_case(page, tmp_path)
+    bore = page.locator("#f-pair-pinion-bore_diameter_mm")
+    bore.fill("19")
+    expect(bore).to_have_attribute("aria-invalid", "true")
+    told = page.locator(f"#{bore.get_attribute('aria-describedby')}")
+    expect(told).to_contain_text("must be")
+    link = page.locator("#form-errors a")
+    expect(link).to_have_text("pair.pinion.bore_diameter_mm")
+    link.press("Enter")
+    expect(bore).to_be_focused()
+    choose_case(page, tmp_path)
+    expect(bore).to_have_attribute("aria-invalid", "false")
+    page.close()
+
+
+def test_the_case_is_saved_as_toml_that_reads_back(visit: Visit, tmp_path: Path) -> None:
+    choose_case(visit.page, tmp_path)
+    with visit.page.expect_download() as given:
+        visit.page.locator("#export-toml").press("Enter")
+    written = tomllib.loads(Path(given.value.path()).read_text(encoding="utf-8"))
+    assert written["pair"]["pinion"]["teeth"] == 20
+    assert written["load"]["torque_n_m"] == [0.5, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("tool", "begin"), [("PNG", b"\x89PNG"), ("CSV", b'"0.5 N m, x"'), ("JSON", b'{"data"')]
+)
+def test_a_plot_is_saved(visit: Visit, tool: str, begin: bytes) -> None:
+    with visit.page.expect_download() as given:
+        visit.page.get_by_role("button", name=f"{tool} of: Static transmission error over").press("Enter")
+    assert Path(given.value.path()).read_bytes().startswith(begin)
+
+
+def test_the_result_is_saved_as_netcdf(visit: Visit) -> None:
+    with visit.page.expect_download() as given:
+        visit.page.get_by_role("button", name="netCDF").first.press("Enter")
+    assert Path(given.value.path()).read_bytes()[1:4] == b"HDF"
+
+
+def test_both_gears_are_drawn_and_roll(visit: Visit) -> None:
+    page = visit.page
+    gears = page.locator("#mesh-drawing g > g")
+    assert gears.count() == 2
+    before = [gear.get_attribute("transform") for gear in gears.all()]
+    page.locator("#roll").focus()
+    page.keyboard.press("End")
+    turned = [gear.get_attribute("transform") for gear in gears.all()]
+    angles = [[float(re.findall(r"-?[\d.]+", text or "")[0]) for text in both] for both in (before, turned)]
+    # one base pitch: one tooth of either gear, in opposite senses (an angle of a drawing runs clockwise)
+    assert [b - a for a, b in zip(*angles, strict=True)] == pytest.approx([-18.0, 18.0], abs=1e-3)
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1400), ("dark", 400)])
+def test_the_page_is_accessible(
+    browser: Browser, address: str, visit: Visit, scheme: str, width: int
+) -> None:
+    page = visit.page
+    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.set_viewport_size({"width": width, "height": 900})
+    page.evaluate("() => { for (const folded of document.querySelectorAll('details')) folded.open = true; }")
+    found = Axe().run(page)
+    told = {v["id"]: [node["html"][:160] for node in v["nodes"]] for v in found.response["violations"]}
+    assert not told, json.dumps(told, indent=1)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_nothing_is_complained_about(visit: Visit) -> None:
+    assert [line for line in visit.console if line.startswith("error")] == []
+
+
+def test_nothing_is_fetched_from_elsewhere(visit: Visit, address: str) -> None:
+    foreign = [url for url in visit.requests if not url.startswith((address, "data:", "blob:"))]
+    assert foreign == []
+
+
+def test_a_script_from_elsewhere_does_not_run(browser: Browser, address: str, visit: Visit) -> None:
+    page = opened(browser, address, "light", 1400).page
+    page.evaluate(
+        "() => { const s = document.createElement('script'); s.textContent = 'window.intruder = 1';"
+        " document.head.append(s); }"
+    )
+    assert page.evaluate("window.intruder") is None
+    page.close()

@@ -1,0 +1,144 @@
+"""What the page is made of: examples that can be computed, files, drawing, TOML."""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import create_app
+from service.convert.case import case_json, gear_pair
+from service.convert.checks import check_case
+from service.convert.outline import outline_json
+from service.convert.toml import toml_text
+from service.page.examples import examples
+from service.schemas import Case
+from service.schemas.reading import validated
+from service.settings import Settings
+
+ROOT = Path(__file__).parents[3]
+STATIC = ROOT / "service" / "page" / "static"
+CASES = {example.name: validated(Case, example.content) for example in examples()}
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Iterator[TestClient]:
+    with TestClient(create_app(Settings(data_directory=tmp_path))) as found:
+        yield found
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_example_can_be_computed(name: str) -> None:
+    check_case(CASES[name])
+
+
+def test_examples_that_stand_in_the_folder_too_are_the_same() -> None:
+    for file in (ROOT / "service" / "page" / "examples").glob("*.toml"):
+        twin = ROOT / "examples" / file.name
+        assert file.name == "helical_automotive.toml" or file.read_bytes() == twin.read_bytes()
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_case_written_as_toml_reads_back_the_same(name: str) -> None:
+    written = toml_text(case_json(CASES[name]))
+    assert validated(Case, tomllib.loads(written)) == CASES[name]
+
+
+def test_toml_holds_every_kind_of_value() -> None:
+    content = {
+        "a": {
+            "text": 'quote " \\ \n',
+            "on": True,
+            "list": [1.0, -2e-9],
+            "grid": [[1, 2], [3, 4]],
+            "none": None,
+        }
+    }
+    content["a"]["inner"] = {"x": 1e300}
+    read = tomllib.loads(toml_text(content))
+    del content["a"]["none"]
+    assert read == content
+
+
+def placed(gear: dict[str, Any]) -> np.ndarray:
+    """Return one turn of outline points (teeth, n, 2), placed as drawn."""
+    tooth = np.array(gear["tooth_mm"])
+    angle = math.radians(gear["angle_deg"]) + 2.0 * np.pi * np.arange(gear["teeth"]) / gear["teeth"]
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    return np.asarray(np.einsum("ijt,nj->tni", turn, tooth) + np.array(gear["centre_mm"]))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_drawn_flanks_touch_at_the_pitch_point_and_nowhere_overlap(name: str) -> None:
+    drawn = outline_json(CASES[name])
+    pinion, wheel = placed(drawn["pinion"]), placed(drawn["wheel"])
+    pitch_point = np.array(drawn["path_of_contact"]["points_mm"]["C"])
+    for gear in (pinion, wheel):
+        nearest = np.min(np.linalg.norm(gear - pitch_point, axis=2))
+        assert nearest < 0.06 * CASES[name].pair.normal_module_mm  # a chord of the polygon
+    # no point of the pinion's outline lies inside a tooth of the wheel (by more than the chords)
+    modulus, radius = CASES[name].pair.normal_module_mm, drawn["wheel"]["radius_mm"]
+    tip, sign = radius["tip"], -1.0 if drawn["internal"] else 1.0
+    arm = pinion.reshape(-1, 2) - np.array(drawn["wheel"]["centre_mm"])
+    inside = sign * (tip - np.linalg.norm(arm, axis=1)) > 0.0
+    depth = [_depth(point, drawn["wheel"]) for point in arm[inside]]
+    assert inside.any() and max(depth) < 0.01 * modulus
+
+
+def _depth(point: np.ndarray, gear: dict[str, Any]) -> float:
+    """Depth in mm of a point (from the gear's centre) inside a tooth, along the circle; < 0: outside."""
+    pitch = 2.0 * np.pi / gear["teeth"]
+    angle = math.atan2(point[1], point[0]) - math.pi / 2 - math.radians(gear["angle_deg"])
+    angle -= pitch * round(angle / pitch)
+    tooth = np.array(gear["tooth_mm"])
+    half = tooth[tooth[:, 0] > 0.0]
+    radius, flank = np.hypot(half[:, 0], half[:, 1]), np.arctan2(half[:, 0], half[:, 1])
+    order = np.argsort(radius)
+    r = math.hypot(*point)
+    if not radius[order[0]] <= r <= radius[order[-1]]:
+        return -math.inf
+    return r * (float(np.interp(r, radius[order], flank[order])) - abs(angle))
+
+
+def test_the_figures_of_the_pair_are_those_of_the_geometry() -> None:
+    case = CASES["helical_automotive"]
+    drawn, pair = outline_json(case), gear_pair(case)
+    path = drawn["path_of_contact"]["points_mm"]
+    length = math.dist(path["A"], path["E"]) / drawn["path_of_contact"]["base_pitch_mm"]
+    assert length == pytest.approx(pair.transverse_contact_ratio, rel=1e-4)
+    assert drawn["figures"]["total_contact_ratio"] == pytest.approx(pair.total_contact_ratio, rel=1e-12)
+
+
+def test_the_page_names_only_files_it_has_and_nothing_foreign(client: TestClient) -> None:
+    for file in STATIC.iterdir():
+        text = file.read_text(encoding="utf-8")
+        for name in re.findall(r'(?:from "\./|/page/)([\w.]+)', text):
+            assert client.get(f"/page/{name}").status_code == 200, (file.name, name)
+        assert set(re.findall(r"https?://[\w./]+", text)) <= {"http://www.w3.org/2000/svg"}, file.name
+
+
+def test_the_page_is_held_to_its_own_scripts(client: TestClient) -> None:
+    answer = client.get("/")
+    rules = dict(rule.strip().split(" ", 1) for rule in answer.headers["content-security-policy"].split(";"))
+    assert rules["default-src"] == "'none'" and rules["script-src"] == rules["connect-src"] == "'self'"
+    again = client.get("/", headers={"If-None-Match": answer.headers["etag"]})
+    assert again.status_code == 304 and not again.content
+
+
+@pytest.mark.parametrize("name", ["app.py", "..%2Fapp.py", "%2e%2e/settings.py", "examples", "none.js"])
+def test_no_other_file_is_served(client: TestClient, name: str) -> None:
+    assert client.get(f"/page/{name}").status_code == 404
+
+
+def test_text_that_is_no_case_is_refused_by_field(client: TestClient) -> None:
+    broken = client.post("/v1/cases/from-toml", json={"toml": "[pair"}).json()
+    assert [fault["field"] for fault in broken["errors"]] == ["toml"]
+    incomplete = client.post("/v1/cases/from-toml", json={"toml": "[pair]\nnormal_module_mm = 4.0\n"}).json()
+    assert "pair.center_distance_mm" in [fault["field"] for fault in incomplete["errors"]]
