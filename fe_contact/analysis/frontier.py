@@ -3,24 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fe_contact.analysis.ladder import RUNGS, Rung
 from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
+from fe_contact.analysis.measured_full_contact import (
+    NAME,
+    MeasuredFullContact,
+    full_contact_refusal,
+    measure_full_contact,
+)
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pareto import knee_of
 from fe_contact.analysis.request import Checked, check_request
 from fe_contact.analysis.rung_result import RungResult, rung_results
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.warm_up import warm_up
+from fe_contact.checks import integer
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 
 POSITIONS = 64
+MOST_FULL_CONTACT = 64
 
 
 @dataclass(frozen=True)
@@ -39,6 +47,8 @@ class Frontier:
         The rung after which time buys least; None with fewer than three rungs on the front.
     chosen : str or None
         The rung that the case's accuracy asks for.
+    full_contact : MeasuredFullContact, optional
+        Full finite-element contact of the same case, if it was asked for and could be run.
     """
 
     results: tuple[RungResult, ...]
@@ -46,6 +56,7 @@ class Frontier:
     solves: int
     knee: str | None
     chosen: str | None
+    full_contact: MeasuredFullContact | None = None
 
     @property
     def reference(self) -> RungResult:
@@ -70,7 +81,7 @@ class Frontier:
                 for level in FULL_CONTACT
             ],
             "full_finite_element_contact_origin": ORIGIN,
-        }
+        } | ({} if self.full_contact is None else {NAME: self.full_contact.to_json(self.solves)})
 
 
 def frontier(
@@ -87,6 +98,7 @@ def frontier(
     center_distance_changes: Sequence[float] = (0.0,),
     effects: Mapping[str, str] | None = None,
     rungs: Sequence[str] | None = None,
+    full_contact: int | None = None,
     progress: Progress | None = None,
 ) -> Frontier:
     """Run every rung of the ladder that is valid for a case, and compare each to the finest.
@@ -102,6 +114,9 @@ center_distance_changes, effects, progress
         Equally spaced positions of every table; default 64.
     rungs : sequence of str, optional
         Names of rungs to run; default all.
+    full_contact : int, optional
+        Positions, 1 to 64, at which full finite-element contact is run beside the ladder where CalculiX is
+        installed: of solid spur pairs in plane strain, at the largest load, half a CPU minute each.
 
     Raises
     ------
@@ -123,9 +138,12 @@ center_distance_changes, effects, progress
         center_distance_changes=center_distance_changes,
         effects=effects,
     )
+    if full_contact is not None:
+        integer("full_contact", full_contact, 1, MOST_FULL_CONTACT)
     asked = selected(rungs)
     left_out = {rung.name: reason for rung in asked if (reason := rung.refusal(checked)) is not None}
-    return _climbed(checked, [rung for rung in asked if rung.name not in left_out], left_out, progress)
+    valid = [rung for rung in asked if rung.name not in left_out]
+    return _climbed(checked, valid, left_out, full_contact, progress or _silent)
 
 
 def selected(names: Sequence[str] | None) -> tuple[Rung, ...]:
@@ -144,14 +162,17 @@ def selected(names: Sequence[str] | None) -> tuple[Rung, ...]:
 
 
 def _climbed(
-    checked: Checked, rungs: Sequence[Rung], left_out: dict[str, str], progress: Progress | None
+    checked: Checked,
+    rungs: Sequence[Rung],
+    left_out: dict[str, str],
+    full_contact: int | None,
+    progress: Progress,
 ) -> Frontier:
     """Run the rungs, compare, mark."""
     warm_up(across_face=any(rung.name.startswith("3d") for rung in rungs))
     tables: dict[str, SteDatabase] = {}
     for count, rung in enumerate(rungs):
-        if progress is not None:
-            progress("ladder", count / len(rungs))
+        progress("ladder", count / len(rungs))
         try:
             table = rung.run(checked, _silent, None)
             table.require_complete()
@@ -160,13 +181,30 @@ def _climbed(
             left_out = left_out | {rung.name: str(error)}
         except MemoryError:
             left_out = left_out | {rung.name: "out of memory"}
-    if progress is not None:
-        progress("ladder", 1.0)
+    progress("ladder", 1.0)
     if len(tables) < 2:
         raise SolveError(f"an error needs two rungs to compare; left out: {left_out}")
     results = rung_results([rung for rung in rungs if rung.name in tables], tables)
     solves = tables[results[-1].name].status.size
-    return Frontier(results, left_out, solves, _knee(results), chosen_rung(checked))
+    found = Frontier(results, left_out, solves, _knee(results), chosen_rung(checked))
+    return found if full_contact is None else _beside(found, checked, full_contact, tables, progress)
+
+
+def _beside(
+    found: Frontier, checked: Checked, positions: int, tables: dict[str, SteDatabase], progress: Progress
+) -> Frontier:
+    """Add full contact of the case, or why there is none."""
+    reason = full_contact_refusal(checked)
+    if reason is None:
+        try:
+            measured = measure_full_contact(checked, positions, progress)
+            if measured.solved:
+                compared = measured.compared(tables[found.reference.name], tables.get("plane_strain"))
+                return replace(found, full_contact=compared)
+            reason = "; ".join(dict.fromkeys(point.reason for point in measured.points))
+        except MeshError as error:
+            reason = str(error)
+    return replace(found, left_out=found.left_out | {NAME: reason})
 
 
 def _knee(results: Sequence[RungResult]) -> str | None:

@@ -30,14 +30,18 @@ class _Climbed:
     page: Page
 
 
-def run_frontier(file: Path, output: Path | None, rungs: str | None, *, as_json: bool) -> None:
+def run_frontier(
+    file: Path, output: Path | None, rungs: str | None, full_contact: int | None, *, as_json: bool
+) -> None:
     """Climb the ladder, write, print."""
     content = read_table(file)
     targets = [] if output is None else _targets(output)
     names = None if rungs is None else _named(rungs, of_scene="shafts" in content)
     with progress_bar() as report:
-        climb = _of_scene if "shafts" in content else _of_case
-        found = climb(file, names, report)
+        if "shafts" in content:
+            found = _of_scene(file, names, full_contact, report)
+        else:
+            found = _of_case(file, names, full_contact, report)
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _WRITERS[target.suffix](found, target)
@@ -54,19 +58,21 @@ def _named(rungs: str, *, of_scene: bool) -> list[str]:
     return rungs_asked([name.strip() for name in rungs.split(",")], of_scene=of_scene)
 
 
-def _of_case(file: Path, names: list[str] | None, report: Report) -> _Climbed:
+def _of_case(file: Path, names: list[str] | None, full_contact: int | None, report: Report) -> _Climbed:
     """Climb the ladder of transmission errors."""
     from service.convert.frontier import frontier_of  # noqa: PLC0415 (start-up time)
     from service.report.frontier import frontier_figure, frontier_page, frontier_table  # noqa: PLC0415
     from service.schemas import Case, read_model  # noqa: PLC0415
 
-    found = frontier_of(read_model(Case, file), names, report)
+    found = frontier_of(read_model(Case, file), names, report, full_contact=full_contact)
     page = frontier_page(found, _TITLE)
     return _Climbed(found.to_json(), found.left_out, frontier_table(found), frontier_figure(found), page)
 
 
-def _of_scene(file: Path, names: list[str] | None, report: Report) -> _Climbed:
+def _of_scene(file: Path, names: list[str] | None, full_contact: int | None, report: Report) -> _Climbed:
     """Climb the ladder of dynamics."""
+    if full_contact is not None:
+        raise BadInput.of("--full-contact", full_contact, "left out for a scene", "Give it with a case.")
     from service.cli.scene_tables import scene_with_tables  # noqa: PLC0415 (start-up time)
     from service.client.portable import scene_of  # noqa: PLC0415
     from service.convert.run_frontier import run_frontier_of  # noqa: PLC0415

@@ -12,9 +12,15 @@ _LEFT_ASIDE = ("pitches", "receipt", "on_violation")
 
 
 def frontier_of(
-    case: Case, rungs: Sequence[str] | None, progress: Callable[[str, float], None] | None = None
+    case: Case,
+    rungs: Sequence[str] | None,
+    progress: Callable[[str, float], None] | None = None,
+    *,
+    full_contact: int | None = None,
 ) -> Frontier:
     """Run the ladder on a case, over all pitches that differ, with the whole receipt.
+
+    `full_contact` positions are run by CalculiX beside it.
 
     Raises
     ------
@@ -26,4 +32,4 @@ def frontier_of(
     pair = gear_pair(case)
     asked = {name: value for name, value in analysis_arguments(case).items() if name not in _LEFT_ASIDE}
     with boundary_errors():
-        return frontier(pair, **asked, rungs=rungs, progress=progress)
+        return frontier(pair, **asked, rungs=rungs, full_contact=full_contact, progress=progress)

@@ -7,9 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_contact.analysis.frontier import Frontier
-from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
+from fe_contact.analysis.measured_full_contact import MeasuredFullContact
 from fe_contact.analysis.rung_result import RungResult
-from service.report import palette
+from service.report import full_contact, palette
 from service.report.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.report.ladder_page import ladder_page
 from service.report.note_places import placed
@@ -27,6 +27,7 @@ _FAMILIES = (
         palette.GREEN,
     ),
 )
+Judged = RungResult | MeasuredFullContact
 
 
 def frontier_figure(found: Frontier) -> Figure:
@@ -37,7 +38,7 @@ def frontier_figure(found: Frontier) -> Figure:
         title="What accuracy costs in time on this case",
         caption=f"Largest relative difference to the finest rung ({reference}) over all curves of the table "
         f"of {found.solves} positions x loads; the point of that rung is what its mesh leaves by its "
-        f"convergence, and nothing below it can be told apart. {_peer(found)}",
+        f"convergence, and nothing below it can be told apart. {full_contact.caption(found)}",
         alternative=_words(found),
         content=(
             _panel(found, "Mean", "error of the mean, %", lambda r: r.mean_error, with_peer=True),
@@ -60,18 +61,7 @@ def frontier_table(found: Frontier) -> Table:
         )
         for result in found.results
     ]
-    rows += [
-        (
-            f"full contact, {level.unknowns // 1000} k unknowns",
-            number(level.seconds(found.solves), 3),
-            _per_cent(level.relative_error),
-            "",
-            "",
-            "published cost",
-        )
-        for level in FULL_CONTACT
-    ]
-    return Table("Accuracy ladder", _HEAD, tuple(rows))
+    return Table("Accuracy ladder", _HEAD, (*rows, *full_contact.rows(found)))
 
 
 def frontier_page(found: Frontier, title: str) -> Page:
@@ -82,7 +72,7 @@ def frontier_page(found: Frontier, title: str) -> Page:
 
 
 def _panel(
-    found: Frontier, title: str, label: str, error: Callable[[RungResult], float], *, with_peer: bool = False
+    found: Frontier, title: str, label: str, error: Callable[[Judged], float], *, with_peer: bool = False
 ) -> Panel:
     """One panel: points by family, the peer, and the marks."""
     lines = []
@@ -94,10 +84,12 @@ def _panel(
                 Line(name, time, _percent([error(r) for r in points]), colour, width=0, markers=True)
             )
     if with_peer:
-        time = np.array([level.seconds(found.solves) for level in FULL_CONTACT])
-        size = _percent([level.relative_error for level in FULL_CONTACT])
-        lines.append(Line("full contact, 2-D", time, size, palette.VERMILLION, markers=True))
+        lines.append(full_contact.known_cost(found))
+    judged = float("nan") if found.full_contact is None else error(found.full_contact)
+    live, named = full_contact.live_point(found, judged)
+    lines += live
     notes = [Note(r.cpu_seconds, 100.0 * error(r), _note(found, r)) for r in found.results if error(r) > 0.0]
+    notes += named
     across, along = _time_axis(found), Axis(label, "log")
     drawn = np.concatenate([line.y for line in lines])
     beside = placed(notes, across, along, (float(drawn.min()), float(drawn.max())))
@@ -107,8 +99,7 @@ def _panel(
 def _time_axis(found: Frontier) -> Axis:
     """Return one axis for both panels, from the quickest rung to the slowest peer."""
     first = min(result.cpu_seconds for result in found.results)
-    last = max(level.seconds(found.solves) for level in FULL_CONTACT)
-    return Axis("CPU time of the table, s", "log", (0.5 * first, 3.0 * last))
+    return Axis("CPU time of the table, s", "log", (0.5 * first, 3.0 * full_contact.slowest(found)))
 
 
 def _note(found: Frontier, result: RungResult) -> str:
@@ -121,11 +112,6 @@ def _mark(found: Frontier, result: RungResult) -> str:
     """Knee, chosen, reference."""
     marks = (("knee", found.knee), ("chosen", found.chosen), ("reference", found.reference.name))
     return ", ".join(mark for mark, name in marks if name == result.name)
-
-
-def _peer(found: Frontier) -> str:
-    """Where the peer's points come from."""
-    return f"Peer: {ORIGIN}; times for the same {found.solves} positions x loads."
 
 
 def _percent(values: list[float]) -> FloatArray:

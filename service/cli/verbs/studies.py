@@ -39,12 +39,18 @@ def frontier(
     rungs: Annotated[
         str | None, typer.Option(help="Rungs to run, separated by commas; default: all that are valid.")
     ] = None,
+    full_contact: Annotated[
+        int | None,
+        typer.Option(
+            help="Positions of a spur pair to run by full contact in CalculiX: half a CPU minute each."
+        ),
+    ] = None,
     json: AsJson = False,
 ) -> None:
     """Run the ladder on a case (ISO 6336 to fine finite elements) or on a scene: error against time."""
     from service.cli.frontier import run_frontier  # noqa: PLC0415 (start-up time)
 
-    run_frontier(file, output, rungs, as_json=json)
+    run_frontier(file, output, rungs, full_contact, as_json=json)
 
 
 @verbs.command(epilog="Example: loa ablate examples/palermo_spur_20_20.toml -o ablation.png")

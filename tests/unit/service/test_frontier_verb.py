@@ -1,5 +1,6 @@
 """``loa frontier``: JSON, page and picture of a ladder; refusals by name."""
 
+import dataclasses
 import json
 from pathlib import Path
 
@@ -8,7 +9,10 @@ import pytest
 from typer.testing import CliRunner
 
 from fe_contact.analysis.frontier import Frontier
+from fe_contact.analysis.measured_full_contact import MeasuredFullContact
 from fe_contact.analysis.rung_result import RungResult
+from fe_contact.full_contact import FullContactPoint
+from fe_contact.types import Status
 from service.cli.commands import app
 from service.report.frontier import frontier_figure, frontier_page, frontier_table
 from service.report.image import png
@@ -49,6 +53,29 @@ def test_the_peer_costs_its_published_time_for_the_same_table(found: Frontier) -
     assert peer.x.tolist() == [12.0 * 64, 30.0 * 64, 75.0 * 64]
     np.testing.assert_allclose(peer.y, [0.06, 0.02, 0.02])
     assert "CalculiX 2.20" in frontier_figure(found).caption
+
+
+def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) -> None:
+    point = FullContactPoint(0.0, 7.8e-6, Status.CONVERGED, "", 9, 1e-8, 1.0)
+    points = (point, dataclasses.replace(point, status=Status.NOT_COMPUTED))
+    errors = {"mean_error": 0.03, "plane_strain_mean": 0.002}
+    live = MeasuredFullContact("CalculiX 2.20", 90_000, 100.0, points, 60.0, 2.0, 50.0, **errors)
+    figure = frontier_figure(dataclasses.replace(found, full_contact=live))
+    mean, swing = figure.content
+    drawn = {line.name: line for line in mean.lines}["full contact, run on this case"]
+    assert (drawn.x.tolist(), drawn.y.tolist()) == ([pytest.approx(2.0 + 30.0 * 64)], [pytest.approx(3.0)])
+    assert mean.notes[-1].text == "full contact"
+    assert "full contact" not in [note.text for note in swing.notes]  # one position has no peak-to-peak
+    assert "2 positions at 100 N m" in figure.caption and "differs from it by 0.20 %" in figure.caption
+    assert figure.table is not None
+    assert figure.table.rows[-1][-1] == "run at 1 of 2 positions"
+
+
+def test_full_contact_is_for_cases(tmp_path: Path) -> None:
+    scene = EXAMPLE.with_name("palermo_scene.toml")
+    done = CliRunner().invoke(app, ["frontier", str(scene), "--full-contact", "2"])
+    assert done.exit_code == 2
+    assert "--full-contact" in done.stderr
 
 
 def test_the_page_says_what_was_not_run(found: Frontier) -> None:

@@ -43,6 +43,12 @@ def test_a_text_alone_stays_where_it_is():
     assert placed(notes, X, Y, RANGE) == notes
 
 
+def test_a_text_at_the_top_goes_below_its_point():
+    """Above it, it would run into the panel's title."""
+    (note,) = placed([Note(1.0, 100.0, "iso6336")], X, Y, RANGE)
+    assert note.row == -1
+
+
 def test_a_text_at_the_right_edge_goes_to_the_left():
     (note,) = placed([Note(9e4, 1.0, "full contact")], X, Y, RANGE)
     assert note.left

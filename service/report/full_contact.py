@@ -1,0 +1,82 @@
+"""Full finite-element contact beside the accuracy ladder: what it is known to cost, and took on the case."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.analysis.frontier import Frontier
+from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
+from fe_contact.analysis.measured_full_contact import MeasuredFullContact
+from service.report import palette
+from service.report.figure import Line, Note, number
+
+LIVE = "full contact, run on this case"
+
+
+def known_cost(found: Frontier) -> Line:
+    """Return the known cost of the 20/20 pair for as many positions x loads, with its errors in per cent."""
+    time = np.array([level.seconds(found.solves) for level in FULL_CONTACT])
+    size = 100.0 * np.array([level.relative_error for level in FULL_CONTACT])
+    return Line("full contact, 2-D, 20/20 pair", time, size, palette.VERMILLION, markers=True)
+
+
+def live_point(found: Frontier, error: float) -> tuple[list[Line], list[Note]]:
+    """Return the point of the case itself, with an error as a fraction, and its name; nothing without one."""
+    measured = found.full_contact
+    if measured is None or not error > 0.0:
+        return [], []
+    time = measured.seconds(found.solves)
+    line = Line(LIVE, np.array([time]), np.array([100.0 * error]), palette.PURPLE, width=0, markers=True)
+    return [line], [Note(time, 100.0 * error, "full contact")]
+
+
+def slowest(found: Frontier) -> float:
+    """Return the longest CPU time of any of them, s."""
+    live = [] if found.full_contact is None else [found.full_contact.seconds(found.solves)]
+    return max([*(level.seconds(found.solves) for level in FULL_CONTACT), *live])
+
+
+def rows(found: Frontier) -> list[tuple[str, ...]]:
+    """Return the rows of the table, errors in per cent."""
+    known: list[tuple[str, ...]] = [
+        (
+            f"full contact of the 20/20 pair, {level.unknowns // 1000} k unknowns",
+            number(level.seconds(found.solves), 3),
+            number(100.0 * level.relative_error, 2),
+            "",
+            "",
+            "known cost",
+        )
+        for level in FULL_CONTACT
+    ]
+    return known if found.full_contact is None else [*known, _live_row(found, found.full_contact)]
+
+
+def _live_row(found: Frontier, measured: MeasuredFullContact) -> tuple[str, ...]:
+    """One row for the case itself."""
+    errors = (measured.mean_error, measured.peak_to_peak_error)
+    mean, swing = (number(100.0 * error, 2) if np.isfinite(error) else "" for error in errors)
+    title = f"full contact of this case, {measured.unknowns // 1000} k unknowns"
+    mark = f"run at {len(measured.solved)} of {len(measured.points)} positions"
+    return title, number(measured.seconds(found.solves), 3), mean, swing, "", mark
+
+
+def caption(found: Frontier) -> str:
+    """Say where the points come from, and what was measured of them."""
+    known = f"Peer: {ORIGIN}; times for the same {found.solves} positions x loads."
+    measured = found.full_contact
+    if measured is None:
+        return known
+    own = measured.plane_strain_mean
+    beside = (
+        f" Our plane strain differs from it by {number(100.0 * own, 2)} % of the mean."
+        if np.isfinite(own)
+        else ""
+    )
+    return (
+        f"{known} On this case {measured.program} ran {len(measured.points)} positions at "
+        f"{measured.torque:.4g} N m in plane strain ({measured.unknowns // 1000} k unknowns, "
+        f"{number(measured.cpu_seconds, 3)} CPU s): its errors are those of these positions at this load "
+        f"and hold what plane strain leaves out; its time is extrapolated, the mean of a position times "
+        f"{found.solves}.{beside}"
+    )

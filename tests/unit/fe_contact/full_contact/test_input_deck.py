@@ -1,0 +1,91 @@
+"""The deck: fields that CalculiX reads whole, a bore that turns rigidly, results that come back."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair
+from fe_contact.full_contact.input_deck import Loading, input_deck, numbered_bodies
+from fe_contact.full_contact.meshing import FullContactMesh
+from fe_contact.full_contact.placed_pair import PlacedPair, placed_pair
+from fe_contact.full_contact.result_file import read_printed
+from fe_contact.mesh import MeshRecipe, mesh_gear
+
+GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+LOADING = Loading((GEAR.material, GEAR.material), GEAR.base_radius, 25e-3, 2660.0, 1e18)
+PRINTED = """
+ displacements (vx,vy,vz) for set TURNING and time  0.1000000E+01
+
+     15981  7.510317E-03  0.000000E+00  0.000000E+00
+
+ forces (fx,fy,fz) for set HELD and time  0.1000000E+01
+
+     15355 -1.000000E+01  2.000000E+00  7.216450E-15
+     15657  3.000000E+01  0.000000E+00 -1.897787E-14
+"""
+
+
+@pytest.fixture(scope="module")
+def placed() -> PlacedPair:
+    recipe = replace(MeshRecipe.standard(GEAR), flank_size=0.8e-3, tip_size=0.4e-3, growth=0.8, real_teeth=5)
+    mesh = mesh_gear(GEAR, recipe)
+    return placed_pair(GearPair(GEAR, GEAR, 80e-3), FullContactMesh((mesh, mesh), 1), 0.3)
+
+
+def test_no_field_is_longer_than_calculix_reads(placed: PlacedPair) -> None:
+    fields = [field for line in input_deck(placed, LOADING).splitlines()[2:] if line[0] != "*"
+              for field in line.split(",")]  # fmt: skip
+    assert max(len(field) for field in fields) <= 20
+    assert not any("nan" in field or "inf" in field for field in fields)
+
+
+def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed: PlacedPair) -> None:
+    deck = input_deck(placed, LOADING)
+    ties = re.findall(r"\*EQUATION\n2\n(\d+),(\d),1\.,(\d+),1,(\S+)", deck)
+    gear, (first, second) = placed.gears[0], numbered_bodies(placed.gears)
+    assert len(ties) == 2 * len(gear.bore_nodes)
+    assert {int(tie[2]) for tie in ties} == {second.last_node + 1}
+    lag = 1e-5  # of the turning node: every node moves by lag / r_b1 times its arm, at right angles to it
+    for node, axis, _, factor in ties:
+        x, y = gear.points[int(node) - first.first_node]
+        moved = -float(factor) * lag
+        assert moved == pytest.approx(
+            lag / GEAR.base_radius * (y if axis == "1" else -x), rel=1e-9, abs=1e-18
+        )
+
+
+def test_every_tooth_pair_has_its_surfaces_on_the_loaded_flanks(placed: PlacedPair) -> None:
+    deck = input_deck(placed, LOADING)
+    assert deck.count("*CONTACT PAIR") == len(placed.meetings) == 3
+    for number, (_, tooth) in enumerate(placed.meetings):
+        surface = re.search(rf"NAME=GEAR2FLANK{number}, TYPE=ELEMENT\n((?:\d+,S\d\n)+)", deck)
+        assert surface is not None
+        assert len(surface.group(1).split()) == len(placed.gears[1].flanks[tooth])
+    assert "\n1.000000000000e+09\n" in deck  # 1e18 Pa/m in N/mm^3
+
+
+def test_printed_results_are_read_in_si() -> None:
+    printed = read_printed(PRINTED)
+    assert printed.turning == pytest.approx(7.510317e-6, rel=1e-12, abs=0.0)
+    assert printed.nodes.tolist() == [15355, 15657]
+    points = np.array([[0.0, 0.01], [0.02, 0.0]])
+    assert printed.moment(points, np.zeros(2)) == pytest.approx(0.1, rel=1e-12)
+    assert printed.moment(points, np.array([0.0, 0.01])) == pytest.approx(0.3, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "printed no displacements of TURNING"),
+        (PRINTED.partition(" forces")[0], "printed no forces of HELD"),
+        (PRINTED.replace("7.510317E-03", "NaN"), "no finite"),
+        (PRINTED.replace("3.000000E+01", "Infinity"), "no finite"),
+    ],
+)
+def test_a_result_that_is_not_whole_is_refused(text: str, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        read_printed(text)
