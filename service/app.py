@@ -7,12 +7,14 @@ from contextlib import asynccontextmanager
 
 from fastapi import FastAPI
 
+from service.access import open_keyring
 from service.jobs.catalogue import default_registry
 from service.jobs.key import solver_version
 from service.jobs.live_desk import live_desk
 from service.jobs.machinery import job_machinery
 from service.jobs.process import Registry
 from service.routes import cases, effects, health, jobs, landing, live, page, queries, results
+from service.routes.access import Access
 from service.routes.context import Context
 from service.routes.errors import documented, install_error_handlers
 from service.routes.figures import figures_router
@@ -41,8 +43,10 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     Raises
     ------
     BadInput
-        Another service works in the data directory, or it cannot be written.
+        Another service works in the data directory, or it cannot be written; the address is not loopback and
+        there are no access keys; or their file cannot be used.
     """
+    keyring = open_keyring(settings)
     lock = DirectoryLock(settings.data_directory) if works else None
     if lock is not None:
         lock.acquire()
@@ -75,6 +79,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.state.context = context
     app.state.metrics = Metrics(context.submissions)
     install_error_handlers(app)
+    app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     stored = (results.router, figures_router(), queries.router, live.router)
     shown = (landing.router, jobs.router, *stored, cases.router, effects.router)

@@ -4,6 +4,7 @@
 
     ServiceError
     |- BadInput          the caller's: a list of faults (field, value, bound, suggestion)
+    |- Unauthorised      no key, or an unknown one
     |- NotFound          no such process, job, result
     |- ResultNotReady    the job has not ended
     |- JobFailed         the job ended without a result; says at what
@@ -11,6 +12,7 @@
     |- TooLarge          the request body is beyond the limit
     |- UnsupportedMediaType, NotAcceptable   a body, or an answer, of a type that is not known here
     |- QueueFull         the queue is at its limit; try again later
+    |- RateExceeded      the caller's key asks more often than it may; try again later
     |- Superseded        a later question of the same caller took its place
     |- NotAnalysed       nothing is kept to answer from; submit a job first
     |- LiveUnavailable   the live worker ended or took too long; try again
@@ -28,7 +30,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 EXIT_BAD_INPUT = 2
 EXIT_FAILED = 3
@@ -101,6 +103,7 @@ class ServiceError(Exception):
     type: ClassVar[str] = "urn:lineofaction:problem:unexpected"
     title: ClassVar[str] = "Unexpected failure"
     exit_code: ClassVar[int] = EXIT_UNEXPECTED
+    challenge: ClassVar[str | None] = None
     faults: tuple[Fault, ...] = ()
     retry_after_s: int | None = None
 
@@ -135,6 +138,16 @@ class BadInput(ServiceError):
     def within(self, prefix: str) -> BadInput:
         """Return the same error with its fields named inside `prefix`."""
         return BadInput(Fault(f"{prefix}.{f.field}", f.value, f.bound, f.suggestion) for f in self.faults)
+
+
+class Unauthorised(ServiceError):
+    """The request carries no key, or one that is not known."""
+
+    status = 401
+    type = "urn:lineofaction:problem:unauthorised"
+    title = "A key is needed"
+    exit_code = EXIT_BAD_INPUT
+    challenge = "Bearer"
 
 
 class NotFound(ServiceError):
@@ -216,21 +229,34 @@ class NotAcceptable(ServiceError):
     exit_code = EXIT_BAD_INPUT
 
 
-class QueueFull(ServiceError):
-    """The queue is at its limit."""
+class TryLater(ServiceError):
+    """Too much at once; the same request may be sent again after a while."""
 
     status = 429
-    type = "urn:lineofaction:problem:queue-full"
-    title = "The queue is full"
     exit_code = EXIT_FAILED
-    retry_after_s = 10
 
     @classmethod
-    def after(cls, seconds: int, message: str) -> QueueFull:
-        """Return the error of a queue that moves on in so many seconds."""
+    def after(cls, seconds: int, message: str) -> Self:
+        """Return the error of what is possible again in so many seconds."""
         error = cls(message)
         error.retry_after_s = seconds
         return error
+
+
+class QueueFull(TryLater):
+    """The queue is at its limit."""
+
+    type = "urn:lineofaction:problem:queue-full"
+    title = "The queue is full"
+    retry_after_s = 10
+
+
+class RateExceeded(TryLater):
+    """The caller's key asks more often than it may."""
+
+    type = "urn:lineofaction:problem:rate-exceeded"
+    title = "Too many requests with this key"
+    retry_after_s = 1
 
 
 class Superseded(ServiceError):

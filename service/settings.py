@@ -6,15 +6,10 @@ import ipaddress
 import os
 from pathlib import Path
 
-from pydantic import Field, SecretStr, ValidationError, field_validator
+from pydantic import Field, SecretStr, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from service.problems import BadInput, Fault
-
-_LOOPBACK = (
-    "The service has no keys, so only this machine may reach it. Use 127.0.0.1, and a proxy with access "
-    "control in front of it if others need it."
-)
 
 LEAST_MEMORY_MB = 256
 """What a worker needs to load the program."""
@@ -36,7 +31,7 @@ class Settings(BaseSettings):
     Attributes
     ----------
     host, port : str, int
-        Where it listens; loopback only.
+        Where it listens; beyond loopback only with access keys.
     data_directory : Path
         Jobs, results and the compliance cache.
     database_url : str or None
@@ -59,6 +54,8 @@ class Settings(BaseSettings):
         How long a scheduler holds a computation without a sign of life.
     attempts : int
         How often a computation whose worker died is started.
+    keys_file : Path or None
+        The file of access keys; None: ``keys.json`` in the data directory.
     """
 
     model_config = SettingsConfigDict(env_prefix="LOA_", frozen=True, extra="forbid")
@@ -76,25 +73,25 @@ class Settings(BaseSettings):
     memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
     lease_s: float = Field(60.0, ge=1.0, le=86_400.0)
     attempts: int = Field(2, ge=1, le=10)
+    keys_file: Path | None = None
 
     @property
     def database_address(self) -> str | None:
         """The database's URL, with its password."""
         return None if self.database_url is None else self.database_url.get_secret_value()
 
-    @field_validator("host")
-    @classmethod
-    def _loopback(cls, host: str) -> str:
-        """Refuse an address that others can reach."""
-        if host == "localhost":
-            return host
+    @property
+    def loopback(self) -> bool:
+        """Whether only this machine reaches the service."""
         try:
-            loopback = ipaddress.ip_address(host).is_loopback
+            return self.host == "localhost" or ipaddress.ip_address(self.host).is_loopback
         except ValueError:
-            loopback = False
-        if not loopback:
-            raise ValueError("not a loopback address")
-        return host
+            return False
+
+    @property
+    def key_file(self) -> Path:
+        """Where the access keys are."""
+        return self.keys_file or self.data_directory / "keys.json"
 
 
 def load_settings(**given: object) -> Settings:
@@ -103,7 +100,7 @@ def load_settings(**given: object) -> Settings:
     Raises
     ------
     BadInput
-        A value is out of bounds, or the address is not loopback.
+        A value is out of bounds.
     """
     chosen = {name: value for name, value in given.items() if value is not None}
     try:
@@ -116,6 +113,4 @@ def _fault(item: dict[str, object]) -> Fault:
     """One wrong setting."""
     location = item["loc"]
     name = str(location[0]) if isinstance(location, tuple) and location else "settings"
-    if name == "host":
-        return Fault(name, item.get("input"), "a loopback address such as 127.0.0.1 or ::1", _LOOPBACK)
     return Fault(name, item.get("input"), f"valid ({item['msg']})", f"It is read from LOA_{name.upper()}.")

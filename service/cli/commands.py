@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from service.cli.verbs import motion, pages, serving, studies, tables, upkeep
+from service.cli.verbs import keys, motion, pages, serving, studies, tables, upkeep
 
 _EPILOG = (
     "Exit codes: 0 done; 2 bad input; 3 a mesh, a solve or a job failed; 4 no service answers; "
@@ -25,6 +25,7 @@ app = typer.Typer(
 )
 for family in (tables, motion, studies, pages, serving):
     app.add_typer(family.verbs)
+app.add_typer(keys.verbs, name="keys")
 app.add_typer(upkeep.database, name="database")
 
 

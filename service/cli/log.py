@@ -12,6 +12,7 @@ def log_to_standard_error() -> None:
     """Write one line of JSON per event to standard error."""
     structlog.configure(
         processors=[
+            structlog.contextvars.merge_contextvars,
             structlog.processors.add_log_level,
             structlog.processors.TimeStamper(fmt="iso", utc=True),
             structlog.processors.format_exc_info,

@@ -10,6 +10,7 @@ from typing import NoReturn
 
 import uvicorn
 
+from service.access import open_keyring
 from service.app import create_app
 from service.cli.log import log_to_standard_error
 from service.problems import BadInput
@@ -22,6 +23,7 @@ def run_serve(*, works: bool = True, **given: object) -> None:
     """Serve until stopped by SIGTERM or SIGINT; workers, if it `works`, end with it."""
     settings = load_settings(**given)
     log_to_standard_error()
+    open_keyring(settings)  # refused before a socket is opened
     with _listener(settings) as listener:
         app = create_app(settings, works=works)
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import os
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -45,6 +46,8 @@ class LineOfActionClient:
         Seconds one request may take.
     attempts : int
         How often a request is sent before the service counts as unreachable.
+    key : str, optional
+        Access key of the service; default: the environment variable ``LOA_KEY``.
     """
 
     def __init__(
@@ -55,8 +58,11 @@ class LineOfActionClient:
         transport: httpx2.BaseTransport | None = None,
         timeout: float = 30.0,
         attempts: int = 4,
+        key: str | None = None,
     ) -> None:
-        self._connection = Connection(base_url, transport, timeout, attempts)
+        self._connection = Connection(
+            base_url, transport, timeout, attempts, key or os.environ.get("LOA_KEY")
+        )
         self._cache = ResultCache(cache_dir or cache_home() / "results")
 
     def __enter__(self) -> Self:

@@ -17,9 +17,11 @@ from service.problems import (
     JobFailed,
     NotFound,
     QueueFull,
+    RateExceeded,
     ResultNotReady,
     ServiceError,
     TooLarge,
+    Unauthorised,
     Unreachable,
 )
 
@@ -31,6 +33,8 @@ _KNOWN: tuple[type[ServiceError], ...] = (
     JobDismissed,
     TooLarge,
     QueueFull,
+    RateExceeded,
+    Unauthorised,
     DamagedFile,
 )
 
@@ -50,13 +54,19 @@ class Connection:
     """
 
     def __init__(
-        self, base_url: str, transport: httpx2.BaseTransport | None, timeout: float, attempts: int
+        self,
+        base_url: str,
+        transport: httpx2.BaseTransport | None,
+        timeout: float,
+        attempts: int,
+        key: str | None = None,
     ) -> None:
         self.base_url = base_url.rstrip("/")
         self._attempts = attempts
         try:
             self._http = httpx2.Client(
                 base_url=self.base_url,
+                headers={"Authorization": f"Bearer {key}"} if key else None,
                 transport=transport,
                 timeout=timeout,
                 trust_env=not _is_loopback(httpx2.URL(self.base_url).host),

@@ -29,8 +29,10 @@ def problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None
 
 def problem_of(error: ServiceError) -> Response:
     """Return the response to an error raised on purpose."""
-    retry = {} if error.retry_after_s is None else {"Retry-After": str(error.retry_after_s)}
-    return problem_response(error.as_json(), retry)
+    headers = {} if error.retry_after_s is None else {"Retry-After": str(error.retry_after_s)}
+    if error.challenge is not None:
+        headers["WWW-Authenticate"] = error.challenge
+    return problem_response(error.as_json(), headers)
 
 
 def documented(*statuses: int) -> dict[int | str, dict[str, Any]]:

@@ -7,6 +7,7 @@ import uuid
 
 import structlog
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from structlog.contextvars import bind_contextvars, clear_contextvars
 
 from service.problems import ServiceError, TooLarge, Unexpected
 from service.routes.errors import problem_of
@@ -27,6 +28,8 @@ class Guard:
             await self._app(scope, receive, send)
             return
         exchange = _Exchange(scope, receive, send, self._body_limit)
+        clear_contextvars()
+        bind_contextvars(request_id=exchange.identifier)  # stands in every line that this request logs
         begin = time.perf_counter()
         try:
             exchange.refuse_announced()
@@ -51,7 +54,7 @@ class Guard:
         status = exchange.status or 0
         self._metrics.observe(scope["method"], route, status, seconds)
         facts = {"method": scope["method"], "route": route, "status": status, "seconds": round(seconds, 6)}
-        logger.info("request", request_id=exchange.identifier, **facts)
+        logger.info("request", **facts)
 
 
 class _Exchange:

@@ -16,7 +16,10 @@ verbs = typer.Typer()
 @verbs.command(epilog="Example: loa serve --port 8321 --workers 2")
 @guarded
 def serve(
-    host: Annotated[str | None, typer.Option(help="Loopback address to listen on [LOA_HOST].")] = None,
+    host: Annotated[
+        str | None,
+        typer.Option(help="Address; without access keys on loopback [LOA_HOST]."),
+    ] = None,
     port: Annotated[int | None, typer.Option(help="Port; 0 takes a free one [LOA_PORT].")] = None,
     data_directory: Annotated[
         Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")

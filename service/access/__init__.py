@@ -1,0 +1,7 @@
+"""Who may use the service, and how much of it: keys kept as hashes, rates of requests."""
+
+from service.access.key_file import AccessKey, KeyFile
+from service.access.keyring import Keyring, open_keyring
+from service.access.rate_limit import RateLimits
+
+__all__ = ["AccessKey", "KeyFile", "Keyring", "RateLimits", "open_keyring"]

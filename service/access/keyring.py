@@ -1,0 +1,91 @@
+"""Whose a presented key is: compared in constant time, from a file that may change while the service runs."""
+
+from __future__ import annotations
+
+import hmac
+from threading import Lock
+
+import structlog
+
+from service.access.key_file import AccessKey, KeyFile, digest_of
+from service.problems import BadInput
+from service.settings import Settings
+
+logger = structlog.get_logger(__name__)
+
+_Stamp = tuple[int, int, int] | None
+
+
+class Keyring:
+    """The keys of a file, read again whenever the file changes.
+
+    Raises
+    ------
+    BadInput
+        At the start: the file cannot be used. Later that is logged, and the keys read last stay in force.
+    """
+
+    def __init__(self, file: KeyFile) -> None:
+        self._file = file
+        self._lock = Lock()
+        self._stamp = self._stamp_now()
+        self._keys = file.read()
+
+    def __bool__(self) -> bool:
+        """Whether there is any key."""
+        return bool(self._current())
+
+    def holder(self, presented: str) -> AccessKey | None:
+        """Return the key that was presented, None if it is none of ours.
+
+        All keys are compared, each in constant time: how long the answer takes tells nothing about them.
+        """
+        digest = digest_of(presented)
+        found = None
+        for key in self._current():
+            if hmac.compare_digest(digest, key.sha256):
+                found = key
+        return found
+
+    def _current(self) -> tuple[AccessKey, ...]:
+        """Return the keys as the file has them now."""
+        stamp = self._stamp_now()
+        if stamp != self._stamp:
+            with self._lock:
+                self._read_again(stamp)
+        return self._keys
+
+    def _read_again(self, stamp: _Stamp) -> None:
+        """Take the file as it is now, unless it cannot be used."""
+        try:
+            self._keys = self._file.read()
+        except BadInput as error:
+            logger.warning("keys kept as they were", reason=str(error))
+        self._stamp = stamp
+
+    def _stamp_now(self) -> _Stamp:
+        """Return what changes whenever the file does."""
+        try:
+            status = self._file.path.stat()
+        except OSError:
+            return None
+        return status.st_mtime_ns, status.st_size, status.st_ino
+
+
+def open_keyring(settings: Settings) -> Keyring:
+    """Return the keys of a service; refuse an address that others can reach as long as there are none.
+
+    Raises
+    ------
+    BadInput
+        The address is not loopback and there are no keys, or their file cannot be used.
+    """
+    keyring = Keyring(KeyFile(settings.key_file))
+    if not settings.loopback and not keyring:
+        raise BadInput.of(
+            "host",
+            settings.host,
+            "a loopback address such as 127.0.0.1 or ::1, as long as there are no access keys",
+            f"Make one with: loa keys add NAME (they are read from {settings.key_file})",
+        )
+    return keyring

@@ -1,0 +1,125 @@
+"""A service with keys: nothing without one, nothing about one in what it says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import structlog.contextvars
+import structlog.testing
+from fastapi.testclient import TestClient
+from service_stand_ins import REGISTRY
+
+from service.access import KeyFile
+from service.app import create_app
+from service.client import LineOfActionClient
+from service.problems import RateExceeded, Unauthorised
+from service.settings import Settings
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    """Settings of a service on loopback."""
+    return Settings(data_directory=tmp_path / "data")
+
+
+@pytest.fixture
+def secret(settings: Settings) -> str:
+    """A key, made before the service starts."""
+    return KeyFile(settings.key_file).add("bench", requests_per_minute=50)
+
+
+@pytest.fixture
+def http(settings: Settings, secret: str) -> Iterator[TestClient]:
+    """A caller without a key of a service that has one."""
+    with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as found:
+        yield found
+
+
+def bearing(key: str) -> dict[str, str]:
+    return {"Authorization": f"Bearer {key}"}
+
+
+def test_every_path_but_health_and_the_page_asks_for_a_key(http: TestClient) -> None:
+    paths = {
+        (method, path.replace("{", "").replace("}", ""))
+        for path, methods in http.app.openapi()["paths"].items()  # type: ignore[attr-defined]
+        for method in methods
+    }
+    paths |= {("get", f"/{name}") for name in ("openapi.json", "nowhere", "health/", "pages", "page")}
+    assert len(paths) > 25
+    for method, path in sorted(paths - {("get", "/health")}):
+        answer = http.request(method, path)
+        assert answer.status_code == 401, (method, path)
+        assert answer.headers["www-authenticate"] == "Bearer"
+        assert answer.headers["content-type"] == "application/problem+json"
+        assert "x-request-id" in answer.headers
+    assert [http.get(path).status_code for path in ("/health", "/", "/page/api.js")] == [200] * 3
+
+
+@pytest.mark.parametrize(
+    "value", ["", "Bearer", "Bearer ", "Basic {}", "{}", "Bearer {}x", "Bearer \xff", "Bearer a,b"]
+)
+def test_what_is_no_key_is_not_taken_for_one(http: TestClient, secret: str, value: str) -> None:
+    answer = http.get("/v1/jobs", headers={"Authorization": value.replace("{}", secret).encode("latin-1")})
+    assert answer.status_code == 401
+    assert secret not in answer.text
+
+
+def test_the_scheme_may_be_written_in_any_case(http: TestClient, secret: str) -> None:
+    for scheme in ("Bearer", "bearer", "BEARER"):
+        assert http.get("/v1/jobs", headers={"Authorization": f"{scheme} {secret}"}).status_code == 200
+
+
+def test_taking_the_last_key_back_opens_nothing(http: TestClient, settings: Settings, secret: str) -> None:
+    assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 200
+    KeyFile(settings.key_file).remove("bench")
+    assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 401
+    assert http.get("/v1/jobs").status_code == 401
+    settings.key_file.unlink()
+    assert http.get("/v1/jobs").status_code == 401
+
+
+def test_the_first_key_shuts_a_service_that_was_open(settings: Settings) -> None:
+    with TestClient(create_app(settings, REGISTRY)) as http:
+        assert http.get("/v1/jobs").status_code == 200
+        secret = KeyFile(settings.key_file).add("late")
+        assert http.get("/v1/jobs").status_code == 401
+        assert http.get("/v1/jobs", headers=bearing(secret)).status_code == 200
+
+
+def test_beyond_its_rate_a_key_is_told_when_to_come_again(http: TestClient, secret: str) -> None:
+    codes = [http.get("/v1/processes", headers=bearing(secret)).status_code for _ in range(60)]
+    assert codes[:50] == [200] * 50
+    assert 429 in codes
+    answer = http.get("/v1/processes", headers=bearing(secret))
+    assert answer.json()["type"] == RateExceeded.type
+    assert 1 <= int(answer.headers["retry-after"]) <= 2
+
+
+def test_the_log_names_the_key_and_never_holds_it(settings: Settings, secret: str) -> None:
+    kept = structlog.testing.LogCapture()
+    structlog.configure(processors=[structlog.contextvars.merge_contextvars, kept])
+    with TestClient(create_app(settings, REGISTRY)) as http:
+        named = http.get("/v1/jobs", headers=bearing(secret))
+        unknown = http.get("/v1/jobs", headers=bearing("loa_guessed"))
+    lines = [entry for entry in kept.entries if entry["event"] == "request"]
+    assert [entry.get("caller") for entry in lines] == ["bench", None]
+    assert [entry["request_id"] for entry in lines] == [a.headers["x-request-id"] for a in (named, unknown)]
+    assert secret not in str(kept.entries) and "guessed" not in str(kept.entries)
+
+
+def test_the_client_takes_its_key_from_its_caller_or_the_environment(
+    http: TestClient, secret: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def client(key: str | None) -> LineOfActionClient:
+        return LineOfActionClient("http://testserver", cache_dir=tmp_path, transport=http._transport, key=key)
+
+    with client(None) as without, pytest.raises(Unauthorised, match="Authorization"):
+        without.submit("standin", {"wish": {}})
+    with client(secret) as given:
+        assert given.submit("standin", {"wish": {"text": "table"}}).process == "standin"
+    monkeypatch.setenv("LOA_KEY", secret)
+    with client(None) as found:
+        assert found.submit("standin", {"wish": {"text": "table"}}).process == "standin"
