@@ -9,6 +9,7 @@ import numpy as np
 from dynamics.integrators.march import Cancel, Ending, Progress, ending, march_on, now, start_march
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.static import StaticSolution
+from dynamics.integrators.taking_over import Taken, Trail
 from dynamics.system import Integration
 from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray
@@ -41,16 +42,21 @@ def integrate(
     progress: Progress | None = None,
     velocity: FloatArray | None = None,
     cancel: Cancel | None = None,
+    trail: Trail | None = None,
+    taken: Taken | None = None,
 ) -> Trajectory:
     """Run `system` over its scene's duration, from rest in `start` or from the `velocity` (n,) there.
 
     At rest means without any deviation from the kinematic motion: the shafts turn with the drive. `cancel` is
-    asked about fifty times or more whether to stop.
+    asked about fifty times or more whether to stop. `trail` remembers where the run stood on its way; `taken`
+    is where it goes on for another run.
     """
     began = now()
     march = start_march(system, start, integration, velocity)
     sink = MemorySink(march.samples, march.work.q.size, march.work.moved.size)
-    status = march_on(march, sink, progress, cancel)
+    if taken is not None:
+        taken.into(march, sink)
+    status = march_on(march, sink, progress, cancel, None if trail is None else trail.watch(march))
     end = ending(march, status, now() - began)
     states = sink.states(0, end.samples)
     time = np.arange(end.samples) / system.scene.outputs.sample_rate

@@ -18,12 +18,16 @@ class ContactChecks:
         self._watched = [i for i, mesh in enumerate(meshes) if not system.ledger.on("backlash", mesh.name)]
         self._parted = np.zeros(len(meshes), dtype=np.int64)
         self._gap = np.zeros(len(meshes))
+        self._first = np.full(len(meshes), -1, dtype=np.int64)
 
     def see(self, position: FloatArray, deflection: FloatArray, force: FloatArray) -> None:
         """Take series (m, T) of the driving flanks."""
+        before = self._samples
         self._samples += position.shape[1]
         for index in self._watched:
             apart = force[index] <= 0.0
+            if self._first[index] < 0 and np.any(apart):
+                self._first[index] = before + int(np.argmax(apart))
             touch = np.empty(position.shape[1])
             table = self._system.arrays.elements.laws.flank.table
             static_deflections(table, index, position[index], 0.0, touch)
@@ -36,13 +40,15 @@ class ContactChecks:
 
         ``parted`` is the share of the samples out of contact, ``widest_gap`` in m how far flanks were apart
         along the line of action, ``holds`` whether leaving the coast flank out changed nothing: none parted,
-        or the gap stayed below a backlash that is given.
+        or the gap stayed below a backlash that is given. ``since`` is the time of the last sample before they
+        parted first, s; None if they never did, or from the start: without effect on what came before.
         """
         return [self._entry(index) for index in self._watched]
 
     def _entry(self, index: int) -> Json:
         """One mesh."""
         mesh, gap = self._system.scene.meshes[index], float(self._gap[index])
+        first = int(self._first[index])
         room = mesh.coast.backlash if mesh.coast is not None else 0.0
         return {
             "effect": "backlash",
@@ -51,6 +57,7 @@ class ContactChecks:
             "holds": bool(gap <= room),
             "parted": float(self._parted[index] / max(self._samples, 1)),
             "widest_gap": gap,
+            "since": (first - 1) / self._system.scene.outputs.sample_rate if first > 0 else None,
             "reason": _reason(gap, mesh.coast is not None, room),
         }
 

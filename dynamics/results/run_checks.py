@@ -2,25 +2,41 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, Protocol
 
 from dynamics.results.axis_checks import AxisChecks
 from dynamics.results.bearing_load_check import BearingLoadChecks
 from dynamics.results.contact_check import ContactChecks
 from dynamics.results.force_check import ForceChecks
+from dynamics.results.held_place_check import HeldPlaceChecks
 from dynamics.system.assemble import System
-from dynamics.types import Json
+from dynamics.types import FloatArray, Json
 
 
-class RunChecks:
-    """All checks of a run."""
-
-    def __init__(self, system: System) -> None:
-        self._contact, self._axes = ContactChecks(system), AxisChecks(system)
-        self._force, self._bearings = ForceChecks(system), BearingLoadChecks(system)
+class SeriesCheck(Protocol):
+    """A check of series."""
 
     def see(self, series: dict[str, Any]) -> None:
         """Take a block of series."""
+
+    def found(self) -> list[Json]:
+        """Return its entries."""
+
+
+class RunChecks:
+    """All checks of a run; `further` ones look at its series too."""
+
+    def __init__(self, system: System, further: Sequence[SeriesCheck] = ()) -> None:
+        self._further, self._places = tuple(further), HeldPlaceChecks(system)
+        self._contact, self._axes = ContactChecks(system), AxisChecks(system)
+        self._force, self._bearings = ForceChecks(system), BearingLoadChecks(system)
+
+    def see(self, series: dict[str, Any], q: FloatArray) -> None:
+        """Take a block of series, and the displacements (T, n) they are of."""
+        self._places.see(q)
+        for check in self._further:
+            check.see(series)
         names = ("position", "dynamic_transmission_error", "mesh_force")
         self._contact.see(*(series[name] for name in names))
         self._axes.see(series)
@@ -30,4 +46,6 @@ class RunChecks:
     def found(self) -> list[Json]:
         """Return the entries of all checks."""
         contact, axes = self._contact.found(), self._axes.found()
-        return [*contact, *axes, *self._force.found(), *self._bearings.found()]
+        further = [entry for check in self._further for entry in check.found()]
+        rest = (*self._force.found(), *self._bearings.found(), *self._places.found(), *further)
+        return [*contact, *axes, *rest]

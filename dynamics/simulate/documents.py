@@ -118,11 +118,6 @@ def _over_speed(system: System, linear: LinearSystem) -> Json:
     }
 
 
-def see(checks: RunChecks, series: dict[str, Any]) -> None:
-    """Show a block of series to the checks."""
-    checks.see(series)
-
-
 def finer(integration: Integration) -> Integration:
     """Return the settings of the run that an error is measured against."""
     return replace(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time as clock
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from dynamics.errors import SolveError
 from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
 from dynamics.integrators.state_sink import States, blocks
+from dynamics.integrators.taking_over import Trail
 from dynamics.integrators.workspace import Count, Power
 from dynamics.results import RunResult
 from dynamics.results.run_checks import RunChecks
@@ -19,17 +21,17 @@ from dynamics.simulate.documents import (
     documents,
     finer,
     measured_error,
-    see,
     series_of,
     squared_difference,
 )
 from dynamics.simulate.error_by_source import error_by_source
-from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said
+from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said, taken_over
 from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
 from dynamics.system.static_reference import with_static_reference
 from dynamics.types import FloatArray, Json, RunStatus
 from dynamics.worth import Decided, decide_effects
+from dynamics.worth.spared_check import SparedChecks
 
 
 def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
@@ -59,36 +61,66 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
         it took for granted is wrong and the scene's ``on_violation`` is "fail"; ``partial`` is the result up
         to there.
     """
-    decided = decide_effects(scene)
-    result = _run(decided, FIRST, progress, cancel)
+    decided, before = decide_effects(scene), FIRST
+    run = _run(decided, before, None, progress, cancel)
+    while needed := _needed(scene, run.result):
+        before = before.then(needed, sum(run.result.receipt["seconds"].values()))
+        run = _run(before.of(decided), before, run, progress, cancel)
+    if progress is not None:
+        progress(1.0, "done")
+    return run.result
+
+
+def _needed(scene: Scene, result: RunResult) -> dict[str, str]:
+    """Return the effects that a run is to be repeated with; raises where the scene asked for that."""
     wrong = said(result.effect_ledger)
     if wrong and scene.on_violation == "fail":
         raise SolveError(f"assumptions of the run that do not hold: {wrong}", result)
-    needed = needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
-    if needed:
-        before = EarlierRun(needed, sum(result.receipt["seconds"].values()))
-        result = _run(before.of(decided), before, progress, cancel)
-    if progress is not None:
-        progress(1.0, "done")
-    return result
+    return needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
 
 
-def _run(decided: Decided, before: EarlierRun, progress: Progress | None, cancel: Cancel | None) -> RunResult:
-    """Run a scene once; `before` is the run that this one repeats."""
+@dataclass(frozen=True)
+class _Run:
+    """A run as made: its result, and what another one needs to go on for it."""
+
+    result: RunResult
+    trail: Trail
+    trajectory: Trajectory
+
+    def states(self, first: int, stop: int) -> States:
+        """Return its samples `first` to `stop` - 1."""
+        run = self.trajectory
+        return States(run.q, run.v, run.moved).rows(first, stop)
+
+
+def _run(
+    decided: Decided,
+    before: EarlierRun,
+    earlier: _Run | None,
+    progress: Progress | None,
+    cancel: Cancel | None,
+) -> _Run:
+    """Run a scene once; `before` says what of the run `earlier` it repeats."""
     began, scene = clock.perf_counter(), decided.scene
     system = assemble(scene)
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
     require_equilibrium(system, start, seconds, decided)
-    system = with_static_reference(system, start.displacement)
-    trajectory = integrate(system, start, scene.integration, progress, cancel=cancel)
+    system, trail = with_static_reference(system, start.displacement), Trail(system)
+    taken = None
+    if earlier is not None:
+        taken = taken_over(earlier.result.effect_ledger, earlier.trail, earlier.states, system)
+        before = before if taken is None else replace(before, since=taken.at.time)
+    trajectory = integrate(
+        system, start, scene.integration, progress, cancel=cancel, trail=trail, taken=taken
+    )
     seconds["integration"] = trajectory.seconds
     error = _error_estimate(system, start, trajectory, progress)
     result = _result(system, trajectory, seconds, error, decided, before)
     if not trajectory.status.usable:
         reached = f"at {trajectory.end:.6g} s of {scene.duration:g} s"
         raise SolveError(f"run ended early, {trajectory.status.name.lower()} {reached}", result)
-    return result
+    return _Run(result, trail, trajectory)
 
 
 def require_equilibrium(
@@ -116,13 +148,13 @@ def _result(
 ) -> RunResult:
     """Put the result together."""
     began = clock.perf_counter()
-    checks = RunChecks(system)
+    checks = RunChecks(system, [SparedChecks(decided)])
     parts: list[dict[str, Any]] = []
     for first, stop in blocks(trajectory.samples):
         part = slice(first, stop)
         states = States(trajectory.q[part], trajectory.v[part], trajectory.moved[part])
         parts.append(series_of(system, trajectory.time[part], states))
-        see(checks, parts[-1])
+        checks.see(parts[-1], states.q)
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
     about = documents(system, trajectory, checks, seconds, error, decided, before)
     return RunResult(**_joined(parts), **about)

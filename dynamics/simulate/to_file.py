@@ -16,8 +16,9 @@ from dynamics.errors import ResultError, SolveError
 from dynamics.integrators import Cancel, Progress, StaticSolution, static_equilibrium
 from dynamics.integrators.checkpoint import fingerprint, restore
 from dynamics.integrators.march import Ending, March, ending, march_on, start_march
-from dynamics.integrators.state_sink import blocks
+from dynamics.integrators.state_sink import States, blocks
 from dynamics.integrators.state_spool import StateSpool
+from dynamics.integrators.taking_over import Taken, Trail, take_over
 from dynamics.results.netcdf import attributes
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_file import RunFile
@@ -26,18 +27,18 @@ from dynamics.simulate.documents import (
     documents,
     finer,
     measured_error,
-    see,
     series_of,
     squared_difference,
 )
 from dynamics.simulate.error_by_source import error_by_source
 from dynamics.simulate.in_memory import require_equilibrium
-from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said
+from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said, taken_over
 from dynamics.system import Integration, Scene
 from dynamics.system.assemble import System, assemble
 from dynamics.system.static_reference import with_static_reference
 from dynamics.types import Json, RunStatus
 from dynamics.worth import Decided, decide_effects
+from dynamics.worth.spared_check import SparedChecks
 
 CHECKPOINT_EVERY = 5.0  # s of wall time
 REPEATED = "repeated.json"
@@ -97,19 +98,37 @@ def simulate_to_file(
     how = _How(resume, progress, cancel, checkpoint_every)
     before = _read_earlier(folder) if resume else FIRST
     decided = decide_effects(scene)
-    status, ledger, seconds = _run_to_file(before.of(decided), path, before, how)
-    wrong = said(ledger) if status.usable else ""
-    if wrong and scene.on_violation == "fail":
-        raise SolveError(f"assumptions of the run that do not hold: {wrong}. It is in {path}")
-    needed = needed_effects(ledger) if wrong and scene.on_violation == "repeat" else {}
-    if needed and status.usable:
-        again = EarlierRun(needed, seconds)
-        folder.mkdir(exist_ok=True)
-        (folder / REPEATED).write_text(json.dumps(again.to_json()), encoding="utf-8")
-        status, _, _ = _run_to_file(again.of(decided), path, again, replace(how, resume=False))
+    run = _run_to_file(before.of(decided), path, before, how, None)
+    while needed := _needed(scene, path, run):
+        before = before.then(needed, run.seconds)
+        for checkpoint in folder.glob("*.checkpoint"):
+            checkpoint.unlink()  # of a system without these effects
+        (folder / REPEATED).write_text(json.dumps(before.to_json()), encoding="utf-8")
+        run = _run_to_file(before.of(decided), path, before, replace(how, resume=False), run)
+    if run.status is not RunStatus.CANCELLED:
+        _remove(folder)
     if progress is not None:
-        progress(1.0, "done" if status.usable else status.name.lower())
-    return status
+        progress(1.0, "done" if run.status.usable else run.status.name.lower())
+    return run.status
+
+
+def _needed(scene: Scene, path: Path, run: _Run) -> dict[str, str]:
+    """Return the effects that a run is to be repeated with; raises where the scene asked for that."""
+    wrong = said(run.ledger) if run.status.usable else ""
+    if wrong and scene.on_violation == "fail":
+        _remove(interrupted_run(path))
+        raise SolveError(f"assumptions of the run that do not hold: {wrong}. It is in {path}")
+    return needed_effects(run.ledger) if wrong and scene.on_violation == "repeat" else {}
+
+
+@dataclass(frozen=True)
+class _Run:
+    """A run as made: its status, effect ledger and wall time (s), and where it stood on its way."""
+
+    status: RunStatus
+    ledger: Json
+    seconds: float
+    trail: Trail
 
 
 @dataclass(frozen=True)
@@ -122,22 +141,21 @@ class _How:
     checkpoint_every: float
 
 
-def _run_to_file(
-    decided: Decided, path: Path, before: EarlierRun, how: _How
-) -> tuple[RunStatus, Json, float]:
-    """Run once, `before` being the run that this one repeats; return status, ledger and wall time, s."""
+def _run_to_file(decided: Decided, path: Path, before: EarlierRun, how: _How, earlier: _Run | None) -> _Run:
+    """Run once; `before` says what of the run `earlier` it repeats."""
     began, scene = clock.perf_counter(), decided.scene
     system = assemble(scene)
     start = static_equilibrium(system)
     seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
     require_equilibrium(system, start, seconds, decided)
-    system = with_static_reference(system, start.displacement)
+    system, trail = with_static_reference(system, start.displacement), Trail(system)
     folder = interrupted_run(path)
     folder.mkdir(exist_ok=True)
     going = (how.progress, how.cancel, how.checkpoint_every)
     with ExitStack() as stack:
-        leg = _Leg(stack, folder / "run", system, start, scene.integration, how.resume)
-        end = leg.go(*going)
+        leg = _Leg(stack, folder / "run", system, start, scene.integration, how.resume, earlier)
+        before = replace(before, since=leg.since)
+        end = leg.go(*going, trail)
         error = asked_error(scene.integration)
         if end.status.usable:
             error = error_by_source(system, leg.spool.states, end.samples)
@@ -148,9 +166,7 @@ def _run_to_file(
             error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         seconds["integration"] = end.seconds
         ledger = _write(path, system, leg, end, seconds, error, decided, before)
-    if end.status is not RunStatus.CANCELLED:
-        _remove(folder)
-    return end.status, ledger, sum(seconds.values())
+    return _Run(end.status, ledger, sum(seconds.values()), trail)
 
 
 def _read_earlier(folder: Path) -> EarlierRun:
@@ -175,6 +191,7 @@ class _Leg:
         start: StaticSolution,
         integration: Integration,
         resume: bool,
+        earlier: _Run | None = None,
     ) -> None:
         self.march: March = start_march(system, start, integration)
         work, control, outputs = self.march.work, self.march.control, system.scene.outputs
@@ -183,11 +200,15 @@ class _Leg:
         self.spool = stack.enter_context(StateSpool(place, work.q.size, work.moved.size))
         self._seconds = 0.0
         self._status: RunStatus | None = None
+        self.since = 0.0
         found = self.spool.checkpoint() if resume else None
-        if found is None:
-            self.spool.begin()
-        else:
+        taken = earlier and taken_over(earlier.ledger, earlier.trail, self.spool.states, system)
+        if found is not None:
             self._take_up(place, *found)
+        elif taken:
+            self._go_on_for(taken)
+        else:
+            self.spool.begin()
 
     def _take_up(self, place: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
         """Stand where the checkpoint was written."""
@@ -195,17 +216,29 @@ class _Leg:
             raise ResultError(f"{place}: of another scene or version. Start the run anew.")
         restore(self.march.work, arrays, place)
         self.spool.resume(int(facts["samples"]))
-        self._seconds = float(facts["seconds"])
+        self._seconds, self.since = float(facts["seconds"]), float(facts["since"])
         status = RunStatus(int(facts["status"]))
         self._status = None if status is RunStatus.CANCELLED else status
 
-    def go(self, progress: Progress | None, cancel: Cancel | None, every: float) -> Ending:
+    def _go_on_for(self, taken: Taken) -> None:
+        """Stand where an earlier run stood, whose samples the spool holds; kept at once: its own are gone."""
+        take_over(self.march, taken.at, taken.place)
+        self.spool.resume(taken.at.samples)
+        self.since = taken.at.time
+        self._save(RunStatus.CANCELLED)
+
+    def go(
+        self, progress: Progress | None, cancel: Cancel | None, every: float, trail: Trail | None = None
+    ) -> Ending:
         """March on to the end, with checkpoints; one that had ended stays as it is."""
         began = saved = clock.perf_counter()
         before = self._seconds
+        remember = None if trail is None else trail.watch(self.march)
 
         def after_block() -> None:
             nonlocal saved
+            if remember is not None:
+                remember()
             if clock.perf_counter() - saved >= every:
                 self._save(RunStatus.CANCELLED)
                 saved = clock.perf_counter()
@@ -221,8 +254,8 @@ class _Leg:
     def _save(self, status: RunStatus) -> None:
         """Write a checkpoint."""
         samples = int(ending(self.march, status, 0.0).samples)
-        facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "status": int(status)}
-        self.spool.save(self.march.work, **facts)
+        facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "since": self.since}
+        self.spool.save(self.march.work, **facts, status=int(status))
 
 
 def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
@@ -247,10 +280,10 @@ def _write(
 ) -> Json:
     """Make the series from the states, block by block, into the file; return the effect ledger."""
     began = clock.perf_counter()
-    checks = RunChecks(system)
+    checks = RunChecks(system, [SparedChecks(decided)])
     with RunFile(path) as file:
-        for series in _series(system, leg, end.samples):
-            see(checks, series)
+        for series, states in _series(system, leg, end.samples):
+            checks.see(series, states.q)
             file.append(series)
         seconds["outputs"] = clock.perf_counter() - began
         about = documents(system, end, checks, seconds, error, decided, before)
@@ -258,11 +291,12 @@ def _write(
     return dict(about["effect_ledger"])
 
 
-def _series(system: System, leg: _Leg, samples: int) -> Iterator[dict[str, Any]]:
-    """Yield the series of all blocks."""
+def _series(system: System, leg: _Leg, samples: int) -> Iterator[tuple[dict[str, Any], States]]:
+    """Yield the series of all blocks, and the states that they are of."""
     rate = system.scene.outputs.sample_rate
     for first, stop in blocks(samples):
-        yield series_of(system, np.arange(first, stop) / rate, leg.spool.states(first, stop))
+        states = leg.spool.states(first, stop)
+        yield series_of(system, np.arange(first, stop) / rate, states), states
 
 
 def _remove(folder: Path) -> None:

@@ -54,7 +54,8 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
     again = attributes.get("receipt", {}).get("repeated")
     if again:
         for name, reason in again["turned_on"].items():
-            yield f"repeated with {name}: {reason} (first run {again['seconds']:.2g} s)"
+            since = f", from {again['since']:.6g} s on" if again.get("since") else ""
+            yield f"repeated with {name}: {reason} (first run {again['seconds']:.2g} s{since})"
     for one in attributes.get("effect_ledger", {}).get("checks", ()):
         if not one["holds"]:
             yield f"DOES NOT HOLD: {one['assumption']} ({one['part']}); {one['reason']}"
