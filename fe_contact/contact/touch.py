@@ -13,6 +13,7 @@ from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray
 
 _SAMPLES = 65
+_FLATTEST = 100.0
 _TIE = 1e-15
 """Gaps that differ by less, over the largest modification, are equal: a few times their rounding."""
 
@@ -82,11 +83,22 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
         opening[found] = corner.slope_angle[corner.valid]
         lever_1[found] = corner.lever_arm_ratio_pinion[corner.valid]
         lever_2[found] = corner.lever_arm_ratio_wheel[corner.valid]
-    radius = relative_radius(touched_1, pair.wheel.sign * touched_2)
+    radius = _relative_radius(pair, touched_1, touched_2)
     s_1, s_2 = flank_coordinate(pair.pinion, touched_1), flank_coordinate(pair.wheel, touched_2)
     offset_1 = flank_coordinate(pair.pinion, tip_1) - s_1 - opening_1 * radius
     offset_2 = flank_coordinate(pair.wheel, tip_2) - s_2 - opening_2 * radius
     return Touch(s_1, s_2, offset_1, offset_2, gap, radius, lever_1, lever_2)
+
+
+def _relative_radius(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
+    """Return the relative radius of curvature in m, at most `_FLATTEST` base radii of gear 2.
+
+    Off the line of action the edge of a ring gear may meet its pinion where the pinion is the flatter one:
+    flanks that part at the edge would close in again further away. There they count as flat.
+    """
+    flattest = _FLATTEST * pair.wheel.base_radius
+    radius = relative_radius(roll_1, pair.wheel.sign * roll_2)
+    return np.where((radius >= 0.0) & (radius <= flattest), radius, flattest)
 
 
 def flank_coordinate(gear: Toothing, roll: FloatArray | float) -> FloatArray:

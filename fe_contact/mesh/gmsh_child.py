@@ -14,6 +14,8 @@ from typing import Any
 from fe_contact.errors import MeshError
 from fe_contact.types import Json
 
+_NO_MEMORY = ("MemoryError", "bad_alloc")
+"""How Python and C++ say that an allocation failed."""
 WORKER = Path(__file__).with_name("gmsh_worker.py")
 
 
@@ -37,6 +39,7 @@ def ask_gmsh(request: Json, seconds: float, command: Sequence[str] | None = None
     request = request | {"seconds": seconds}
     answer = _ask(json.dumps(request), seconds, command or (sys.executable, "-P", str(WORKER)))
     if "error" in answer:
+        _refuse_no_memory(answer["error"])
         raise MeshError(f"gmsh: {answer['error']}")
     return answer
 
@@ -59,6 +62,7 @@ def _ask(request: str, seconds: float, command: Sequence[str]) -> dict[str, Any]
         raise MeshError(f"gmsh worker: no mesh within {seconds:g} s") from error
     except OSError as error:
         raise MeshError(f"gmsh worker: cannot be started ({error})") from error
+    _refuse_no_memory(_last_line(child.stderr) if child.returncode else "")
     if child.returncode != 0:
         raise MeshError(f"gmsh worker: {_cause(child.returncode)}. {_last_line(child.stderr)}".rstrip(" ."))
     try:
@@ -66,6 +70,14 @@ def _ask(request: str, seconds: float, command: Sequence[str]) -> dict[str, Any]
     except json.JSONDecodeError as error:
         raise MeshError(f"gmsh worker: unusable answer ({error})") from error
     return answer if isinstance(answer, dict) else {}
+
+
+def _refuse_no_memory(complaint: str) -> None:
+    """Raise what a child's complaint says, if that is a lack of memory."""
+    if any(sign in complaint for sign in _NO_MEMORY):
+        raise MeshError(
+            "gmsh worker: ran out of memory. Ask for a coarser level, or let a process have more."
+        )
 
 
 def _cause(returncode: int) -> str:

@@ -87,8 +87,11 @@ def _write(file: Path, slowness: float) -> None:
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         handle, draft = tempfile.mkstemp(dir=file.parent, suffix=".partial")
+    except OSError:
+        return
+    try:
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
             json.dump({"identity": _identity(), "slowness": slowness}, stream)
         Path(draft).replace(file)
     except OSError:
-        return
+        Path(draft).unlink(missing_ok=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import os
 import tempfile
 from collections.abc import Mapping
@@ -19,16 +20,21 @@ if TYPE_CHECKING:
 
 
 def write_dataset(dataset: xarray.Dataset, path: Path) -> None:
-    """Write a dataset to `path`: into a temporary file beside it, then renamed over it."""
+    """Write a dataset to `path`: into a temporary file beside it, then renamed over it.
+
+    The bytes are made in memory: where a disk is full, HDF5 would leave objects that crash the process later.
+    """
     # no _FillValue: xarray would replace NaN by its own on the way back
     encoding: dict[Any, Json] = {name: {"_FillValue": None} for name in dataset.variables}
     for name in dataset.data_vars:
         if dataset[name].size:
             encoding[name] |= {"zlib": True, "complevel": 4, "shuffle": True}
+    content = io.BytesIO()
+    dataset.to_netcdf(content, engine="h5netcdf", format="NETCDF4", encoding=encoding)
     handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
-    os.close(handle)
     try:
-        dataset.to_netcdf(temporary, engine="h5netcdf", format="NETCDF4", encoding=encoding)
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content.getbuffer())
         _publish(temporary, path)
     except BaseException:
         Path(temporary).unlink(missing_ok=True)

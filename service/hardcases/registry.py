@@ -24,7 +24,7 @@ from service.hardcases.dynamics import (
     stiffness,
     supports,
 )
-from service.hardcases.jobs import deaths, limits
+from service.hardcases.jobs import deaths, limits, space
 from service.hardcases.scene import HardScene
 from service.hardcases.tables import extraction, noise
 
@@ -82,4 +82,6 @@ HARD_SCENES: tuple[HardScene, ...] = (
     deaths.MESHER,
     deaths.WORKER_ONCE,
     deaths.WORKER_ALWAYS,
+    space.DISK_FULL,
+    space.GREEDY_MESHER,
 )

@@ -22,6 +22,7 @@ import traceback
 from pathlib import Path
 from typing import Any, TextIO
 
+from service.jobs.disk import no_space
 from service.jobs.memory import hold_to, machine_memory_mb, out_of_memory
 from service.jobs.order import USABLE, Product, WorkOrder
 from service.problems import ServiceError
@@ -98,6 +99,8 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
         limit = order.memory_limit_mb
         return {"failure": out_of_memory(machine_memory_mb() if limit is None else limit)}
     except Exception as error:  # noqa: BLE001 (a defect is logged by its traceback and reported by number)
+        if isinstance(error, OSError) and (full := no_space(error)):
+            return {"failure": full}
         known = error if isinstance(error, ServiceError) else _translated(error)
         if known is None:
             traceback.print_exc(file=sys.stderr)

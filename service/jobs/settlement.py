@@ -10,6 +10,7 @@ from pathlib import Path
 import structlog
 
 from service.jobs.claims import Claim, Claims
+from service.jobs.disk import no_space
 from service.jobs.order import Outcome
 from service.store import ResultStore
 
@@ -66,8 +67,19 @@ class Settlement:
         elif outcome.failure:
             self.claims.fail(claim, outcome.failure, outcome.faults)
         else:
+            self._keep(claim, outcome)
+
+    def _keep(self, claim: Claim, outcome: Outcome) -> None:
+        """Store what was made; a file system that does not take it will not do so at a repetition either."""
+        try:
             for product in outcome.products:
                 self.store.put(product.key, product.kind, product.file)
+        except OSError as error:
+            reference = uuid.uuid4().hex[:12]
+            logger.exception("result could not be stored", computation=claim.id, reference=reference)
+            text = f"The result could not be stored. The log has the details under {reference}."
+            self.claims.fail(claim, no_space(error) or text, reference=reference)
+        else:
             self.claims.succeed(claim)
 
     def again_or_fail(self, claim: Claim, reason: str) -> None:

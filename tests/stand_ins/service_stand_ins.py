@@ -15,9 +15,9 @@ from service.store import ResultStore
 class Wish(BoundaryModel):
     """What the stand-in is to do."""
 
-    mode: Literal["write", "hang", "die", "die_once", "abort", "hog", "mesh", "input", "defect", "refuse"] = (
-        "write"
-    )
+    mode: Literal[
+        "write", "hang", "die", "die_once", "abort", "hog", "full", "mesh", "input", "defect", "refuse"
+    ] = "write"
     text: str = Field(default="", max_length=1_000_000)
     number: float = Field(default=0.0, ge=0.0, le=10.0)
 

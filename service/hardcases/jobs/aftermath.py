@@ -53,7 +53,7 @@ class Aftermath:
     job : Job
         Ended.
     errors : ndarray or None
-        Its transmission errors, if it has succeeded all the same.
+        Its transmission errors, if it has succeeded all the same, or at last.
     figures : tuple of Measured
         What every such job must leave behind.
     """
@@ -67,16 +67,26 @@ class Aftermath:
         return (self.job.status, self.job.attempts) == (status, attempts)
 
 
-def aftermath(case: Json, disturb: Disturb | None = None, settle: Settle = lambda _seconds: {}) -> Aftermath:
-    """Run a job that is disturbed, another that is dismissed behind it, and the small one after both."""
+def aftermath(
+    case: Json,
+    disturb: Disturb | None = None,
+    settle: Settle = lambda _seconds: {},
+    *,
+    again: bool = False,
+) -> Aftermath:
+    """Run a job that is disturbed, another that is dismissed behind it, and the small one after both.
+
+    With `again` the first is submitted once more at the end, undisturbed.
+    """
     before = undisturbed()
     with fresh_service(**settle(before.seconds)) as service:
         jobs = [service.submit(case), service.submit(case_of("plane_strain", "draft", (30.0,)))]
         service.submissions.dismiss(jobs[1].id)
         jobs.append(service.submit(SMALL))
         ended = [service.ended(job, disturb if job is jobs[0] else None) for job in jobs]
-        errors = service.errors(ended[0]) if ended[0].status == "successful" else None
         figures = (*_left(service), *_others(service, ended, before.errors))
+        last = service.ended(service.submit(case)) if again else ended[0]
+        errors = service.errors(last) if last.status == "successful" else None
         service.end_processes()
         return Aftermath(ended[0], errors, figures)
 
@@ -121,9 +131,11 @@ def _others(service: JobService, ended: list[Job], before: FloatArray) -> tuple[
     """Return how the jobs behind the disturbed one fared, and whether the small one is as ever."""
     disturbed, dismissed, after = ended
     as_wished = (dismissed.status, dismissed.attempts, after.status) == ("dismissed", 0, "successful")
+    served = disturbed.status != "successful" and service.store.find(disturbed.key, "database") is not None
     in_turn = str(after.started) >= str(disturbed.finished)
     off = largest_difference(service.errors(after), before) if after.status == "successful" else np.inf
     return (
+        Measured("results served of a job that failed", float(served), most=0.0),
         Measured("jobs behind it end as they should, in their turn", float(as_wished and in_turn), least=1.0),
         Measured("next job off the same undisturbed, m", off, most=0.0),
     )

@@ -14,11 +14,12 @@ from fe_contact.types import FloatArray
 from service.convert.case import analysis_arguments, gear_pair
 from service.hardcases.jobs.aftermath import MEDIUM, aftermath, largest_difference
 from service.hardcases.jobs.job_service import Disturb, JobService
+from service.hardcases.jobs.limits import AFTER
 from service.hardcases.scene import HardScene, Measured
 from service.jobs.submissions import Job
 from service.schemas import Case, validated
 
-_MESHER, _WORKER = "gmsh_worker", "service.jobs.child"
+MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.jobs.child"
 """What their commands hold."""
 
 
@@ -27,7 +28,7 @@ def kill_meshers(times: int, killed: list[int]) -> Disturb:
 
     def kill(service: JobService, _job: Job) -> None:
         if len(killed) < times:
-            killed.extend(_sent(signal.SIGKILL, service.processes(_MESHER)))
+            killed.extend(_sent(signal.SIGKILL, service.processes(MESHER_COMMAND)))
 
     return kill
 
@@ -39,8 +40,8 @@ def kill_workers(times: int, killed: list[int]) -> Disturb:
     """
 
     def kill(service: JobService, _job: Job) -> None:
-        if len(killed) < times and _sent(signal.SIGSTOP, service.processes(_MESHER)):
-            killed.extend(_sent(signal.SIGKILL, service.processes(_WORKER)))
+        if len(killed) < times and _sent(signal.SIGSTOP, service.processes(MESHER_COMMAND)):
+            killed.extend(_sent(signal.SIGKILL, service.processes(WORKER_COMMAND)))
 
     return kill
 
@@ -72,7 +73,7 @@ def worker_killed_once() -> Sequence[Measured]:
     """Kill the first worker in mid-mesh."""
     killed: list[int] = []
     found = aftermath(MEDIUM, kill_workers(1, killed))
-    off = np.inf if found.errors is None else largest_difference(found.errors, _of_python())
+    off = np.inf if found.errors is None else largest_difference(found.errors, of_python())
     return (
         Measured("workers killed", float(len(killed)), 1.0, 1.0),
         Measured("done at the second attempt", float(found.ended_as("successful", 2)), least=1.0),
@@ -94,35 +95,30 @@ def worker_killed_always() -> Sequence[Measured]:
     )
 
 
-def _of_python() -> FloatArray:
+def of_python() -> FloatArray:
     """Return the transmission errors of the job, computed here."""
     case = validated(Case, MEDIUM)
     return analyze(gear_pair(case), **analysis_arguments(case)).static_transmission_error
 
 
-_AFTER = (
-    "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
-    "those of an undisturbed service to the last bit."
-)
-
 MESHER = HardScene(
     "job_whose_mesh_fails",
     "service",
     "The mesher is killed in mid-mesh: a process started by the worker, of which the service knows nothing.",
-    f"The job fails at its first attempt and says that the mesher was killed; {_AFTER}",
+    f"The job fails at its first attempt and says that the mesher was killed; {AFTER}",
     mesher_killed,
 )
 WORKER_ONCE = HardScene(
     "worker_killed_once",
     "service",
     "The worker is killed (SIGKILL) while its mesher hangs: nobody tells the service, and the mesher stays.",
-    f"The second attempt gives what Python gives undisturbed, to the last bit; {_AFTER}",
+    f"The second attempt gives what Python gives undisturbed, to the last bit; {AFTER}",
     worker_killed_once,
 )
 WORKER_ALWAYS = HardScene(
     "worker_killed_at_every_attempt",
     "service",
     "Every worker of the job is killed while its mesher hangs: tried for ever, it would block all others.",
-    f"The job fails at its second attempt, with the signal and the number of attempts; {_AFTER}",
+    f"The job fails at its second attempt, with the signal and the number of attempts; {AFTER}",
     worker_killed_always,
 )

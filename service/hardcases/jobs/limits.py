@@ -42,7 +42,7 @@ def past_the_deadline() -> Sequence[Measured]:
     )
 
 
-_AFTER = (
+AFTER = (
     "nothing of it is left, and the jobs behind it end as they should, in their turn, with results that are "
     "those of an undisturbed service to the last bit."
 )
@@ -52,13 +52,13 @@ OUT_OF_MEMORY = HardScene(
     "service",
     "A three-dimensional analysis that needs three times the memory a worker may have: an allocation fails "
     "somewhere in numerical libraries.",
-    f"The job fails at its first attempt, with the limit and what to try; {_AFTER}",
+    f"The job fails at its first attempt, with the limit and what to try; {AFTER}",
     out_of_memory,
 )
 DEADLINE = HardScene(
     "job_past_deadline",
     "service",
     "A job that is inside compiled code when its deadline passes, and hears of nothing.",
-    f"The job fails at its first attempt, with the deadline and what to try; {_AFTER}",
+    f"The job fails at its first attempt, with the deadline and what to try; {AFTER}",
     past_the_deadline,
 )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from running_service import Bench, bench, lives, until
@@ -13,6 +15,8 @@ from service_stand_ins import REGISTRY
 
 from service.jobs.memory import machine_memory_mb
 from service.settings import LEAST_MEMORY_MB
+from service.store import ResultStore
+from service.store.results import StoredResult
 
 
 @pytest.fixture
@@ -154,6 +158,33 @@ def test_a_library_that_gives_up_is_told_with_its_signal(machine: Bench) -> None
     job = machine.ended(machine.submit(mode="abort"))
     assert (job.status, job.attempts) == ("failed", 2)
     assert job.message.startswith("The worker was ended by SIGABRT (it may have run out of memory).")
+
+
+def test_work_that_finds_no_room_fails_with_the_cause_and_serves_nothing(machine: Bench) -> None:
+    job = machine.ended(machine.submit(mode="full", text="long"))
+    assert (job.status, job.attempts) == ("failed", 1)
+    assert "no space left in the data directory" in job.message
+    assert machine.store.find(job.key, "database") is None
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EIO])
+def test_a_result_that_cannot_be_stored_never_leaves_its_job_running(
+    machine: Bench, monkeypatch: pytest.MonkeyPatch, number: int
+) -> None:
+    """It fails, for want of room or under a number in the log, and those behind it have their turn."""
+    put, failed = ResultStore.put, []
+
+    def full_once(store: ResultStore, *arguments: Any) -> StoredResult:
+        if failed:
+            return put(store, *arguments)
+        failed.append(1)
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(ResultStore, "put", full_once)
+    job = machine.ended(machine.submit(text="hello"))
+    assert (job.status, job.attempts) == ("failed", 1)
+    assert ("no space left" if number == errno.ENOSPC else "The log has the details") in job.message
+    assert machine.ended(machine.submit(text="next")).status == "successful"
 
 
 def test_memory_is_the_machine_s_or_what_its_control_group_leaves(tmp_path: Path) -> None:

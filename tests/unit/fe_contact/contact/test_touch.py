@@ -8,6 +8,7 @@ from scipy.optimize import minimize_scalar
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.contact.touch import conjugate_touch, flank_coordinate, modified_touch
+from fe_contact.geometry import InternalGearPair, RingGear
 
 
 def pair(**modification: object) -> GearPair:
@@ -148,3 +149,17 @@ def scaled_down(gears, scale):
     sizes = {name: scale * getattr(gear, name) for name in ("normal_module", "face_width", "bore_diameter")}
     small = Gear(teeth=gear.teeth, modification=modification, **sizes)
     return GearPair(small, small, scale * gears.center_distance)
+
+
+def test_the_edge_of_a_ring_on_a_flatter_flank_has_a_radius():
+    """Where the ring's hollow flank is the more curved one, the relative curvature would be below zero."""
+    pinion = Gear(
+        teeth=21, normal_module=1e-3, face_width=10e-3, bore_diameter=8e-3, profile_shift_coefficient=0.37
+    )
+    gears = InternalGearPair(pinion, RingGear(50, 1e-3, 10e-3, rim_diameter=60e-3, addendum_coefficient=0.8))
+    roll_1, roll_2 = gears.roll_lengths(np.linspace(0.0, 0.97, 33)[:, None], np.arange(-3, 4))
+    found = conjugate_touch(gears, roll_1, roll_2, corners=True)
+    flatter = np.isfinite(found.gap) & (found.s_1 * pinion.base_radius > -found.s_2 * gears.wheel.base_radius)
+    assert flatter.sum() > 0
+    assert np.all(found.radius[np.isfinite(found.gap)] > 0.0)
+    assert found.radius[flatter] == pytest.approx(100.0 * gears.wheel.base_radius)
