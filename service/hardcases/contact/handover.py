@@ -14,6 +14,8 @@ from service.hardcases.scene import HardScene, Measured
 from service.hardcases.soundness import soundness
 
 _POSITION = np.array([0.3])
+_LENGTH = 2.5e-3
+"""Of the relief in m, along the radius."""
 _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
 
 
@@ -30,6 +32,7 @@ def relief_that_touches() -> Sequence[Measured]:
     return (
         *(max(column, key=lambda m: m.value) for column in zip(*checks, strict=True)),
         Measured("relief found, um", 1e6 * exact),
+        Measured("its gap off the closed form of a straight ramp", _off_the_ramp(case, exact), most=1e-3),
         Measured("share of the touching pair", float(_share(*solved[_NUDGES.size // 2])), most=1e-9),
         Measured("least rise of STE with relief, m", float((rise + rounding).min()), least=0.0),
         Measured("largest rise over the relief's", float(((rise - rounding) / widening).max()), most=1.0),
@@ -38,7 +41,7 @@ def relief_that_touches() -> Sequence[Measured]:
 
 def _solve(case: Posed, relief: float) -> tuple[ContactProblem, ContactSolution]:
     """Solve with a linear relief of the driven tip, which enters the mesh."""
-    modification = FlankModification(tip_relief=float(relief), tip_relief_length=2.5e-3)
+    modification = FlankModification(tip_relief=float(relief), tip_relief_length=_LENGTH)
     pair = GearPair(nominal_gear(), nominal_gear(modification=modification), case.pair.center_distance)
     relieved = posed(pair, case.pair.torque(case.plan.load), bodies=case.contact)
     return relieved.solve(_POSITION, case.plan.load)
@@ -57,6 +60,20 @@ def _reach(case: Posed, relief: float) -> float:
     return 1e6 * float(np.min(slack[force == 0.0]))
 
 
+def _off_the_ramp(case: Posed, relief: float) -> float:
+    """Return how far the entering pair's gap is off c - R m^2/2: a ramp of height c and slope m there."""
+    problem, _ = _solve(case, relief)
+    pair, gear = case.pair, case.pair.wheel
+    start, tip = gear.roll_length(gear.tip_radius - _LENGTH), gear.tip_roll_length
+    roll_1, roll_2 = pair.roll_lengths(_POSITION[:, None], problem.candidates.pair)
+    entering = int(np.flatnonzero((roll_2[0] > start) & (roll_2[0] < tip))[0])
+    first, second = float(roll_1[0, entering]), float(roll_2[0, entering])
+    height = relief * (second - start) / (tip - start)
+    slope = relief / (tip - start) * gear.base_radius / second
+    radius = 1.0 / (1.0 / first + 1.0 / second)
+    return abs(float(problem.candidates.gap[0, entering]) / (height - 0.5 * radius * slope**2) - 1.0)
+
+
 def _share(problem: ContactProblem, solution: ContactSolution) -> float:
     """Return the load share of the weakest pair but those that carry nothing."""
     force = np.sort(solution.force[0, 0])
@@ -68,7 +85,7 @@ RELIEF_THAT_TOUCHES = HardScene(
     "contact",
     "Tip relief equal to the deflection to the last digit: the entering pair touches without force, so that"
     " rounding decides whether it belongs to the active set.",
-    "STE rises with relief and never faster than it (the deflection is non-expansive in the gaps), through "
-    "nudges of 1e-15 to 1e-3; two solvers agree.",
+    "The gap is that of a straight ramp; STE rises with relief and never faster than it (the deflection is "
+    "non-expansive in the gaps), through nudges of 1e-15 to 1e-3; two solvers agree.",
     relief_that_touches,
 )

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -51,6 +53,33 @@ def table_of(position: FloatArray, force: FloatArray, ste: FloatArray, lift_off:
         facts=_FACTS,
         metadata=Metadata(),
     )
+
+
+_PLAIN = (
+    "load_share",
+    "face_centroid",
+    "max_pressure",
+    "pairs_in_contact",
+    "status",
+    "error_estimate",
+    "residuals",
+)
+
+
+def over_misalignment(table: SteDatabase, misalignment: FloatArray, factor: FloatArray) -> SteDatabase:
+    """Return the table at each misalignment with its transmission errors `factor` times as large."""
+    names = ("static_transmission_error", "tangent_compliance", "no_load_transmission_error")
+    scaled: dict[str, Any] = {name: _along(getattr(table, name), factor) for name in names}
+    scaled |= {name: _along(getattr(table, name), np.ones(factor.size)) for name in _PLAIN}
+    return replace(table, misalignment=misalignment, **scaled)
+
+
+def _along(values: FloatArray, factor: FloatArray) -> FloatArray:
+    """Repeat values (P, [F,] 1, D, ...) along the axis of misalignment, each times its factor."""
+    axis = 1 if values.ndim == 3 else 2
+    shape = [1] * values.ndim
+    shape[axis] = factor.size
+    return np.asarray(values * factor.reshape(shape))
 
 
 def square_wave(position: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from service.hardcases.posed import even_positions
 from service.hardcases.scene import HardScene, Measured
-from service.hardcases.tables.closed_form import COMPLIANCE, square_wave, table_of
+from service.hardcases.tables.closed_form import COMPLIANCE, over_misalignment, square_wave, table_of
 
 _SEED = 20260102
 _FORCE = np.array([500.0, 1000.0, 2500.0, 5000.0])
@@ -111,7 +111,31 @@ def queries_outside() -> Sequence[Measured]:
         Measured("flags beyond the top", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
         Measured("flags inside", float(np.count_nonzero(inside.validity)), most=0.0),
         Measured("of four queries that are no numbers, refused", float(refused), least=4.0),
+        *_along_the_axis(table, x),
     )
+
+
+def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
+    """Ask a table of three misalignments at each of them, between and beyond."""
+    misalignment, factor = np.array([-20e-6, 0.0, 30e-6]), np.array([1.2, 1.0, 1.5])
+    wide = over_misalignment(table, misalignment, factor)
+    here = table.ste(x, 2500.0)
+    at = [wide.ste(x, 2500.0, misalignment=m) / here for m in misalignment]
+    between = wide.ste(x, 2500.0, misalignment=15e-6) / here
+    force = [
+        wide.force_at(x, f * here, misalignment=m).force for m, f in zip(misalignment, factor, strict=True)
+    ]
+    beyond = wide.force_at(x, here, misalignment=1e-3)
+    return (
+        Measured(
+            "STE at each misalignment off the one stored for it",
+            max(_relative(found, np.full(x.size, f)) for found, f in zip(at, factor, strict=True)), 1e-12,
+        ),
+        Measured("force likewise", max(_relative(found, np.full(x.size, 2500.0)) for found in force), 1e-9),
+        Measured("STE between two misalignments over that at the lower one", float(between.min()), least=1.0),
+        Measured("over that at the higher one", float(between.max() / 1.5), most=1.0),
+        Measured("flags beyond the axis", float(np.count_nonzero(beyond.validity)), least=float(x.size)),
+    )  # fmt: skip
 
 
 def nearly_parallel() -> Sequence[Measured]:
