@@ -13,7 +13,19 @@ from service.jobs.key import solver_version
 from service.jobs.live_desk import live_desk
 from service.jobs.machinery import job_machinery
 from service.jobs.process import Registry
-from service.routes import cases, effects, health, jobs, landing, live, page, queries, results
+from service.routes import (
+    cases,
+    databases,
+    effects,
+    events,
+    health,
+    jobs,
+    landing,
+    live,
+    page,
+    queries,
+    results,
+)
 from service.routes.access import Access
 from service.routes.context import Context
 from service.routes.errors import documented, install_error_handlers
@@ -81,9 +93,9 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     install_error_handlers(app)
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
-    stored = (results.router, figures_router(), queries.router, live.router)
-    shown = (landing.router, jobs.router, *stored, cases.router, effects.router)
-    for router in (processes_router(offered), *shown):
+    jobs_shown = (landing.router, processes_router(offered), jobs.router, events.router)
+    stored = (databases.router, results.router, figures_router(), queries.router, live.router)
+    for router in (*jobs_shown, *stored, cases.router, effects.router):
         app.include_router(router, prefix="/v1", responses=documented(503))
     app.include_router(page.router)
     app.include_router(health.router)

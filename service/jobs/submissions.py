@@ -7,12 +7,14 @@ import uuid
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, Engine, func, insert, select, tuple_, update
+from sqlalchemy import Connection, Engine, func, insert, select, update
 
+from service.jobs.job_filter import EVERY_JOB, JobFilter
 from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, QueueFull
-from service.store import now, reading, retried, writing
+from service.store import Mark, behind, now, reading, retried, writing
 
+_LOOKED_AT = 500  # at a time, where durations are asked for
 _ENDED = ("successful", "failed", "dismissed")
 
 
@@ -98,17 +100,28 @@ class Submissions:
             raise NoSuchJob(f"There is no job {identifier!r}.")
         return _job(row)
 
+    def page(self, limit: int, wanted: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:
+        """Return up to `limit` jobs that are wanted, the newest first, those behind the mark `after`."""
+        found: list[Job] = []
+        size = _LOOKED_AT if wanted.asks_duration else limit
+        while True:
+            looked_at = self._newest(size, wanted, after)
+            found += [job for job in looked_at if wanted.lasted(job)]
+            if len(looked_at) < size or len(found) >= limit:
+                return found[:limit]
+            after = Mark(looked_at[-1].created, looked_at[-1].id)
+
     @retried
-    def page(self, limit: int, after: str | None = None) -> list[Job]:
-        """Return up to `limit` jobs, the newest first, those older than the job `after`."""
-        statement = _jobs().order_by(jobs.c.created.desc(), jobs.c.id.desc()).limit(limit)
+    def _newest(self, limit: int, wanted: JobFilter, after: Mark | None) -> list[Job]:
+        """Return jobs that meet what the database decides."""
+        statement = _jobs().where(*wanted.conditions())
         if after is not None:
-            if not _is_identifier(after):
-                return []
-            created = select(jobs.c.created).where(jobs.c.id == after).scalar_subquery()
-            statement = statement.where(tuple_(jobs.c.created, jobs.c.id) < tuple_(created, after))
+            statement = statement.where(behind(after, jobs.c.created, jobs.c.id))
         with reading(self._engine) as connection:
-            return [_job(row) for row in connection.execute(statement)]
+            rows = connection.execute(
+                statement.order_by(jobs.c.created.desc(), jobs.c.id.desc()).limit(limit)
+            )
+            return [_job(row) for row in rows]
 
     def dismiss(self, identifier: str) -> Job:
         """Dismiss one caller's job, unless it ended; the work goes on while other jobs share it."""

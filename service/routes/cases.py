@@ -8,9 +8,8 @@ from typing import Any
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
 
-from service.convert.case import case_json
-from service.convert.outline import outline_json
 from service.convert.toml import toml_text
+from service.jobs.process import on_demand
 from service.page.examples import Example, examples
 from service.problems import BadInput
 from service.routes.errors import documented
@@ -19,6 +18,9 @@ from service.schemas.model import BoundaryModel
 from service.schemas.reading import validated
 
 router = APIRouter(tags=["cases"])
+case_json, outline_json = (
+    on_demand(f"service.convert.{name}") for name in ("case:case_json", "outline:outline_json")
+)
 
 
 class CaseInputs(BoundaryModel):
@@ -63,7 +65,8 @@ def example_cases() -> list[ExampleBody]:
 @router.post("/cases/outline", summary="Drawing of the two gears", responses=documented(400, 413, 422))
 def outline(body: CaseRequest) -> dict[str, Any]:
     """Transverse outlines of both gears in mm, the path of contact, and the figures of the pair."""
-    return outline_json(body.inputs.case)
+    found: dict[str, Any] = outline_json(body.inputs.case)
+    return found
 
 
 @router.post("/cases/from-toml", summary="Read a case file", responses=documented(400, 413, 422))

@@ -14,6 +14,7 @@ from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
 from service.routes.open_databases import OpenDatabases
+from service.routes.streams import Streams
 from service.settings import Settings
 from service.store import ResultStore
 
@@ -30,6 +31,7 @@ class Context:
     live: LiveDesk
     engine: Engine
     databases: OpenDatabases = field(default_factory=OpenDatabases)
+    streams: Streams = field(default_factory=Streams)
 
     def close(self) -> None:
         """Close what is open; it opens again when it is needed."""

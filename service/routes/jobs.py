@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Request
 
 from service.jobs.process import Registry
 from service.jobs.submissions import Job
 from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
 from service.routes.context import Ctx
+from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.errors import documented
+from service.routes.job_query import Wanted
 from service.schemas.ogc import JobList, JobStatus, Link, ResultReference, StatusInfo
 from service.schemas.result_kinds import RESULT_KINDS
+from service.store import Mark
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 
 
 @router.get("", summary="Jobs", responses=documented(422))
 def jobs(
-    context: Ctx,
-    limit: Annotated[int, Query(ge=1, le=1000, description="Most jobs on the page")] = 100,
-    after: Annotated[str | None, Query(max_length=64, description="Last job of the page before")] = None,
+    request: Request, context: Ctx, wanted: Wanted, limit: Limit = 100, cursor: Cursor = None
 ) -> JobList:
-    """Jobs, the newest first."""
-    page = context.submissions.page(limit, after)
-    links = [Link(href="/v1/jobs", rel="self")]
-    if len(page) == limit:
-        links.append(Link(href=f"/v1/jobs?limit={limit}&after={page[-1].id}", rel="next"))
-    return JobList(jobs=[status_info(job, context.registry) for job in page], links=links)
+    """Jobs, the newest first; filters add up."""
+    page = context.submissions.page(limit + 1, wanted, mark_of(cursor))
+    shown = [status_info(job, context.registry) for job in page[:limit]]
+    last = Mark(page[limit - 1].created, page[limit - 1].id) if len(page) > limit else None
+    return JobList(jobs=shown, links=page_links(request, "/v1/jobs", last))
 
 
 @router.get("/{job_id}", summary="Status of a job", responses=documented(404))
@@ -69,7 +67,10 @@ def _refuse_without_result(job: Job) -> None:
 def status_info(job: Job, registry: Registry) -> StatusInfo:
     """Return a job as the standard's status document."""
     path = f"/v1/jobs/{job.id}"
-    links = [Link(href=path, rel="self", title="Status")]
+    links = [
+        Link(href=path, rel="self", title="Status"),
+        Link(href=f"{path}/events", rel="monitor", type="text/event-stream", title="Changes of the status"),
+    ]
     if job.status == "successful":
         relation = "http://www.opengis.net/def/rel/ogc/1.0/results"
         links.append(Link(href=f"{path}/results", rel=relation, title="Results"))

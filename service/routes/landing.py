@@ -18,6 +18,7 @@ def landing() -> Landing:
         ("/v1/conformance", "http://www.opengis.net/def/rel/ogc/1.0/conformance", "Conformance"),
         ("/v1/processes", "http://www.opengis.net/def/rel/ogc/1.0/processes", "Processes"),
         ("/v1/jobs", "http://www.opengis.net/def/rel/ogc/1.0/job-list", "Jobs"),
+        ("/v1/databases", "data", "STE databases"),
     )
     return Landing(
         title="lineofaction",

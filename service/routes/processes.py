@@ -2,29 +2,38 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal, cast
+from typing import Annotated, Any, Literal, cast
 
-from fastapi import APIRouter, Response
+from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, Field, create_model
 
 from service.jobs.process import Process, Registry
 from service.routes.context import Context, Ctx
+from service.routes.cursor import Limit
 from service.routes.errors import documented
 from service.routes.jobs import status_info
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import Link, ProcessDescription, ProcessList, ProcessSummary, StatusInfo
 from service.schemas.result_kinds import RESULT_KINDS
 
+After = Annotated[str, Query(max_length=64, description="Last process of the page before")]
+Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
+
 
 def processes_router(registry: Registry) -> APIRouter:
     """Return the routes, one execution route per process, so that each body has its own schema."""
     router = APIRouter(prefix="/processes", tags=["processes"])
 
-    @router.get("", summary="Processes")
-    def processes() -> ProcessList:
+    @router.get("", summary="Processes", responses=documented(404, 422))
+    def processes(limit: Limit = 100, after: After = "") -> ProcessList:
         """All that can be run."""
-        links = [Link(href="/v1/processes", rel="self")]
-        return ProcessList(processes=[ProcessSummary(**_summary(p)) for p in registry.values()], links=links)
+        behind = list(registry.values())[_place(registry, after) :]
+        shown = behind[:limit]
+        links = [Link(href="/v1/processes", rel="self", title="Processes")]
+        if len(behind) > limit:
+            following = f"/v1/processes?limit={limit}&after={shown[-1].id}"
+            links.append(Link(href=following, rel="next", title="Next page"))
+        return ProcessList(processes=[ProcessSummary(**_summary(p)) for p in shown], links=links)
 
     @router.get("/{process_id}", summary="One process", responses=documented(404))
     def process(process_id: str) -> ProcessDescription:
@@ -43,6 +52,11 @@ def processes_router(registry: Registry) -> APIRouter:
     return router
 
 
+def _place(registry: Registry, after: str) -> int:
+    """Return how many processes come before what follows `after`, none without it."""
+    return list(registry).index(registry[after].id) + 1 if after else 0
+
+
 def _unknown(registry: Registry) -> Any:
     """Return the handler of executions of processes that do not exist."""
 
@@ -56,11 +70,15 @@ def _add_execution(router: APIRouter, process: Process) -> None:
     """Add the execution route of one process."""
     body = _execute_model(process)
 
-    def execute(request: BaseModel, response: Response, context: Ctx) -> StatusInfo:
+    def execute(
+        request: BaseModel, response: Response, context: Ctx, prefer: Prefer = "respond-async"
+    ) -> StatusInfo:
         """Check the inputs and enter a job; equal work is shared, stored results are used."""
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)  # type: ignore[attr-defined]
         status = _submit(context, process, inputs)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
+        if "respond-async" in [wish.partition(";")[0].strip().lower() for wish in prefer.split(",")]:
+            response.headers["Preference-Applied"] = "respond-async"
         return status
 
     execute.__annotations__["request"] = body

@@ -9,6 +9,7 @@ from importlib import import_module
 HEAVY = (
     "service.jobs.preparations",
     "service.convert.answers",
+    "service.convert.outline",
     "service.convert.result_figures",
     "fe_contact.ste.compiled_force",
 )

@@ -3,6 +3,7 @@
 from service.store.database import instant, now, open_database, reading, writing
 from service.store.dialects import dialect_of
 from service.store.directory import DirectoryLock, identity_of
+from service.store.mark import Mark, behind
 from service.store.outages import retried
 from service.store.places import DATABASE_FILE, RESULTS_DIRECTORY, result_store, stored_results
 from service.store.results import IndexLine, ResultStore, StoredResult
@@ -12,8 +13,10 @@ __all__ = [
     "RESULTS_DIRECTORY",
     "DirectoryLock",
     "IndexLine",
+    "Mark",
     "ResultStore",
     "StoredResult",
+    "behind",
     "dialect_of",
     "identity_of",
     "instant",

@@ -29,6 +29,7 @@ from service.schemas.result_kinds import suffix_of
 from service.store.database import instant, metadata, now, reading, writing
 from service.store.dialects import dialect_of
 from service.store.files import ResultFiles, WrongContent, digest_of
+from service.store.mark import Mark, behind
 from service.store.outages import retried
 
 USE_NOTED_EVERY_S = 3600.0
@@ -155,6 +156,20 @@ class ResultStore:
         """Return the index's line."""
         with reading(self._engine) as connection:
             return _line(connection, key, kind)
+
+    @retried
+    def page(self, kind: str, limit: int, after: Mark | None = None) -> list[tuple[Mark, IndexLine]]:
+        """Return up to `limit` lines of a kind with their places, the newest first, those behind `after`."""
+        statement = select(results).where(results.c.kind == kind)
+        if after is not None:
+            statement = statement.where(behind(after, results.c.created, results.c.key))
+        ordered = statement.order_by(results.c.created.desc(), results.c.key.desc()).limit(limit)
+        with reading(self._engine) as connection:
+            rows = connection.execute(ordered).all()
+        facts = ("key", "kind", "sha256", "size", "file", "used")
+        return [
+            (Mark(row.created, row.key), IndexLine(*(getattr(row, name) for name in facts))) for row in rows
+        ]
 
     def verified(self, key: str, kind: str) -> StoredResult:
         """Return the result after comparing its bytes with its digest.

@@ -1,0 +1,66 @@
+"""Cursors of pages: opaque to callers, good as long as the service, whatever becomes of what they name."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import re
+from collections.abc import Sequence
+from typing import Annotated
+from urllib.parse import urlencode
+
+from fastapi import Query, Request
+
+from service.problems import BadInput
+from service.schemas.ogc import Link
+from service.store import Mark
+
+_MARK = re.compile(r"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z) ([0-9a-f-]{36}|[0-9a-f]{64})\Z")
+
+Cursor = Annotated[
+    str | None,
+    Query(max_length=200, description="From the link `next` of the page before"),
+]
+
+Limit = Annotated[int, Query(ge=1, le=1000, description="Most entries on the page")]
+
+
+def page_links(request: Request, path: str, last: Mark | None) -> list[Link]:
+    """Return the links of a page: itself, and the next one behind `last` with the same parameters."""
+    given = [(name, value) for name, value in request.query_params.multi_items() if name != "cursor"]
+    links = [Link(href=_href(path, request.query_params.multi_items()), rel="self", title="This page")]
+    if last is not None:
+        following = _href(path, [*given, ("cursor", cursor_of(last))])
+        links.append(Link(href=following, rel="next", title="Next page"))
+    return links
+
+
+def _href(path: str, parameters: Sequence[tuple[str, str]]) -> str:
+    """Return a path with its parameters."""
+    return f"{path}?{urlencode(parameters)}" if parameters else path
+
+
+def cursor_of(mark: Mark) -> str:
+    """Return the cursor of what follows a mark."""
+    return base64.urlsafe_b64encode(" ".join(mark).encode()).decode().rstrip("=")
+
+
+def mark_of(cursor: str | None) -> Mark | None:
+    """Return the mark of a cursor, None without one.
+
+    Raises
+    ------
+    BadInput
+        It is no cursor of this service.
+    """
+    if cursor is None:
+        return None
+    try:
+        text = base64.b64decode(cursor + "=" * (-len(cursor) % 4), altchars=b"-_", validate=True).decode()
+    except (binascii.Error, ValueError):
+        text = ""
+    found = _MARK.match(text)
+    if found is None:
+        advice = "Follow the link next of a page, or leave it out for the first page."
+        raise BadInput.of("cursor", cursor, "taken from a page of this list", advice)
+    return Mark(*found.groups())

@@ -1,0 +1,71 @@
+"""Parameters by which a list of jobs is filtered (OGC API - Processes 1.0, clause 12.2)."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Annotated, Any, Literal
+
+from fastapi import Depends, Query
+from pydantic import Field
+
+from service.jobs.job_filter import JobFilter
+from service.problems import BadInput
+from service.schemas.ogc import JobStatus
+
+_DURATION: dict[str, Any] = {"ge": 0, "le": 1_000_000_000}
+
+
+def job_filter(
+    process_id: Annotated[
+        list[Annotated[str, Field(pattern="^[A-Za-z0-9_-]{1,64}$")]],
+        Query(alias="processID", max_length=32, description="Jobs of these processes"),
+    ] = [],  # noqa: B006 (the framework copies it)
+    status: Annotated[list[JobStatus], Query(max_length=16, description="Jobs in these states")] = [],  # noqa: B006
+    kind: Annotated[
+        list[Literal["process"]], Query(alias="type", max_length=4, description="All jobs are of processes")
+    ] = [],  # noqa: B006
+    instant: Annotated[
+        str,
+        Query(
+            alias="datetime",
+            max_length=100,
+            description="Jobs created then: an instant, or an interval start/end with .. for an open end",
+        ),
+    ] = "../..",
+    shortest: Annotated[
+        int, Query(alias="minDuration", description="Jobs that ran at least so many seconds", **_DURATION)
+    ] = 0,
+    longest: Annotated[
+        int | None,
+        Query(alias="maxDuration", description="Jobs that ran at most so many seconds", **_DURATION),
+    ] = None,
+) -> JobFilter:
+    """Return what the parameters ask for."""
+    earliest, latest = _interval(instant)
+    return JobFilter(
+        tuple(process_id), tuple(status), earliest, latest, float(shortest) if shortest else None, longest
+    )
+
+
+Wanted = Annotated[JobFilter, Depends(job_filter)]
+
+
+def _interval(text: str) -> tuple[str | None, str | None]:
+    """Return both ends of an interval; of an instant, twice the same."""
+    parts = text.split("/")
+    try:
+        if len(parts) > 2 or parts == [".."]:
+            raise ValueError(text)
+        ends = [None if part in ("", "..") and len(parts) == 2 else _instant(part) for part in parts]
+    except (ValueError, OverflowError):
+        bound = "an RFC 3339 instant such as 2026-01-31T12:00:00Z, or start/end with .. for an open end"
+        raise BadInput.of("datetime", text, bound, "Give the time zone, Z for UTC.") from None
+    return ends[0], ends[-1]
+
+
+def _instant(text: str) -> str:
+    """Return an instant as it is stored."""
+    found = datetime.fromisoformat(text)
+    if found.tzinfo is None:
+        raise ValueError(text)
+    return found.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")

@@ -1,0 +1,26 @@
+"""The list of STE databases."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pydantic import BaseModel, Field
+
+from service.schemas.ogc import Link
+
+
+class DatabaseEntry(BaseModel):
+    """One database."""
+
+    hash: str = Field(description="Content hash of the input: the resource's name")
+    href: str = Field(description="Its path on the service")
+    created: str = Field(description="When it was stored, RFC 3339, UTC")
+    size: int = Field(ge=0, description="Bytes of the file")
+    case: dict[str, Any] | None = Field(description="The case with all defaults; null if the file is damaged")
+
+
+class DatabaseList(BaseModel):
+    """A page of databases, the newest first."""
+
+    databases: list[DatabaseEntry]
+    links: list[Link]

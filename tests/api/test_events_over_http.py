@@ -1,0 +1,115 @@
+"""Server-sent events: the status now and at every change, the final one last, a bounded number of streams."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from service_stand_ins import REGISTRY
+
+from service.app import create_app
+from service.routes import events
+from service.settings import Settings
+
+
+@pytest.fixture
+def client(tmp_path: Path) -> Iterator[TestClient]:
+    """A client of a running app."""
+    with TestClient(create_app(Settings(data_directory=tmp_path), REGISTRY)) as found:
+        yield found
+
+
+def execute(client: TestClient, **wish: Any) -> str:
+    """Enter a job; return its path."""
+    answer = client.post("/v1/processes/standin/execution", json={"inputs": {"wish": wish}})
+    return str(answer.headers["location"])
+
+
+def documents(text: str) -> list[dict[str, Any]]:
+    """Return the status documents of a stream."""
+    blocks = [block for block in text.split("\n\n") if block and not block.startswith(":")]
+    assert all(block.startswith("event: status\ndata: ") for block in blocks)
+    return [json.loads(block.partition("data: ")[2]) for block in blocks]
+
+
+def test_the_stream_tells_every_change_once_and_ends_with_the_job(client: TestClient) -> None:
+    location = execute(client, text="table")
+    answer = client.get(f"{location}/events")
+    told = documents(answer.text)
+    assert answer.headers["content-type"].startswith("text/event-stream")
+    assert answer.headers["cache-control"] == "no-store"
+    assert told[-1] == client.get(location).json()
+    assert told[-1]["status"] == "successful"
+    assert [status for status in told if status["status"] == "successful"] == told[-1:]
+    assert all(one != other for one, other in pairwise(told))
+
+
+def test_who_comes_after_the_end_gets_the_final_state(client: TestClient) -> None:
+    location = execute(client, text="table")
+    first = documents(client.get(f"{location}/events").text)
+    assert documents(client.get(f"{location}/events").text) == first[-1:]
+
+
+def test_an_unknown_job_has_no_stream(client: TestClient) -> None:
+    answer = client.get("/v1/jobs/nothing/events")
+    assert (answer.status_code, answer.headers["content-type"]) == (404, "application/problem+json")
+
+
+def test_streams_are_bounded_and_given_back(client: TestClient) -> None:
+    streams = client.app.state.context.streams  # type: ignore[attr-defined]
+    location = execute(client, text="table")
+    streams.most = 1
+    assert client.get(f"{location}/events").status_code == 200
+    streams.enter()
+    answer = client.get(f"{location}/events")
+    assert (answer.status_code, answer.headers["retry-after"]) == (429, "10")
+    assert answer.json()["type"] == "urn:lineofaction:problem:too-many-streams"
+    streams.leave()
+    assert client.get(f"{location}/events").status_code == 200
+
+
+def test_a_caller_who_leaves_frees_the_stream_while_the_job_goes_on(client: TestClient) -> None:
+    location = execute(client, mode="hang")
+    streams = client.app.state.context.streams  # type: ignore[attr-defined]
+    sent = asyncio.run(_listen_and_leave(client.app, f"{location}/events"))
+    assert documents(sent.decode())[0]["status"] in ("accepted", "running")
+    assert streams._open == 0
+    assert client.get(location).json()["status"] in ("accepted", "running")
+    client.delete(location)
+
+
+def test_comments_keep_a_quiet_stream_open(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(events, "HEARTBEAT_S", 0.0)
+    location = execute(client, mode="hang")
+    sent = asyncio.run(_listen_and_leave(client.app, f"{location}/events", wanted=b": the job goes on\n\n"))
+    assert sent.endswith(b": the job goes on\n\n")
+    client.delete(location)
+
+
+async def _listen_and_leave(app: Any, path: str, wanted: bytes = b"\n\n") -> bytes:
+    """Return what the app sends until `wanted` is among it, then disconnect."""
+    heard, enough = [], asyncio.Event()
+    scope = {"type": "http", "method": "GET", "path": path, "query_string": b"", "headers": []}
+    asked = iter([{"type": "http.request", "body": b"", "more_body": False}])
+
+    async def receive() -> dict[str, Any]:
+        for message in asked:
+            return message
+        await enough.wait()
+        return {"type": "http.disconnect"}
+
+    async def send(message: dict[str, Any]) -> None:
+        heard.append(message.get("body", b""))
+        if wanted in heard[-1]:
+            enough.set()
+
+    scope |= {"http_version": "1.1", "scheme": "http", "server": ("testserver", 80), "root_path": ""}
+    scope |= {"raw_path": path.encode(), "client": ("127.0.0.1", 1)}
+    await asyncio.wait_for(app(scope, receive, send), timeout=60.0)
+    return b"".join(heard)
