@@ -82,8 +82,7 @@ def confirm(
     """
     search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
     table = _table(search, values, study.decided, cache)
-    position = table.position[table.position < 1.0]
-    fine = replace(search, position=position, load=table.force)
+    fine = replace(search.at(table.position), load=table.force)
     found = fine.evaluate(values)
     error = _errors(table, search.misalignment + nodes.misalignment)
     ripple = found.peak_to_peak

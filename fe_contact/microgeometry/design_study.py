@@ -12,7 +12,7 @@ from fe_contact.analysis.model_choice import Decided, decide
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.request import LARGEST_DEVIATION, Checked, check_asked, check_request
 from fe_contact.analysis.solved_table import Progress
-from fe_contact.checks import increasing, integer, positive, within
+from fe_contact.checks import increasing, integer, within
 from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.misalignment import Misalignment
 from fe_contact.effects.profile_modification import ProfileModification
@@ -100,14 +100,10 @@ def design_study(
     InputError
         A value that cannot be used, or something is varied whose effect is off.
     """
-    integer("positions", positions, 8, 4096, "64 resolve a spur pair.")
-    within("misalignment", misalignment, -LARGEST_DEVIATION, LARGEST_DEVIATION, "In m: 10 um is 1e-5.")
     counted = increasing("torques", torques)
-    positive("torques[0]", float(counted[0]))
+    everything = np.union1d(counted, further_torques)
     with clock.stage("planning"):
-        everything = np.union1d(counted, further_torques)
-        checked = _checked(pair, everything, varied, scatter, misalignment, accuracy)
-        _refuse_off(checked, varied, scatter)
+        checked = check_study(pair, everything, varied, scatter, misalignment, positions, accuracy)
         decided = _on_one_mesh(checked, cache)
     report("compliance", 0.0)
     with clock.stage("compliance"):
@@ -120,19 +116,25 @@ def design_study(
     return DesignStudy(decided, everything, index, evaluator)
 
 
-def _checked(
+def check_study(
     pair: ParallelAxes,
     torques: FloatArray,
     varied: Mapping[str, float],
     scatter: Scatter,
     misalignment: float,
+    positions: int,
     accuracy: Accuracies,
 ) -> Checked:
-    """Check the request of a design in which everything acts that may act in any."""
+    """Check the request of a design in which everything acts that may act in any; computes nothing.
+
+    Parameters and errors are those of `design_study`, all torques in one.
+    """
+    integer("positions", positions, 8, 4096, "64 resolve a spur pair.")
+    within("misalignment", misalignment, -LARGEST_DEVIATION, LARGEST_DEVIATION, "In m: 10 um is 1e-5.")
     nodes = scatter.nodes()
     present = {name: _present(pair, name) for name in scatter.modification} | dict(varied)
     acting = {name: present[name] + scatter.modification.get(name, 0.0) for name in present}
-    return check_request(
+    checked = check_request(
         modified(pair, acting),
         torques=torques,
         tolerance=accuracy.tolerance,
@@ -144,6 +146,8 @@ def _checked(
         on_violation="report",
         spare=False,
     )
+    _refuse_off(checked, varied, scatter)
+    return checked
 
 
 def _present(pair: ParallelAxes, name: str) -> float:

@@ -90,6 +90,10 @@ class Evaluator:
         found = [self._at_node(values, node, touches) for node in range(self.nodes.weight.size)]
         return Evaluation(*(np.stack(each) for each in zip(*found, strict=True)))
 
+    def at(self, position: FloatArray) -> Evaluator:
+        """Return the same at other positions (P,), of which those in the first base pitch count."""
+        return replace(self, position=position[position < 1.0])
+
     def expected(self, found: Evaluation) -> FloatArray:
         """Return the expected peak-to-peak (L,), m."""
         return np.asarray(self.nodes.weight @ found.peak_to_peak)

@@ -7,7 +7,7 @@ import hashlib
 import json
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -283,6 +283,26 @@ class LineOfActionClient:
             As ``loa frontier --json`` prints it; times are those of the service's machine.
         """
         return self._json("frontier", given, progress, {} if rungs is None else {"rungs": list(rungs)})
+
+    def optimise(
+        self, case: CaseLike, study: Mapping[str, Any], progress: Watch | None = None
+    ) -> dict[str, Any]:
+        """Return the micro-geometry of least transmission error: submit, wait, fetch.
+
+        Parameters
+        ----------
+        case : Case, mapping or Path
+            Its modifications are the start.
+        study : mapping
+            Variables, scatter, objective, limits and search, as in the file of ``loa optimise``.
+        progress : callable, optional
+
+        Returns
+        -------
+        dict
+            As ``loa optimise --json`` prints it.
+        """
+        return self._json("optimise", case_of(case), progress, dict(study))
 
     def modes_file(
         self,

@@ -65,19 +65,19 @@ def effects_asked(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
 
 def ablation_json(found: Ablation | SceneAblation) -> Json:
     """Return an ablation with lengths in um."""
-    return {"of": "case" if isinstance(found, Ablation) else "scene", **_in_um(found.to_json())}
+    return {"of": "case" if isinstance(found, Ablation) else "scene", **in_um(found.to_json())}
 
 
-def _in_um(value: Any, *, metres: bool = False) -> Any:
+def in_um(value: Any, *, metres: bool = False) -> Any:
     """Turn every field that ends in _m (and no torque) into one that ends in _um."""
     if isinstance(value, dict):
         return dict(_field(name, inner) for name, inner in value.items())
     if isinstance(value, list):
-        return [_in_um(inner, metres=metres) for inner in value]
+        return [in_um(inner, metres=metres) for inner in value]
     return value / UM if metres and value is not None else value
 
 
 def _field(name: str, value: Any) -> tuple[str, Any]:
     """One field."""
     metres = name.endswith("_m") and not name.endswith("_n_m")
-    return (f"{name.removesuffix('_m')}_um" if metres else name), _in_um(value, metres=metres)
+    return (f"{name.removesuffix('_m')}_um" if metres else name), in_um(value, metres=metres)

@@ -102,6 +102,12 @@ def case_field(name: str) -> str:
     return ".".join(["pair", *parts] if parts[0] in ("pinion", "wheel") else parts)
 
 
+def boundary_name(name: str) -> str:
+    """Return the boundary's name of a field of fe_contact, in the same table: ``pinion.tip_relief_um``."""
+    table, dot, field = name.rpartition(".")
+    return f"{table}{dot}{_LAST.get(field, field)}"
+
+
 def scene_field(name: str) -> str:
     """Return the scene file's name of a field of dynamics, e.g. ``bushings[0].radial_stiffness_n_per_m``."""
     parts = name.split(".")

@@ -1,4 +1,4 @@
-"""The processes of the service: analyze, flank, sensitivity, ablate, frontier, simulate, scene studies."""
+"""The processes of the service: analyze, flank, sensitivity, ablate, frontier, optimise, simulate ..."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from service.schemas.process_inputs import (
     AnalyzeInputs,
     FlankInputs,
     ModesInputs,
+    OptimiseInputs,
     ResponseInputs,
     SensitivityInputs,
     SimulateInputs,
@@ -79,6 +80,19 @@ FRONTIER = Process(
     entry="service.jobs.frontier_work:climb_ladder",
     stages=(Stage("analysis", 0.1), Stage("ladder", 0.9)),
 )
+OPTIMISE = Process(
+    id="optimise",
+    title="Micro-geometry of least transmission error",
+    description="Flank modifications of both gears for the least expected peak-to-peak transmission error "
+    "over torques and scatter, with Harris maps before and after.",
+    version="1",
+    inputs=OptimiseInputs,
+    output="optimisation",
+    kind="optimisation",
+    prepare=on_demand("service.jobs.preparations:prepare_optimisation"),
+    entry="service.jobs.optimisation_work:optimise_flanks",
+    stages=(Stage("compliance", 0.2), Stage("search", 0.6), Stage("confirmation", 0.2)),
+)
 SIMULATE = Process(
     id="simulate",
     title="Dynamics of a geared system",
@@ -134,4 +148,6 @@ STEADY = Process(
 
 def default_registry() -> Registry:
     """Return the processes every service offers."""
-    return Registry(ANALYZE, FLANK, SENSITIVITY, ABLATE, FRONTIER, SIMULATE, MODES, RESPONSE, STEADY)
+    return Registry(
+        ANALYZE, FLANK, SENSITIVITY, ABLATE, FRONTIER, OPTIMISE, SIMULATE, MODES, RESPONSE, STEADY
+    )

@@ -14,6 +14,7 @@ from service.convert.ablation import effects_asked
 from service.convert.case import case_json
 from service.convert.checks import check_case
 from service.convert.flanks import case_at
+from service.convert.optimisation import check_optimisation_of
 from service.convert.rungs import rungs_asked
 from service.convert.sensitivity import Deviations, check_study
 from service.jobs.scene_inputs import check_scene_inputs
@@ -25,6 +26,7 @@ from service.schemas.process_inputs import (
     AnalyzeInputs,
     FlankInputs,
     ModesInputs,
+    OptimiseInputs,
     ResponseInputs,
     SensitivityInputs,
     SimulateInputs,
@@ -81,6 +83,13 @@ def prepare_frontier(inputs: BoundaryModel, store: ResultStore) -> Json:
     assert isinstance(inputs, FrontierInput)
     given = _case_or_scene(inputs, store)
     return {**given, "rungs": rungs_asked(inputs.rungs, of_scene="scene" in given)}
+
+
+def prepare_optimisation(inputs: BoundaryModel, _store: ResultStore) -> Json:
+    """Check that everything can be varied as asked; return the inputs with all defaults."""
+    assert isinstance(inputs, OptimiseInputs)
+    check_optimisation_of(inputs.case, inputs)
+    return inputs.model_dump(mode="json")
 
 
 def _case_or_scene(inputs: CaseOrScene, store: ResultStore) -> Json:

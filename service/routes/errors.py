@@ -70,7 +70,7 @@ def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fa
         return fault_of(item, None, loc)
     if item["type"] == "json_invalid":
         return Fault("body", None, "valid JSON", f"{item.get('ctx', {}).get('error', '')}.")
-    if loc[:1] == ["inputs"] and len(loc) > 2 and model is not None:
+    if loc[:1] == ["inputs"] and loc[1:2] in (["case"], ["scene"]) and len(loc) > 2 and model is not None:
         inner = model.model_fields["inputs"].annotation
         named = (
             inner.model_fields.get(loc[1])

@@ -61,7 +61,7 @@ def submit(
     process: Annotated[
         str | None,
         typer.Option(
-            help="On a case analyze (default), flank or sensitivity; on a scene simulate "
+            help="On a case analyze (default), flank, sensitivity or optimise; on a scene simulate "
             "(default), modes, response or steady; on both ablate and frontier."
         ),
     ] = None,
@@ -82,7 +82,7 @@ def fetch(
     name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
     output: Annotated[
         Path,
-        typer.Option("-o", "--output", help="File to write: netCDF, or JSON of ablations and frontiers."),
+        typer.Option("-o", "--output", help="File to write: netCDF or JSON, by its kind."),
     ],
     service: Service = DEFAULT_SERVICE,
     json: AsJson = False,

@@ -71,6 +71,25 @@ def ablate(
     run_ablate(file, output, only, as_json=json)
 
 
+@verbs.command(
+    epilog="Example: loa optimise examples/palermo_spur_20_20.toml examples/optimise_tip_relief.toml -o best"
+)
+@guarded
+def optimise(
+    case: Annotated[Path, typer.Argument(help="Case file; its modifications are the start.")],
+    study: Annotated[Path, typer.Argument(help="File of variables, scatter, objective, limits, search.")],
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", help="Folder, or a file ending in .png, .html, .json, .toml."),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Choose flank modifications for the least peak-to-peak STE over torques and scatter."""
+    from service.cli.optimise import run_optimise  # noqa: PLC0415 (start-up time)
+
+    run_optimise(case, study, output, as_json=json)
+
+
 @verbs.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")
 @guarded
 def sensitivity(

@@ -1,0 +1,101 @@
+"""``loa optimise``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+from fe_contact.microgeometry import Optimisation
+from service.cli.output import check_writable, console, print_json, progress_bar, table
+from service.convert.optimisation import boundary_values, optimisation_json, optimisation_of
+from service.problems import BadInput
+from service.report.image import png
+from service.report.optimisation import (
+    harris_figure,
+    optimisation_page,
+    optimum_table,
+    ripple_table,
+)
+from service.report.write import write_whole
+from service.schemas import Case, read_model
+from service.schemas.optimisation import OptimisationInput
+from service.settings import cache_home
+
+
+def run_optimise(case: Path, study: Path, output: Path | None, *, as_json: bool) -> None:
+    """Optimise, write, print."""
+    given, wanted = read_model(Case, case), read_model(OptimisationInput, study)
+    targets = [] if output is None else _targets(output)
+    with progress_bar() as report:
+        found = optimisation_of(given, wanted, cache_home() / "compliance", report)
+    for target in targets:
+        target.parent.mkdir(exist_ok=True)
+        _WRITERS[target.suffix](found, target)
+    if as_json:
+        print_json({"written": [str(target) for target in targets], **optimisation_json(found)})
+    else:
+        _show(found, targets)
+
+
+def _targets(output: Path) -> list[Path]:
+    """Files to write: one by its ending, or all kinds in a folder, which is made if missing.
+
+    Raises
+    ------
+    BadInput
+        Neither, or not writable.
+    """
+    endings = ", ".join(_WRITERS)
+    if output.suffix and not output.is_dir():
+        if output.suffix not in _WRITERS:
+            raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
+        check_writable(output)
+        return [output]
+    if output.is_file():
+        raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
+    check_writable(output / "x" if output.is_dir() else output)
+    return [output / f"optimum{ending}" for ending in _WRITERS]
+
+
+def _picture(found: Optimisation, target: Path) -> None:
+    """PNG."""
+    target.write_bytes(png(harris_figure(found)))
+
+
+def _page(found: Optimisation, target: Path) -> None:
+    """Write the report page."""
+    write_whole(optimisation_page(found), target)
+
+
+def _json(found: Optimisation, target: Path) -> None:
+    """JSON."""
+    text = json.dumps(optimisation_json(found), allow_nan=False, indent=1)
+    target.write_text(f"{text}\n", encoding="utf-8")
+
+
+def _values(found: Optimisation, target: Path) -> None:
+    """TOML of the best design: lines for the tables of both gears in the case file."""
+    lines = [f"# {found.reason}"]
+    for gear, fields in boundary_values(found.optimum.values).items():
+        lines += ["", f"[pair.{gear}]", *(f"{name} = {value:.6g}" for name, value in fields.items())]
+    target.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+_WRITERS: dict[str, Callable[[Optimisation, Path], None]] = {
+    ".png": _picture,
+    ".html": _page,
+    ".json": _json,
+    ".toml": _values,
+}
+
+
+def _show(found: Optimisation, targets: list[Path]) -> None:
+    """Print the tables for people."""
+    out = console()
+    for rows in (optimum_table(found), ripple_table(found)):
+        out.print(table(rows.head, rows.rows, rows.caption))
+    search = f"{found.evaluations} designs in {found.cost['stages']['search']['cpu_seconds']:.3g} CPU s"
+    out.print(f"{found.outcome.replace('_', ' ')}: {found.reason}; {search}", highlight=False)
+    for target in targets:
+        out.print(f"written to {target}", highlight=False)

@@ -1,0 +1,21 @@
+"""The work of the process optimise, done in a child process of its own."""
+
+from __future__ import annotations
+
+import json
+
+from service.convert.optimisation import optimisation_json, optimisation_of
+from service.jobs.order import Product, Progress, WorkOrder
+from service.schemas import Case
+from service.schemas.optimisation import OptimisationInput
+
+
+def optimise_flanks(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
+    """Optimise the modifications of a case, into a JSON file."""
+    inputs = dict(order.inputs)
+    case = Case.model_validate_json(json.dumps(inputs.pop("case")))
+    study = OptimisationInput.model_validate_json(json.dumps(inputs))
+    found = optimisation_of(case, study, order.data_directory / "compliance", progress)
+    file = order.workspace / "optimisation.json"
+    file.write_text(f"{json.dumps(optimisation_json(found), allow_nan=False)}\n", encoding="utf-8")
+    return (Product(order.key, "optimisation", file),)

@@ -1,0 +1,178 @@
+"""Harris maps before and after, ripple over torque with its scatter, and what the optimum is worth."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.microgeometry import ConfirmedDesign, Optimisation
+from service.convert.units import UM, factor
+from service.convert.vocabulary import boundary_name
+from service.report import palette
+from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number, thousands
+from service.report.page import Headline, Page, Section
+
+MOST_CURVES = 8
+_POSITION = Axis("position, base pitches")
+
+
+def harris_figure(found: Optimisation) -> Figure:
+    """Draw both Harris maps on equal axes, and peak-to-peak over torque."""
+    designs = (("before", found.start), ("after", found.optimum))
+    curves = [_shown(found, design) for _, design in designs]
+    ends = [float(values.min()) for values in curves], [float(values.max()) for values in curves]
+    margin = 0.04 * (max(ends[1]) - min(ends[0]))
+    axis = Axis("STE, µm", limits=(min(ends[0]) - margin, max(ends[1]) + margin))
+    maps = [
+        Panel(_POSITION, axis, _curves(found, values, design), title=f"Harris map {name}")
+        for (name, design), values in zip(designs, curves, strict=True)
+    ]
+    return Figure(
+        key="harris_map",
+        title="Transmission error before and after optimisation",
+        caption="Harris maps without scatter, a curve for each torque, and peak-to-peak over torque. "
+        f"{_scattered(found)} Dotted upright lines: torques that count.",
+        alternative=f"{found.reason}.",
+        content=(*maps, _ripple(found)),
+        table=ripple_table(found),
+    )
+
+
+def _chosen(found: Optimisation) -> list[int]:
+    """Torques whose curves are drawn: those of the map nearest to evenly spaced ones."""
+    torque = found.start.harris_map.torque
+    even = np.linspace(torque[0], torque[-1], min(torque.size, MOST_CURVES))
+    return sorted({int(np.abs(torque - value).argmin()) for value in even})
+
+
+def _shown(found: Optimisation, design: ConfirmedDesign) -> FloatArray:
+    """Curves (P, K) of the chosen torques, um."""
+    return np.asarray(design.harris_map.ste[:, _chosen(found)] / UM)
+
+
+def _curves(found: Optimisation, values: FloatArray, design: ConfirmedDesign) -> tuple[Line, ...]:
+    """One line per torque, closed over its period."""
+    harris, index = design.harris_map, _chosen(found)
+    names = thousands([float(harris.torque[k]) for k in index])
+    position = np.append(harris.position, np.ceil(harris.position[-1] + 1e-12))
+    closed = np.vstack([values, values[:1]])
+    return tuple(
+        Line(f"{name} N m", position, closed[:, k], palette.ordered(k, len(names)))
+        for k, name in enumerate(names)
+    )
+
+
+def _scattered(found: Optimisation) -> str:
+    """Say what the lines of the scatter are."""
+    if found.nodes.weight.size == 1:
+        return "Nothing scatters."
+    count = found.nodes.weight.size
+    return (
+        f"Thick lines: expectation over the {count} nodes of the scatter, dotted ones: its least and largest."
+    )
+
+
+def _ripple(found: Optimisation) -> Panel:
+    """Draw the expectation of both designs over torque, between the extremes of their nodes."""
+    lines: list[Line] = []
+    for name, design, colour in (
+        ("before", found.start, palette.VERMILLION),
+        ("after", found.optimum, palette.BLUE),
+    ):
+        harris = design.harris_map
+        if found.nodes.weight.size > 1:
+            for what, values in (
+                ("least", harris.peak_to_peak.min(0)),
+                ("largest", harris.peak_to_peak.max(0)),
+            ):
+                lines.append(Line(f"{name}, {what}", harris.torque, values / UM, colour, "dot", 1.0))
+            lines.append(Line(f"{name}, no scatter", harris.torque, harris.nominal / UM, colour, "dash", 1.0))
+        lines.append(Line(name, harris.torque, harris.expected / UM, colour, "solid", 2.4, markers=True))
+    counted = tuple(Reference("", float(torque)) for torque in found.torque)
+    across = Axis("torque on the driving gear, N m")
+    return Panel(across, Axis("peak to peak, µm"), tuple(lines), counted, title="Ripple over torque")
+
+
+def ripple_table(found: Optimisation) -> Table:
+    """Return peak-to-peak at the torques of the map, with errors."""
+    before, after = found.start.harris_map, found.optimum.harris_map
+    rows = tuple(
+        (
+            text,
+            "yes" if torque in found.torque else "",
+            *_value(before.expected[k], before.expected_error[k]),
+            *_value(after.expected[k], after.expected_error[k]),
+            number(float(before.expected[k] / after.expected[k]), 3),
+            number(after.peak_to_peak[:, k].max() / UM, 3),
+        )
+        for k, (text, torque) in enumerate(zip(thousands(before.torque.tolist()), before.torque, strict=True))
+    )
+    head = (
+        "torque, N m", "counts", "before, µm", "± µm", "after, µm", "± µm", "factor", "worst node after, µm",
+    )  # fmt: skip
+    return Table("Expected peak to peak of the transmission error", head, rows)
+
+
+def _value(value: float, error: float) -> tuple[str, str]:
+    """Write a length and its error in um."""
+    return number(value / UM, 3), number(error / UM, 2)
+
+
+def optimum_table(found: Optimisation) -> Table:
+    """Return the variables, and what a step aside changes."""
+    rows = []
+    for one, step in zip(found.variables, found.sensitivity, strict=True):
+        name = boundary_name(one.name)
+        unit = factor(name)
+        values = found.start.values[one.name], found.optimum.values[one.name], one.low, one.high
+        aside = (
+            f"{change / UM:+.2g} at {number(end / unit, 3)}"
+            for change, end in ((step.change_low, step.low), (step.change_high, step.high))
+        )
+        rows.append((name, *(number(value / unit, 4) for value in values), *aside))
+    head = ("variable", "start", "optimum", "least", "most", "lower, µm", "higher, µm")
+    return Table("Design, and the change of the objective by a step aside", head, tuple(rows))
+
+
+def node_table(found: Optimisation) -> Table:
+    """Return every node of the scatter with the ripple at the torques that count."""
+    head = [*(f"{boundary_name(name)} by" for name in found.nodes.names), "weight"]
+    for word in ("before", "after"):
+        head += [f"{word}, {torque} N m, µm" for torque in thousands(found.torque.tolist())]
+    rows = []
+    for node, weight in enumerate(found.nodes.weight):
+        units = [factor(boundary_name(name)) for name in found.nodes.names]
+        deviation = (f"{x / u:+.3g}" for x, u in zip(found.nodes.deviation[node], units, strict=True))
+        ripples = (d.figures.peak_to_peak[node] / UM for d in (found.start, found.optimum))
+        cells = (number(float(x), 3) for ripple in ripples for x in ripple)
+        rows.append((*deviation, number(float(weight), 3), *cells))
+    return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
+
+
+def run_table(found: Optimisation) -> Table:
+    """Return the searches."""
+    rows = tuple(
+        (
+            str(k),
+            number(run.judged.objective / UM, 4),
+            str(run.evaluations),
+            "converged" if run.converged else "evaluations spent",
+            number(run.cpu_seconds, 2),
+        )
+        for k, run in enumerate(found.runs)
+    )
+    return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
+
+
+def optimisation_page(found: Optimisation) -> Page:
+    """Return the page of an optimisation."""
+    one, two = found.start.objective, found.optimum.objective
+    heads = (
+        Headline("before", f"{number(one.value / UM, 3)} µm", f"± {number(one.error / UM, 2)} µm"),
+        Headline("after", f"{number(two.value / UM, 3)} µm", f"± {number(two.error / UM, 2)} µm"),
+        Headline("gain", f"{number(found.gain.value / UM, 3)} µm", found.outcome.replace("_", " ")),
+    )
+    lead = f"{found.reason}; {found.evaluations} designs of {len(found.variables)} variables"
+    figure = Section("Harris map", "", (harris_figure(found),), (ripple_table(found),))
+    design = Section("Design", "", tables=(optimum_table(found), run_table(found)))
+    robust = Section("Scatter", "", tables=(node_table(found),))
+    return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust))

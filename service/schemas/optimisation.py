@@ -1,0 +1,195 @@
+"""What a micro-geometry optimisation varies, how it scatters, and what it is judged by."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, Strict, model_validator
+
+from service.schemas.model import BoundaryModel, refuse
+
+Removed = Annotated[float, Field(ge=0.0, le=1000.0)]
+Signed = Annotated[float, Field(ge=-1000.0, le=1000.0)]
+Millimetres = Annotated[float, Field(gt=0.0, le=10_000.0)]
+Amounts = Annotated[tuple[Removed, Removed], Strict(False)]
+Slopes = Annotated[tuple[Signed, Signed], Strict(False)]
+Lengths = Annotated[tuple[Millimetres, Millimetres], Strict(False)]
+Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
+Torque = Annotated[float, Field(gt=0.0, le=1e9)]
+Torques = Annotated[tuple[Torque, ...], Strict(False), Field(min_length=1, max_length=64)]
+
+
+def _bounds(what: str) -> Any:
+    """Return the field of an amount: lowest and highest value."""
+    return Field(default=None, description=f"Bounds of the {what} in um", examples=[[0.0, 30.0]])
+
+
+def _lengths(what: str) -> Any:
+    """Return the field of a length: lowest and highest value."""
+    return Field(default=None, description=f"Bounds of the length of the {what} in mm", examples=[[0.5, 3.0]])
+
+
+class GearVariablesInput(BoundaryModel):
+    """Figures of one gear's modifications that are free, each between two bounds; all others stay."""
+
+    tip_relief_um: Amounts | None = _bounds("tip relief")
+    tip_relief_length_mm: Lengths | None = _lengths("tip relief")
+    root_relief_um: Amounts | None = _bounds("root relief")
+    root_relief_length_mm: Lengths | None = _lengths("root relief")
+    profile_crowning_um: Amounts | None = _bounds("profile crowning")
+    profile_slope_um: Slopes | None = _bounds("profile slope")
+    helix_crowning_um: Amounts | None = _bounds("helix crowning")
+    helix_slope_um: Slopes | None = _bounds("helix slope")
+    end_relief_um: Amounts | None = _bounds("end relief")
+    end_relief_length_mm: Lengths | None = _lengths("end relief")
+    flank_twist_um: Slopes | None = _bounds("flank twist")
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        """Refuse a lower bound that is not the lower one."""
+        for name in type(self).model_fields:
+            ends = getattr(self, name)
+            if ends is not None and ends[1] <= ends[0]:
+                refuse(name, list(ends), "a lower bound and a higher one", "For example [0, 30].")
+        return self
+
+
+class VariablesInput(BoundaryModel):
+    """Design variables of both gears."""
+
+    pinion: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driving gear")
+    wheel: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driven gear")
+
+
+def _deviation(what: str, unit: str) -> Any:
+    """Return the field of a standard deviation."""
+    return Field(default=None, description=f"Standard deviation of the {what} in {unit}", examples=[3.0])
+
+
+class GearScatterInput(BoundaryModel):
+    """Standard deviations of one gear's modifications as manufactured; what is left out does not scatter."""
+
+    tip_relief_um: Deviation | None = _deviation("tip relief", "um")
+    tip_relief_length_mm: Deviation | None = _deviation("length of the tip relief", "mm")
+    root_relief_um: Deviation | None = _deviation("root relief", "um")
+    root_relief_length_mm: Deviation | None = _deviation("length of the root relief", "mm")
+    profile_crowning_um: Deviation | None = _deviation("profile crowning", "um")
+    profile_slope_um: Deviation | None = _deviation("profile slope", "um")
+    helix_crowning_um: Deviation | None = _deviation("helix crowning", "um")
+    helix_slope_um: Deviation | None = _deviation("helix slope", "um")
+    end_relief_um: Deviation | None = _deviation("end relief", "um")
+    end_relief_length_mm: Deviation | None = _deviation("length of the end relief", "mm")
+    flank_twist_um: Deviation | None = _deviation("flank twist", "um")
+
+
+class ScatterInput(BoundaryModel):
+    """Independent normal deviations from what is designed, and the rule that takes their expectation."""
+
+    misalignment_um: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1000.0,
+        description="Standard deviation of the misalignment in um",
+        examples=[8.0],
+    )
+    pinion: GearScatterInput = Field(default=GearScatterInput(), description="Of the driving gear")
+    wheel: GearScatterInput = Field(default=GearScatterInput(), description="Of the driven gear")
+    rule: Literal["gauss_hermite", "sobol_sample"] = Field(
+        default="gauss_hermite",
+        description="Gauss-Hermite points in each deviation, or one fixed sample",
+        examples=["gauss_hermite"],
+    )
+    points: int = Field(
+        default=5, ge=1, le=33, description="Points of gauss_hermite in each deviation", examples=[5]
+    )
+    log2_size: int = Field(
+        default=4, ge=0, le=10, description="Logarithm to base 2 of the size of sobol_sample", examples=[4]
+    )
+
+
+class ObjectiveInput(BoundaryModel):
+    """What is made of the expected peak-to-peak at the torques."""
+
+    kind: Literal["weighted_mean", "worst"] = Field(
+        default="weighted_mean", description="Mean over the torques, or the worst", examples=["worst"]
+    )
+    weights: Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e6)], ...], Strict(False)] = Field(
+        default=(), max_length=64, description="Of weighted_mean, one for each torque", examples=[[1.0, 2.0]]
+    )
+
+
+class LimitsInput(BoundaryModel):
+    """What a design has to keep at every torque and deviation."""
+
+    max_pressure_mpa: float | None = Field(
+        default=None, gt=0.0, le=1e5, description="Largest Hertzian pressure in MPa", examples=[1500.0]
+    )
+    face_load_factor: float | None = Field(
+        default=None, gt=1.0, le=100.0, description="K_Hbeta of the mesh cycle", examples=[1.5]
+    )
+    edge_load_share: float | None = Field(
+        default=None,
+        ge=0.0,
+        lt=1.0,
+        description="Largest part of the load on tip edges; 0 forbids their contact",
+        examples=[0.0],
+    )
+
+
+class SearchInput(BoundaryModel):
+    """How the best design is searched."""
+
+    method: Literal["differential_evolution", "nelder_mead"] = Field(
+        default="differential_evolution", description="Global, or local and cheap", examples=["nelder_mead"]
+    )
+    population: int = Field(
+        default=5, ge=3, le=50, description="Of differential_evolution, for each variable", examples=[5]
+    )
+    seed: int = Field(default=0, ge=0, le=2**32 - 1, description="Equal seeds, equal results", examples=[0])
+    starts: int = Field(default=1, ge=1, le=256, description="Independent searches", examples=[1])
+    evaluations: int = Field(
+        default=1000, ge=1, le=1_000_000, description="Most designs of each search", examples=[1000]
+    )
+    positions: int = Field(
+        default=64, ge=8, le=4096, description="In a base pitch, for the search", examples=[64]
+    )
+
+
+class OptimisationInput(BoundaryModel):
+    """An optimisation of a case's flank modifications."""
+
+    torque_n_m: Torques | None = Field(
+        default=None,
+        description="Torques that count, N m on the driving gear, increasing; left out: those of the case",
+        examples=[[100.0, 200.0, 300.0]],
+    )
+    misalignment_um: float = Field(
+        default=0.0,
+        ge=-10_000.0,
+        le=10_000.0,
+        description="Misalignment in um about which it scatters",
+        examples=[0.0],
+    )
+    variables: VariablesInput = Field(
+        description="Figures of the modifications that are free",
+        examples=[{"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}}],
+    )
+    scatter: ScatterInput = Field(
+        default=ScatterInput(), description="Deviations of assembly and manufacture"
+    )
+    objective: ObjectiveInput = Field(default=ObjectiveInput(), description="What is minimised")
+    limits: LimitsInput = Field(default=LimitsInput(), description="What has to be kept")
+    search: SearchInput = Field(default=SearchInput(), description="How it is searched")
+
+    @model_validator(mode="after")
+    def _some_variable(self) -> Self:
+        """Refuse torques that do not increase, and nothing to vary."""
+        if self.torque_n_m is not None and any(b <= a for a, b in pairwise(self.torque_n_m)):
+            refuse(
+                "torque_n_m", list(self.torque_n_m), "strictly increasing", "Sort the list and drop repeats."
+            )
+        gears = (self.variables.pinion, self.variables.wheel)
+        if not any(gear.model_dump(exclude_none=True) for gear in gears):
+            refuse("variables", {}, "at least one variable", "For example pinion.tip_relief_um = [0, 60].")
+        return self

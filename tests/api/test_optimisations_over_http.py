@@ -1,0 +1,117 @@
+"""Micro-geometry optimisations as jobs: the real process over HTTP, and through the client."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import create_app
+from service.client import JobState, LineOfActionClient
+from service.convert.optimisation import optimisation_json, optimisation_of
+from service.jobs.catalogue import OPTIMISE
+from service.problems import BadInput
+from service.schemas import Case, validated
+from service.schemas.optimisation import OptimisationInput
+from service.settings import Settings
+
+GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
+CASE: dict[str, Any] = {
+    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
+    "load": {"torque_n_m": [40.0, 80.0]},
+    "accuracy": {"level": "draft", "model": "plane_strain"},
+}
+FREE = {"tip_relief_um": [0.0, 40.0], "tip_relief_length_mm": [0.5, 3.0]}
+STUDY: dict[str, Any] = {
+    "variables": {"pinion": FREE, "wheel": FREE},
+    "scatter": {"pinion": {"profile_slope_um": 2.0}, "points": 2},
+    "limits": {"max_pressure_mpa": 4000.0},
+    "search": {"evaluations": 60, "positions": 16},
+}
+TIMES = ("cpu_seconds", "wall_seconds", "peak_memory_bytes")
+
+Served = tuple[LineOfActionClient, TestClient]
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """A client of a running service, and the bare HTTP one."""
+    directory = tmp_path_factory.mktemp("service")
+    with (
+        TestClient(create_app(Settings(data_directory=directory / "data"))) as service,
+        LineOfActionClient(
+            "http://testserver", cache_dir=directory / "results", transport=service._transport
+        ) as found,
+    ):
+        yield found, service
+
+
+def untimed(value: Any) -> Any:
+    """Leave out what differs from run to run."""
+    if isinstance(value, dict):
+        return {name: untimed(inner) for name, inner in value.items() if name not in TIMES}
+    return [untimed(item) for item in value] if isinstance(value, list) else value
+
+
+def test_the_optimisation_is_that_of_python(served: Served, tmp_path: Path) -> None:
+    client, http = served
+    seen: list[JobState] = []
+    told = client.optimise(CASE, STUDY, seen.append)
+    here = optimisation_of(
+        validated(Case, CASE), validated(OptimisationInput, STUDY), tmp_path / "compliance", lambda *_: None
+    )
+    assert untimed(told) == untimed(json.loads(json.dumps(optimisation_json(here))))
+    assert told["outcome"] == "improved" and told["gain_um"] > told["gain_error_um"]
+    assert set(told["optimum"]["values"]) == {"pinion", "wheel"}
+    for gear, values in told["optimum"]["values"].items():
+        for field, value in values.items():
+            low, high = STUDY["variables"][gear][field]
+            assert low <= value <= high, field
+    assert told["optimum"]["values"]["pinion"]["tip_relief_length_mm"] == pytest.approx(
+        1e3 * here.optimum.values["pinion.tip_relief_length"], rel=1e-9
+    )
+    assert told["nodes"]["deviation"] == [[-2.0], [2.0]]
+    progress = [state.progress for state in seen]
+    assert progress == sorted(progress) and progress[-1] == 100
+    job = client.submit("optimise", {"case": CASE, **STUDY})  # the same question: stored already
+    assert job.status == "successful"
+    reference = http.get(f"/v1/jobs/{job.id}/results").json()["optimisation"]
+    assert http.get(reference["href"], headers={"Accept": "application/x-netcdf"}).json() == told
+
+
+def test_defaults_written_out_are_the_same_question() -> None:
+    def key(study: dict[str, Any]) -> str:
+        given = OPTIMISE.inputs.model_validate_json(json.dumps({"case": CASE, **study}))
+        return OPTIMISE.key(OPTIMISE.prepare(given, None))  # type: ignore[arg-type]
+
+    assert key(STUDY) == key({**STUDY, "misalignment_um": 0.0, "objective": {"kind": "weighted_mean"}})
+    assert key(STUDY) != key({**STUDY, "objective": {"kind": "worst"}})
+
+
+@pytest.mark.parametrize(
+    ("further", "field"),
+    [
+        ({"variables": {}}, "variables"),
+        ({"variables": {"pinion": {"tip_relief_um": [40.0, 0.0]}}}, "variables.pinion.tip_relief_um"),
+        ({"variables": {"pinion": {"tip_relief_um": [-1.0, 5.0]}}}, "variables.pinion.tip_relief_um"),
+        ({"variables": {"pinion": {"tip_relief_um": [0.0, 40.0]}}}, "variables.pinion.tip_relief"),
+        ({"variables": {"pinion": {"helix_crowning_um": [0.0, 9.0]}}}, "helix_crowning_um"),
+        ({"scatter": {"misalignment_um": 8.0}}, "misalignment_um"),
+        ({"objective": {"weights": [1.0]}}, "objective.weights"),
+        ({"search": {"evaluations": 0}}, "search.evaluations"),
+        ({"torque_n_m": [80.0, 40.0]}, "torque_n_m"),
+    ],
+)
+def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
+    served: Served, further: dict[str, Any], field: str
+) -> None:
+    client, http = served
+    jobs = len(http.get("/v1/jobs").json()["jobs"])
+    with pytest.raises(BadInput) as caught:
+        client.submit("optimise", {"case": CASE, **STUDY, **further})
+    assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
+    assert len(http.get("/v1/jobs").json()["jobs"]) == jobs

@@ -1,0 +1,102 @@
+"""``loa optimise``: tables, files of every kind, and a design that the case file takes as it is."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from service.cli.commands import app
+
+CASE = """
+[pair]
+normal_module_mm = 4.0
+center_distance_mm = 80.0
+[pair.pinion]
+teeth = 20
+face_width_mm = 25.0
+bore_diameter_mm = 40.0
+{pinion}
+[pair.wheel]
+teeth = 20
+face_width_mm = 25.0
+bore_diameter_mm = 40.0
+{wheel}
+[load]
+torque_n_m = [100.0, 200.0]
+[accuracy]
+level = "draft"
+model = "plane_strain"
+"""
+STUDY = """
+[variables.pinion]
+tip_relief_um = [0, 40]
+tip_relief_length_mm = [0.5, 3.0]
+[variables.wheel]
+tip_relief_um = [0, 40]
+tip_relief_length_mm = [0.5, 3.0]
+[scatter]
+points = 2
+wheel = { profile_slope_um = 2.0 }
+[search]
+evaluations = 60
+positions = 16
+"""
+
+
+@pytest.fixture
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[Path, Path]:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    case, study = tmp_path / "case.toml", tmp_path / "study.toml"
+    case.write_text(CASE.format(pinion="", wheel=""), encoding="utf-8")
+    study.write_text(STUDY, encoding="utf-8")
+    return case, study
+
+
+def test_all_files_say_the_same(files: tuple[Path, Path], tmp_path: Path) -> None:
+    folder = tmp_path / "optimum"
+    ran = CliRunner().invoke(app, ["optimise", *map(str, files), "-o", str(folder)])
+    assert ran.exit_code == 0, ran.output
+    told = json.loads((folder / "optimum.json").read_text(encoding="utf-8"))
+    assert told["outcome"] == "improved"
+    assert "improved: expected peak-to-peak falls by" in ran.output
+    best = tomllib.loads((folder / "optimum.toml").read_text(encoding="utf-8"))["pair"]
+    for gear, values in told["optimum"]["values"].items():
+        assert best[gear] == pytest.approx(values, rel=1e-5)
+    page = (folder / "optimum.html").read_text(encoding="utf-8")
+    assert "Harris map after" in page and "every node of the scatter" in page
+    assert (folder / "optimum.png").read_bytes()[:4] == b"\x89PNG"
+
+
+def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
+    files: tuple[Path, Path], tmp_path: Path
+) -> None:
+    case, study = files
+    study.write_text(STUDY.replace("profile_slope_um = 2.0", ""), encoding="utf-8")
+    ran = CliRunner().invoke(app, ["optimise", str(case), str(study), "--json"])
+    assert ran.exit_code == 0, ran.output
+    told = json.loads(ran.output)
+    tables = {
+        gear: "\n".join(f"{name} = {value!r}" for name, value in values.items())
+        for gear, values in told["optimum"]["values"].items()
+    }
+    case.write_text(CASE.format(**tables), encoding="utf-8")
+    table = tmp_path / "ste.nc"
+    analyzed = CliRunner().invoke(app, ["analyze", str(case), "-o", str(table), "--json"])
+    assert analyzed.exit_code == 0, analyzed.output
+    harris = told["optimum"]["harris_map"]
+    for torque in (100.0, 200.0):
+        asked = ["ste", str(table), "--torque", str(torque), "--json"]
+        curve = json.loads(CliRunner().invoke(app, asked).output)
+        index = harris["torque_n_m"].index(torque)
+        allowed = curve["peak_to_peak_error_um"]
+        assert abs(harris["expected_peak_to_peak_um"][index] - curve["peak_to_peak_um"]) <= allowed
+
+
+def test_what_cannot_be_written_is_refused_before_anything_is_computed(files: tuple[Path, Path]) -> None:
+    ran = CliRunner().invoke(app, ["optimise", *map(str, files), "-o", "optimum.csv"])
+    assert ran.exit_code != 0
+    assert ".toml" in ran.output and "Harris" not in ran.output
