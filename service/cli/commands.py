@@ -27,6 +27,7 @@ for family in (tables, motion, studies, pages, serving):
     app.add_typer(family.verbs)
 app.add_typer(keys.verbs, name="keys")
 app.add_typer(upkeep.database, name="database")
+app.add_typer(upkeep.store, name="store")
 
 
 def main() -> None:

@@ -8,7 +8,9 @@ from sqlalchemy import Engine
 
 from service.jobs.claims import Claims
 from service.jobs.elsewhere import WorkElsewhere
+from service.jobs.housekeeper import Housekeeper
 from service.jobs.process import Registry
+from service.jobs.retention import Retention
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
 from service.settings import Settings
@@ -33,6 +35,10 @@ class Machinery:
     submissions: Submissions
     scheduler: Scheduler | WorkElsewhere
 
+    def close(self) -> None:
+        """Close what is open; it opens again when it is needed."""
+        self.engine.dispose()
+
 
 def job_machinery(settings: Settings, registry: Registry, *, works: bool = True) -> Machinery:
     """Open the database and put the parts together; a process that `works` has locked its data directory.
@@ -54,5 +60,12 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
     scheduler: Scheduler | WorkElsewhere = WorkElsewhere()
     if works:
         claims = Claims(engine, identity_of(settings.data_directory), settings.lease_s)
-        scheduler = Scheduler(settings, registry, claims, store)
+        scheduler = Scheduler(settings, registry, claims, store, _housekeeper(settings, engine, store))
     return Machinery(engine, store, Submissions(engine, settings.queue_limit), scheduler)
+
+
+def _housekeeper(settings: Settings, engine: Engine, store: ResultStore) -> Housekeeper | None:
+    """Return who removes what nobody asks for, if anything is to be removed."""
+    if settings.retention_days is None:
+        return None
+    return Housekeeper(Retention(engine, store, settings.data_directory), settings.retention_days)

@@ -15,6 +15,7 @@ from pathlib import Path
 import structlog
 
 from service.jobs.claims import Claim, Claims
+from service.jobs.housekeeper import Housekeeper
 from service.jobs.leases import RENEWALS, Leases
 from service.jobs.memory import machine_memory_mb
 from service.jobs.order import Outcome, WorkOrder
@@ -41,8 +42,16 @@ class _Running:
 class Scheduler:
     """Runs what waits, at most `settings.workers` at a time; others may run on the same database."""
 
-    def __init__(self, settings: Settings, registry: Registry, claims: Claims, store: ResultStore) -> None:
+    def __init__(
+        self,
+        settings: Settings,
+        registry: Registry,
+        claims: Claims,
+        store: ResultStore,
+        housekeeper: Housekeeper | None = None,
+    ) -> None:
         self._settings, self._registry, self._claims = settings, registry, claims
+        self._housekeeper = housekeeper
         self._settlement = Settlement(claims, store, settings.attempts)
         self._leases = Leases(claims, settings.lease_s)
         self._running: dict[int, _Running] = {}
@@ -66,6 +75,8 @@ class Scheduler:
         self._selector.register(self._wake_out, selectors.EVENT_READ)
         self._stopping.clear()
         self._leases.start()
+        if self._housekeeper is not None:
+            self._housekeeper.start()
         self._thread = threading.Thread(target=self._loop, name="scheduler", daemon=True)
         self._thread.start()
         self.wake()
@@ -77,6 +88,8 @@ class Scheduler:
         self._stopping.set()
         self.wake()
         self._thread.join()
+        if self._housekeeper is not None:
+            self._housekeeper.stop()
         wake_in, self._wake_in, self._thread = self._wake_in, None, None
         self._selector.close()
         os.close(self._wake_out)

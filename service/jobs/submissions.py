@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import uuid
 from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from sqlalchemy import Connection, Engine, func, insert, select, update
@@ -12,7 +13,8 @@ from sqlalchemy import Connection, Engine, func, insert, select, update
 from service.jobs.job_filter import EVERY_JOB, JobFilter
 from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, QueueFull
-from service.store import Mark, behind, now, reading, retried, writing
+from service.store import Mark, behind, instant, now, reading, retried, writing
+from service.store.results import USE_NOTED_EVERY_S
 
 _LOOKED_AT = 500  # at a time, where durations are asked for
 _ENDED = ("successful", "failed", "dismissed")
@@ -98,7 +100,15 @@ class Submissions:
                 row = connection.execute(_jobs().where(jobs.c.id == identifier)).one_or_none()
         if row is None:
             raise NoSuchJob(f"There is no job {identifier!r}.")
+        self._note_use(row)
         return _job(row)
+
+    def _note_use(self, row: Any) -> None:
+        """Note, once an hour, that an ended job was asked for."""
+        before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
+        if row.state in _ENDED and (row.asked or row.job_created) < before:
+            with writing(self._engine) as connection:
+                connection.execute(update(jobs).where(jobs.c.id == row.job_id).values(asked=now()))
 
     def page(self, limit: int, wanted: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:
         """Return up to `limit` jobs that are wanted, the newest first, those behind the mark `after`."""
@@ -195,7 +205,11 @@ def _abandon(connection: Connection, owner: Any) -> None:
 def _jobs() -> Any:
     """Select jobs with their computations."""
     return select(
-        jobs.c.id.label("job_id"), jobs.c.created.label("job_created"), jobs.c.dismissed, computations
+        jobs.c.id.label("job_id"),
+        jobs.c.created.label("job_created"),
+        jobs.c.dismissed,
+        jobs.c.asked,
+        computations,
     ).join(computations, jobs.c.computation_id == computations.c.id)
 
 

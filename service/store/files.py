@@ -51,6 +51,9 @@ class ResultFiles(Protocol):
             Its bytes are others.
         """
 
+    def compare(self, name: str, sha256: str) -> None:
+        """Read the bytes in the place itself, whatever is kept of them here; raises as `local`."""
+
     def set_aside(self, name: str) -> None:
         """Rename a damaged file, so that it is not served; it may be gone already."""
 
@@ -83,6 +86,10 @@ class DirectoryFiles:
         if digest_of(path) != sha256:
             raise WrongContent
         return path
+
+    def compare(self, name: str, sha256: str) -> None:
+        """Read the file; raises as `ResultFiles.local`."""
+        self.local(name, sha256)
 
     def set_aside(self, name: str) -> None:
         """Rename."""

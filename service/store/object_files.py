@@ -72,16 +72,30 @@ class ObjectFiles:
         self._evict()
         return cached
 
-    def _fetch(self, name: str, sha256: str, cached: Path) -> None:
-        """Fetch an object into the cache, if its bytes have the digest."""
+    def compare(self, name: str, sha256: str) -> None:
+        """Read the object, not the cache; raises as `ResultFiles.local`."""
+        digest = hashlib.sha256()
+        for piece in self._pieces(name):
+            digest.update(piece)
+        if digest.hexdigest() != sha256:
+            raise WrongContent
+
+    def _pieces(self, name: str) -> Iterator[memoryview]:
+        """Read an object piece by piece."""
         import obstore  # noqa: PLC0415 (an extra)
 
+        with _answering():
+            for piece in obstore.get(self._store, name).stream():
+                yield memoryview(piece)
+
+    def _fetch(self, name: str, sha256: str, cached: Path) -> None:
+        """Fetch an object into the cache, if its bytes have the digest."""
         cached.parent.mkdir(parents=True, exist_ok=True)
         draft = cached.with_name(f"{cached.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
         digest = hashlib.sha256()
         try:
-            with _answering(), draft.open("wb") as stream:
-                for piece in obstore.get(self._store, name).stream():
+            with draft.open("wb") as stream:
+                for piece in self._pieces(name):
                     digest.update(piece)
                     stream.write(piece)
             if digest.hexdigest() != sha256:

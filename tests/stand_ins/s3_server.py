@@ -12,6 +12,7 @@ import urllib.request
 import uuid
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from email.utils import formatdate
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from typing import ClassVar
@@ -21,7 +22,11 @@ from xml.sax.saxutils import escape
 import pytest
 
 KEYS = {"AWS_ACCESS_KEY_ID": "test", "AWS_SECRET_ACCESS_KEY": "test", "AWS_REGION": "us-east-1"}
-_DATE = "2026-11-20T12:00:00.000Z"
+
+
+def _date() -> str:
+    """Return this instant as S3 writes it."""
+    return datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%S.000Z")
 
 
 @dataclass
@@ -71,7 +76,7 @@ class _Handler(BaseHTTPRequestHandler):
             if name not in self.objects.kept:
                 return self._answer(404, b"<Error><Code>NoSuchKey</Code></Error>")
             self.objects.kept[key] = self.objects.kept[name]
-            copied = f"<LastModified>{_DATE}</LastModified><ETag>{tag}</ETag>"
+            copied = f"<LastModified>{_date()}</LastModified><ETag>{tag}</ETag>"
             copied = f"<CopyObjectResult>{copied}</CopyObjectResult>"
             return self._answer(200, copied.encode(), ETag=tag)
         elif not self.objects.down:
@@ -117,7 +122,7 @@ class _Handler(BaseHTTPRequestHandler):
             key = name.removeprefix(bucket.rstrip("/") + "/")
             if key.startswith(prefix):
                 facts = (
-                    f"<Key>{escape(key)}</Key><LastModified>{_DATE}</LastModified><Size>{len(body)}</Size>"
+                    f"<Key>{escape(key)}</Key><LastModified>{_date()}</LastModified><Size>{len(body)}</Size>"
                 )
                 lines.append(f'<Contents>{facts}<ETag>"x"</ETag></Contents>')
         text = f"<ListBucketResult><IsTruncated>false</IsTruncated>{''.join(lines)}</ListBucketResult>"

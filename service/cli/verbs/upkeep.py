@@ -12,6 +12,8 @@ from service.cli.verbs.options import AsJson
 
 database = typer.Typer(help="The database of jobs: its schema.", no_args_is_help=True)
 
+store = typer.Typer(help="The store of results: verify, collect.", no_args_is_help=True)
+
 DataDirectory = Annotated[
     Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
 ]
@@ -33,3 +35,31 @@ def status(data_directory: DataDirectory = None, json: AsJson = False) -> None:
     from service.cli.database import run_status  # noqa: PLC0415 (start-up time)
 
     run_status(as_json=json, data_directory=data_directory)
+
+
+@store.command(epilog="Example: loa store verify --json")
+@guarded
+def verify(data_directory: DataDirectory = None, json: AsJson = False) -> None:
+    """Compare every file with its digest, set damaged ones aside; exit code 3 if one is damaged or gone."""
+    from service.cli.store import run_verify  # noqa: PLC0415 (start-up time)
+
+    run_verify(as_json=json, data_directory=data_directory)
+
+
+@store.command(epilog="Example: loa store gc --dry-run --older-than 90")
+@guarded
+def gc(
+    data_directory: DataDirectory = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Tell what would be removed.")] = False,
+    older_than: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0, help="Also results and ended jobs not asked for in so many days [LOA_RETENTION_DAYS]."
+        ),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Remove what is left over: files without index, lines without file, workspaces, logs, what expired."""
+    from service.cli.store import run_gc  # noqa: PLC0415 (start-up time)
+
+    run_gc(as_json=json, dry_run=dry_run, older_than=older_than, data_directory=data_directory)

@@ -173,7 +173,8 @@ def test_the_cache_is_bounded_and_spares_what_is_being_read(tmp_path: Path, s3_u
     assert len(held) == 4
     for path in held[:3]:
         os.utime(path, (0.0, 0.0))
-    files.put("database/5.nc", made, "5" * 64)
+    (last := tmp_path / "last").write_bytes(b"5" * 100)
+    files.put("database/5.nc", last, hashlib.sha256(b"5" * 100).hexdigest())
     left = sorted((tmp_path / "cache").rglob("*.nc"))
     assert len(left) == 2 and held[3] in left
 
