@@ -47,7 +47,7 @@ class Access:
         """Return the caller's key; raise if it carries none, or an unknown one."""
         presented = _presented(scope)
         if presented is None:
-            raise Unauthorised("This service asks for a key. Send it as: Authorization: Bearer KEY")
+            raise Unauthorised("This service asks for an access key, sent as: Authorization: Bearer KEY")
         key = self._keyring.holder(presented)
         if key is None:
             raise Unauthorised("This key is not known here. Ask whoever runs the service for one.")

@@ -1,5 +1,7 @@
 /** Requests to the service: JSON in and out, every refusal as a Problem. */
 
+import { askForKey, keyHeader } from "./key.js";
+
 export class Problem extends Error {
   /** @param {object} facts problem details (RFC 9457) */
   constructor(facts) {
@@ -22,13 +24,17 @@ async function answer(response) {
   throw new Problem({ ...facts, retryAfter: response.headers.get("Retry-After") });
 }
 
-async function asked(path, options) {
+async function asked(path, options = {}) {
+  let response;
   try {
-    return await fetch(path, options);
+    response = await fetch(path, { ...options, headers: { ...options.headers, ...keyHeader() } });
   } catch (error) {
     if (error.name === "AbortError") throw error;
     throw new Problem({ title: "No answer", detail: "The service does not answer. Is it still running?", status: 0 });
   }
+  if (response.status !== 401) return response;
+  const refused = await response.clone().json().catch(() => ({ detail: "" }));
+  return (await askForKey(refused.detail)) ? asked(path, options) : response;
 }
 
 export async function get(path) {

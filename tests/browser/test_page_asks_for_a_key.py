@@ -1,0 +1,58 @@
+"""The page of a service with access keys: it asks once, says what is wrong, and goes on."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, expect
+
+from service.access import KeyFile
+
+
+@pytest.fixture
+def served(tmp_path: Path) -> Iterator[tuple[str, str]]:
+    """The address of a service and its key."""
+    file = tmp_path / "keys.json"
+    secret = KeyFile(file).add("reader")
+    root = str(Path(__file__).parents[2])
+    path = os.pathsep.join(part for part in (root, os.environ.get("PYTHONPATH", "")) if part)
+    own = {"PYTHONPATH": path, "XDG_DATA_HOME": str(tmp_path), "LOA_KEYS_FILE": str(file)}
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    with (
+        (tmp_path / "log").open("wb") as log,
+        subprocess.Popen(
+            command, env=os.environ | own, stdout=subprocess.PIPE, stderr=log, text=True
+        ) as service,
+    ):
+        assert service.stdout is not None
+        yield service.stdout.readline().split()[-1], secret
+        service.terminate()
+
+
+def test_it_asks_until_the_key_is_right_and_keeps_it_for_the_tab(
+    browser: Browser, served: tuple[str, str]
+) -> None:
+    address, secret = served
+    page = browser.new_page(viewport={"width": 1000, "height": 800})
+    page.set_default_timeout(60_000.0)
+    page.goto(address)
+    dialog = page.get_by_role("dialog", name="Access key")
+    expect(dialog).to_contain_text("asks for an access key")
+    assert dialog.count() == 1, "one question for all requests that wait"
+    assert Axe().run(page, options={"rules": {"region": {"enabled": False}}}).violations_count == 0
+    page.keyboard.type("loa_wrong")
+    page.keyboard.press("Enter")
+    expect(dialog).to_contain_text("not known here")
+    page.keyboard.type(secret)
+    page.keyboard.press("Enter")
+    page.wait_for_selector("html[data-ready=yes]")
+    page.reload()
+    page.wait_for_selector("html[data-ready=yes]")
+    assert dialog.count() == 0, "kept for the tab"
+    assert secret not in page.url
