@@ -14,6 +14,7 @@ from benchmarks import (
     effects_off,
     error_honesty,
     finite_width,
+    full_contact_cost,
     long_phase,
     other_engine,
     page_redraw,
@@ -33,6 +34,7 @@ ROOT = Path(__file__).parents[1]
 SUBJECTS = (
     reference_errors,
     static_table,
+    full_contact_cost,
     finite_width,
     run_up,
     long_phase,

@@ -15,8 +15,7 @@ from fe_contact.types import Status
 PROGRAM = "ccx"
 WALL_OVER_CPU = 20.0
 """Wall seconds that a CPU second may take on a busy machine before the run counts as hung."""
-_LIMITED = 'ulimit -t "$1"; exec "$2" -i job'  # the limit ends it even where its parent is gone
-_ENDED_BY_LIMIT = (signal.SIGXCPU, signal.SIGKILL)
+_LIMITED = 'ulimit -S -t "$1"; exec "$2" -i job'  # the limit ends it even where its parent is gone
 
 
 @dataclass(frozen=True)
@@ -90,7 +89,7 @@ def run_calculix(program: str, deck: str, folder: Path, cpu_limit: float) -> Run
 def _ended(child: subprocess.CompletedProcess[str], folder: Path, cpu_limit: float) -> Run:
     """Say how a child ended."""
     iterations = len(re.findall(r"^ iteration \d+", child.stdout, re.MULTILINE))
-    if child.returncode in [-number for number in _ENDED_BY_LIMIT]:
+    if child.returncode == -signal.SIGXCPU:
         return Run(Status.NOT_COMPUTED, f"no result within {cpu_limit:.0f} CPU s", iterations, "")
     if child.returncode != 0 or "Job finished" not in child.stdout:
         return Run(Status.ITERATION_LIMIT, _complaint(child), iterations, "")

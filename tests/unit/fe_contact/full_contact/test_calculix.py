@@ -31,6 +31,7 @@ def test_a_finished_job_gives_what_it_printed(tmp_path: Path) -> None:
         ("printf ' *ERROR: increment size smaller\\n  than minimum\\n\\n'; exit 201", Status.ITERATION_LIMIT,
          "exit code 201: increment size smaller than minimum"),
         ("printf 'half a job'; exit 0", Status.ITERATION_LIMIT, "no error printed"),
+        ("kill -KILL $$", Status.ITERATION_LIMIT, "exit code -9"),
         ("kill -SEGV $$", Status.ITERATION_LIMIT, "exit code -11"),
         ("while :; do :; done", Status.NOT_COMPUTED, "no result within 1 CPU s"),
     ],
