@@ -22,7 +22,9 @@ SWEEP_HEAD = (
     "| random pairs | cases | sound tables | refused | anything else | points solved | most iterations "
     "| largest residual | CPU time over predicted |\n|---|---:|---:|---:|---:|---:|---:|---:|---:|"
 )
-HEAD = "| scene | hard because | criterion | figures beside the common ones | s |\n|---|---|---|---|---:|"
+HEAD = (
+    "| scene | hard because | criterion | figures beside the common ones | CPU, s |\n|---|---|---|---|---:|"
+)
 
 
 def with_part(page: str, name: str, text: str) -> str:
@@ -86,11 +88,11 @@ def _refused(records: list[Json]) -> str:
 def _summary(scenes: list[Json]) -> str:
     """Say how many passed, and in what time."""
     passed = sum(scene["passed"] for scene in scenes)
-    slowest = max(scenes, key=lambda scene: float(scene["seconds"]))
-    total = sum(float(scene["seconds"]) for scene in scenes)
+    slowest = max(scenes, key=lambda scene: float(scene["cpu_seconds"]))
+    total = sum(float(scene["cpu_seconds"]) for scene in scenes)
     return (
-        f"{passed} of {len(scenes)} scenes passed, in {total:.0f} s in all; the slowest is "
-        f"`{slowest['name']}` with {slowest['seconds']:.1f} s (elapsed, one process).\n"
+        f"{passed} of {len(scenes)} scenes passed, in {total:.0f} s of CPU time in all; "
+        f"`{slowest['name']}` takes most, {slowest['cpu_seconds']:.1f} s.\n"
     )
 
 
@@ -103,7 +105,7 @@ def _row(scene: Json) -> str:
     )
     verdict = "" if scene["passed"] else f"**FAILED**: {scene['failure']}; "
     cells = (f"`{scene['name']}`", scene["hard_because"], scene["criterion"], verdict + figures)
-    return f"| {' | '.join(cells)} | {scene['seconds']:.1f} |"
+    return f"| {' | '.join(cells)} | {scene['cpu_seconds']:.1f} |"
 
 
 def _number(value: float | None) -> str:

@@ -54,16 +54,25 @@ def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
     """Print the table for people, and below it what failed."""
     out = console()
     rows = [
-        (o.scene.family, o.scene.name, "passed" if o.passed else "FAILED", f"{o.seconds:.2f}", _closest(o))
+        (
+            o.scene.family,
+            o.scene.name,
+            "passed" if o.passed else "FAILED",
+            f"{o.seconds:.2f}",
+            f"{o.cpu_seconds:.2f}",
+            _closest(o),
+        )
         for o in outcomes
     ]
-    out.print(table(("family", "scene", "", "time, s", "figure closest to its bound"), rows))
+    out.print(table(("family", "scene", "", "time, s", "CPU, s", "figure closest to its bound"), rows))
     for outcome in outcomes:
         if not outcome.passed:
             out.print(f"{outcome.scene.name}: {outcome.failure}", highlight=False)
     passed = sum(outcome.passed for outcome in outcomes)
     seconds = sum(outcome.seconds for outcome in outcomes)
-    out.print(f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s", highlight=False)
+    busy = sum(outcome.cpu_seconds for outcome in outcomes)
+    said = f"{passed} of {len(outcomes)} scenes passed in {seconds:.1f} s ({busy:.1f} s of CPU time)"
+    out.print(said, highlight=False)
     if output is not None:
         out.print(f"written to {output}", highlight=False)
 

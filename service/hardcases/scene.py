@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -85,9 +86,14 @@ class HardScene:
 
     def run(self) -> Outcome:
         """Compute the scene here; its exceptions come through (`guarded.run_scenes` catches them)."""
-        begin = time.perf_counter()
+        begin, busy = time.perf_counter(), cpu_seconds()
         figures = tuple(self.measure())
-        return Outcome(self, figures, time.perf_counter() - begin)
+        return Outcome(self, figures, time.perf_counter() - begin, cpu_seconds=cpu_seconds() - busy)
+
+
+def cpu_seconds() -> float:
+    """Return the CPU time of this process and of what it started and has ended, s."""
+    return sum(os.times()[:4])
 
 
 @dataclass(frozen=True)
@@ -103,12 +109,15 @@ class Outcome:
         Elapsed.
     ended_by : str
         What ended it before its time: an exception, a crash, the time limit; empty if nothing did.
+    cpu_seconds : float
+        CPU time, of the processes it started too; 0 where it did not end.
     """
 
     scene: HardScene
     figures: tuple[Measured, ...]
     seconds: float
     ended_by: str = ""
+    cpu_seconds: float = 0.0
 
     @property
     def passed(self) -> bool:
@@ -136,5 +145,6 @@ class Outcome:
             "figures": {f.name: f.value if math.isfinite(f.value) else None for f in self.figures},
             "bounds": {f.name: f.bound for f in self.figures if f.bound},
             "seconds": self.seconds,
+            "cpu_seconds": self.cpu_seconds,
             "failure": self.failure,
         }

@@ -21,6 +21,7 @@ def hardcases_page(outcomes: Sequence[Outcome]) -> Page:
     heads = (
         Headline("passed", f"{passed} of {len(outcomes)}"),
         Headline("time in all", f"{sum(o.seconds for o in outcomes):.1f} s"),
+        Headline("CPU time in all", f"{sum(o.cpu_seconds for o in outcomes):.1f} s"),
         Headline("slowest", slowest.scene.name, f"{slowest.seconds:.1f} s"),
     )
     families = dict.fromkeys(outcome.scene.family for outcome in outcomes)
@@ -35,12 +36,13 @@ def hardcases_page(outcomes: Sequence[Outcome]) -> Page:
 
 def _section(family: str, outcomes: Sequence[Outcome]) -> Section:
     """Return the scenes of one family, and their figures folded."""
-    head = ("scene", "result", "time, s", "hard because", "criterion")
+    head = ("scene", "result", "time, s", "CPU, s", "hard because", "criterion")
     rows = tuple(
         (
             o.scene.name,
             "passed" if o.passed else f"FAILED: {o.failure}",
             number(o.seconds, 3),
+            number(o.cpu_seconds, 3),
             o.scene.hard_because,
             o.scene.criterion,
         )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import os
+import subprocess
+import sys
 import time
 
 from service.hardcases import HardScene, Measured
@@ -38,9 +40,15 @@ def hanging() -> list[Measured]:
     return good()
 
 
+def starting() -> list[Measured]:
+    subprocess.run([sys.executable, "-c", "import time\nwhile time.process_time() < 0.1: pass"], check=True)
+    return good()
+
+
 def scene(measure, time_limit: float = 60.0) -> HardScene:
     return HardScene(measure.__name__, "stand-in", "It is.", "It holds.", measure, time_limit)
 
 
 GOOD, OUT_OF_BOUNDS, NO_NUMBER, UNBOUNDED = map(scene, (good, out_of_bounds, no_number, unbounded))
 RAISING, CRASHING, HANGING = scene(raising), scene(crashing), scene(hanging, 0.2)
+STARTING = scene(starting)

@@ -38,6 +38,11 @@ def test_a_scene_passes_by_its_figures_alone(scene, failure) -> None:
     json.dumps(outcome.to_json(), allow_nan=False)
 
 
+def test_cpu_time_counts_what_a_scene_starts() -> None:
+    outcome = stand_in.STARTING.run()
+    assert 0.1 <= outcome.cpu_seconds < 60.0
+
+
 def test_the_verb_prints_json_and_fails_with_its_scenes(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     monkeypatch.setattr(verb, "HARD_SCENES", (stand_in.GOOD, stand_in.OUT_OF_BOUNDS, stand_in.NO_NUMBER))
     page = tmp_path / "page.html"
@@ -45,7 +50,7 @@ def test_the_verb_prints_json_and_fails_with_its_scenes(monkeypatch: pytest.Monk
     assert result.exit_code == EXIT_FAILED
     first, second, third = json.loads(result.stdout)["scenes"]
     assert first["passed"] and not second["passed"] and not third["passed"]
-    assert {"name", "hard_because", "criterion", "passed", "figures", "seconds"} <= set(first)
+    assert {"name", "hard_because", "criterion", "passed", "figures", "seconds", "cpu_seconds"} <= set(first)
     assert first["figures"] == {"one": 1.0, "for information": 5.0}
     assert third["figures"] == {"nothing": None}
     assert "out_of_bounds failed: two 2 (&lt;= 1)" in page.read_text()
