@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 
 from fe_contact.analysis.error_estimate import left_out
+from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_table import SolvedTable
-from fe_contact.analysis.table_places import Place
-from fe_contact.contact import Candidates, ContactProblem, ContactSolution
+from fe_contact.analysis.table_places import Place, Places
+from fe_contact.analysis.tip_edges import deepest_edge
+from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.across_face import across_face
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.worth import Worth, estimate_worth
+from fe_contact.planning import Plan
 from fe_contact.types import FloatArray, Json
 
 LEAST_BACKLASH = 1e-9
@@ -61,10 +64,30 @@ class Assumption:
         }
 
 
+class SolvedRun(Protocol):
+    """What assumptions are checked on: a request, its plan, and the contact solved at its places."""
+
+    @property
+    def checked(self) -> Checked:
+        """The request."""
+
+    @property
+    def plan(self) -> Plan:
+        """Discretisation."""
+
+    @property
+    def places(self) -> Places:
+        """Misalignments and centre distances."""
+
+    @property
+    def solved(self) -> Sequence[tuple[ContactProblem, ContactSolution]]:
+        """Problem and solution of every place."""
+
+
 def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
-    """Check everything that a run took for granted on what it computed."""
+    """Check everything that a table took for granted on what it computed."""
     return (
-        *_tip_edges(run),
+        *_tip_edges(run, _ripples(run)),
         *_spared(run),
         *_plane(run),
         *_coast_flanks(run),
@@ -73,23 +96,28 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
     )
 
 
-def allowed_change(run: SolvedTable) -> float:
+def check_one_place(run: SolvedRun) -> tuple[Assumption, ...]:
+    """Check what flank results and root stress took for granted: edges in parts of the deflection itself."""
+    return (*_tip_edges(run, np.abs(_means(run))), *_plane(run), *_coast_flanks(run), _load_patches(run))
+
+
+def allowed_change(run: SolvedRun) -> float:
     """Return the relative change of mean or peak-to-peak that an assumption may make."""
     return run.checked.request.accuracy.tolerance or USUAL_TOLERANCE
 
 
-def _tip_edges(run: SolvedTable) -> Iterator[Assumption]:
+def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     """Without corner contact: no tip edge comes to the mating flank before A and after E.
 
     A contact that is left out can carry at most until the deflection has fallen to its gap: the change of STE
-    is at most how far the deflection exceeds the gap.
+    is at most how far the deflection exceeds the gap, over `size` (L, places) in m.
     """
     request = run.checked.request
     if run.checked.model.corner_contact or CornerContact.name in request.spared:
         return
     pairs = zip(run.places.places, run.solved, strict=True)
-    depth = np.stack([_edge_depth(place, *solved) for place, solved in pairs], axis=1)
-    change = float(np.max(depth / np.maximum(_ripples(run), 1e-12 * np.abs(_means(run)))))
+    depth = np.stack([deepest_edge(place, run.plan.load, *solved) for place, solved in pairs], axis=1)
+    change = float(np.max(depth / np.maximum(size, 1e-12 * np.abs(_means(run)))))
     deepest = 1e6 * float(depth.max())
     reason = "the gaps at the tip edges stay open"
     if deepest > 0.0:
@@ -97,34 +125,6 @@ def _tip_edges(run: SolvedTable) -> Iterator[Assumption]:
     yield Assumption(
         CornerContact.name, "tip edges stay clear", change <= allowed_change(run), change, reason
     )
-
-
-def _edge_depth(place: Place, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
-    """How far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
-
-    Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
-    """
-    where = problem.candidates.position
-    phase, pitch = where[: len(problem.compliance)] % 1.0, np.floor(where).astype(np.int64)
-    model = replace(place.model, corner_contact=True)
-    edges = place.contact.problem(model, phase, pitch if model.tooth_gaps else None)
-    touch = edges.candidates.touch
-    off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
-    force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
-    rows = np.arange(where.size) % len(edges.compliance)
-    moved = np.einsum("pij,plj->pli", edges.compliance[rows], force)
-    closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
-    gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
-    return np.asarray(np.max(closing - moved - gap[:, None, :], axis=(0, 2), initial=0.0))
-
-
-def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:
-    """Return forces (P, L, n) of some candidates on others, of which they are a part."""
-    place = {key: i for i, key in enumerate(zip(those.pair.tolist(), those.face_position, strict=True))}
-    found = np.zeros((*force.shape[:2], those.pair.size))
-    keys = zip(these.pair.tolist(), these.face_position, strict=True)
-    found[:, :, [place[key] for key in keys]] = force
-    return found
 
 
 def _spared(run: SolvedTable) -> Iterator[Assumption]:
@@ -146,7 +146,7 @@ def _relative(worth: Worth, run: SolvedTable) -> float:
     return float(np.max(np.maximum(mean, ripple)))
 
 
-def _plane(run: SolvedTable) -> Iterator[Assumption]:
+def _plane(run: SolvedRun) -> Iterator[Assumption]:
     """In the plane: loads even over the face, and the finite width in the correction."""
     request, model = run.checked.request, run.checked.model
     if model.across_face:
@@ -162,7 +162,7 @@ def _plane(run: SolvedTable) -> Iterator[Assumption]:
         yield Assumption(FiniteWidth.name, "plane strain stands for the whole face", holds, missing, reason)
 
 
-def _coast_flanks(run: SolvedTable) -> Iterator[Assumption]:
+def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
     """Between the coast flanks there is room: the contact analysis has the driving flanks alone."""
     room = []
     for place, (_, solution) in zip(run.places.places, run.solved, strict=True):
@@ -185,7 +185,7 @@ def _closing(place: Place) -> float:
     return 0.5 * skew + teeth
 
 
-def _load_patches(run: SolvedTable) -> Assumption:
+def _load_patches(run: SolvedRun) -> Assumption:
     """Contact strips stay within the load patches of the finite elements."""
     grown = sum(int(solution.beyond.sum()) for _, solution in run.solved)
     reason = f"strips outgrew them at {grown} points" if grown else "all strips are narrower"
@@ -199,17 +199,17 @@ def _support_loads(run: SolvedTable) -> Assumption:
     return Assumption("", "forces solved from lift-off to overload", failed == 0, float("nan"), reason)
 
 
-def _means(run: SolvedTable) -> FloatArray:
+def _means(run: SolvedRun) -> FloatArray:
     """Mean STE (L, places), m, over the nodes that have a solution; infinite where none has."""
     return _over_nodes(run, np.mean)
 
 
-def _ripples(run: SolvedTable) -> FloatArray:
+def _ripples(run: SolvedRun) -> FloatArray:
     """Peak-to-peak STE (L, places), m; as `_means`."""
     return _over_nodes(run, np.ptp)
 
 
-def _over_nodes(run: SolvedTable, figure: Callable[..., Any]) -> FloatArray:
+def _over_nodes(run: SolvedRun, figure: Callable[..., Any]) -> FloatArray:
     """Take a figure of every curve, its failed points left out: failures are told by themselves."""
     curves = [[column[np.isfinite(column)] for column in one.deflection.T] for _, one in run.solved]
     found = [[float(figure(curve)) if curve.size else np.inf for curve in place] for place in curves]

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
-from fe_contact.analysis.assumptions import Assumption, check_assumptions, violated
+from fe_contact.analysis.assumptions import check_assumptions
 from fe_contact.analysis.contact_receipt import contact_receipt
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
 from fe_contact.analysis.model_choice import Decided
-from fe_contact.analysis.request import Checked, check_asked
+from fe_contact.analysis.repetition import settled, with_effects
+from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, solve_table
-from fe_contact.errors import SolveError
 from fe_contact.planning import expected_error
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
@@ -54,8 +53,11 @@ def compute_database(
     """
     clock = StageClock()
     full = checked.request.accuracy.receipt == "full"
-    run, found, repeated = _assumed(
-        solve_table(checked, clock, report, cache, decided=decided), clock, report, cache
+    run, found, repeated = settled(
+        solve_table(checked, clock, report, cache, decided=decided),
+        check_assumptions,
+        lambda run, needed: solve_table(with_effects(run.checked, needed), clock, report, cache, run),
+        clock,
     )
     with clock.stage("contact"):
         contact = contact_receipt(run.solved, run.support)
@@ -73,40 +75,6 @@ def compute_database(
     metadata.receipt["assumptions"] = [one.to_json() for one in found]
     metadata.receipt["repeated"] = repeated
     return replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
-
-
-def _assumed(
-    run: SolvedTable, clock: StageClock, report: Progress, cache: Path | None
-) -> tuple[SolvedTable, tuple[Assumption, ...], list[Json]]:
-    """Check what the run took for granted; where that is wrong, do as the caller chose.
-
-    An automatic effect that turns out to be needed is switched on and the table solved again, over the same
-    compliance if the bodies are the same. What was asked for by name is only reported.
-    """
-    repeated: list[Json] = []
-    while True:
-        with clock.stage("assumptions"):
-            found = check_assumptions(run)
-        wrong = violated(found)
-        request = run.checked.request
-        if wrong and request.on_violation == "fail":
-            said = "; ".join(f"{one.what}: {one.reason}" for one in wrong)
-            raise SolveError(f"assumptions that do not hold: {said}")
-        automatic = {entry.name for entry in run.checked.ledger if entry.choice == "auto" and not entry.on}
-        needed = {one.effect: f"{one.what}: {one.reason}" for one in wrong if one.effect in automatic}
-        if not needed or request.on_violation != "repeat":
-            return run, found, repeated
-        before = sum(clock.seconds.values())
-        run = solve_table(_with(run.checked, needed), clock, report, cache, run)
-        repeated.append({"turned_on": needed, "cpu_seconds": sum(clock.seconds.values()) - before})
-
-
-def _with(checked: Checked, needed: Mapping[str, str]) -> Checked:
-    """Return the request with effects switched on that a run showed to be needed."""
-    request = checked.request
-    reasons = {name: f"on after a run without it: {reason}" for name, reason in needed.items()}
-    spared = {name: reason for name, reason in request.spared.items() if name not in needed}
-    return check_asked(replace(request, spared=spared, turned_on={**request.turned_on, **reasons}))
 
 
 def _predicted(run: SolvedTable) -> Json:

@@ -13,7 +13,7 @@ from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versio
 from fe_contact.analysis.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.request import Checked, check_one_load
-from fe_contact.analysis.solved_place import checked_positions, solve_place
+from fe_contact.analysis.solved_place import checked_positions, settled_place
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.stage_clock import StageClock
@@ -37,6 +37,7 @@ def flank_results(
     model: str = "auto",
     effects: Mapping[str, str] | None = None,
     time_budget: float | None = None,
+    on_violation: str = "repeat",
     case: Json | None = None,
     progress: Progress | None = None,
     cache: Path | None = None,
@@ -53,7 +54,7 @@ def flank_results(
     at : array_like, optional
         Positions in base pitches; default: 64 over one mesh cycle, as `contact_pattern` needs them. Teeth
         with pitch deviations are those that mesh there: the first ones of the lists in 0 to 1.
-    tolerance, level, time_budget, model, effects, case, progress, cache
+    tolerance, level, time_budget, model, effects, on_violation, case, progress, cache
         See `analyze`.
 
     Returns
@@ -65,7 +66,8 @@ def flank_results(
     InputError
         A value that cannot be used, by field name.
     MeshError, SolveError
-        No acceptable mesh, or positions without a solution.
+        No acceptable mesh, positions without a solution, or an assumption that does not hold where
+        `on_violation` is "fail".
     """
     checked = check_one_load(
         pair,
@@ -78,23 +80,30 @@ def flank_results(
         time_budget=time_budget,
         model=model,
         effects=effects,
+        on_violation=on_violation,
     )
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
-    found = _solved(checked, position, progress or _silent, cache)
+    checked, found = _solved(checked, position, progress or _silent, cache)
     return replace(found, metadata=_metadata(checked, found, case))
 
 
-def _solved(checked: Checked, position: FloatArray, report: Progress, cache: Path | None) -> LoadDistribution:
-    """Solve one place of the table at one load; the receipt is all that its metadata hold."""
+def _solved(
+    checked: Checked, position: FloatArray, report: Progress, cache: Path | None
+) -> tuple[Checked, LoadDistribution]:
+    """Solve one place of the table at one load; the receipt is all that its metadata hold.
+
+    The request is that of the last run, with the effects that the first showed to be needed.
+    """
     clock, request = StageClock(), checked.request
-    solved = solve_place(checked, position, clock, report, cache)
-    return load_distribution(
+    solved, receipt = settled_place(checked, position, clock, report, cache)
+    receipt = clock.to_json() | {"plan": solved.plan.to_json()} | receipt
+    return solved.checked, load_distribution(
         solved.contact.pair,
         solved.problem,
         solved.solution,
         misalignment=float(request.misalignment[0]),
         center_distance_change=float(request.center_distance_change[0]),
-        metadata=Metadata(receipt=clock.to_json() | {"plan": solved.contact.plan.to_json()}),
+        metadata=Metadata(receipt=receipt),
     )
 
 

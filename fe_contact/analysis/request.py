@@ -201,6 +201,7 @@ def check_one_load(
     time_budget: float | None,
     model: str,
     effects: Mapping[str, str] | None,
+    on_violation: str = "repeat",
 ) -> Checked:
     """Check what is asked of one load (N m or N, exactly one) and alignment (m), as `check_request` does."""
     return check_request(
@@ -214,6 +215,7 @@ def check_one_load(
         misalignments=[misalignment],
         center_distance_changes=[center_distance_change],
         effects=effects,
+        on_violation=on_violation,
         whole_table=False,
         spare=False,  # what does not show in the transmission error may show in pressures and stresses
     )

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from fe_contact.analysis.flank_results import POSITIONS
 from fe_contact.analysis.request import check_one_load
 from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
-from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
+from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, settled_place
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
@@ -38,7 +38,7 @@ class RootStress:
     misalignment, center_distance_change : float
         m.
     receipt : dict
-        CPU seconds by stage, memory, and the plan: plain JSON.
+        CPU seconds by stage, memory, the plan, assumptions and what was repeated: plain JSON.
     """
 
     pinion: RootStressHistory
@@ -63,6 +63,7 @@ def root_stress(
     model: str = "auto",
     effects: Mapping[str, str] | None = None,
     time_budget: float | None = None,
+    on_violation: str = "repeat",
     progress: Progress | None = None,
     cache: Path | None = None,
 ) -> RootStress:
@@ -77,7 +78,7 @@ def root_stress(
         See `analyze`, m.
     at : array_like, optional
         Positions in base pitches; default: 64 over one mesh cycle.
-    tolerance, level, time_budget, model, effects, progress, cache
+    tolerance, level, time_budget, model, effects, on_violation, progress, cache
         See `analyze`.
 
     Returns
@@ -89,7 +90,8 @@ def root_stress(
     InputError
         A value that cannot be used, by field name.
     MeshError, SolveError
-        No acceptable mesh, or positions without a solution.
+        No acceptable mesh, positions without a solution, or an assumption that does not hold where
+        `on_violation` is "fail".
     """
     checked = check_one_load(
         pair,
@@ -102,10 +104,11 @@ def root_stress(
         time_budget=time_budget,
         model=model,
         effects=effects,
+        on_violation=on_violation,
     )
     clock, report = StageClock(), progress or _silent
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
-    found = solve_place(checked, position, clock, report, cache)
+    found, receipt = settled_place(checked, position, clock, report, cache)
     with clock.stage("root stress"):
         meshes = root_meshes(found.contact.plan.discretisation)
         pinion, wheel = _histories(found, meshes, cache)
@@ -117,7 +120,7 @@ def root_stress(
         normal_force=float(checked.request.load[0]),
         misalignment=misalignment,
         center_distance_change=center_distance_change,
-        receipt=clock.to_json() | {"plan": found.contact.plan.to_json()},
+        receipt=clock.to_json() | {"plan": found.plan.to_json()} | receipt,
     )
 
 

@@ -2,31 +2,76 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_contact.analysis.assumptions import check_one_place
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_table import Progress
-from fe_contact.analysis.table_places import table_places
+from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.checks import finite
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError, SolveError
-from fe_contact.planning import planned
+from fe_contact.planning import Plan, planned
 from fe_contact.stage_clock import StageClock
-from fe_contact.types import FloatArray, Status
+from fe_contact.types import FloatArray, Json, Status
 
 
 @dataclass(frozen=True)
 class SolvedPlace:
     """A converged solution with the pair it was made for, which stands at its centre distance."""
 
-    contact: PairContact
+    checked: Checked
+    places: Places
     problem: ContactProblem
     solution: ContactSolution
+
+    @property
+    def contact(self) -> PairContact:
+        """The pair with its compliances."""
+        return self.places.places[0].contact
+
+    @property
+    def plan(self) -> Plan:
+        """Discretisation."""
+        return self.contact.plan
+
+    @property
+    def solved(self) -> tuple[tuple[ContactProblem, ContactSolution], ...]:
+        """Problem and solution of the one place."""
+        return ((self.problem, self.solution),)
+
+
+def settled_place(
+    checked: Checked, position: FloatArray, clock: StageClock, report: Progress, cache: Path | None
+) -> tuple[SolvedPlace, Json]:
+    """Solve a place as `solve_place` does, check what it took for granted, and repeat it as asked.
+
+    Returns
+    -------
+    SolvedPlace
+    dict
+        What the receipt says of it: `assumptions`, `repeated`.
+
+    Raises
+    ------
+    MeshError, SolveError
+        As `solve_place`, or an assumption does not hold and `on_violation` is "fail".
+    """
+
+    def again(run: SolvedPlace, needed: Mapping[str, str]) -> SolvedPlace:
+        more = with_effects(run.checked, needed, whole_table=False)
+        return solve_place(more, position, clock, report, cache)
+
+    first = solve_place(checked, position, clock, report, cache)
+    run, found, repeated = settled(first, check_one_place, again, clock)
+    return run, {"assumptions": [one.to_json() for one in found], "repeated": repeated}
 
 
 def solve_place(
@@ -48,13 +93,14 @@ def solve_place(
         nominal = pair_contact(request.pair, plan, cache, distance_changes=request.center_distance_change)
     report("compliance", 1.0)
     with clock.stage("contact"):
-        (place,) = table_places(request.scene, request.choices, nominal).places
+        places = table_places(request.scene, request.choices, nominal)
+        (place,) = places.places
         pitch = np.floor(position).astype(np.int64)
         problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
     report("contact", 1.0)
     if not solution.converged:
         raise SolveError(_failure(position, solution), partial=solution)
-    return SolvedPlace(place.contact, problem, solution)
+    return SolvedPlace(checked, places, problem, solution)
 
 
 def _failure(position: FloatArray, solution: ContactSolution, shown: int = 5) -> str:

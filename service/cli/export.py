@@ -40,7 +40,7 @@ def run_export(
             beside=beside,
             progress=report,
             cache=cache_home() / "compliance",
-            **point_arguments(case),
+            **{name: value for name, value in point_arguments(case).items() if name != "on_violation"},
         )
     written = _written(found, output)
     if as_json:

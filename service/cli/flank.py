@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from service.cli.effects import assumption_lines
 from service.cli.output import check_writable, console, print_json, progress_bar
 from service.convert.checks import check_case
 from service.convert.flanks import case_at, flank_json, flanks_of
@@ -44,6 +45,7 @@ def _show(figures: dict[str, Any]) -> None:
             f"{figures['largest_face_load_factor']:.3g} at one position; "
             f"load centroid {low:.3g} to {high:.3g} mm from mid-face"
         )
+    lines += assumption_lines(figures["receipt"])
     lines += [f"cost {figures['receipt']['cpu_seconds']:.3g} CPU s", f"written to {figures['file']}"]
     for line in lines:
         console().print(line, highlight=False)

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from service.cli.effects import assumption_lines
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.convert.checks import check_case
 from service.convert.flanks import case_at
@@ -53,6 +54,8 @@ def _show(found: dict[str, Any]) -> None:
         f"misalignment {found['misalignment_um']:.4g} um",
         highlight=False,
     )
+    for line in assumption_lines(found["receipt"]):
+        out.print(line, highlight=False)
     out.print(f"cost {found['receipt']['cpu_seconds']:.3g} CPU s", highlight=False)
 
 

@@ -13,7 +13,7 @@ from service.schemas import Case, ErrorsInput, LoadInput
 from service.schemas.flank import FlankPoint
 
 Json = dict[str, Any]
-_PASSED_ON = ("tolerance", "time_budget", "level", "model", "effects")
+_PASSED_ON = ("tolerance", "time_budget", "level", "model", "effects", "on_violation")
 
 
 def case_at(case: Case, point: FlankPoint) -> Case:

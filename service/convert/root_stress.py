@@ -16,7 +16,7 @@ from service.schemas import Case
 Json = dict[str, Any]
 GEARS = ("pinion", "wheel")
 MPA = 1e6
-_PASSED_ON = ("tolerance", "time_budget", "level", "model", "effects")
+_PASSED_ON = ("tolerance", "time_budget", "level", "model", "effects", "on_violation")
 
 
 def root_stress_of(
