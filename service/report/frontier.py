@@ -90,9 +90,10 @@ def _panel(
     lines += live
     notes = [Note(r.cpu_seconds, 100.0 * error(r), _note(found, r)) for r in found.results if error(r) > 0.0]
     notes += named
-    across, along = _time_axis(found), Axis(label, "log")
     drawn = np.concatenate([line.y for line in lines])
-    beside = placed(notes, across, along, (float(drawn.min()), float(drawn.max())))
+    limits = 0.6 * float(drawn.min()), 1.7 * float(drawn.max())  # room for the texts of the outermost points
+    across, along = _time_axis(found), Axis(label, "log", limits)
+    beside = placed(notes, across, along, limits)
     return Panel(across, along, tuple(lines), title=title, notes=beside)
 
 

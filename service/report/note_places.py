@@ -14,7 +14,7 @@ from service.report.figure import Axis, FloatArray, Note
 _CHARACTER, _HEIGHT, _GAP, _RISE = 0.0085, 0.07, 0.008, 0.05
 _POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
 _MARGIN = 0.05
-"""Of the panel above its curves: what rises beyond it runs into the title."""
+"""Of the panel above and below its curves: what goes beyond it runs into the title or the axis."""
 _PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
 """Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
 
@@ -68,8 +68,9 @@ def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
 
 def _is_free(box: _Box, taken: Sequence[_Box]) -> bool:
     """Whether a text lies in the panel and covers nothing."""
-    inside = box.left >= 0.0 and box.right <= 1.0 and box.high <= 1.0 + _MARGIN
-    return inside and not any(box.covers(other) for other in taken)
+    across = box.left >= 0.0 and box.right <= 1.0
+    along = box.low >= -_MARGIN and box.high <= 1.0 + _MARGIN
+    return across and along and not any(box.covers(other) for other in taken)
 
 
 def _part(values: FloatArray, axis: Axis, limits: tuple[float, float]) -> FloatArray:

@@ -49,6 +49,13 @@ def test_a_text_at_the_top_goes_below_its_point():
     assert note.row == -1
 
 
+def test_a_text_at_the_bottom_stays_above_the_axis():
+    """Its usual places are taken by its neighbours'."""
+    names = ("3d draft 61 (chosen)", "3d standard 61 (knee)", "3d fine (reference)")
+    notes = [Note(1.0 + k, 0.01, name) for k, name in enumerate(names)]
+    assert min(note.row for note in placed(notes, X, Y, RANGE)) >= 0
+
+
 def test_a_text_at_the_right_edge_goes_to_the_left():
     (note,) = placed([Note(9e4, 1.0, "full contact")], X, Y, RANGE)
     assert note.left
