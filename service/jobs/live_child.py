@@ -21,7 +21,8 @@ from service.jobs.live_order import AnswerHead, LiveOrder, LiveWork
 from service.jobs.memory import hold_to
 from service.problems import ServiceError
 
-_NICENESS = 10
+_NICENESS = 5
+"""Less than that of jobs: somebody waits for the answer."""
 
 
 def main() -> None:

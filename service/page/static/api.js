@@ -10,6 +10,7 @@ export class Problem extends Error {
     this.errors = facts.errors || [];
     this.status = facts.status;
     this.type = facts.type || "";
+    this.retryAfter = Number(facts.retryAfter) || 0;
   }
 }
 

@@ -1,6 +1,6 @@
 /** Sliders that redraw the transmission error from the compliance the service keeps. */
 
-import { Problem, post } from "./api.js";
+import { Problem, pause, post } from "./api.js";
 import { byId, figures, make, number } from "./elements.js";
 import { figureBlock, plot } from "./plots.js";
 
@@ -144,7 +144,11 @@ export class Live {
       byId("live-errors").hidden = true;
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
-      if (!problem.type.endsWith("superseded")) this.refuse(problem);
+      if (problem.type.endsWith("superseded")) return;
+      this.refuse(problem);
+      if (!problem.retryAfter) return;
+      await pause(1000 * problem.retryAfter); // the service is busy: ask again, for what is wanted by then
+      this.waiting ??= waiting;
     }
   }
 
@@ -219,7 +223,7 @@ function over(curve, values) {
 
 function layout(height, x, y, more = {}) {
   const axis = (text) => ({
-    title: { text, standoff: 8 }, gridcolor: "#DDE1E6", linecolor: "#59636E", zeroline: false, ticks: "outside",
+    title: { text, standoff: 8, font: { size: 13 } }, gridcolor: "#DDE1E6", linecolor: "#59636E", zeroline: false, ticks: "outside",
     tickcolor: "#59636E", automargin: true,
   });
   return {
@@ -262,7 +266,7 @@ function sharingFigure(now) {
   const lines = wanted.map((pair) => [pair, now.period === 1
     ? shareOf(now, pair) : over(now, now.load_share.map((row) => row[now.pair.indexOf(pair)]))]);
   const data = lines.filter(([, line]) => Math.max(...line.y) > 1e-6).map(([pair, line], k) => ({
-    ...line, type: "scatter", mode: "lines", name: `pair ${pair > 0 ? "+" : ""}${pair}`,
+    ...line, y: line.y.map((share) => (share > 1e-9 ? share : null)), type: "scatter", mode: "lines", name: `pair ${pair > 0 ? "+" : ""}${pair}`,
     line: { color: PAIRS[k % PAIRS.length], width: 2 },
   }));
   const made = layout(280, "position, base pitches", "load share");

@@ -35,11 +35,13 @@ class Page {
 
   offer(examples) {
     const list = byId("example");
-    list.replaceChildren(...examples.map(({ name, title }) => make("option", { value: name }, title)));
+    const opened = make("option", { value: "", hidden: true }, "what was opened");
+    list.replaceChildren(opened, ...examples.map(({ name, title }) => make("option", { value: name }, title)));
     list.addEventListener("change", () => this.begun(examples.find(({ name }) => name === list.value)));
   }
 
   begun(example) {
+    byId("example").value = example.name;
     byId("example-note").textContent = example.note;
     this.show(example.case);
   }
@@ -107,6 +109,8 @@ class Page {
     const href = `/v1/databases/${key}`;
     try {
       const facts = await get(href);
+      byId("example").value = "";
+      byId("example-note").textContent = "";
       this.show(facts.case);
       await this.result({ href, type: "application/x-netcdf", hash: key });
     } catch (problem) {
@@ -158,6 +162,7 @@ class Page {
       chosen.value = "";
       const text = await given.text();
       const content = given.name.endsWith(".json") ? parsed(text) : (await post("/v1/cases/from-toml", { toml: text })).case;
+      byId("example").value = "";
       byId("example-note").textContent = given.name;
       this.show(content);
     }));

@@ -85,6 +85,7 @@ export async function plot(node, figure) {
   }
   shown.set(node, figure);
   const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
+  node.style.height = `${layout.height}px`; // a plot that is resized takes the height of its place
   await Plotly.react(node, data, layout, CONFIG);
   node.dataset.drawn = "yes";
 }

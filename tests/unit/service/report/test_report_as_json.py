@@ -1,0 +1,65 @@
+"""The report as JSON: every figure of the page with its words, and a stored ladder drawn as a fresh one."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fe_contact.analysis import Frontier
+from fe_contact.analysis.rung_result import RungResult
+from fe_contact.ste import SteDatabase
+from service.problems import NotFound
+from service.report.as_json import page_json, stored_figures
+from service.report.content import page_of
+from service.report.frontier import frontier_page
+from service.report.inputs import read_inputs
+from service.report.stored_ladder import case_ladder
+
+
+def rung(name: str, error: float, seconds: float) -> RungResult:
+    """Return a rung that is so far off."""
+    ripple = np.array([1e-6, 2e-6])
+    return RungResult(
+        name, name, 4.0 * ripple, ripple, 0.01, error, 2.0 * error, seconds, {"contact": seconds}, 2**28
+    )
+
+
+LADDER = Frontier(
+    (rung("iso6336", 0.2, 0.01), rung("plane_strain", 0.04, 0.3), rung("3d_fine", float("nan"), 60.0)),
+    {"corrected": "not asked for"},
+    128,
+    "plane_strain",
+    "plane_strain",
+)
+
+
+def test_a_stored_table_has_the_figures_of_its_report(database: SteDatabase, tmp_path: Path) -> None:
+    file = tmp_path / "ste.nc"
+    database.to_netcdf(file)
+    found = stored_figures({"kind": "database", "file": str(file)})
+    page = page_of(read_inputs([file]))
+    assert json.loads(json.dumps(found, allow_nan=False)) == found
+    drawn = [figure for section in found["sections"] for figure in section["figures"]]
+    assert [f["key"] for f in drawn] == [f.key for section in page.sections for f in section.figures]
+    assert all(f["alternative"] and f["plot"]["data"] and f["plot"]["layout"] for f in drawn)
+    assert [h["value"] for h in found["headlines"]] == [h.value for h in page.headlines]
+
+
+def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path: Path) -> None:
+    file = tmp_path / "frontier.json"
+    file.write_text(json.dumps(LADDER.to_json(), allow_nan=False), encoding="utf-8")
+    fresh = page_json(frontier_page(LADDER, "What accuracy costs in time"))
+    assert stored_figures({"kind": "frontier", "file": str(file)}) == fresh
+    again = case_ladder(LADDER.to_json())
+    assert again is not None and again.to_json() == LADDER.to_json()
+
+
+@pytest.mark.parametrize("kind", ["frontier", "ablation"])
+def test_a_kind_without_figures_says_so(kind: str, tmp_path: Path) -> None:
+    file = tmp_path / f"{kind}.json"
+    file.write_text(json.dumps({"rungs": [{"name": "whole"}]}), encoding="utf-8")
+    with pytest.raises(NotFound, match=kind):
+        stored_figures({"kind": kind, "file": str(file)})
