@@ -64,7 +64,8 @@ def _show(outcomes: Sequence[Outcome], output: Path | None) -> None:
         )
         for o in outcomes
     ]
-    out.print(table(("family", "scene", "", "time, s", "CPU, s", "figure closest to its bound"), rows))
+    words = ("family", "scene", "figure closest to its bound")
+    out.print(table((*words[:2], "", "time, s", "CPU, s", words[2]), rows, words=words))
     for outcome in outcomes:
         if not outcome.passed:
             out.print(f"{outcome.scene.name}: {outcome.failure}", highlight=False)

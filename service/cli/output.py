@@ -29,11 +29,13 @@ def console() -> Console:
     return Console() if sys.stdout.isatty() else Console(width=200, no_color=True)
 
 
-def table(columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "") -> Table:
-    """Return a table of right-aligned numbers."""
+def table(
+    columns: Sequence[str], rows: Sequence[Sequence[str]], title: str = "", words: Sequence[str] = ()
+) -> Table:
+    """Return a table of right-aligned numbers; columns of `words` are aligned left."""
     found = Table(title=title or None, box=None, pad_edge=False, title_justify="left")
     for column in columns:
-        found.add_column(column, justify="right")
+        found.add_column(column, justify="left" if column in words else "right")
     for row in rows:
         found.add_row(*row)
     return found

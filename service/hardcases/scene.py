@@ -47,7 +47,9 @@ class Measured:
 
     @property
     def use(self) -> float | None:
-        """How much of its bound a figure uses, 1 at the bound; None for a bound of zero."""
+        """How much of its bound a figure uses; None for a bound of zero or one met exactly (a count)."""
+        if self.value in (self.most, self.least):
+            return None
         uses = []
         if self.most is not None and self.most > 0.0 and self.value >= 0.0:
             uses.append(self.value / self.most)

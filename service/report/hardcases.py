@@ -86,8 +86,9 @@ def _margins(outcomes: Sequence[Outcome]) -> Figure:
     return Figure(
         key="hardcases",
         title="How close the figures come to their bounds",
-        caption="Every figure with a bound that is not zero, over that bound (or the bound over it, where it "
-        f"must be larger); below {_SMALLEST_USE:g} drawn there. Near one stands physics, far below rounding.",
+        caption="Every figure with a bound that is neither zero nor met exactly, over that bound (or the "
+        f"bound over it, where it must be larger); below {_SMALLEST_USE:g} drawn there. Near one stands "
+        "physics, far below rounding.",
         alternative=f"The largest is {number(worst, 3)}.",
         content=(panel,),
         table=Table("Scenes by number", ("number", "scene", "result", "time, s"), names),

@@ -70,7 +70,7 @@ def thin_rim() -> Sequence[Measured]:
     finer = posed(_on_rim(thick[-1]), level="standard", effects={"thin_rim": "on"})
     growth = [after / before for before, after in pairwise(means)]
     return (
-        *soundness(problem, solution),
+        *soundness(problem, solution, 8),
         Measured("growth of mean STE from rim to thinner rim, least", min(growth), least=1.0),
         Measured("mean STE at half a module over the thickest rim", means[-1] / means[0], least=1.1),
         Measured(

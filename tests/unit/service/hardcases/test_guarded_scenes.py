@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 import service.cli.hardcases as verb
 from service.cli.commands import app as loa
-from service.hardcases import HARD_SCENES, run_scenes
+from service.hardcases import HARD_SCENES, Measured, run_scenes
 from service.problems import EXIT_BAD_INPUT, EXIT_FAILED
 
 
@@ -36,6 +36,12 @@ def test_a_scene_passes_by_its_figures_alone(scene, failure) -> None:
     assert not outcome.passed
     assert outcome.failure == failure
     json.dumps(outcome.to_json(), allow_nan=False)
+
+
+def test_what_meets_its_bound_exactly_is_no_margin() -> None:
+    assert Measured("answers", 1.0, least=1.0).use is None
+    assert Measured("left", 0.0, most=0.0).use is None
+    assert Measured("error", 0.5, most=2.0).use == 0.25
 
 
 def test_cpu_time_counts_what_a_scene_starts() -> None:
