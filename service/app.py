@@ -32,6 +32,7 @@ from service.routes.errors import documented, install_error_handlers
 from service.routes.figures import figures_router
 from service.routes.metrics import Metrics
 from service.routes.middleware import Guard
+from service.routes.openapi import install_description
 from service.routes.processes import processes_router
 from service.routes.warm_up import warm_up
 from service.settings import Settings
@@ -91,6 +92,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.state.context = context
     app.state.metrics = Metrics(context.submissions)
     install_error_handlers(app)
+    install_description(app)
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     jobs_shown = (landing.router, processes_router(offered), jobs.router, events.router)

@@ -1,0 +1,156 @@
+"""Bodies that the service answers with, as they are shown in its description."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from service.schemas.request_examples import BODIES, CASE
+from service.schemas.result_kinds import RESULT_KINDS
+
+Json = dict[str, Any]
+
+HASH = "5f1d8a3c0e7b4692d85c13f7a9e06b24c7d3185ae94f620bb1873ce5f90d24a6"
+JOB = "3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d"
+_INSTANT = "2026-01-31T12:00:00.000000Z"
+_LINK = {"href": "/v1/jobs", "rel": "self", "type": "application/json", "title": "This page"}
+STATUS: Json = {
+    "processID": "analyze",
+    "type": "process",
+    "jobID": JOB,
+    "status": "running",
+    "message": "Runs: compliance.",
+    "created": _INSTANT,
+    "started": _INSTANT,
+    "finished": None,
+    "updated": _INSTANT,
+    "progress": 24,
+    "stage": "compliance",
+    "stage_progress": 40,
+    "attempts": 1,
+    "links": [_LINK | {"href": f"/v1/jobs/{JOB}", "title": "Status"}],
+}
+_SUMMARY: Json = {
+    "id": "analyze",
+    "title": "STE database of a gear pair",
+    "description": "Contact analysis of a gear pair over positions and loads; makes an STE database.",
+    "version": "1",
+    "jobControlOptions": ["async-execute", "dismiss"],
+    "outputTransmission": ["reference"],
+    "links": [_LINK | {"href": "/v1/processes/analyze", "title": "Description"}],
+}
+_OUTPUT = {"type": "string", "contentMediaType": "application/x-netcdf"}
+_RESULT: Json = {"hash": HASH, "sha256": HASH[::-1], "size": 153_344}
+_CURVE: Json = {
+    "torque_n_m": 100.0,
+    "normal_force_n": 2660.4,
+    "misalignment_um": 0.0,
+    "center_distance_change_mm": 0.0,
+    "period": 1,
+    "position": [0.0, 0.5],
+    "ste_um": [9.7, 12.1],
+    "pair": [-1, 0],
+    "load_share": [[0.5, 0.5], [0.0, 1.0]],
+    "mean_um": 10.9,
+    "peak_to_peak_um": 2.8,
+    "harmonics_um": [1.1, 0.4],
+}
+_REPORT: Json = {
+    "title": "STE database",
+    "lead": "20/20 teeth, module 4 mm",
+    "alarms": [],
+    "headlines": [{"name": "peak to peak at 100 N m", "value": "2.80 um"}],
+    "sections": [{"title": "Transmission error", "text": "", "figures": [], "tables": []}],
+}
+
+ANSWERS: dict[str, Any] = {
+    "/v1/": {"title": "lineofaction", "description": "STE databases of gear pairs.", "links": [_LINK]},
+    "/v1/conformance": {"conformsTo": ["http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/core"]},
+    "/v1/processes": {"processes": [_SUMMARY], "links": [_LINK]},
+    "/v1/processes/{process_id}": _SUMMARY
+    | {
+        "inputs": {"case": {"title": "case", "description": "The case", "schema": {"type": "object"}}},
+        "outputs": {"database": {"title": "database", "description": "The table", "schema": _OUTPUT}},
+    },
+    "/v1/jobs": {"jobs": [STATUS], "links": [_LINK]},
+    "/v1/jobs/{job_id}": STATUS,
+    "/v1/jobs/{job_id}/results": {
+        "database": {"href": f"/v1/databases/{HASH}", "type": "application/x-netcdf", "hash": HASH}
+    },
+    "/v1/jobs/{job_id}/events": f'event: status\ndata: {{"jobID": "{JOB}", "status": "running"}}\n\n',
+    "/v1/databases": {
+        "databases": [
+            {
+                "hash": HASH,
+                "href": f"/v1/databases/{HASH}",
+                "created": _INSTANT,
+                "size": 153_344,
+                "case": CASE,
+            }
+        ],
+        "links": [_LINK | {"href": "/v1/databases"}],
+    },
+    "/v1/databases/{key}/query": {
+        "force_n": [1834.2, 2651.8],
+        "stiffness_n_per_um": [371.5, 402.3],
+        "validity": ["inside", "inside"],
+    },
+    "/v1/databases/{key}/ste": {
+        "curves": [_CURVE],
+        "effects": {"corner_contact": True},
+        "beyond_load_patches": 0,
+        "cpu_seconds": 0.01,
+    },
+    "/v1/plans": {"model": "plane_strain", "expected_seconds": 4.2, "memory_mb": 310.0},
+    "/v1/examples": [{"name": "spur", "title": "Spur 20/20", "note": "Seconds.", "case": CASE}],
+    "/v1/cases/outline": {"pinion": {"teeth": 20}, "wheel": {"teeth": 20}},
+    "/v1/cases/from-toml": {"case": CASE},
+    "/v1/cases/to-toml": BODIES["/v1/cases/from-toml"],
+    "/v1/effects": [
+        {
+            "name": "corner_contact",
+            "needs": ["gap"],
+            "adds": ["pairs outside the path of contact"],
+            "cost": "two more tooth pairs",
+            "sources": ["exact rigid gap on the line of action"],
+            "valid_for": "external and internal pairs",
+        }
+    ],
+    "/health": {"status": "ok"},
+    "/ready": {"status": "ready", "computations": {"successful": 3}},
+    **{f"{kind.path}/{{key}}": _RESULT for kind in RESULT_KINDS.values()},
+    **{f"{kind.path}/{{key}}/figures": _REPORT for kind in RESULT_KINDS.values()},
+}
+"""Answers that succeeded, by path."""
+
+
+def answer_example(path: str) -> Any:
+    """Return the answer of a path, None if there is none."""
+    return STATUS if path.endswith("/execution") else ANSWERS.get(path)
+
+
+def problem_example(status: int, phrase: str) -> Json:
+    """Return a problem of a status."""
+    fault = {
+        "field": "pair.pinion.bore_diameter_mm",
+        "value": 95.0,
+        "bound": "below the root diameter 70 mm (bore)",
+        "suggestion": "Lower the bore or add teeth.",
+    }
+    known: dict[int, Json] = {
+        404: {
+            "type": "urn:lineofaction:problem:not-found",
+            "detail": f"There is no database {HASH!r}. Submit its case again to compute it.",
+        },
+        422: {
+            "type": "urn:lineofaction:problem:bad-input",
+            "detail": "pair.pinion.bore_diameter_mm = 95.0: must be below the root diameter 70 mm (bore). "
+            "Lower the bore or add teeth.",
+            "errors": [fault],
+        },
+        429: {
+            "type": "urn:lineofaction:problem:queue-full",
+            "detail": "100 computations wait already. Try again in a while.",
+        },
+    }
+    plain = {"type": "about:blank", "title": phrase, "status": status, "detail": phrase, "errors": []}
+    return plain | known.get(status, {})

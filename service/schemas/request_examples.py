@@ -1,0 +1,92 @@
+"""Bodies that the service accepts, as they are shown in its description."""
+
+from __future__ import annotations
+
+from typing import Any
+
+Json = dict[str, Any]
+
+_GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
+CASE: Json = {
+    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": _GEAR, "wheel": _GEAR},
+    "load": {"torque_n_m": [10.0, 50.0, 100.0, 200.0, 400.0]},
+}
+"""The spur pair of Palermo et al., ISMA 2010."""
+
+
+def _bushing(shaft: str, position_mm: float) -> Json:
+    """Return a bearing of the scene."""
+    return {
+        "name": f"{shaft} at {position_mm:g}",
+        "shaft": shaft,
+        "position_mm": position_mm,
+        "radial_stiffness_n_per_m": 1e8,
+        "axial_stiffness_n_per_m": 1e8,
+        "damping_ratio": 0.05,
+    }
+
+
+SCENE: Json = {
+    "run": {"duration_s": 0.1},
+    "shafts": [
+        {"name": name, "length_mm": 200.0, "diameter_mm": 40.0, "origin_mm": [x, 0.0, 0.0]}
+        for name, x in (("input", 0.0), ("output", 80.0))
+    ],
+    "gears": [
+        {"name": name, "shaft": shaft, "position_mm": 100.0, "bore_diameter_mm": 40.0}
+        for name, shaft in (("pinion", "input"), ("wheel", "output"))
+    ],
+    "bushings": [_bushing(shaft, place) for shaft in ("input", "output") for place in (0.0, 200.0)],
+    "meshes": [{"name": "mesh", "driver": "pinion", "driven": "wheel", "case": CASE, "damping_ratio": 0.15}],
+    "drives": [{"name": "motor", "shaft": "input", "time_s": [0.0], "speed_rpm": [955.0]}],
+    "loads": [{"name": "brake", "shaft": "output", "torque_n_m": [100.0]}],
+    "outputs": {"sample_rate_hz": 20000.0},
+}
+
+INPUTS: dict[str, Json] = {
+    "analyze": {"case": CASE},
+    "flank": {"case": CASE, "torque_n_m": 100.0},
+    "sensitivity": {
+        "case": CASE,
+        "misalignment_um": [0.0, 30.0],
+        "center_distance_change_percent": [0.0, 0.1],
+    },
+    "ablate": {"case": CASE, "only": ["tooth_coupling"]},
+    "frontier": {"case": CASE},
+    "optimise": {
+        "case": CASE,
+        "torque_n_m": [50.0, 100.0, 200.0],
+        "variables": {"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}},
+    },
+    "simulate": {"scene": SCENE},
+    "modes": {"scene": SCENE, "speed_rpm": [0.0, 1500.0, 3000.0]},
+    "response": {"scene": SCENE, "speed_rpm": [300.0, 600.0, 900.0]},
+    "steady": {"scene": SCENE, "speed_rpm": [11000.0, 12000.0]},
+}
+"""Inputs of an execution, by process."""
+
+QUERY: Json = {"position": [0.0, 0.25], "deflection_um": [5.0, 7.5]}
+
+BODIES: dict[str, Json] = {
+    "/v1/databases/{key}/query": QUERY,
+    "/v1/databases/{key}/ste": {"torque_n_m": [100.0], "pinion": {"tip_relief_um": 10.0}},
+    "/v1/plans": {"inputs": {"case": CASE}},
+    "/v1/cases/outline": {"inputs": {"case": CASE}},
+    "/v1/cases/to-toml": {"inputs": {"case": CASE}},
+    "/v1/cases/from-toml": {
+        "toml": "[pair]\nnormal_module_mm = 4.0\ncenter_distance_mm = 80.0\n"
+        "[pair.pinion]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
+        "[pair.wheel]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
+        "[load]\ntorque_n_m = [100.0]\n"
+    },
+}
+"""Other bodies, by path."""
+
+
+def request_example(path: str) -> Json | None:
+    """Return the body of a path, None if there is none."""
+    parts = path.split("/")
+    if parts[-1] == "execution":
+        inputs = INPUTS.get(parts[-2])
+        return None if inputs is None else {"inputs": inputs}
+    return BODIES.get(path)

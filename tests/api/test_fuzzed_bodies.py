@@ -1,0 +1,147 @@
+"""Bodies that were right, spoiled at random: never a defect, every refusal a problem that says what is wrong.
+
+`LOA_FUZZED_BODIES` (scripts/nightly) asks for so many; a few come with every change. No worker runs what is
+accepted.
+"""
+
+from __future__ import annotations
+
+import copy
+import json
+import os
+import random
+import tempfile
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import cbor2
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+from small_table import small_table
+
+from service.app import create_app
+from service.schemas.answer_examples import HASH
+from service.schemas.request_examples import BODIES, INPUTS, QUERY
+from service.settings import Settings
+
+COUNT = int(os.environ.get("LOA_FUZZED_BODIES", "150"))
+LIVE = ("/v1/plans", "/v1/databases/{key}/ste")  # answered by a worker of their own, too slow for thousands
+TARGETS: dict[str, Any] = {
+    f"/v1/processes/{name}/execution": {"inputs": given} for name, given in INPUTS.items()
+}
+TARGETS |= {path.replace("{key}", HASH): body for path, body in BODIES.items() if path not in LIVE}
+QUERIES = f"/v1/databases/{HASH}/query"
+ODD: tuple[Any, ...] = (
+    *(None, True, False, 0, 1, -1, 2, 3, 1e-300, 1e308, -1e308, 2**53, 10**30, -0.0, 0.1, 1e6),
+    *(float("nan"), float("inf"), "", "on", "auto", "\x00", "\ud800", "x" * 300, "../../etc/passwd"),
+    *([], [0], [0, 0], [[]], {}, {"": 0}, {"x": {"y": []}}, [None], ["a"], "1", "1e5"),
+)
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[TestClient]:
+    """A client of an app with a table whose scheduler does not run."""
+    with tempfile.TemporaryDirectory(prefix="loa-fuzz-") as directory:
+        app = create_app(Settings(data_directory=Path(directory), queue_limit=100_000))
+        file = Path(directory) / "table.nc"
+        small_table().to_netcdf(file)
+        app.state.context.store.put(HASH, "database", file)
+        yield TestClient(app, raise_server_exceptions=False)
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """Return the paths of all parts of a body."""
+    inner = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    return [path, *(deeper for key, part in inner for deeper in places(part, (*path, key)))]
+
+
+def spoiled(chance: random.Random, body: Any) -> Any:
+    """Return a copy of a body with one to three parts changed, dropped, doubled or renamed."""
+    found = copy.deepcopy(body)
+    for _ in range(chance.randint(1, 3)):
+        *way, last = chance.choice(places(found)[1:] or [("nothing",)])
+        holder = found
+        for key in way:
+            holder = holder[key]
+        if isinstance(holder, dict):
+            _spoil_table(chance, holder, last)
+        elif isinstance(holder, list):
+            _spoil_list(chance, holder, last)
+    return found
+
+
+def _spoil_table(chance: random.Random, table: dict[Any, Any], key: Any) -> None:
+    """Change one entry of a table."""
+    deed = chance.choice(("odd", "odd", "near", "drop", "rename", "add"))
+    if deed == "near" and isinstance(table.get(key), int | float):
+        table[key] = table[key] * chance.choice((-1, 0, 0.5, 0.99, 1.01, 2, 10, 1000))
+    elif deed == "drop":
+        table.pop(key, None)
+    elif deed == "rename":
+        table[chance.choice((f"{key}_um", str(key)[:-1], "", "\x00"))] = table.pop(key, None)
+    elif deed == "add":
+        table[chance.choice(("misalignment_um", "effects", "accuracy", "unknown"))] = copy.deepcopy(
+            chance.choice(ODD)
+        )
+    else:
+        table[key] = copy.deepcopy(chance.choice(ODD))
+
+
+def _spoil_list(chance: random.Random, values: list[Any], index: int) -> None:
+    """Change one entry of a list."""
+    deed = chance.choice(("odd", "drop", "double", "turn", "many"))
+    if deed == "odd":
+        values[index] = copy.deepcopy(chance.choice(ODD))
+    elif deed == "drop":
+        del values[index]
+    elif deed == "double":
+        values.insert(index, copy.deepcopy(values[index]))
+    elif deed == "turn":
+        values.reverse()
+    else:
+        values.extend(values * chance.randint(1, 50))
+
+
+def encoded(chance: random.Random, path: str, body: Any) -> tuple[bytes, str]:
+    """Return a spoiled body in an encoding, at times with its bytes spoiled too."""
+    kinds = ("application/json", "application/cbor", "application/octet-stream")
+    kind = chance.choice(kinds) if path == QUERIES else kinds[0]
+    if kind == kinds[2]:
+        content = np.array([chance.choice((0.1, 5.0, np.nan, 1e9)) for _ in range(8)]).tobytes()
+    elif kind == kinds[1]:
+        content = cbor2.dumps(_without_surrogates(spoiled(chance, body)))
+    else:
+        content = json.dumps(spoiled(chance, body)).encode()
+    if content and chance.random() < 0.15:
+        place = chance.randrange(len(content))
+        content = (
+            content[:place] + bytes([chance.randrange(256)]) * chance.randint(0, 9) + content[place + 1 :]
+        )
+    return content, kind
+
+
+def _without_surrogates(value: Any) -> Any:
+    """Return what CBOR can hold."""
+    return json.loads(json.dumps(value).replace("\\ud800", "?"))
+
+
+def test_no_spoiled_body_is_a_defect(client: TestClient) -> None:
+    chance, statuses = random.Random(20261120), Counter[int]()
+    for number in range(COUNT):
+        path, body = chance.choice([*TARGETS.items(), (QUERIES, QUERY)])
+        content, kind = encoded(chance, path, body)
+        answer = client.post(path, content=content, headers={"Content-Type": kind})
+        statuses[answer.status_code] += 1
+        told = f"body {number} to {path}: {content!r} -> {answer.text[:500]}"
+        assert answer.status_code in (200, 201, 400, 404, 422), told
+        if answer.status_code >= 400:
+            assert answer.headers["content-type"] == "application/problem+json", told
+            assert answer.json()["detail"], told
+    assert sum(statuses.values()) == COUNT
+    assert min(statuses[422], statuses[200] + statuses[201]) > COUNT // 20, statuses
+    if "LOA_FUZZED_BODIES" in os.environ:
+        Path("out").mkdir(exist_ok=True)
+        Path("out/fuzzed_bodies.json").write_text(json.dumps(dict(sorted(statuses.items()))))

@@ -1,0 +1,96 @@
+"""Every body of the API has an example: those sent are accepted, those answered are as their schemas say."""
+
+from __future__ import annotations
+
+import json
+import re
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import cbor2
+import jsonschema
+import pytest
+from fastapi.testclient import TestClient
+from small_table import small_table
+
+from service.app import create_app
+from service.schemas.answer_examples import HASH
+from service.settings import Settings
+
+BINARY = ("application/x-netcdf", "application/octet-stream")
+_directory = tempfile.TemporaryDirectory(prefix="loa-examples-")
+_app = create_app(Settings(data_directory=Path(_directory.name)))
+DOCUMENT: dict[str, Any] = _app.openapi()
+OPERATIONS = [
+    (method, path, operation)
+    for path, methods in DOCUMENT["paths"].items()
+    for method, operation in methods.items()
+]
+SENT = [
+    (path, kind, body)
+    for _, path, operation in OPERATIONS
+    for kind, body in operation.get("requestBody", {}).get("content", {}).items()
+    if kind not in BINARY
+]
+ANSWERED = [
+    (method, path, status, kind, body)
+    for method, path, operation in OPERATIONS
+    for status, response in operation["responses"].items()
+    for kind, body in response.get("content", {}).items()
+    if kind not in BINARY
+]
+
+
+def conforms(example: Any, schema: dict[str, Any]) -> None:
+    """Check an example against its schema."""
+    jsonschema.validate(example, {"components": DOCUMENT["components"], **schema})
+
+
+def test_every_reference_leads_somewhere() -> None:
+    text = json.dumps(DOCUMENT)
+    named = set(re.findall(r'"\$ref": "#/components/schemas/(\w+)"', text))
+    assert named and named <= set(DOCUMENT["components"]["schemas"])
+    assert text.count('"$ref"') == len(re.findall(r'"\$ref": "#/components/schemas/\w+"', text))
+
+
+@pytest.mark.parametrize(("path", "kind", "body"), SENT, ids=[f"{path} {kind}" for path, kind, _ in SENT])
+def test_a_body_to_send_has_an_example_of_its_schema(path: str, kind: str, body: dict[str, Any]) -> None:
+    conforms(body["example"], body["schema"])
+
+
+def test_every_answer_has_an_example_of_its_schema() -> None:
+    for method, path, status, kind, body in ANSWERED:
+        assert "example" in body, f"{method} {path} {status} {kind}"
+        conforms(body["example"], body.get("schema", {}))
+        if kind == "application/problem+json":
+            assert body["example"]["status"] == int(status)
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A client of the app with a table; nothing is computed, for it is not started."""
+    file = tmp_path_factory.mktemp("table") / "table.nc"
+    small_table().to_netcdf(file)
+    _app.state.context.store.put(HASH, "database", file)
+    yield TestClient(_app)
+
+
+LIVE = ("/v1/plans", "/v1/databases/{key}/ste")  # answered by a worker of their own: test_live_over_http
+
+
+@pytest.mark.parametrize(
+    ("path", "kind", "body"),
+    [entry for entry in SENT if entry[0] not in LIVE],
+    ids=[f"{path} {kind}" for path, kind, _ in SENT if path not in LIVE],
+)
+def test_the_example_of_a_body_is_accepted(
+    client: TestClient, path: str, kind: str, body: dict[str, Any]
+) -> None:
+    url = path.replace("{key}", HASH)
+    if kind == "application/cbor":
+        answer = client.post(url, content=cbor2.dumps(body["example"]), headers={"Content-Type": kind})
+    else:
+        answer = client.post(url, json=body["example"])
+    assert answer.status_code in (200, 201), answer.text

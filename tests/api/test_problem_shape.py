@@ -1,0 +1,91 @@
+"""Whatever is wrong with a request, to whichever route: one error shape, its status documented."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from service_stand_ins import REGISTRY
+
+from service.app import create_app
+from service.settings import Settings
+
+_directory = tempfile.TemporaryDirectory(prefix="loa-problems-")
+_app = create_app(Settings(data_directory=Path(_directory.name), body_limit=2000), REGISTRY)
+DOCUMENT: dict[str, Any] = _app.openapi()
+ROUTES = [(method.upper(), path) for path, methods in DOCUMENT["paths"].items() for method in methods]
+NAMES = {"{key}": "0" * 64, "{job_id}": "nothing", "{process_id}": "nothing"}
+WRONG_BODIES: dict[str, tuple[bytes, dict[str, str]]] = {
+    "no JSON": (b"{", {"Content-Type": "application/json"}),
+    "no text": (b"\xff\xfe", {"Content-Type": "application/json"}),
+    "a list": (b"[]", {"Content-Type": "application/json"}),
+    "empty": (b"", {"Content-Type": "application/json"}),
+    "unknown field": (b'{"nothing": 1}', {"Content-Type": "application/json"}),
+    "deep": (b'{"inputs":' * 150 + b"1" + b"}" * 150, {"Content-Type": "application/json"}),
+    "other type": (b"a=1", {"Content-Type": "application/x-www-form-urlencoded"}),
+    "too long": (b" " * 3000, {"Content-Type": "application/json"}),
+}
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[TestClient]:
+    """A client of an app that is not started."""
+    yield TestClient(_app, raise_server_exceptions=False)
+
+
+def named(path: str, names: dict[str, str] = NAMES) -> str:
+    """Return a path with values in place of its parameters."""
+    for parameter, value in names.items():
+        path = path.replace(parameter, value)
+    return path
+
+
+def is_problem(answer: Any, *statuses: int) -> None:
+    """Check the one error shape."""
+    assert answer.status_code in statuses, answer.text
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert set(answer.json()) - {"reference"} == {"type", "title", "status", "detail", "errors"}
+    assert answer.json()["status"] == answer.status_code
+
+
+@pytest.mark.parametrize("wrong", WRONG_BODIES)
+@pytest.mark.parametrize("path", [path for method, path in ROUTES if method == "POST"])
+def test_a_wrong_body_is_a_problem_that_is_documented(client: TestClient, path: str, wrong: str) -> None:
+    content, headers = WRONG_BODIES[wrong]
+    answer = client.post(named(path), content=content, headers=headers)
+    is_problem(answer, *((413,) if wrong == "too long" else (400, 404, 415, 422)))
+    assert str(answer.status_code) in DOCUMENT["paths"][path]["post"]["responses"]
+
+
+@pytest.mark.parametrize("path", [path for _, path in ROUTES if "{" in path])
+def test_what_does_not_exist_is_a_problem(client: TestClient, path: str) -> None:
+    for method in [method for method, known in ROUTES if known == path and method != "POST"]:
+        is_problem(client.request(method, named(path)), 404)
+        odd = named(path, dict.fromkeys(NAMES, "%00%2e%2e%ff"))
+        is_problem(client.request(method, odd), 404, 422)
+
+
+@pytest.mark.parametrize("path", sorted({path for _, path in ROUTES}))
+def test_a_method_that_is_none_is_a_problem_and_says_which_are(client: TestClient, path: str) -> None:
+    known = {method for method, other in ROUTES if other == path}
+    answer = client.request("PATCH", named(path))
+    is_problem(answer, 405)
+    assert known <= {method.strip() for method in answer.headers["allow"].split(",")}
+
+
+def test_results_that_never_change_say_so_to_caches(client: TestClient) -> None:
+    file = Path(_directory.name) / "file.nc"
+    file.write_bytes(b"table")
+    context = client.app.state.context  # type: ignore[attr-defined]
+    context.store.put("1" * 64, "database", file)
+    accept = {"Accept": "application/x-netcdf"}
+    answer = client.get(f"/v1/databases/{'1' * 64}", headers=accept)
+    assert answer.headers["cache-control"].endswith("immutable") and answer.headers["vary"] == "Accept"
+    tag = answer.headers["etag"]
+    for known, status in ((tag, 304), (f"W/{tag}", 304), (f'"a", {tag}', 304), ("*", 304), ('"a"', 200)):
+        again = client.get(f"/v1/databases/{'1' * 64}", headers=accept | {"If-None-Match": known})
+        assert again.status_code == status, known
