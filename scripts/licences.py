@@ -1,0 +1,112 @@
+"""Write docs/licences.md: the dependencies of the lock file with the licences of what is installed."""
+
+from __future__ import annotations
+
+import re
+import sys
+import tomllib
+from importlib import metadata
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs" / "licences.md"
+_HEAD = """# Dependencies and their licences
+
+Every package of `requirements.lock` with the licence that its own metadata state, and what asks for it: the
+service itself, an extra, or the tests alone. Written by `scripts/licences.py`. lineofaction is licensed
+GPL-3.0-or-later, because gmsh is GPL-2.0-or-later. MKL, which comes with the extra `fast` alone, is
+proprietary (Intel Simplified Software License): it is never in the image, and who passes on a program with
+both has to see that he may. The image also holds packages of its Debian base, under their own licences.
+
+| package | version | licence | asked for by |
+|---|---|---|---|
+"""
+_LINE = re.compile(r"(?P<name>[A-Za-z0-9._-]+)==(?P<version>[^ ;]+)")
+_STATED_ELSEWHERE = {  # in files of the packages, not in their metadata
+    "axe-playwright-python": "MIT (axe-core in it: MPL-2.0)",
+    "exudyn": "BSD-3-Clause",
+    "fmpy": "BSD-2-Clause",
+    "matplotlib": "PSF-based (matplotlib)",
+}
+
+
+def locked() -> dict[str, list[str]]:
+    """Return the versions of every locked package; some have one for each version of Python."""
+    found: dict[str, list[str]] = {}
+    for line in (ROOT / "requirements.lock").read_text("utf-8").splitlines():
+        if match := _LINE.match(line):
+            found.setdefault(match["name"], []).append(match["version"])
+    return found
+
+
+def licence(name: str) -> str:
+    """Return the licence of an installed package."""
+    if name in _STATED_ELSEWHERE:
+        return _STATED_ELSEWHERE[name]
+    facts = metadata.metadata(name)
+    if facts.get("License-Expression"):
+        return facts["License-Expression"]
+    marks = [
+        mark.split(" :: ")[-1] for mark in facts.get_all("Classifier") or [] if mark.startswith("License")
+    ]
+    text = (facts.get("License") or "").strip().split("\n")[0]
+    short = text if 0 < len(text) < 60 and "opyright" not in text and "===" not in text else ""
+    if marks and marks != ["Other/Proprietary License"]:
+        return ", ".join(marks)
+    return short or ", ".join(marks) or "not stated"
+
+
+def askers() -> dict[str, str]:
+    """Return for every package the first of: service, an extra, tests."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    groups = {"service": project["dependencies"]}
+    groups |= {f"extra `{name}`": wanted for name, wanted in extras.items() if name != "dev"}
+    groups["tests"] = extras["dev"]
+    found: dict[str, str] = {}
+    for group, wanted in groups.items():
+        for requirement in wanted:
+            _follow(requirement, group, found)
+    return found
+
+
+def _follow(requirement: str, group: str, found: dict[str, str]) -> None:
+    """Enter a requirement and what it asks for itself."""
+    match = re.match(r"([A-Za-z0-9._-]+)(?:\[([^\]]*)\])?", requirement)
+    assert match is not None
+    name, wanted = _plain(match[1]), (match[2] or "").split(",")
+    if name in found and wanted == [""]:
+        return
+    found.setdefault(name, group)
+    try:
+        further = metadata.requires(name) or []
+    except metadata.PackageNotFoundError:
+        return
+    for line in further:
+        extra = re.search(r"extra *== *['\"]([^'\"]+)['\"]", line)
+        if extra is None or extra[1] in wanted:
+            _follow(line, group, found)
+
+
+def _plain(name: str) -> str:
+    """Return the normalised name of a package."""
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def main() -> int:
+    """Write the page."""
+    by = askers()
+    rows = []
+    for name, versions in sorted(locked().items()):
+        try:
+            text = licence(name)
+        except metadata.PackageNotFoundError:
+            print(f"{name} is not installed", file=sys.stderr)
+            return 1
+        rows.append(f"| {name} | {', '.join(versions)} | {text} | {by.get(_plain(name), 'tests')} |")
+    PAGE.write_text(_HEAD + "\n".join(rows) + "\n", encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,32 @@
+"""The list of licences has every locked package, and only such as let the image be passed on."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[3]
+FREE = "MIT|BSD|Apache|PSF|Python Software Foundation|ISC|MPL|Mozilla|LGPL-3.0|GPLv2\\+"
+
+
+def rows() -> list[list[str]]:
+    """Return the rows of the page."""
+    text = (ROOT / "docs" / "licences.md").read_text("utf-8")
+    lines = [line for line in text.splitlines() if line.startswith("| ") and "version" not in line]
+    return [[cell.strip() for cell in line.strip("|").split(" | ")] for line in lines]
+
+
+def test_every_locked_package_is_listed_at_its_versions() -> None:
+    lock = (ROOT / "requirements.lock").read_text("utf-8")
+    locked = set(re.findall(r"^([A-Za-z0-9._-]+)==([^ ;\n]+)", lock, flags=re.MULTILINE))
+    listed = {(row[0], version) for row in rows() for version in row[1].split(", ")}
+    assert locked == listed, "write it anew: python scripts/licences.py"
+
+
+def test_every_licence_is_stated_and_those_of_the_service_let_it_be_passed_on_under_the_gpl() -> None:
+    assert [row for row in rows() if row[2] in ("", "not stated")] == []
+    bound = [row for row in rows() if row[3] != "extra `fast`" and re.search(FREE, row[2]) is None]
+    assert bound == []
+    service = [row for row in rows() if row[3] == "service"]
+    assert len(service) > 40
+    assert [row for row in rows() if row[3] == "extra `fast`" and "Intel" in row[2]], "MKL is told apart"
