@@ -88,6 +88,9 @@ def worth_scenes(folder: Path) -> dict[str, Scene]:
         "helical, overhung disc, 12000 rpm": _turning(_disc(helical), CONSTANT(12000.0 * RPM)),
         "spur on rollers with clearance, 2000 rpm": _turning(rolling, CONSTANT(2000.0 * RPM)),
         "spur on rollers, lightly loaded, 4000 rpm": _turning(rolling, fast, torque=8.0),
+        "spur on rollers with clearance, falling load, 3000 rpm": _unloaded(
+            _turning(rolling, CONSTANT(3000.0 * RPM), 0.4)
+        ),
         "spur, light load, backlash, 4000 rpm": _turning(
             _with_mesh(spur, coast=CoastFlank(60e-6), damping_ratio=0.03), fast, torque=12.0
         ),
@@ -132,6 +135,12 @@ def _turning(scene: Scene, speed: TimeLaw, duration: float = 0.2, torque: float 
         outputs=Outputs(sample_rate=50e3, energy_audit=False, receipt="minimal"),
         on_violation="report",
     )
+
+
+def _unloaded(scene: Scene) -> Scene:
+    """Let the load fall to a twelfth along the run."""
+    falling = TimeLaw((0.0, scene.duration), (120.0, 10.0))
+    return replace(scene, loads=(replace(scene.loads[0], torque=falling),))
 
 
 def _with_mesh(scene: Scene, **changes: object) -> Scene:

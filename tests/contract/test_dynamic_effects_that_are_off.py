@@ -13,6 +13,7 @@ from dynamics.forces import CoastFlank
 from dynamics.simulate import simulate
 from dynamics.system import Scene
 from dynamics.system.effects import EFFECTS, MESH_EFFECTS, ledger
+from dynamics.worth import decide_effects, estimate_worths
 
 RPM = np.pi / 30.0
 SERIES = ("dynamic_transmission_error", "mesh_force", "coast_force", "bearing_force", "drive_torque")
@@ -48,6 +49,25 @@ def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
         "bearing_force",
         "drive_torque",
     ):
+        np.testing.assert_array_equal(getattr(off, series), getattr(without, series), err_msg=series)
+    assert off.statistics == without.statistics
+
+
+def test_a_run_with_an_effect_left_off_for_a_tolerance_is_that_of_a_build_without_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    whole = everything()
+    scene = replace(whole, drives=(replace(whole.drives[0], speed=TimeLaw.constant(40.0 * RPM)),))
+    decided = decide_effects(replace(scene, tolerance=0.05))
+    assert "gyroscopic" in estimate_worths(scene)
+    off = simulate(replace(scene, tolerance=0.05))
+    left = {entry["effect"] for entry in off.effect_ledger["entries"] if not entry["on"]}
+    assert set(decided.left_off) <= left
+    assert "gyroscopic" in left
+    remaining = tuple(effect for effect in EFFECTS if effect.name not in left)
+    monkeypatch.setattr(ledger, "EFFECTS", remaining)
+    without = simulate(scene)
+    for series in SERIES:
         np.testing.assert_array_equal(getattr(off, series), getattr(without, series), err_msg=series)
     assert off.statistics == without.statistics
 

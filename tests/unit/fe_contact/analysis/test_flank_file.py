@@ -74,7 +74,9 @@ def test_the_scene_names_load_alignment_and_marks(found: LoadDistribution) -> No
 def test_the_making_is_recorded_and_the_hash_is_of_what_decides(found: LoadDistribution) -> None:
     metadata = found.metadata
     assert metadata.case == {"name": "spur"}
-    assert set(metadata.receipt["stages"]) == {"compliance", "contact"}
+    assert set(metadata.receipt["stages"]) == {"compliance", "contact", "assumptions"}
+    assert {one["assumption"] for one in metadata.receipt["assumptions"]} >= {"coast flanks stay apart"}
+    assert metadata.receipt["repeated"] == []
     assert len(metadata.content_hash) == 64
     assert {entry["name"] for entry in metadata.effect_ledger} >= {"corner_contact", "misalignment"}
 
