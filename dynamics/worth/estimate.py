@@ -15,6 +15,9 @@ from dynamics.types import FloatArray, Json
 from dynamics.worth.linear_figures import LinearFigures, linear_figures
 from dynamics.worth.visits import visits
 
+ROUNDING = 1e-8
+"""Relative change below which an estimate says nothing."""
+
 
 @dataclass(frozen=True)
 class Worth:
@@ -57,9 +60,10 @@ class Worth:
     @property
     def words(self) -> str:
         """The relative changes, in words."""
+        parts = (self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
+        mean, ripple, force = (f"{100 * part:.2g} %" if part > ROUNDING else "nothing" for part in parts)
         return (
-            f"{100 * self.relative_mean:.2g} % of the mean, {100 * self.relative_peak_to_peak:.2g} % of the "
-            f"peak-to-peak transmission error, {100 * self.relative_bearing_force:.2g} % of bearing forces"
+            f"{mean} of the mean, {ripple} of the peak-to-peak transmission error, {force} of bearing forces"
         )
 
     def to_json(self) -> Json:

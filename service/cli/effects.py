@@ -57,5 +57,6 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
             since = f", from {again['since']:.6g} s on" if again.get("since") else ""
             yield f"repeated with {name}: {reason} (first run {again['seconds']:.2g} s{since})"
     for one in attributes.get("effect_ledger", {}).get("checks", ()):
-        if not one["holds"]:
-            yield f"DOES NOT HOLD: {one['assumption']} ({one['part']}); {one['reason']}"
+        if one["holds"] is False:
+            part = one["part"] or one["effect"]
+            yield f"DOES NOT HOLD: {one['assumption']} ({part}); {one['reason']}"
