@@ -60,7 +60,7 @@ def compute_database(
         clock,
     )
     with clock.stage("contact"):
-        contact = contact_receipt(run.solved, run.support)
+        contact = contact_receipt(run.solved, run.support, condition=full)
     judged = unjudged_table(run.table, run.places, run.plan)
     if full:
         coarse = laid_out(run.checked, run.plan, clock, report, cache, coarse=True)

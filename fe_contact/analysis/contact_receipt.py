@@ -17,13 +17,15 @@ FEW_ITERATIONS = 40
 Solved = Sequence[tuple[ContactProblem, ContactSolution]]
 
 
-def contact_receipt(solved: Solved, support: Solved) -> Json:
+def contact_receipt(solved: Solved, support: Solved, *, condition: bool = True) -> Json:
     """Return figures over all places of a table, at its own loads and at the support loads.
 
     Parameters
     ----------
     solved, support : sequence of (ContactProblem, ContactSolution)
         Of every place. Support loads that failed anywhere are not in the table, and are named here.
+    condition : bool
+        Whether the condition number is computed, which takes some per cent of the contact; else it is None.
     """
     solutions = [solution for _, solution in solved]
     iterations = np.concatenate([solution.iterations.ravel() for solution in solutions])
@@ -33,7 +35,7 @@ def contact_receipt(solved: Solved, support: Solved) -> Json:
         "newton_iterations_mean": float(iterations.mean()),
         f"newton_points_over_{FEW_ITERATIONS}": int(np.count_nonzero(iterations > FEW_ITERATIONS)),
         "residuals_max": max(worst_residual(solution) for solution in solutions),
-        "condition_number_max": worst_condition(solved),
+        "condition_number_max": worst_condition(solved) if condition else None,
         "patch_outgrown_points": sum(int(solution.beyond.sum()) for solution in solutions),
         "failed_points": failed_points(solutions),
         "support_loads_left_out": support[0][1].load[left_out].tolist(),

@@ -13,6 +13,7 @@ from fe_contact.effects.flipping import flipped
 from fe_contact.effects.worth import Worth, estimate_worth, estimate_worths
 from fe_contact.errors import InputError
 from fe_contact.planning import Plan, make_plan, planned, predict_run
+from fe_contact.sampled import LOADS
 from fe_contact.types import Json
 
 NOT_CHECKED = "no; switching it over measures it (ablation)"
@@ -42,27 +43,22 @@ def effect_ledger(
     """
     request = checked.request
     worths: dict[str, Worth | None] = {}
+    costs: dict[str, float | None] = {}
     if estimates:
+        costs = _costs(checked, cache, plan)
         own = [effect.name for effect in EFFECTS if effect.name not in request.spared]
-        worths = estimate_worths(request.scene, checked.decided, own, EFFECTS)
+        worths = estimate_worths(request.scene, checked.decided, own, EFFECTS, most_loads=LOADS)
         for name in request.spared:
             worths[name] = estimate_worth(*checked.judging(name), name, EFFECTS)
     return [
-        _entry(checked, entry, worths.get(entry.name), (cache, plan), assumptions, estimates)
-        for entry in checked.ledger
+        _entry(entry, worths.get(entry.name), costs.get(entry.name), assumptions) for entry in checked.ledger
     ]
 
 
 def _entry(
-    checked: Checked,
-    entry: LedgerEntry,
-    worth: Worth | None,
-    known: tuple[Path | None, Plan | None],
-    assumptions: Sequence[Assumption],
-    estimates: bool,
+    entry: LedgerEntry, worth: Worth | None, seconds: float | None, assumptions: Sequence[Assumption]
 ) -> Json:
     """One effect."""
-    seconds = _cost(checked, entry, *known) if estimates else None
     found = [one for one in assumptions if one.effect == entry.name]
     return entry.to_json() | {
         "worth_estimate": None if worth is None else worth.to_json(),
@@ -73,18 +69,25 @@ def _entry(
     }
 
 
-def _cost(checked: Checked, entry: LedgerEntry, cache: Path | None, plan: Plan | None) -> float | None:
-    """Predict the CPU seconds that the effect adds to the run.
+def _costs(checked: Checked, cache: Path | None, plan: Plan | None) -> dict[str, float | None]:
+    """Predict the CPU seconds that each effect adds to the run.
 
     None if it cannot be switched over, and where it is off without having been called for: nothing was saved.
     """
-    if not (entry.on or entry.verdict.on):
-        return None
+    here = _predicted(checked, cache, plan)
+    acting = [entry for entry in checked.ledger if entry.on or entry.verdict.on]
+    return {entry.name: _cost(checked, entry, here, (cache, plan)) for entry in acting}
+
+
+def _cost(
+    checked: Checked, entry: LedgerEntry, here: float, known: tuple[Path | None, Plan | None]
+) -> float | None:
+    """CPU seconds of one effect, of which the run itself is predicted to take `here`."""
     try:
         other = switched_over(checked, entry.name, "off" if entry.on else "on")
     except InputError:
         return None
-    here, there = (_predicted(one, cache, plan) for one in (checked, other))
+    there = _predicted(other, *known)
     return here - there if entry.on else there - here
 
 

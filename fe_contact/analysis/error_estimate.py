@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.analysis.position_nodes import PositionNodes
+from fe_contact.analysis.position_errors import PositionErrors
+from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactSolution
@@ -24,10 +25,9 @@ from fe_contact.planning import Plan, PlaneDiscretisation
 from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03
-"""Error of the correction for a finite width in parts of the correction itself, at any position."""
-CORRECTION_ERROR_OF_CURVES = 0.025
-"""The same of mean, peak-to-peak and harmonics. The largest seen on the cases of docs/accuracy.md that are
-not held out is 0.033, of peak-to-peak at a face of 1.2 modules, of which the mesh covers its part."""
+"""Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
+peak-to-peak and harmonics on the cases of docs/accuracy.md that are not held out is 0.033, of peak-to-peak at
+a face of 1.2 modules, of which the mesh covers its part."""
 
 
 @dataclass(frozen=True)
@@ -79,65 +79,69 @@ def _largest_known(errors: FloatArray) -> list[float | None]:
 
 @dataclass(frozen=True)
 class Nested:
-    """Solutions of every place at the table's positions, from the run's own and rougher discretisations.
+    """STE at some points of a table, from the run's own and rougher discretisations.
 
     Attributes
     ----------
-    fine : list of ContactSolution
-        The table's.
-    plane : list of ndarray, shape (P, F)
-        STE in m without the correction for a finite width; that of `fine` if there is none.
-    coarse : list of ndarray
+    sample : TableSample
+        The points.
+    table : ndarray, shape (T R, f, m, d)
+        The table's own, m.
+    plane : ndarray
+        Without the correction for a finite width; `table` if there is none.
+    coarse : ndarray
         On the coarse meshes, without that correction.
-    sliced : list of ndarray
-        In half the slices; that of `fine` in the plane.
+    sliced : ndarray
+        In half the slices; `table` in the plane.
     """
 
-    fine: list[ContactSolution]
-    plane: list[FloatArray]
-    coarse: list[FloatArray]
-    sliced: list[FloatArray]
-
-    @property
-    def table(self) -> list[FloatArray]:
-        """STE of `fine`."""
-        return [solution.deflection for solution in self.fine]
+    sample: TableSample
+    table: FloatArray
+    plane: FloatArray
+    coarse: FloatArray
+    sliced: FloatArray
 
 
 def estimate_errors(
-    places: Places, nested: Nested, nodes: PositionNodes, plan: Plan, stands_in: float = 0.0
+    places: Places,
+    solutions: list[ContactSolution],
+    nested: Nested,
+    positions: PositionErrors,
+    plan: Plan,
+    stands_in: float = 0.0,
 ) -> ErrorSources:
     """Combine the measured differences.
 
     Parameters
     ----------
     places : Places
+    solutions : list of ContactSolution
+        The table's.
     nested : Nested
-    nodes : PositionNodes
-        With the interpolation error of the judged places; the largest of them stands for every place.
+    positions : PositionErrors
+        The largest of the judged places stand for every place.
     plan : Plan
     stands_in : float
         Relative error of plane strain where it stands in for a finite width uncorrected.
     """
     made = plan.discretisation
-    free_ends = _differences(nested.table, nested.plane, CORRECTION_ERROR)
+
+    def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
+        """Return a part of the differences of STE, at all points."""
+        return nested.sample.spread_points(part * np.nan_to_num(np.abs(these - those)))
+
+    free_ends = left(nested.table, nested.plane, CORRECTION_ERROR)
     if stands_in:
-        free_ends = [stands_in * np.nan_to_num(np.abs(curve)) for curve in nested.table]
-    judged = nodes.error.reshape(len(nodes.error), -1, plan.load.size).max(axis=1)
+        curves = [stands_in * np.nan_to_num(np.abs(solution.deflection)) for solution in solutions]
+        free_ends = places.gathered(curves)
     return ErrorSources(
-        places.gathered(_differences(nested.plane, nested.coarse, made.remaining)),
-        places.gathered(_differences(nested.table, nested.sliced, made.remaining_slices)),
-        places.gathered([judged] * len(nested.fine)),
-        places.gathered([contact_error(solution) for solution in nested.fine]),
-        places.gathered(free_ends),
+        left(nested.plane, nested.coarse, made.remaining),
+        left(nested.table, nested.sliced, made.remaining_slices),
+        np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *places.shape)),
+        places.gathered([contact_error(solution) for solution in solutions]),
+        free_ends,
         left_out(plan, places.places[0].contact.pair),
     )
-
-
-def _differences(these: list[FloatArray], those: list[FloatArray], part: float) -> list[FloatArray]:
-    """Return a part of the differences of STE (P, F) of every place, m."""
-    pairs = zip(these, those, strict=True)
-    return [part * np.nan_to_num(np.abs(one - other)) for one, other in pairs]
 
 
 def left_out(plan: Plan, pair: ParallelAxes) -> float:

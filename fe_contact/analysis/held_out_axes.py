@@ -7,19 +7,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.sampled import LOADS, sample_of, spread
 from fe_contact.analysis.table_places import Place, Places, table_places
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
+from fe_contact.sampled import LOADS, WIDE_INTERVALS, WIDE_PROBES, sample_of, some_positions, spread
 from fe_contact.ste import SteDatabase
 from fe_contact.ste.curve_quantities import QUANTITIES, quantity_changes
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import FloatArray, IntArray, Json
 
-LOAD_PROBES = np.array([0.25, 0.5, 0.75])
-"""Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it."""
-FEWEST = 32
-"""Positions at which loads and misalignments are judged, at least, if the table has as many."""
+LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.array([0.5])
+"""Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it. Of more
+than four intervals the middles alone: those are short."""
 POSITIONS = 16
 """Positions at which an interval of centre distances is judged: each needs a compliance of its own."""
 
@@ -88,7 +87,15 @@ def held_out_axes(
         table.force_table()
     except DatabaseError:
         return {}
-    return _measured(table, places, scene, choices)
+    judged = _Judged(table, some_positions(table.position.size), places, scene, choices)
+    found = {}
+    if table.force.size > 1:
+        found["force"] = judged.force()
+    if table.misalignment.size > 1:
+        found["misalignment"] = judged.misalignment()
+    if table.center_distance_change.size > 1:
+        found["center_distance_change"] = judged.center_distance_change()
+    return found
 
 
 def _first_pitch(table: SteDatabase) -> SteDatabase:
@@ -104,56 +111,72 @@ def _first_pitch(table: SteDatabase) -> SteDatabase:
     return replace(table, **arrays, period=1)
 
 
-def _measured(
-    table: SteDatabase, places: Places, scene: ContactScene, choices: Mapping[str, str]
-) -> dict[str, AxisError]:
-    """Measure every axis of two nodes or more."""
+@dataclass(frozen=True)
+class _Judged:
+    """The first pitch of a table that is held against solutions at some of its positions."""
 
-    def curves(place: Place, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
+    table: SteDatabase
+    rows: IntArray
+    places: Places
+    scene: ContactScene
+    choices: Mapping[str, str]
+
+    def force(self) -> AxisError:
+        """Judge the loads."""
+        force, m, d = self.table.force, self._nearest("misalignment"), self._nearest("center_distance_change")
+        probes = LOAD_PROBES if force.size <= WIDE_INTERVALS + 1 else MIDDLE
+        loads = force[:-1, None] ** (1.0 - probes) * force[1:, None] ** probes
+        (place,) = self._held_out(m, d)
+        self._keep_rows(place)
+        curves = self._curves(place, self.rows, loads.ravel(), m[0], d[0])
+        error = _worst(curves).reshape(loads.shape).max(axis=1)
+        change = self._changes(curves).reshape(-1, *loads.shape).max(axis=2)
+        return AxisError(np.sqrt(force[1:] * force[:-1]), error[:, None], change[..., None])
+
+    def misalignment(self) -> AxisError:
+        """Judge the misalignments, at some loads."""
+        force, some = self.table.force, sample_of(self.table.force.size, LOADS)
+        middles, d = _middles(self.table.misalignment), self._nearest("center_distance_change")
+        places = self._held_out(middles, d)
+        self._keep_rows(places[0])
+        held_out = zip(places, middles, strict=True)
+        found = [self._curves(place, self.rows, force[some], x, d[0]) for place, x in held_out]
+        change = np.stack([self._changes(curves) for curves in found], axis=1)
+        error = np.array([_worst(curves) for curves in found])
+        return AxisError(middles, spread(force, some, error, 1), spread(force, some, change, 2))
+
+    def center_distance_change(self) -> AxisError:
+        """Judge the changes of the centre distance, at some loads and at the positions that tell most."""
+        force, some = self.table.force, sample_of(self.table.force.size, LOADS)
+        middles, m = _middles(self.table.center_distance_change), self._nearest("misalignment")
+        held_out = zip(self._held_out(m, middles), middles, _telling(self.table), strict=True)
+        worst = [_worst(self._curves(place, rows, force[some], m[0], x)) for place, x, rows in held_out]
+        errors = spread(force, some, np.array(worst), 1)
+        return AxisError(middles, errors, np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)]))
+
+    def _curves(self, place: Place, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
         """Interpolant and solutions (positions, L), m; NaN where one did not converge."""
-        position = table.position[rows]
+        position = self.table.position[rows]
         solved = place.solve(position, load)[1].deflection
-        return table.ste(position[:, None], load, *alignment), solved
+        return self.table.ste(position[:, None], load, *alignment), solved
 
-    def changes(found: Curves) -> FloatArray:
+    def _changes(self, curves: Curves) -> FloatArray:
         """Return the changes of the quantities, (22, L) in m."""
-        return quantity_changes(table.position[everywhere], *found, 1)
+        return quantity_changes(self.table.position[self.rows], *curves, 1)
 
-    found = {}
-    everywhere = _some(int(np.searchsorted(table.position, 1.0)))
-    m, d = _nearest(table.misalignment), _nearest(table.center_distance_change)
-    if table.force.size > 1:
-        loads = table.force[:-1, None] ** (1.0 - LOAD_PROBES) * table.force[1:, None] ** LOAD_PROBES
-        (place,) = _places(places, scene, choices, m, d)
-        pair = curves(place, everywhere, loads.ravel(), m[0], d[0])
-        error = _worst(pair).reshape(loads.shape).max(axis=1)
-        change = changes(pair).reshape(-1, *loads.shape).max(axis=2)
-        found["force"] = AxisError(loads[:, 1], error[:, None], change[..., None])
-    if table.misalignment.size > 1:
-        middles = _middles(table.misalignment)
-        held_out = zip(_places(places, scene, choices, middles, d), middles, strict=True)
-        some = sample_of(table.force.size, LOADS)
-        pairs = [curves(place, everywhere, table.force[some], x, d[0]) for place, x in held_out]
-        change = spread(table.force, some, np.stack([changes(pair) for pair in pairs], axis=1), 2)
-        error = spread(table.force, some, np.array([_worst(pair) for pair in pairs]), 1)
-        found["misalignment"] = AxisError(middles, error, change)
-    if table.center_distance_change.size > 1:
-        middles = _middles(table.center_distance_change)
-        held_out = zip(_places(places, scene, choices, m, middles), middles, strict=True)
-        errors = np.array(
-            [
-                _worst(curves(place, rows, table.force, m[0], x))
-                for (place, x), rows in zip(held_out, _telling(table), strict=True)
-            ]
-        )
-        bounds = np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)])
-        found["center_distance_change"] = AxisError(middles, errors, bounds)
-    return found
+    def _nearest(self, name: str) -> FloatArray:
+        """Return the node of an axis nearest to zero, as an axis of one."""
+        nodes: FloatArray = getattr(self.table, name)
+        return nodes[[int(np.argmin(np.abs(nodes)))]]
 
+    def _keep_rows(self, place: Place) -> None:
+        """Let a place take the compliance at the judged positions from that at all of the table's."""
+        place.contact.keep_rows(place.model, self.table.position, self.rows)
 
-def _some(rows: int) -> IntArray:
-    """Return at least `FEWEST` rows of a base pitch, evenly taken."""
-    return np.arange(0, rows, max(rows // FEWEST, 1))
+    def _held_out(self, misalignment: FloatArray, change: FloatArray) -> tuple[Place, ...]:
+        """Lay out held-out places like those of the table."""
+        here = replace(self.scene, misalignment=misalignment, center_distance_change=change)
+        return table_places(here, self.choices, self.places.nominal).places
 
 
 def _worst(found: Curves) -> FloatArray:
@@ -162,14 +185,13 @@ def _worst(found: Curves) -> FloatArray:
 
 
 def _telling(table: SteDatabase) -> list[IntArray]:
-    """Return the rows of the first pitch that tell most of the error of every interval of centre distances.
+    """Return the rows that tell most of the error of every interval of centre distances.
 
     Those in which the transmission errors at its two ends differ most, in parts of their largest difference
     at each load: there handovers move.
     """
-    count = int(np.searchsorted(table.position, 1.0))
     m = int(np.argmin(np.abs(table.misalignment)))
-    step = np.abs(np.diff(table.static_transmission_error[:count, :, m, :], axis=2))
+    step = np.abs(np.diff(table.static_transmission_error[:, :, m, :], axis=2))
     telling = (step / np.maximum(step.max(axis=0), 1e-300)).max(axis=1)
     return [np.sort(np.argsort(column, kind="stable")[-POSITIONS:]) for column in telling.T]
 
@@ -177,20 +199,3 @@ def _telling(table: SteDatabase) -> list[IntArray]:
 def _middles(nodes: FloatArray) -> FloatArray:
     """Return the middles of the intervals."""
     return np.asarray(0.5 * (nodes[:-1] + nodes[1:]))
-
-
-def _nearest(nodes: FloatArray) -> FloatArray:
-    """Return the node nearest to zero, as an axis of one."""
-    return nodes[[int(np.argmin(np.abs(nodes)))]]
-
-
-def _places(
-    places: Places,
-    scene: ContactScene,
-    choices: Mapping[str, str],
-    misalignment: FloatArray,
-    change: FloatArray,
-) -> tuple[Place, ...]:
-    """Lay out held-out places like those of the table."""
-    here = replace(scene, misalignment=misalignment, center_distance_change=change)
-    return table_places(here, choices, places.nominal).places

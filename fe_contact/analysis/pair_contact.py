@@ -13,9 +13,9 @@ from fe_contact.compliance import (
     finite_width_compliances,
     flank_compliances,
     flank_compliances_3d,
-    free_ends_are_kept,
-    is_kept,
-    plane_is_kept,
+    free_ends_kept,
+    section_kept,
+    solid_kept,
 )
 from fe_contact.contact import (
     Candidates,
@@ -87,6 +87,23 @@ class PairContact:
         first = np.zeros(position.size, dtype=np.int64)
         return in_pitches(problem, model, first if pitch is None else pitch)
 
+    def candidates(self, model: ContactModel, position: FloatArray) -> Candidates:
+        """Return where plain involutes can touch at positions (P,) in [0, 1)."""
+        return self._problem(model, position).candidates
+
+    def keep_rows(self, model: ContactModel, position: FloatArray, rows: IntArray) -> None:
+        """Keep the compliance of some of the positions (P,) by itself: to `solve` them assembles nothing."""
+        part = self._problem(model, position).rows(rows)
+        self._problems[self._key(model, part.candidates.position)] = part
+
+    def assemble(self, model: ContactModel, candidates: Candidates) -> None:
+        """Keep the compliance at positions whose candidates are known, as they are of other bodies.
+
+        To `solve` them then does not look for them again.
+        """
+        if self._key(model, candidates.position) not in self._problems:
+            self._keep(model, candidates)
+
     @property
     def in_plane_strain(self) -> PairContact:
         """The same pair without the correction for its finite width; itself if it has none."""
@@ -104,15 +121,23 @@ class PairContact:
 
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
-        key = (position.tobytes(), model.corner_contact, model.couple_teeth, model.compliances)
+        key = self._key(model, position)
         if key not in self._problems:
-            while len(self._problems) >= KEPT_PROBLEMS:
-                self._problems.pop(next(iter(self._problems)))
             slices = Slices.of_pair(self.pair, self.plan.discretisation.slices)
-            candidates = contact_candidates(self.pair, model, position, self.plan.patch, slices)
-            bodies = self._assembled(candidates, model.couple_teeth)
-            self._problems[key] = with_compliances(self.pair, bodies, model)
+            self._keep(model, contact_candidates(self.pair, model, position, self.plan.patch, slices))
         return self._problems[key]
+
+    def _key(self, model: ContactModel, position: FloatArray) -> tuple[object, ...]:
+        """Return what a kept compliance depends on, beside the bodies."""
+        return (position.tobytes(), model.corner_contact, model.couple_teeth, model.compliances)
+
+    def _keep(self, model: ContactModel, candidates: Candidates) -> None:
+        """Assemble the compliance of candidates, in the place of what was kept first."""
+        while len(self._problems) >= KEPT_PROBLEMS:
+            self._problems.pop(next(iter(self._problems)))
+        bodies = self._assembled(candidates, model.couple_teeth)
+        key = self._key(model, candidates.position)
+        self._problems[key] = with_compliances(self.pair, bodies, model)
 
     def _assembled(self, candidates: Candidates, couple_teeth: bool) -> ContactProblem:
         """Assemble the compliance between the candidates."""
@@ -165,15 +190,13 @@ def bodies_are_kept(pair: ParallelAxes, plan: Plan, cache: Path | None) -> bool:
     """Whether `pair_contact` at the nominal centre distance would find both gears in the cache."""
     made, gears = plan.discretisation, plan.bodies(pair)
     if isinstance(made, FaceDiscretisation):
-        return all(is_kept(*each, cache) for each in zip(gears, made.recipes, strict=True))
+        return all(solid_kept(*each, cache) for each in zip(gears, made.recipes, strict=True))
     teeth = condensed_teeth(pair)
     kept = [
-        plane_is_kept(*each, made.hypothesis, teeth, cache) for each in zip(gears, made.recipes, strict=True)
+        section_kept(*each, made.hypothesis, teeth, cache) for each in zip(gears, made.recipes, strict=True)
     ]
     if made.finite_width is not None:
-        kept += [
-            free_ends_are_kept(*each, teeth, cache) for each in zip(gears, made.finite_width, strict=True)
-        ]
+        kept += [free_ends_kept(*each, teeth, cache) for each in zip(gears, made.finite_width, strict=True)]
     return all(kept)
 
 

@@ -12,7 +12,6 @@ from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import BoolArray, FloatArray
 
 MAX_ROUNDS = 10
-MIDDLE = np.array([0.5])
 PROBES = np.array([0.25, 0.5, 0.75])
 """Where in every interval the interpolant is held against a solution; the middle one becomes a node."""
 
@@ -41,16 +40,6 @@ class PositionNodes:
     def error(self) -> FloatArray:
         """Largest error beside each node, m; shape of `interval_error`."""
         return np.maximum(self.interval_error, np.roll(self.interval_error, 1, axis=0))
-
-
-def fixed_nodes(count: int, solve: Callable[[FloatArray], FloatArray]) -> PositionNodes:
-    """`count` equally spaced nodes; the error is measured at the middles of all intervals."""
-    nodes = np.arange(count) / count
-    everywhere = np.ones(count, dtype=bool)
-    values = solve(nodes)
-    _, found, error = _probed(nodes, values, solve, everywhere, MIDDLE)
-    own = values.shape[0] // 2
-    return PositionNodes(nodes, error, values[own], found[own])
 
 
 def unmeasured_nodes(count: int, columns: int) -> PositionNodes:

@@ -13,11 +13,11 @@ from dataclasses import replace
 import numpy as np
 
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.sampled import ALIGNMENTS, LOADS, sample_of
 from fe_contact.analysis.slice_laws import parabolic_stiffness
 from fe_contact.analysis.slice_springs import SliceLaw, SpringContact
 from fe_contact.analysis.table_places import table_places
 from fe_contact.planning import Ripple, make_plan
+from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
 from fe_contact.types import FloatArray
 
 LAW = SliceLaw(parabolic_stiffness, with_gaps=True)

@@ -94,7 +94,7 @@ def solve_table(
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
     places = laid_out(checked, plan, clock, report, cache, known=known)
     with clock.stage("contact"):
-        nodes = table_nodes(places, plan, measured=full)
+        nodes = table_nodes(places, plan)
         report("contact", 0.3)
         solved, support = (_solved(places, nodes, load) for load in (plan.load, plan.support))
         table = assembled_table(request, places, nodes, solved, support)

@@ -1,4 +1,4 @@
-"""The positions of a table: one set for all its alignments and base pitches, and the error between them."""
+"""The positions of a table: one set for all its alignments and base pitches."""
 
 from __future__ import annotations
 
@@ -9,23 +9,21 @@ import numpy as np
 from fe_contact.analysis.position_nodes import (
     PositionNodes,
     adaptive_nodes,
-    fixed_nodes,
     unmeasured_nodes,
 )
-from fe_contact.analysis.sampled import LOADS, sample_of, spread
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactModel
 from fe_contact.planning import MOST_ROWS, Plan
-from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray, IntArray
 
 
-def table_nodes(places: Places, plan: Plan, measured: bool = True) -> PositionNodes:
+def table_nodes(places: Places, plan: Plan) -> PositionNodes:
     """Place the positions: the number asked for, or where the curves of judged places and pitches bend.
 
-    Over several base pitches the error is then measured in every one of them, at the middle of every
-    interval. Without `measured` nothing is solved but what places the positions.
+    What is missed between fixed ones is not measured here (`position_errors`).
     """
+    if plan.positions is not None:
+        return unmeasured_nodes(plan.positions, len(places.judged) * plan.load.size)
     windows = judged_windows(places.places[0].model, plan.nodes.judged_pitches)
 
     def solve(position: FloatArray) -> FloatArray:
@@ -33,15 +31,9 @@ def table_nodes(places: Places, plan: Plan, measured: bool = True) -> PositionNo
         curves = [_curves(places, plan.load, position, window) for window in windows]
         return np.concatenate(curves, axis=2)
 
-    if plan.positions is not None and not measured:
-        return unmeasured_nodes(plan.positions, len(places.judged) * plan.load.size)
-    if plan.positions is not None:
-        nodes = fixed_nodes(plan.positions, lambda position: _at_some_loads(places, plan, position, windows))
-    else:
-        rows = places.period * len(places.places)
-        most = max(min(plan.nodes.most, MOST_ROWS // rows), plan.nodes.start)
-        nodes = adaptive_nodes(replace(plan.nodes, most=most), solve)
-    return nodes if places.period == 1 or not measured else _measured(nodes.position, places, plan)
+    rows = places.period * len(places.places)
+    most = max(min(plan.nodes.most, MOST_ROWS // rows), plan.nodes.start)
+    return adaptive_nodes(replace(plan.nodes, most=most), solve)
 
 
 def judged_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
@@ -67,29 +59,3 @@ def _curves(places: Places, load: FloatArray, position: FloatArray, pitches: Int
         place.solve_pitches(position, load, pitches)[1].deflection.reshape(shape) for place in places.judged
     ]
     return np.concatenate(curves, axis=2)
-
-
-def _at_some_loads(
-    places: Places, plan: Plan, position: FloatArray, windows: tuple[IntArray, ...]
-) -> FloatArray:
-    """STE (W, P, windows x places x L) in m, solved at some loads and interpolated to all of them.
-
-    What is missed between positions changes slowly with load.
-    """
-    sample = sample_of(plan.load.size, LOADS)
-    curves = [_curves(places, plan.load[sample], position, window) for window in windows]
-    solved = np.concatenate(curves, axis=2)
-    by_load = solved.reshape(*solved.shape[:2], -1, sample.size)
-    return spread(plan.load, sample, by_load, -1).reshape(*solved.shape[:2], -1)
-
-
-def _measured(nodes: FloatArray, places: Places, plan: Plan) -> PositionNodes:
-    """Measure the error at the middles of the intervals of all pitches."""
-    pitches = np.arange(places.period)
-    axis = Axis((pitches[:, None] + nodes).ravel(), float(places.period))
-    values = _curves(places, plan.load, nodes, pitches).reshape(axis.knots.size, -1)
-    middles = nodes + 0.5 * np.diff(nodes, append=nodes[0] + 1.0)
-    found = _curves(places, plan.load, middles, pitches)
-    query = (pitches[:, None] + middles).ravel()
-    between = found.reshape(query.size, -1)
-    return PositionNodes(nodes, np.abs(interpolate(axis, values, query) - between), values, between)

@@ -63,8 +63,13 @@ class Places:
     @property
     def judged(self) -> tuple[Place, ...]:
         """First, middle and last place: by them the positions of the table are chosen."""
+        return tuple(self.places[i] for i in self.judged_indices)
+
+    @property
+    def judged_indices(self) -> tuple[int, ...]:
+        """Where those stand among all places."""
         last = len(self.places) - 1
-        return tuple(self.places[i] for i in sorted({0, last // 2, last}))
+        return tuple(sorted({0, last // 2, last}))
 
     @property
     def in_plane_strain(self) -> Places:

@@ -7,7 +7,7 @@ from fe_contact.compliance.finite_width import FiniteWidthCompliance, finite_wid
 from fe_contact.compliance.flank import ComplianceChecks, FlankCompliance
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.compliance.flank_compliance_2d import flank_compliance, flank_compliances
-from fe_contact.compliance.kept import free_ends_are_kept, is_kept, plane_is_kept
+from fe_contact.compliance.kept import free_ends_kept, section_kept, solid_kept
 from fe_contact.compliance.plane import PlaneHypothesis
 from fe_contact.compliance.root_stress import RootStressChecks, UnitRootStress
 from fe_contact.compliance.solvers import Pardiso, Solver, SuperLuColamd, SuperLuMetis
@@ -37,10 +37,10 @@ __all__ = [
     "flank_compliance_3d",
     "flank_compliances",
     "flank_compliances_3d",
-    "free_ends_are_kept",
-    "is_kept",
-    "plane_is_kept",
+    "free_ends_kept",
     "predict_cost",
+    "section_kept",
+    "solid_kept",
     "unit_root_stress",
     "unit_root_stress_3d",
     "unit_root_stresses",

@@ -9,6 +9,8 @@ import sys
 import tempfile
 import zipfile
 from dataclasses import asdict, fields
+from functools import lru_cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -40,6 +42,12 @@ def default_cache_directory() -> Path | None:
     else:
         root = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     return root / "lineofaction"
+
+
+@lru_cache(maxsize=1)
+def mesher_version() -> str:
+    """Return the version of gmsh, which is in every key: its installed files are read once."""
+    return version("gmsh")
 
 
 def content_hash(content: Json) -> str:
@@ -85,9 +93,14 @@ def write_compliance(
         Path(name).unlink(missing_ok=True)
 
 
-def has_compliance(directory: Path | None, key: str) -> bool:
-    """Whether a result is kept under `key`; whether it is whole shows when it is read."""
-    return directory is not None and _file(directory, key).is_file()
+def kept_size(directory: Path | None, key: str) -> int:
+    """Return the bytes kept under `key`, 0 if nothing is; whether it is whole shows when it is read."""
+    if directory is None:
+        return 0
+    try:
+        return _file(directory, key).stat().st_size
+    except OSError:
+        return 0
 
 
 def _file(directory: Path, key: str) -> Path:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
 from fe_contact.checks import integer
-from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
+from fe_contact.compliance.cache import content_hash, mesher_version, read_compliance, write_compliance
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.geometry import Toothing, tooth_profile
@@ -106,7 +105,7 @@ def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support:
     """Return the hash of all that decides a compliance but for the hand of the helix."""
     content: Json = {
         "model": ["cyclic sector", MODEL_VERSION],
-        "gmsh": version("gmsh"),
+        "gmsh": mesher_version(),
         "geometry": gear.right_handed().macro_geometry(),
         "material": [gear.material.youngs_modulus, gear.material.poissons_ratio],
         "recipe": recipe.content(),

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 
 from fe_contact.checks import integer
-from fe_contact.compliance.cache import content_hash, read_compliance, write_compliance
+from fe_contact.compliance.cache import content_hash, mesher_version, read_compliance, write_compliance
 from fe_contact.compliance.checks_2d import ring_checks, uniform_pressure
 from fe_contact.compliance.flank import FlankCompliance, refuse_broken_laws
 from fe_contact.compliance.plane import PlaneHypothesis
@@ -123,7 +122,7 @@ def compliance_key(
         section.pop("face_width")
     content: Json = {
         "model": ["transverse section", MODEL_VERSION],
-        "gmsh": version("gmsh"),
+        "gmsh": mesher_version(),
         "section": section,
         "material": [gear.material.youngs_modulus, gear.material.poissons_ratio],
         "recipe": recipe.content(),

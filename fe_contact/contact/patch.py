@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(13)
 
@@ -41,6 +41,10 @@ class Patches:
     center: FloatArray
     half_width: FloatArray
     edge_share: FloatArray
+
+    def rows(self, keep: IntArray) -> Patches:
+        """Keep some positions."""
+        return Patches(self.center[keep], self.half_width[keep], self.edge_share[keep])
 
     @property
     def centroid(self) -> FloatArray:

@@ -76,6 +76,16 @@ class Candidates:
         """Share of T_1/(r_b1 cos beta_b) per unit normal force (P, n)."""
         return self.touch.lever_1
 
+    def rows(self, keep: IntArray) -> Candidates:
+        """Return the candidates of some positions."""
+        return replace(
+            self,
+            position=self.position[keep],
+            touch=self.touch.rows(keep),
+            patch_1=self.patch_1.rows(keep),
+            patch_2=self.patch_2.rows(keep),
+        )
+
     def touching(self, touch: Touch) -> Candidates:
         """Return the same candidates with other touching points."""
         return replace(self, touch=touch)
@@ -105,6 +115,10 @@ class ContactProblem:
     modulus: float
     half_plane_1: float
     half_plane_2: float
+
+    def rows(self, keep: IntArray) -> ContactProblem:
+        """Return the problem of some positions, one row of compliance each."""
+        return replace(self, candidates=self.candidates.rows(keep), compliance=self.compliance[keep])
 
     def touching(self, candidates: Candidates) -> ContactProblem:
         """Return the same compliance with candidates of other gaps."""

@@ -10,7 +10,7 @@ import numpy as np
 from fe_contact.contact.model import GapTerm
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact
 from fe_contact.hertz import relative_radius
-from fe_contact.types import BoolArray, FloatArray
+from fe_contact.types import BoolArray, FloatArray, IntArray
 
 _SAMPLES = 65
 _FLATTEST = 100.0
@@ -46,6 +46,10 @@ class Touch:
     radius: FloatArray
     lever_1: FloatArray
     lever_2: FloatArray
+
+    def rows(self, keep: IntArray) -> Touch:
+        """Keep some positions."""
+        return Touch(*(getattr(self, name)[keep] for name in self.__dataclass_fields__))
 
     def columns(self, keep: BoolArray) -> Touch:
         """Keep some pairs."""

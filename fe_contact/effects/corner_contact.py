@@ -66,6 +66,8 @@ def _curvature_radius(pair: ParallelAxes, roll_1: float) -> float:
 
 def _gap_at_tip(gear: Toothing, radius: float) -> float:
     """Least of material removed and gap of plain flanks beside the tip edge of one gear, m."""
+    if gear.modification.neutral:
+        return 0.0
     face = np.linspace(-0.5, 0.5, _ALONG_EDGE) * gear.face_width
     roll = np.linspace(gear.tip_roll_length, gear.form_roll_length, _ALONG_FLANK)[:, None]
     distance = np.abs(gear.tip_roll_length**2 - roll**2) / (2.0 * gear.base_radius)

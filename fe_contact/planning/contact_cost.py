@@ -11,6 +11,7 @@ from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.discretisation import FaceDiscretisation
 from fe_contact.planning.plan import Plan
+from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 
 _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
 _FACE_POSITION = 6.6e-8
@@ -21,11 +22,19 @@ _PLANE_EXPECTED, _SPUR_EXPECTED, _HELICAL_EXPECTED = 118, 88, 64
 _STEPS, _STEP_SLICES = 50, 15
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
 """Positions looked at for each node that the search adds, and for each that it begins with."""
-_JUDGED, _SAMPLED_LOADS, _HELD_OUT_POSITIONS, _PROBES = 3, 4, 32, 3
+_JUDGED = 3
+_SOLVED_MIDDLES = 0.25
+"""Part of the intervals between fixed positions whose middles are solved, at most."""
+_HELD_OUT_DISTANCES = 16
+"""Positions at which an interval of centre distances is judged."""
 _PLANE_CHECK = 6e-3
 """CPU seconds that the estimate of errors takes beside its solutions."""
 _TABLE_POINT = 2e-6
 """CPU seconds to interpolate one point of a table."""
+
+
+_HELD_POSITIONS, _HELD_PART = 320, 2.5
+"""Positions whose compliance is held at once: of a search that begins with 64, and in parts of fixed ones."""
 
 
 class Work(NamedTuple):
@@ -51,44 +60,62 @@ def contact_seconds(
     kept, loads = expected_positions(pair, plan), plan.load.size
     places, distances = alignments[0] * alignments[1], alignments[1]
     judged, rows = min(places, _JUDGED), model.period * places
-    some = min(loads, _SAMPLED_LOADS)
+    tried = 0
     if plan.positions is None:
         begun = plan.nodes.start
-        tried, solved = _TRIED_PER_START * begun + _TRIED_PER_NODE * max(kept - begun, 0), loads
-    else:
-        tried, solved = 2 * kept if with_errors else 0, some
+        tried = _TRIED_PER_START * begun + _TRIED_PER_NODE * max(kept - begun, 0)
     work = unit_work(pair, plan, plan.discretisation.slices)
-    contact = work.of(tried * distances, tried * judged * solved)
+    contact = work.of(tried * distances, tried * judged * loads)
     contact += work.of(kept * distances, kept * rows * (loads + plan.support.size))
-    return contact, _errors(pair, plan, rows, alignments) if with_errors else 0.0
+    return contact, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
 
 
-def _errors(pair: ParallelAxes, plan: Plan, rows: int, alignments: tuple[int, int]) -> float:
-    """CPU seconds of rougher solutions of some of the table, and of held-out points of its axes."""
+def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
+    """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes."""
     made, kept, loads = plan.discretisation, expected_positions(pair, plan), plan.load.size
     work = unit_work(pair, plan, made.slices)
     again = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
         again.append(unit_work(pair, plan, made.coarse_slices))
-    some, places = min(loads, _SAMPLED_LOADS), min(alignments[0], _JUDGED) * min(alignments[1], _JUDGED)
-    period = rows // (alignments[0] * alignments[1])
-    seconds = sum(w.of(kept * min(alignments[1], _JUDGED), kept * period * places * some) for w in again)
-    held = _HELD_OUT_POSITIONS * (_PROBES * (loads - 1) + (alignments[0] - 1) * some)
-    seconds += work.of(_HELD_OUT_POSITIONS * alignments[1], held)
-    return _PLANE_CHECK + seconds + _TABLE_POINT * kept * rows * loads
+    some, rows = min(loads, LOADS), some_positions(kept).size
+    skews, distances = (min(count, ALIGNMENTS) for count in alignments)
+    seconds = sum(w.of(rows * distances, rows * period * skews * distances * some) for w in again)
+    if plan.positions is not None:
+        middles, judged = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
+        seconds += work.of(middles * alignments[1], middles * period * judged * some)
+    held = rows * (held_out_loads(loads) + (alignments[0] - 1) * some)
+    apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)
+    seconds += work.of(apart, held + apart * some)
+    return _PLANE_CHECK + seconds + _TABLE_POINT * kept * period * alignments[0] * alignments[1] * loads
+
+
+def held_out_loads(loads: int) -> int:
+    """Return how many loads are held out between so many."""
+    return (loads - 1) * (WIDE_PROBES if loads - 1 <= WIDE_INTERVALS else 1)
+
+
+def contact_bytes(pair: ParallelAxes, plan: Plan) -> float:
+    """Return the bytes of the compliance between candidates that is held at once."""
+    held = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
+    return 8.0 * held * candidates(pair, plan.discretisation.slices) ** 2
+
+
+def candidates(pair: ParallelAxes, slices: int) -> float:
+    """Return about how many candidates a position has."""
+    return float((pair.transverse_contact_ratio + pair.overlap_ratio + 1.0) * slices)
 
 
 def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> Work:
     """Return what one position and one point of it cost in so many slices."""
     made = plan.discretisation
     pairs = pair.transverse_contact_ratio + pair.overlap_ratio + 1.0
-    candidates = pairs * slices
+    count = candidates(pair, slices)
     if not isinstance(made, FaceDiscretisation):
-        return Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * candidates)
+        return Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
     layers = max(recipe.layers for recipe in made.recipes)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
-    position = _FACE_POSITION * candidates * pairs * layers * elements
-    return Work(position, _FACE_CANDIDATE * candidates + _FACE_SQUARE * candidates**2)
+    position = _FACE_POSITION * count * pairs * layers * elements
+    return Work(position, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
 
 
 def expected_positions(pair: ParallelAxes, plan: Plan) -> int:

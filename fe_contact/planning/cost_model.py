@@ -9,14 +9,16 @@ Everything is then multiplied by how slow the host is and by what earlier runs s
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import NamedTuple
 
-from fe_contact.compliance import PlaneHypothesis, free_ends_are_kept, is_kept, plane_is_kept, predict_cost
+from fe_contact.compliance import PlaneHypothesis, free_ends_kept, predict_cost, section_kept, solid_kept
 from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.planning.contact_cost import contact_seconds, expected_positions
+from fe_contact.planning.contact_cost import contact_bytes, contact_seconds, expected_positions
 from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
 from fe_contact.planning.host_speed import host_slowness
 from fe_contact.planning.plan import Plan
@@ -24,8 +26,8 @@ from fe_contact.planning.run_log import corrections
 from fe_contact.types import Json
 
 STAGES = ("compliance", "contact", "error estimate")
-PROCESS_BYTES = 350_000_000
-"""Of a process with the libraries loaded."""
+PROCESS_BYTES = 210_000_000
+"""Of a process with the libraries loaded, and a small table."""
 
 # CPU seconds of a gear in the plane: process of the mesher, hub mesh, sector factors, ring, hub freedoms
 _MESHER, _HUB = 0.095, 0.025
@@ -35,7 +37,27 @@ _DEEP_RING = 9.4
 
 _READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.02, False: 0.007}
 """CPU seconds to read what is kept of a gear in the plane, and over the face of a helical or a spur gear."""
-_BYTES_PER_UNKNOWN = 9_000
+_SECTOR_BYTES, _HUB_BYTES = 9_000, 12_000
+"""For each freedom of a sector, and for each of a hub of so many: the factors of larger ones fill more."""
+_HUB_FREEDOMS, _FILL = 20_000, 0.33
+
+
+class Cost(NamedTuple):
+    """CPU seconds of a compliance, bytes of the largest working set, and bytes that stay.
+
+    What is computed afresh holds little beside its working set, and is counted there.
+    """
+
+    seconds: float
+    working: float
+    held: float
+
+    @classmethod
+    def of(cls, each: Iterable[Cost]) -> Cost:
+        """One after the other."""
+        found = list(each)
+        working = max((cost.working for cost in found), default=0.0)
+        return cls(sum(cost.seconds for cost in found), working, sum(cost.held for cost in found))
 
 
 @dataclass(frozen=True)
@@ -116,48 +138,47 @@ def predict_run(
     made = plan.discretisation
     kind = "face" if isinstance(made, FaceDiscretisation) else "plane"
     fine = _compliance(pair, plan, cache, coarse=False)
-    coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else (0.0, 0.0)
+    coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else Cost(0.0, 0.0, 0.0)
     solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
     slowness = host_slowness(cache)
     # dense algebra has its own measurement of the host in it
     speed = slowness if kind == "plane" else 1.0
     raw = {
-        "compliance": fine[0] * speed,
+        "compliance": fine.seconds * speed,
         "contact": solve * slowness,
-        "error estimate": coarse[0] * speed + check * slowness,
+        "error estimate": coarse.seconds * speed + check * slowness,
     }
     known = corrections(cache)
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
-    memory = PROCESS_BYTES + int(max(fine[1], coarse[1]))
-    return Prediction(raw, correction, memory, expected_positions(pair, plan), kind)
+    memory = PROCESS_BYTES + contact_bytes(pair, plan) + fine.held + coarse.held
+    memory += max(fine.working, coarse.working)
+    return Prediction(raw, correction, int(memory), expected_positions(pair, plan), kind)
 
 
-def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> tuple[float, float]:
-    """CPU seconds and bytes of both gears' compliance; gears alike are computed once."""
+def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> Cost:
+    """Cost of both gears' compliance; gears alike are computed once."""
     made = plan.discretisation
     bodies = plan.bodies(pair)
     recipes = made.coarse_recipes if coarse else made.recipes
     gears = list(dict.fromkeys(zip((body.right_handed() for body in bodies), recipes, strict=True)))
     if isinstance(made, FaceDiscretisation):
-        costs = [_solid(gear, recipe, cache) for gear, recipe in gears if isinstance(recipe, SectorRecipe)]
-    else:
-        hypothesis = made.hypothesis
-        costs = [
-            _section(pair, gear, recipe, hypothesis, cache)
-            for gear, recipe in gears
-            if isinstance(recipe, MeshRecipe)
-        ]
-        if not coarse:
-            costs += _free_ends(pair, bodies, made, cache)
-    return sum(seconds for seconds, _ in costs), max((size for _, size in costs), default=0.0)
+        solids = [(gear, recipe) for gear, recipe in gears if isinstance(recipe, SectorRecipe)]
+        return Cost.of(_solid(*solid, cache) for solid in solids)
+    hypothesis = made.hypothesis
+    costs = [
+        _section(pair, gear, recipe, hypothesis, cache)
+        for gear, recipe in gears
+        if isinstance(recipe, MeshRecipe)
+    ]
+    return Cost.of(costs if coarse else [*costs, *_free_ends(pair, bodies, made, cache)])
 
 
-def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> tuple[float, float]:
+def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> Cost:
     """One gear over the face."""
-    if is_kept(gear, recipe, cache):
-        return _READ_SOLID[gear.helix_angle != 0.0], 0.0
+    if kept := solid_kept(gear, recipe, cache):
+        return Cost(_READ_SOLID[gear.helix_angle != 0.0], 0.0, kept)
     predicted = predict_cost(gear, recipe)
-    return predicted.seconds, float(predicted.bytes)
+    return Cost(predicted.seconds, predicted.bytes, 0.0)
 
 
 def _free_ends(
@@ -165,23 +186,26 @@ def _free_ends(
     bodies: tuple[Toothing, Toothing],
     made: PlaneDiscretisation,
     cache: Path | None,
-) -> list[tuple[float, float]]:
-    """Return the cost of the solids that correct the plane: free at their ends, and held along the axis."""
+) -> Iterator[Cost]:
+    """Yield the cost of the solids that correct the plane: free at their ends, and held along the axis."""
     if made.finite_width is None:
-        return []
-    pairs = dict.fromkeys(zip(bodies, made.finite_width, strict=True))
+        return
     teeth = condensed_teeth(pair)
-    found = [None if free_ends_are_kept(*of, teeth, cache) else predict_cost(*of) for of in pairs]
-    return [(_READ_PLANE, 0.0) if cost is None else (2.0 * cost.seconds, float(cost.bytes)) for cost in found]
+    for gear, recipe in dict.fromkeys(zip(bodies, made.finite_width, strict=True)):
+        if kept := free_ends_kept(gear, recipe, teeth, cache):
+            yield Cost(_READ_PLANE, 0.0, kept)
+        else:
+            predicted = predict_cost(gear, recipe)
+            yield Cost(2.0 * predicted.seconds, predicted.bytes, 0.0)
 
 
 def _section(
     pair: ParallelAxes, gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, cache: Path | None
-) -> tuple[float, float]:
+) -> Cost:
     """One gear in the plane."""
-    if plane_is_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
-        return _READ_PLANE, 0.0
-    return section_cost(gear, recipe)
+    if kept := section_kept(gear, recipe, hypothesis, condensed_teeth(pair), cache):
+        return Cost(_READ_PLANE, 0.0, kept)
+    return Cost(*section_cost(gear, recipe), 0.0)
 
 
 def section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:
@@ -196,7 +220,7 @@ def section_cost(gear: Toothing, recipe: MeshRecipe) -> tuple[float, float]:
         hub = gear.teeth * (25.0 + 5.0 * depth) * fineness**0.6
         seconds = _MESHER + _HUB_FREEDOM * hub + _DEPTH * depth * sector
     seconds += _SECTOR * sector**2 + _RING * gear.teeth * sector
-    return seconds, _BYTES_PER_UNKNOWN * (sector + 0.3 * hub)
+    return seconds, _SECTOR_BYTES * sector + _HUB_BYTES * hub * (hub / _HUB_FREEDOMS) ** _FILL
 
 
 def condensed_teeth(pair: ParallelAxes) -> int:

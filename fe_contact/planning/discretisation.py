@@ -21,9 +21,9 @@ SLICES = 31
 """Fewer slices make false steps in helical gears (peak-to-peak 14 % off at 15 slices)."""
 FINER_SLICES = (31, 61, 91)
 """What a tolerance may ask for: false steps depend on the slices more than on the mesh."""
-SLICE_ORDER, FINE_SLICE_ORDER = 1.25, 2.5
-"""Of peak-to-peak in the number of slices, up to the usual number and beyond it: false steps fall slowly as
-long as they are as wide as the handover of a contact line, then fast (measured 1.4 and above 3)."""
+SLICE_ORDERS = ((15, 1.25), (SLICES, 1.75), (math.inf, 2.5))
+"""Of peak-to-peak in the number of slices, up to so many: false steps fall slowly as long as they are as wide
+as the handover of a contact line, then fast (measured 1.4, 2.4 and above 3)."""
 
 
 @dataclass(frozen=True)
@@ -98,7 +98,7 @@ class FaceDiscretisation:
         """Error left over the difference to half the slices; no slices left out leave no error."""
         if self.slices == self.coarse_slices:
             return 0.0
-        order = SLICE_ORDER if self.slices <= SLICES else FINE_SLICE_ORDER
+        order = next(order for most, order in SLICE_ORDERS if self.slices <= most)
         return 1.0 / (float((self.slices / self.coarse_slices) ** order) - 1.0)
 
     @property

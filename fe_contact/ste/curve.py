@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fe_contact.errors import InputError
-from fe_contact.ste.curve_errors import errors_by_source
+from fe_contact.ste.curve_errors import all_sources, errors_by_source
 from fe_contact.ste.fields import SteFields
 from fe_contact.ste.load_sharing import error_band, load_share, pairs_seen
 from fe_contact.ste.loads import OperatingPoint
@@ -72,9 +72,10 @@ class Curve:
 def curve(database: SteFields, force: MeshForce, point: OperatingPoint, at: ArrayLike | None) -> Curve:
     """Evaluate the curve at positions `at` (the stored ones if None).
 
-    The errors of mean, peak-to-peak and harmonics are the sums of their stored sources. Of a table without
-    them they are bounds for any error inside the pointwise bands: of the mean the mean of the band, of
-    peak-to-peak the sum of the bands at the two extremes, of a harmonic twice the mean band.
+    The errors of mean, peak-to-peak and harmonics are those of all stored sources together
+    (`curve_errors.all_sources`). Of a table without them they are bounds for any error inside the pointwise
+    bands: of the mean the mean of the band, of peak-to-peak the sum of the bands at the two extremes, of a
+    harmonic twice the mean band.
 
     Raises
     ------
@@ -142,7 +143,7 @@ def _errors(
     ends = left[int(np.argmin(ste))] + left[int(np.argmax(ste))]
     mean = float(np.mean(left[:even]))
     bounds = np.array([mean, ends, *[2.0 * mean] * HARMONICS])
-    total = bounds + errors_by_source(database, point).sum(axis=0) if stored else bounds
+    total = bounds + all_sources(errors_by_source(database, point)) if stored else bounds
     return [float(error) for error in total]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,7 +15,7 @@ from fe_contact.effects.effect import ContactScene, Effect
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.flipping import flipped
-from fe_contact.effects.worth.slice_model import EstimatedCurve, estimated_curve
+from fe_contact.effects.worth.slice_model import EstimatedCurve, Springs
 from fe_contact.types import FloatArray, Json
 
 
@@ -74,15 +75,21 @@ def estimate_worth(
 
 
 def estimate_worths(
-    scene: ContactScene, decided: Mapping[str, str], names: Sequence[str], registry: Sequence[Effect]
+    scene: ContactScene,
+    decided: Mapping[str, str],
+    names: Sequence[str],
+    registry: Sequence[Effect],
+    *,
+    most_loads: int = sys.maxsize,
 ) -> dict[str, Worth | None]:
-    """Estimate several effects; parameters of `estimate_worth`."""
+    """Estimate several effects; parameters of `estimate_worth`, and of `Springs`."""
     known: dict[tuple[tuple[str, str], ...], list[EstimatedCurve]] = {}
+    springs = Springs(scene.pair, most_loads)
 
     def curves(choices: Mapping[str, str]) -> list[EstimatedCurve]:
         key = tuple(sorted(choices.items()))
         if key not in known:
-            known[key] = _curves(scene, choices, registry)
+            known[key] = _curves(scene, choices, registry, springs)
         return known[key]
 
     def worth(effect: Effect) -> Worth | None:
@@ -116,16 +123,20 @@ def _unknown(scene: ContactScene, name: str) -> bool:
 
 
 def _curves(
-    scene: ContactScene, choices: Mapping[str, str], registry: Sequence[Effect]
+    scene: ContactScene, choices: Mapping[str, str], registry: Sequence[Effect], springs: Springs
 ) -> list[EstimatedCurve]:
     """Estimate the curves at both ends of the misalignments, the larger one last."""
     ends = sorted({float(scene.misalignment[0]), float(scene.misalignment[-1])}, key=abs)
     load = scene.pair.normal_force(scene.torque)
-    found = []
+    found: dict[str, EstimatedCurve] = {}
+    models = []
     for growth in ends:
         here = replace(scene, misalignment=np.array([growth]))
-        found.append(estimated_curve(scene.pair, compose(here, choices, registry)[0], load))
-    return found
+        model = compose(here, choices, registry)[0]
+        models.append(repr(model))
+        if models[-1] not in found:  # without misalignment both ends are one
+            found[models[-1]] = springs.curve(model, load)
+    return [found[model] for model in models]
 
 
 def _compared(with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve]) -> Worth:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import sys
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from fe_contact.contact import (
+    Candidates,
     ContactModel,
     ContactProblem,
     PatchRule,
@@ -21,6 +23,7 @@ from fe_contact.effects.worth.slice_compliance import slice_compliance
 from fe_contact.effects.worth.tooth_bending import half_plane
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus
+from fe_contact.sampled import sample_of, spread
 from fe_contact.types import FloatArray
 
 PLANE_POSITIONS, FACE_POSITIONS = 64, 32
@@ -39,28 +42,62 @@ class EstimatedCurve:
     peak_to_peak: FloatArray
 
 
-def estimated_curve(pair: ParallelAxes, model: ContactModel, load: FloatArray) -> EstimatedCurve:
-    """Solve the contact of springs at normal forces (L,) in N, increasing.
+@dataclass(frozen=True)
+class Springs:
+    """Slice models of one pair; what states of it have in common is assembled once.
 
-    Everything but the compliance is that of the contact analysis: candidates, gaps, shafts, local approach.
+    Attributes
+    ----------
+    pair : GearPair or InternalGearPair
+    most_loads : int
+        Loads that are solved, at least two; between them the figures are interpolated.
     """
-    count = FACE_POSITIONS if model.across_face else PLANE_POSITIONS
-    problem = _problem(pair, model, np.arange(count) / count)
-    if model.tooth_gaps:
-        pitches = np.arange(min(model.period, MOST_PITCHES))
-        problem = in_pitches(problem, model, np.repeat(pitches, count))
-    deflection = solve_contact(problem, load).deflection
-    return EstimatedCurve(np.nanmean(deflection, axis=0), np.nanmax(deflection, 0) - np.nanmin(deflection, 0))
+
+    pair: ParallelAxes
+    most_loads: int = sys.maxsize
+    _known: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
+    _plain: dict[tuple[bool, bool], Candidates] = field(default_factory=dict, repr=False)
+
+    def curve(self, model: ContactModel, load: FloatArray) -> EstimatedCurve:
+        """Solve the contact of springs at normal forces (L,) in N, increasing.
+
+        Everything but the compliance is that of the contact analysis: candidates, gaps, shafts, local
+        approach.
+        """
+        some = sample_of(load.size, self.most_loads)
+        problem, count = self._springs(model), _positions(model)
+        problem = with_compliances(self.pair, problem, model)
+        problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
+        if model.tooth_gaps:
+            pitches = np.arange(min(model.period, MOST_PITCHES))
+            problem = in_pitches(problem, model, np.repeat(pitches, count))
+        found = solve_contact(problem, load[some]).deflection
+        figures = np.nanmean(found, axis=0), np.nanmax(found, axis=0) - np.nanmin(found, axis=0)
+        return EstimatedCurve(*(spread(load, some, values, 0) for values in figures))
+
+    def _springs(self, model: ContactModel) -> ContactProblem:
+        """Return the springs of a model in one base pitch, flanks as plain involutes."""
+        bodies = (model.couple_teeth, model.finite_width, model.thin_rim, model.bore_seat)
+        key = (model.corner_contact, model.across_face, *bodies)
+        if key not in self._known:
+            plain = self._candidates(model)
+            compliance = slice_compliance(self.pair, plain, model)
+            modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
+            planes = half_plane(self.pair.pinion), half_plane(self.pair.wheel)
+            self._known[key] = ContactProblem(plain, compliance, modulus, *planes)
+        return self._known[key]
+
+    def _candidates(self, model: ContactModel) -> Candidates:
+        """Return where plain involutes can touch."""
+        key = model.corner_contact, model.across_face
+        if key not in self._plain:
+            module, count = self.pair.pinion.normal_module, _positions(model)
+            rule = PatchRule(_PATCH * module, _EDGE * module)
+            slices = Slices.of_pair(self.pair, FACE_SLICES if model.across_face else 1)
+            self._plain[key] = contact_candidates(self.pair, model, np.arange(count) / count, rule, slices)
+        return self._plain[key]
 
 
-def _problem(pair: ParallelAxes, model: ContactModel, position: FloatArray) -> ContactProblem:
-    """Assemble the problem of springs in one base pitch."""
-    module = pair.pinion.normal_module
-    rule = PatchRule(_PATCH * module, _EDGE * module)
-    slices = Slices.of_pair(pair, FACE_SLICES if model.across_face else 1)
-    plain = contact_candidates(pair, model, position, rule, slices)
-    compliance = slice_compliance(pair, plain, model)
-    modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
-    springs = ContactProblem(plain, compliance, modulus, half_plane(pair.pinion), half_plane(pair.wheel))
-    problem = with_compliances(pair, springs, model)
-    return problem.touching(with_gaps(pair, plain, model))
+def _positions(model: ContactModel) -> int:
+    """Return the number of positions in a base pitch."""
+    return FACE_POSITIONS if model.across_face else PLANE_POSITIONS

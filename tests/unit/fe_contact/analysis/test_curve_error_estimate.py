@@ -58,8 +58,8 @@ def test_the_estimate_covers_the_true_error(pair, how, cache):
     how = {"model": how.get("model", "auto")}
     truth = analyze(pair, normal_forces=[FORCE], level="fine", cache=cache, **how)
     for found, exact in zip(figures(rough), figures(truth), strict=True):
-        assert abs(found.value - exact.value) <= found.error
-        assert found.error < 0.05 * found.value
+        true = abs(found.value - exact.value)
+        assert true <= found.error < max(0.05 * found.value, 2.0 * true)
 
 
 def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
@@ -89,15 +89,15 @@ def test_a_source_that_does_not_act_is_zero(cache):
     assert plane.curve_error[SOURCES.index("discretisation")].any()
 
 
-def test_the_receipt_tells_the_sources_that_the_numbers_add_up(cache):
+def test_the_receipt_tells_the_sources_that_make_up_the_numbers(cache):
     table = analyze(spur(), normal_forces=[1500.0, FORCE], level="draft", cache=cache)
     by_source = table.metadata.receipt["curve_error"]
     assert set(by_source) == set(SOURCES)
     assert not table.metadata.receipt["not_estimated"]
-    stated = sum(source["peak_to_peak_m"][1] for source in by_source.values())
+    stated = math.hypot(*(source["peak_to_peak_m"][1] for source in by_source.values()))
     assert stated == pytest.approx(table.peak_to_peak(force=FORCE).error, rel=1e-12)
     between = table.peak_to_peak(force=0.5 * (1500.0 + FORCE)).error
-    assert between > 0.5 * sum(source["peak_to_peak_m"][0] for source in by_source.values())
+    assert between > 0.5 * math.hypot(*(source["peak_to_peak_m"][0] for source in by_source.values()))
 
 
 @pytest.mark.parametrize("positions", [None, 32])

@@ -9,7 +9,8 @@ import pytest
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
 from fe_contact.analysis import check_request
-from fe_contact.analysis.position_nodes import adaptive_nodes, fixed_nodes
+from fe_contact.analysis.position_errors import measured_nodes
+from fe_contact.analysis.position_nodes import adaptive_nodes
 from fe_contact.analysis.table_nodes import judged_windows
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
@@ -157,4 +158,6 @@ def test_nodes_of_one_pitch_among_others_join_its_neighbours():
     spacing = np.diff(nodes.position, append=1.0)
     kinks = np.abs(nodes.position[:, None] - [0.213, 0.741]).min(axis=1)
     assert spacing[kinks < 0.05].min() < 0.15 * spacing[kinks > 0.15].min()
-    assert fixed_nodes(64, steps).error[[0, -1]].max() < 1e-12
+    even = np.arange(64) / 64
+    fixed, _ = measured_nodes(even, steps(even).reshape(192, 1), lambda x: steps(x).reshape(-1, 1), 3, 0.002)
+    assert fixed.error[[64, 127]].max() < 1e-12

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fe_contact.analysis.position_nodes import adaptive_nodes, fixed_nodes
+from fe_contact.analysis.position_nodes import adaptive_nodes
 from fe_contact.planning import NodeRule
 from fe_contact.ste.interpolation import Axis, interpolate
 
@@ -38,13 +38,6 @@ def test_nodes_gather_at_the_kinks():
     spacing = np.diff(nodes, append=nodes[0] + 1.0)
     near = np.abs((nodes + 0.5) % 1.0 - 0.5)
     assert spacing[(near > 0.2) & (near < 0.25)].min() < spacing[near < 0.15].min() / 8.0
-
-
-def test_fixed_nodes_state_a_larger_error():
-    assert np.all(
-        fixed_nodes(32, repeating(trapezoid_wave)).error.max(axis=0)
-        > adaptive_nodes(NodeRule(32, 0.002, 768), repeating(trapezoid_wave)).error.max(axis=0)
-    )
 
 
 def test_a_jump_ends_at_the_node_limit_with_a_finite_error():

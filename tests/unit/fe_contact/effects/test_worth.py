@@ -12,9 +12,9 @@ from fe_contact.analysis import check_request
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
 from fe_contact.effects import EFFECTS
-from fe_contact.effects.worth import Worth, estimate_worth
+from fe_contact.effects.worth import Worth, estimate_worth, estimate_worths
 from fe_contact.effects.worth.slice_compliance import slice_compliance
-from fe_contact.effects.worth.slice_model import estimated_curve
+from fe_contact.effects.worth.slice_model import Springs
 from fe_contact.types import FloatArray
 
 M = 3e-3
@@ -84,7 +84,7 @@ def test_lengths_and_loads_together_change_no_ratio() -> None:
         center_distance=2.0 * PAIR.center_distance,
     )
     model = ContactModel(couple_teeth=True, corner_contact=True)
-    small, big = (estimated_curve(pair, model, np.array([f])) for pair, f in ((PAIR, 1e3), (large, 4e3)))
+    small, big = (Springs(pair).curve(model, np.array([f])) for pair, f in ((PAIR, 1e3), (large, 4e3)))
     np.testing.assert_allclose(big.mean, 2.0 * small.mean, rtol=1e-9)
     np.testing.assert_allclose(big.peak_to_peak, 2.0 * small.peak_to_peak, rtol=1e-9)
 
@@ -108,3 +108,18 @@ def test_what_a_scene_does_not_hold_is_worth_nothing() -> None:
 def test_misalignment_is_worth_more_the_larger_it_is() -> None:
     small, large = (worth(PAIR, "misalignment", misalignments=[x]) for x in (2e-6, 20e-6))
     assert large.largest > 10.0 * small.largest > 0.0
+
+
+def test_between_the_loads_that_are_solved_worths_are_interpolated() -> None:
+    """Exact at the ends and in the middle, right within the factor that estimates are right by between."""
+    checked = check_request(PAIR, normal_forces=[600.0, 900.0, 1200.0, 1500.0, 1800.0])
+    wanted = (checked.request.scene, checked.decided, ["corner_contact", "tooth_coupling"], EFFECTS)
+    every, some = estimate_worths(*wanted), estimate_worths(*wanted, most_loads=3)
+    for name, found in some.items():
+        whole = every[name]
+        assert found is not None
+        assert whole is not None
+        np.testing.assert_allclose(found.mean[::2], whole.mean[::2], rtol=1e-6)
+        np.testing.assert_allclose(found.peak_to_peak[::2], whole.peak_to_peak[::2], rtol=1e-6)
+        np.testing.assert_allclose(found.mean, whole.mean, rtol=0.1)
+        assert not np.array_equal(found.mean[1::2], whole.mean[1::2])

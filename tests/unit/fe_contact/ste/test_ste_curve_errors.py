@@ -99,16 +99,17 @@ def judged(spur: SteDatabase) -> SteDatabase:
     return replace(spur, curve_error=errors)
 
 
-def test_the_error_is_the_sum_of_its_sources(judged: SteDatabase) -> None:
+def test_the_error_is_that_of_independent_sources(judged: SteDatabase) -> None:
     for k, force in enumerate(judged.force):
         curve = judged.curve(force=float(force))
         for found in (curve.mean, curve.peak_to_peak, *curve.harmonics):
-            assert found.error == pytest.approx(15e-9 * (k + 1), rel=1e-12, abs=0.0)
+            assert found.error == pytest.approx(math.sqrt(55.0) * 1e-9 * (k + 1), rel=1e-12, abs=0.0)
 
 
 def test_between_two_loads_their_interpolation_is_added(judged: SteDatabase) -> None:
     middle = 0.5 * float(judged.force[0] + judged.force[1])
-    assert judged.mean(force=middle).error == pytest.approx(1.5 * 15e-9 + 7e-9, rel=1e-9, abs=0.0)
+    expected = math.hypot(1.5 * math.sqrt(55.0), 7.0) * 1e-9
+    assert judged.mean(force=middle).error == pytest.approx(expected, rel=1e-9, abs=0.0)
 
 
 def test_what_was_not_estimated_is_no_number(judged: SteDatabase) -> None:

@@ -11,13 +11,35 @@ import numpy as np
 
 from fe_contact.types import FloatArray, IntArray
 
-LOADS, ALIGNMENTS = 4, 3
+LOADS, ALIGNMENTS = 3, 3
 """Nodes of an axis of loads, of misalignments or centre distances that are solved; shorter axes whole."""
+WIDE_INTERVALS, WIDE_PROBES = 4, 3
+"""Up to so many intervals of an axis of loads hold so many held-out loads each; more of them, which are
+shorter, one."""
+FEWEST_POSITIONS = 32
+"""Positions at which a table is solved again, at least, if it has as many."""
+
+
+def some_positions(count: int) -> IntArray:
+    """Return at least `FEWEST_POSITIONS` of `count` positions, every k-th from the first.
+
+    Where positions gather, every k-th of them does.
+    """
+    return np.arange(0, count, max(count // FEWEST_POSITIONS, 1))
 
 
 def sample_of(count: int, most: int) -> IntArray:
     """Return the nodes of an axis of `count` that are solved: at most `most`, both ends among them."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
+
+
+def spread_around(knots: FloatArray, period: int, sample: IntArray, values: FloatArray) -> FloatArray:
+    """Interpolate values (k, ...) known at some knots of a closed axis to all of them, linearly.
+
+    `sample` begins with 0; `knots` (n,) increase in [0, period).
+    """
+    around = np.append(knots, knots[0] + period)
+    return spread(around, np.append(sample, knots.size), np.concatenate([values, values[:1]]), 0)[:-1]
 
 
 def spread(nodes: FloatArray, sample: IntArray, values: FloatArray, axis: int) -> FloatArray:
