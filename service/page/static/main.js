@@ -25,7 +25,8 @@ class Page {
     this.offer(examples);
     this.files();
     byId("analyze").addEventListener("click", () => this.analyze());
-    showStudies({ case: () => this.form.case, offered: new Set(processes.processes.map(({ id }) => id)) });
+    const offered = new Set(processes.processes.map(({ id }) => id));
+    showStudies({ case: () => this.form.case, offered, take: (flanks) => this.take(flanks) });
     await this.earlier();
     const key = /^#database=([0-9a-f]{64})$/.exec(location.hash)?.[1];
     if (key) await this.open(key);

@@ -3,6 +3,7 @@
 import { Problem } from "./api.js";
 import { byId, make } from "./elements.js";
 import { runJob, showFailure } from "./job.js";
+import { optimisationOf, showOptimisation } from "./optimise.js";
 import { showReport } from "./report.js";
 import { sceneOf } from "./scene.js";
 
@@ -24,6 +25,13 @@ const STUDIES = [
     text: "Peak to peak over misalignment and centre distance, without and with corner contact, in three dimensions.",
     fields: [],
     inputs: (found) => ({ case: found }),
+  },
+  {
+    process: "optimise", title: "Optimise the flanks", action: "Search better flanks",
+    text: "Tip relief of both gears (and crowning, in three dimensions) of least expected peak to peak over the torques of the case.",
+    fields: [["relief_um", "Most tip relief, µm", "40"], ["scatter_um", "Misalignment, standard deviation, µm", "10"]],
+    inputs: optimisationOf,
+    show: (result, reference, page) => showOptimisation(result, reference, page.take),
   },
 ];
 
@@ -56,12 +64,12 @@ function card({ title, text, fields, action, level = "h3" }, start) {
   return make("div", {}, make(level, {}, title), make("p", { class: "hint" }, text), row, progress, result);
 }
 
-/** @param {{case: () => object, offered: Set<string>}} page */
+/** @param {{case: () => object, offered: Set<string>, take: (flanks: object) => void}} page */
 export function showStudies(page) {
   const offered = STUDIES.filter(({ process }) => page.offered.has(process));
   byId("study-list").replaceChildren(...offered.map((study) => card(study, async (values, progress, result) => {
     const reference = await runJob(progress, study.process, study.inputs(page.case(), values));
-    await showReport(result, reference);
+    await (study.show ?? showReport)(result, reference, page);
   })));
 }
 
