@@ -40,7 +40,17 @@ if TYPE_CHECKING:
         Shaft,
     )
     from fe_contact.material import STEEL, Material
-    from fe_contact.microgeometry import DesignVariable, Limits, Optimisation, Scatter, Search, optimise
+    from fe_contact.microgeometry import (
+        DesignVariable,
+        Limits,
+        Optimisation,
+        Scatter,
+        Search,
+        Tolerances,
+        ToleranceStudy,
+        optimise,
+        scatter,
+    )
     from fe_contact.ste import SteDatabase
     from fe_contact.types import Estimate, Status
 
@@ -72,6 +82,8 @@ __all__ = [
     "Shaft",
     "Status",
     "SteDatabase",
+    "ToleranceStudy",
+    "Tolerances",
     "ablate",
     "analyze",
     "contact_pattern",
@@ -80,6 +92,7 @@ __all__ = [
     "frontier",
     "optimise",
     "root_stress",
+    "scatter",
     "study_sensitivity",
 ]
 
@@ -116,7 +129,10 @@ _HOME = {
     "Optimisation": "fe_contact.microgeometry",
     "optimise": "fe_contact.microgeometry",
     "Scatter": "fe_contact.microgeometry",
+    "scatter": "fe_contact.microgeometry",
     "Search": "fe_contact.microgeometry",
+    "Tolerances": "fe_contact.microgeometry",
+    "ToleranceStudy": "fe_contact.microgeometry",
     "SteDatabase": "fe_contact.ste",
     "Estimate": "fe_contact.types",
     "Status": "fe_contact.types",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
+from fe_contact.workers import InProcess, Workers
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,7 @@ def study_sensitivity(
     model: str = "auto",
     positions: int | None = None,
     effects: Mapping[str, str] | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
     progress: Progress | None = None,
     cache: Path | None = None,
 ) -> tuple[Sensitivity, Sensitivity]:
@@ -75,7 +78,9 @@ def study_sensitivity(
     tolerance, level, time_budget, model, positions, effects, progress, cache
         See `analyze`. An automatic model is three-dimensional at every point, so that the curves compare;
         the effects decide about everything but corner contact. Progress begins anew for each of the
-        four tables. With `cache` the gears are condensed once.
+        four tables. With `cache` the gears are condensed once; workers elsewhere need to see it too.
+    workers : Workers
+        Who makes the four tables; elsewhere there is no progress.
 
     Returns
     -------
@@ -94,27 +99,31 @@ def study_sensitivity(
         "center_distance_changes": np.union1d([0.0], center_distance_changes),
     }
 
-    def table(axis: str, corners: bool) -> SteDatabase:
-        """Table along one axis."""
-        return analyze(
-            pair,
-            normal_forces=[normal_force],
-            tolerance=tolerance,
-            level=level,
-            time_budget=time_budget,
-            model="3d" if model == "auto" else model,
-            positions=positions,
-            effects={**(effects or {}), CornerContact.name: "on" if corners else "off"},
-            progress=progress,
-            cache=cache,
-            **{axis: axes[axis]},  # type: ignore[arg-type]  # the two axes are keywords of one type
-        )
+    shared: dict[str, Any] = {
+        "pair": pair,
+        "normal_forces": [normal_force],
+        "tolerance": tolerance,
+        "level": level,
+        "time_budget": time_budget,
+        "model": "3d" if model == "auto" else model,
+        "positions": positions,
+        "cache": cache,
+    }
+    if isinstance(workers, InProcess):
+        shared["progress"] = progress
+    wanted = [
+        {"effects": {**(effects or {}), CornerContact.name: corners}, name: axis}
+        for corners in ("off", "on")
+        for name, axis in axes.items()
+    ]
+    tables = list(workers.run(make_table, shared, wanted))
+    curves = [_ripple(table, name) for table, name in zip(tables, [*axes, *axes], strict=True)]
+    return Sensitivity(False, curves[0], curves[1]), Sensitivity(True, curves[2], curves[3])
 
-    without, with_corners = (
-        Sensitivity(corners, *(_ripple(table(axis, corners), axis) for axis in axes))
-        for corners in (False, True)
-    )
-    return without, with_corners
+
+def make_table(shared: dict[str, Any], further: dict[str, Any]) -> SteDatabase:
+    """Make one table: one task; both are arguments of `analyze`."""
+    return analyze(**shared, **further)
 
 
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:

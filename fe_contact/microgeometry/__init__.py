@@ -7,6 +7,8 @@ from fe_contact.microgeometry.optimisation import Optimisation, Outcome, StepAsi
 from fe_contact.microgeometry.optimise import optimise
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import DifferentialEvolution, NelderMead, Search, SearchRun
+from fe_contact.microgeometry.tolerance_study import ToleranceStudy, scatter
+from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
 from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
 
 __all__ = [
@@ -27,7 +29,11 @@ __all__ = [
     "SearchRun",
     "SobolSample",
     "StepAside",
+    "ToleranceStudy",
+    "Tolerances",
     "WeightedMean",
     "Worst",
+    "iso1328_tolerances",
     "optimise",
+    "scatter",
 ]

@@ -81,7 +81,7 @@ def confirm(
         Directory of flank compliances.
     """
     search, nodes, counted = problem.evaluator, problem.evaluator.nodes, study.counted
-    table = _table(search, values, study.decided, cache)
+    table = full_table(search, values, study.decided, cache)
     fine = replace(search.at(table.position), load=table.force)
     found = fine.evaluate(values)
     error = _errors(table, search.misalignment + nodes.misalignment)
@@ -108,10 +108,10 @@ def confirm(
     return ConfirmedDesign(dict(values), table, harris, counted_figures, objective, rule, violation)
 
 
-def _table(
+def full_table(
     search: Evaluator, values: Mapping[str, float], decided: Decided, cache: Path | None
 ) -> SteDatabase:
-    """Compute the table over torques and the misalignments of all nodes and of none."""
+    """Compute the table of a design over torques and the misalignments of all nodes and of none."""
     request = decided.checked.request
     skews = np.unique([search.misalignment, *(search.misalignment + search.nodes.misalignment)])
     asked = replace(

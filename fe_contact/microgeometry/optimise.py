@@ -22,6 +22,7 @@ from fe_contact.microgeometry.search import NelderMead, Search, SearchRun, searc
 from fe_contact.microgeometry.variables import DesignVariable, check_variables, start_of
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
+from fe_contact.workers import InProcess, Workers
 
 MAP_PARTS = np.arange(1, 11) / 8.0
 """Torques of the Harris map in parts of the largest that counts."""
@@ -52,6 +53,7 @@ def optimise(
     time_budget: float | None = None,
     model: str = "auto",
     effects: Mapping[str, str] | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
     progress: Progress | None = None,
     cache: Path | None = None,
 ) -> Optimisation:
@@ -84,6 +86,9 @@ def optimise(
         See `analyze`. Effects are decided once, for a design in which every variable is at the middle of its
         bounds, misaligned as it scatters: all designs are judged by one model.
 
+    workers : Workers
+        Who searches from the starts; the result does not depend on it.
+
     Returns
     -------
     Optimisation
@@ -105,7 +110,7 @@ def optimise(
     own = start_of(pair, variables)
     problem = _problem(study, variables, objective, limits, own)
     with clock.stage("search"):
-        runs = search_all(problem, search, own, report)
+        runs = search_all(problem, search, own, workers, report)
     best = min(range(len(runs)), key=lambda i: runs[i].judged.order)
     with clock.stage("confirmation"):
         start = confirm(problem, dict(zip(problem.names, own, strict=True)), study, cache)

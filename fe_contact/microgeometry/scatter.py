@@ -26,7 +26,7 @@ class ScatterRule(Protocol):
         """Return nodes (S, d) in standard deviations and weights (S,) that sum to 1."""
         ...
 
-    def finer(self) -> ScatterRule:
+    def finer(self, dimensions: int) -> ScatterRule:
         """Return a rule by which the error of this one can be told."""
         ...
 
@@ -60,9 +60,15 @@ class GaussHermite:
         weights = np.meshgrid(*[weight / weight.sum()] * dimensions, indexing="ij")
         return np.stack([axis.ravel() for axis in grid], axis=1), np.prod(weights, axis=0).ravel()
 
-    def finer(self) -> GaussHermite:
-        """Return the rule of one point and a half as many."""
-        return GaussHermite(1 + self.points + self.points // 2)
+    def finer(self, dimensions: int) -> ScatterRule:
+        """Return a rule of one and a half times as many points, or the nearest one that is not too large.
+
+        That may be a rougher one, which overstates the error, or for a single point a sample.
+        """
+        for points in (1 + self.points + self.points // 2, self.points + 1, self.points - 1):
+            if points > 0 and points**dimensions <= MOST_NODES:
+                return GaussHermite(min(points, 33))
+        return SobolSample(10)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -94,7 +100,7 @@ class SobolSample:
         uniform = qmc.Sobol(dimensions, rng=self.seed).random_base2(self.log2_size)
         return np.asarray(norm.ppf(uniform)), np.full(size, 1.0 / size)
 
-    def finer(self) -> SobolSample:
+    def finer(self, dimensions: int) -> SobolSample:
         """Return the sample of four times the size, of the same sequence."""
         return SobolSample(min(self.log2_size + 2, 10), self.seed)
 
@@ -140,7 +146,7 @@ class Scatter:
         spread |= dict(sorted(self.modification.items()))
         if not spread:
             return ONE_NODE
-        return self._of(spread, self.rule, self._of(spread, self.rule.finer()))
+        return self._of(spread, self.rule, self._of(spread, self.rule.finer(len(spread))))
 
     @staticmethod
     def _of(

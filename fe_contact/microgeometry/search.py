@@ -15,6 +15,7 @@ from fe_contact.analysis.solved_table import Progress
 from fe_contact.checks import integer
 from fe_contact.microgeometry.design_problem import DesignProblem, Judged
 from fe_contact.types import FloatArray, Json
+from fe_contact.workers import InProcess, Workers
 
 Merit = Callable[[FloatArray], float]
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4
@@ -175,7 +176,7 @@ class _Spent(Exception):
 
 
 def search_all(
-    problem: DesignProblem, search: Search, own: tuple[float, ...], report: Progress
+    problem: DesignProblem, search: Search, own: tuple[float, ...], workers: Workers, report: Progress
 ) -> tuple[SearchRun, ...]:
     """Search from every start; `own` is the design to begin with, m."""
     first = problem.place(own)
@@ -183,14 +184,24 @@ def search_all(
         1 : search.starts
     ]
 
-    def run(index: int, start: FloatArray) -> SearchRun:
-        return search_from(
-            problem, search, start, index, lambda part: report("search", (index + part) / search.starts)
-        )
+    begins = list(enumerate([first, *others]))
+    if isinstance(workers, InProcess):
 
-    runs = tuple(run(index, start) for index, start in enumerate([first, *others]))
-    report("search", 1.0)
-    return runs
+        def run(index: int, start: FloatArray) -> SearchRun:
+            told = lambda part: report("search", (index + part) / search.starts)  # noqa: E731
+            return search_from(problem, search, start, index, told)
+
+        return tuple(run(*begin) for begin in begins)
+    runs = []
+    for one in workers.run(search_one, (problem, search), begins):
+        runs.append(one)
+        report("search", len(runs) / search.starts)
+    return tuple(runs)
+
+
+def search_one(shared: tuple[DesignProblem, Search], begin: tuple[int, FloatArray]) -> SearchRun:
+    """Search from one start: one task."""
+    return search_from(*shared, begin[1], begin[0])
 
 
 def search_from(

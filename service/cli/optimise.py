@@ -9,6 +9,7 @@ from pathlib import Path
 from fe_contact.microgeometry import Optimisation
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.convert.optimisation import boundary_values, optimisation_json, optimisation_of
+from service.convert.task_workers import Hands, working_hands
 from service.problems import BadInput
 from service.report.image import png
 from service.report.optimisation import (
@@ -23,12 +24,12 @@ from service.schemas.optimisation import OptimisationInput
 from service.settings import cache_home
 
 
-def run_optimise(case: Path, study: Path, output: Path | None, *, as_json: bool) -> None:
+def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, as_json: bool) -> None:
     """Optimise, write, print."""
     given, wanted = read_model(Case, case), read_model(OptimisationInput, study)
     targets = [] if output is None else _targets(output)
-    with progress_bar() as report:
-        found = optimisation_of(given, wanted, cache_home() / "compliance", report)
+    with working_hands(hands) as workers, progress_bar() as report:
+        found = optimisation_of(given, wanted, cache_home() / "compliance", report, workers)
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _WRITERS[target.suffix](found, target)

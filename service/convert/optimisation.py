@@ -23,6 +23,7 @@ from fe_contact.microgeometry import (
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.design_study import Accuracies
 from fe_contact.microgeometry.optimise import check_optimisation
+from fe_contact.workers import InProcess, Workers
 from service.convert.ablation import in_um
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.convert.units import UM, factor
@@ -42,7 +43,13 @@ MPA = 1e6
 _ACCURACY = ("tolerance", "level", "time_budget", "model", "effects")
 
 
-def optimisation_of(case: Case, study: OptimisationInput, cache: Path | None, report: Report) -> Optimisation:
+def optimisation_of(
+    case: Case,
+    study: OptimisationInput,
+    cache: Path | None,
+    report: Report,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> Optimisation:
     """Optimise the modifications of a case.
 
     Raises
@@ -58,6 +65,7 @@ def optimisation_of(case: Case, study: OptimisationInput, cache: Path | None, re
             **arguments,
             limits=_limits(study),
             **{name: analysis_arguments(case)[name] for name in _ACCURACY},
+            workers=workers,
             progress=report,
             cache=cache,
         )

@@ -29,6 +29,12 @@ Misalignment = Annotated[
 CenterDistanceChange = Annotated[
     float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
 ]
+TaskWorkers = Annotated[
+    int, typer.Option("--workers", min=1, max=256, help="Processes here that share the tasks.")
+]
+DaskScheduler = Annotated[
+    str | None, typer.Option("--dask", help="Address of a Dask scheduler whose workers do the tasks.")
+]
 
 
 def load_point(

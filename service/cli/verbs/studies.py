@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
 from service.cli.guard import guarded
-from service.cli.verbs.options import AsJson
+from service.cli.verbs.options import AsJson, DaskScheduler, TaskWorkers
 
 verbs = typer.Typer()
 
@@ -82,12 +82,49 @@ def optimise(
         Path | None,
         typer.Option("-o", "--output", help="Folder, or a file ending in .png, .html, .json, .toml."),
     ] = None,
+    workers: TaskWorkers = 1,
+    dask: DaskScheduler = None,
     json: AsJson = False,
 ) -> None:
     """Choose flank modifications for the least peak-to-peak STE over torques and scatter."""
     from service.cli.optimise import run_optimise  # noqa: PLC0415 (start-up time)
+    from service.convert.task_workers import Hands  # noqa: PLC0415
 
-    run_optimise(case, study, output, as_json=json)
+    run_optimise(case, study, output, Hands(workers, dask), as_json=json)
+
+
+@verbs.command(
+    epilog="Example: loa scatter examples/sensitivity_automotive.toml --samples 400 -o scatter.png"
+)
+@guarded
+def scatter(
+    case: Annotated[Path, typer.Argument(help="Case file; its modifications are the design.")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="File to write, ending in .png, .html or .json.")
+    ] = None,
+    tolerance_class: Annotated[
+        int, typer.Option("--class", min=1, max=11, help="Tolerance class of ISO 1328-1, both gears.")
+    ] = 6,
+    misalignment_um: Annotated[
+        float, typer.Option(min=0.0, max=1000.0, help="Tolerance of the misalignment, +- um.")
+    ] = 0.0,
+    uniform: Annotated[
+        bool, typer.Option("--uniform", help="Uniform within the tolerances; default: normal, cut at 3 s.")
+    ] = False,
+    samples: Annotated[int, typer.Option(min=2, max=1_000_000, help="Pairs to draw.")] = 1000,
+    seed: Annotated[int, typer.Option(min=0, help="Equal seeds give equal results.")] = 0,
+    workers: TaskWorkers = 1,
+    dask: DaskScheduler = None,
+    json: AsJson = False,
+) -> None:
+    """Draw pairs within tolerances (Monte Carlo): distribution of peak-to-peak STE with confidence bounds."""
+    from service.cli.scatter import Wanted, run_scatter  # noqa: PLC0415 (start-up time)
+    from service.convert.scatter import Sampling  # noqa: PLC0415
+    from service.convert.task_workers import Hands  # noqa: PLC0415
+
+    distribution: Literal["uniform", "normal"] = "uniform" if uniform else "normal"
+    sampling = Sampling(tolerance_class, misalignment_um, distribution, samples, seed)
+    run_scatter(case, output, Wanted(sampling, Hands(workers, dask)), as_json=json)
 
 
 @verbs.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")

@@ -62,10 +62,18 @@ def test_a_sample_repeats_and_its_finer_one_holds_it() -> None:
     rule = SobolSample(5, seed=3)
     place, weight = rule.nodes(3)
     np.testing.assert_array_equal(place, rule.nodes(3)[0])
-    np.testing.assert_array_equal(place, rule.finer().nodes(3)[0][:32])
+    np.testing.assert_array_equal(place, rule.finer(3).nodes(3)[0][:32])
     assert np.abs(weight @ place).max() < 0.1
     np.testing.assert_allclose(weight @ place**2, 1.0, rtol=0.2)
     assert not np.array_equal(place, SobolSample(5, seed=4).nodes(3)[0])
+
+
+@pytest.mark.parametrize(("points", "dimensions"), [(5, 1), (5, 3), (5, 4), (4, 5), (1, 11)])
+def test_every_rule_has_one_to_tell_its_error_by(points: int, dimensions: int) -> None:
+    rule = GaussHermite(points)
+    place, weight = rule.finer(dimensions).nodes(dimensions)
+    assert place.shape == (weight.size, dimensions) and weight.size <= 1024
+    assert weight.size != rule.nodes(dimensions)[1].size
 
 
 def test_nothing_that_scatters_is_one_node() -> None:

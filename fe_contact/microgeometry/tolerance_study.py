@@ -1,0 +1,217 @@
+"""Tolerance Monte Carlo: how peak-to-peak STE is distributed over pairs as they are made and assembled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis.solved_table import Progress
+from fe_contact.checks import integer, within
+from fe_contact.errors import SolveError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.confirmation import full_table
+from fe_contact.microgeometry.design_study import Accuracies, design_study
+from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.scatter import ONE_NODE, Scatter, ScatterNodes, SobolSample
+from fe_contact.microgeometry.spread import Quantile, quantile, rank_correlation
+from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.stage_clock import StageClock
+from fe_contact.types import FloatArray, Json
+from fe_contact.workers import InProcess, Workers
+
+IN_A_TASK = 25
+"""Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
+FRACTIONS = (0.05, 0.5, 0.95)
+ACTING = SobolSample(1)
+"""Two pairs that deviate in everything: by them the effects are decided."""
+
+
+@dataclass(frozen=True)
+class ToleranceStudy:
+    """Peak-to-peak of N pairs at L torques.
+
+    Attributes
+    ----------
+    torque : ndarray, shape (L,)
+        N m.
+    names : tuple of str
+        What deviates: "misalignment" and ``gear.quantity``.
+    deviation : ndarray, shape (N, d)
+        m.
+    peak_to_peak : ndarray, shape (N, L)
+        m.
+    nominal, error : ndarray, shape (L,)
+        Without deviations, and the error of the analysis there, m.
+    quantiles : tuple of Quantile
+    confidence : float
+        Of their bounds.
+    cost : dict
+        CPU and wall seconds by stage, of this process.
+    asked : dict
+    """
+
+    torque: FloatArray
+    names: tuple[str, ...]
+    deviation: FloatArray
+    peak_to_peak: FloatArray
+    nominal: FloatArray
+    error: FloatArray
+    quantiles: tuple[Quantile, ...]
+    confidence: float
+    cost: Json
+    asked: Json
+
+    @property
+    def mean(self) -> FloatArray:
+        """Mean (L,), m."""
+        return np.asarray(self.peak_to_peak.mean(axis=0))
+
+    @property
+    def mean_error(self) -> FloatArray:
+        """Standard error of the mean (L,), m."""
+        return np.asarray(self.peak_to_peak.std(axis=0, ddof=1) / np.sqrt(self.peak_to_peak.shape[0]))
+
+    @property
+    def influence(self) -> FloatArray:
+        """Rank correlation (d, L) of each deviation with the ripple."""
+        return rank_correlation(self.deviation, self.peak_to_peak)
+
+    def to_json(self) -> Json:
+        """Return plain JSON in SI units."""
+        return {
+            "torque_n_m": self.torque.tolist(),
+            "samples": self.peak_to_peak.shape[0],
+            "nominal_m": self.nominal.tolist(),
+            "error_m": self.error.tolist(),
+            "mean_m": self.mean.tolist(),
+            "mean_standard_error_m": self.mean_error.tolist(),
+            "confidence": self.confidence,
+            "quantiles": [one.to_json() for one in self.quantiles],
+            "names": list(self.names),
+            "influence": self.influence.tolist(),
+            "deviation_m": self.deviation.tolist(),
+            "peak_to_peak_m": self.peak_to_peak.tolist(),
+            "cost": self.cost,
+            "asked": self.asked,
+        }
+
+
+def scatter(
+    pair: ParallelAxes,
+    torques: Sequence[float] | FloatArray,
+    tolerances: Tolerances,
+    *,
+    samples: int = 1000,
+    seed: int = 0,
+    confidence: float = 0.95,
+    fractions: Sequence[float] = FRACTIONS,
+    misalignment: float = 0.0,
+    positions: int = 64,
+    tolerance: float | None = None,
+    level: str | None = None,
+    time_budget: float | None = None,
+    model: str = "auto",
+    effects: Mapping[str, str] | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    progress: Progress | None = None,
+    cache: Path | None = None,
+) -> ToleranceStudy:
+    """Draw pairs within their tolerances and compute the peak-to-peak transmission error of each.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+        As designed.
+    torques : sequence of float
+        N m on the driving gear, increasing.
+    tolerances : Tolerances
+        See `iso1328_tolerances`. Material removed does not become negative by a deviation.
+    samples : int
+        Pairs, 2 to 1 000 000.
+    seed : int
+        Equal seeds give equal results to the last bit, whoever does the work.
+    confidence : float
+        Of the bounds of the quantiles.
+    fractions : sequence of float
+        Quantiles to estimate.
+    misalignment : float
+        As designed, m.
+    positions : int
+        Equally spaced in a base pitch.
+    tolerance, level, time_budget, model, effects, progress, cache
+        See `analyze`; one model for all pairs.
+    workers : Workers
+        Who does the tasks of 25 pairs.
+
+    Raises
+    ------
+    InputError
+        A value that cannot be used, by field name.
+    MeshError, SolveError
+        No acceptable mesh, or the contact of a pair cannot be solved.
+    """
+    clock, report = StageClock(), progress or _silent
+    integer("samples", samples, 2, 1_000_000)
+    integer("seed", seed, 0, 2**63 - 1)
+    within("confidence", confidence, 0.5, 0.9999)
+    for index, fraction in enumerate(fractions):
+        within(f"fractions[{index}]", fraction, 0.0, 1.0)
+    widths = Scatter(tolerances.misalignment, tolerances.modification, ACTING)
+    accuracy = Accuracies(tolerance, level, time_budget, model, effects)
+    study = design_study(
+        pair, torques, [], {}, widths, misalignment, positions, accuracy, clock, report, cache
+    )
+    deviation = tolerances.sample(samples, seed)
+    with clock.stage("samples"):
+        found = _evaluated(study.evaluator, tuple(tolerances.widths), deviation, workers, report)
+    with clock.stage("confirmation"):
+        nominal = replace(study.evaluator, nodes=ONE_NODE)
+        table = full_table(nominal, {}, study.decided, cache)
+        error = [table.peak_to_peak(force=float(f), misalignment=misalignment).error for f in table.force]
+    return ToleranceStudy(
+        study.torque,
+        tuple(tolerances.widths),
+        deviation,
+        found,
+        nominal.evaluate({}).peak_to_peak[0],
+        np.array(error),
+        tuple(quantile(found, fraction, confidence) for fraction in fractions),
+        confidence,
+        clock.to_json(),
+        {
+            "tolerances": tolerances.to_json(),
+            "seed": seed,
+            "positions": positions,
+            "misalignment_m": misalignment,
+        },
+    )
+
+
+def _evaluated(
+    evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, workers: Workers, report: Progress
+) -> FloatArray:
+    """Evaluate all samples (N, L), task by task."""
+    tasks = [deviation[k : k + IN_A_TASK] for k in range(0, deviation.shape[0], IN_A_TASK)]
+    parts = []
+    for count, part in enumerate(workers.run(ripple_of_samples, (evaluator, names), tasks)):
+        parts.append(part)
+        report("samples", (count + 1) / len(tasks))
+    found: FloatArray = np.concatenate(parts)
+    if not np.isfinite(found).all():
+        bad = int((~np.isfinite(found)).any(axis=1).sum())
+        raise SolveError(f"the contact of {bad} of {found.shape[0]} pairs cannot be solved", found)
+    return found
+
+
+def ripple_of_samples(shared: tuple[Evaluator, tuple[str, ...]], deviation: FloatArray) -> FloatArray:
+    """Peak-to-peak (n, L) in m of some samples (n, d): one task."""
+    evaluator, names = shared
+    weight = np.full(deviation.shape[0], 1.0 / deviation.shape[0])
+    return replace(evaluator, nodes=ScatterNodes(names, deviation, weight)).evaluate({}).peak_to_peak
+
+
+def _silent(stage: str, fraction: float) -> None:
+    """Report no progress."""

@@ -1,0 +1,122 @@
+"""Tolerance Monte Carlo: distributions of parts, bounds of quantiles, pairs as single tables have them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.special import ndtr
+
+from fe_contact import GearPair, analyze
+from fe_contact.errors import InputError
+from fe_contact.microgeometry import Tolerances, ToleranceStudy, iso1328_tolerances, scatter
+from fe_contact.microgeometry.spread import quantile, rank_correlation
+from fe_contact.microgeometry.variables import modified
+
+TORQUES = [100.0, 200.0]
+DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
+SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 2e-6})
+
+
+@pytest.fixture(scope="module")
+def found(pair: GearPair, compliances: Path) -> ToleranceStudy:
+    return scatter(pair, TORQUES, SLOPES, samples=120, seed=3, positions=16, cache=compliances, **DRAFT)
+
+
+def test_every_sample_is_the_pair_as_it_is_made(
+    found: ToleranceStudy, pair: GearPair, compliances: Path
+) -> None:
+    for k in (0, 60, 119):  # of different tasks
+        made = modified(pair, dict(zip(found.names, found.deviation[k], strict=True)))
+        table = analyze(made, torques=TORQUES, positions=16, receipt="minimal", cache=compliances, **DRAFT)
+        ripple = np.ptp(table.static_transmission_error[:, :, 0, 0], axis=0)
+        np.testing.assert_array_equal(found.peak_to_peak[k], ripple)
+
+
+def test_a_larger_sample_begins_with_the_smaller_one(
+    found: ToleranceStudy, pair: GearPair, compliances: Path
+) -> None:
+    more = scatter(pair, TORQUES, SLOPES, samples=130, seed=3, positions=16, cache=compliances, **DRAFT)
+    np.testing.assert_array_equal(more.peak_to_peak[:120], found.peak_to_peak)
+    other = scatter(pair, TORQUES, SLOPES, samples=30, seed=4, positions=16, cache=compliances, **DRAFT)
+    assert not np.any(other.deviation == found.deviation[:30])
+
+
+def test_what_deviates_more_has_more_influence(found: ToleranceStudy) -> None:
+    pinion, wheel = np.abs(found.influence[:, -1])
+    assert pinion > 0.8 > wheel
+
+
+def test_bounds_enclose_their_quantiles(found: ToleranceStudy) -> None:
+    values = [one.value for one in found.quantiles]
+    assert np.all(np.diff(values, axis=0) > 0.0)
+    for one in found.quantiles:
+        assert np.all(one.low <= one.value) and np.all(one.value <= one.high)
+    assert np.all(found.mean_error < 0.1 * found.mean)
+
+
+def test_bounds_cover_the_true_quantile_as_often_as_they_say() -> None:
+    samples = np.random.default_rng(5).exponential(size=(80, 4000))
+    true = -np.log(1.0 - 0.9)
+    bounds = quantile(samples, 0.9, 0.95)
+    covered = np.mean((bounds.low <= true) & (true <= bounds.high))
+    assert 0.94 < covered < 0.99  # order statistics are discrete: at least the asked confidence
+
+
+def test_a_sample_too_small_has_no_bound() -> None:
+    small = quantile(np.arange(1.0, 6.0)[:, None], 0.95, 0.95)
+    assert np.isinf(small.high).all() and small.to_json()["high_m"] is None
+
+
+def test_influence_sees_both_signs_and_sizes() -> None:
+    deviation = np.random.default_rng(1).normal(size=(400, 3))
+    ripple = np.stack([deviation[:, 0] ** 2, -deviation[:, 1]], axis=1)
+    found = rank_correlation(deviation, ripple)
+    assert found[0, 0] == pytest.approx(1.0) and found[1, 1] == pytest.approx(-1.0)
+    assert np.abs(found[2]).max() < 0.2
+
+
+@pytest.mark.parametrize("distribution", ["normal", "uniform"])
+def test_parts_lie_within_their_tolerances(distribution: Any) -> None:
+    drawn = Tolerances(5e-6, {"wheel.helix_slope": 1e-6}, distribution).sample(20_000, seed=1)
+    assert np.all(np.abs(drawn) <= [5e-6, 1e-6])
+    # normal: three standard deviations to the limit, less what is cut off beyond
+    kept = 2.0 * ndtr(3.0) - 1.0
+    cut = np.sqrt(1.0 - 2.0 * 3.0 * np.exp(-4.5) / np.sqrt(2.0 * np.pi) / kept) / 3.0
+    expected = {"normal": cut, "uniform": 1.0 / np.sqrt(3.0)}[distribution]
+    np.testing.assert_allclose(drawn.std(axis=0) / [5e-6, 1e-6], expected, rtol=0.02)
+    assert np.abs(np.corrcoef(drawn.T)[0, 1]) < 0.03
+
+
+def test_iso_1328_classes_step_by_the_root_of_two(pair: GearPair) -> None:
+    five, seven = (iso1328_tolerances(pair, grade).modification for grade in (5, 7))
+    # m_n 4, d 80, b 25: 0.4 * 4 + 0.08 + 4 and 0.05 * 8.944 + 0.35 * 5 + 4
+    assert five["pinion.profile_slope"] == pytest.approx(5.68e-6, rel=1e-9, abs=0.0)
+    assert five["wheel.helix_slope"] == pytest.approx(6.1972e-6, rel=1e-4, abs=0.0)
+    assert all(seven[name] == pytest.approx(2.0 * five[name], rel=1e-12, abs=0.0) for name in five)
+    flat = iso1328_tolerances(pair, 5, across_face=False).modification
+    assert set(flat) == {"pinion.profile_slope", "wheel.profile_slope"}
+
+
+@pytest.mark.parametrize(
+    ("given", "field"),
+    [
+        ({"samples": 1}, "samples"),
+        ({"confidence": 1.0}, "confidence"),
+        ({"fractions": [1.5]}, "fractions[0]"),
+        ({"tolerances": Tolerances(1e-5)}, "misalignments"),  # in the plane
+        ({"effects": {"profile_modification": "off"}}, "effects.profile_modification"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_by_name(pair: GearPair, given: dict[str, Any], field: str) -> None:
+    asked = {"tolerances": SLOPES, **DRAFT, **given}
+    with pytest.raises(InputError) as caught:
+        scatter(pair, TORQUES, asked.pop("tolerances"), **asked)
+    assert caught.value.field == field, caught.value
+
+
+def test_no_tolerance_is_no_study() -> None:
+    with pytest.raises(InputError, match="at least one width"):
+        Tolerances()
