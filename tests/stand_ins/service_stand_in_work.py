@@ -6,6 +6,7 @@ import os
 import resource
 import subprocess
 import time
+from pathlib import Path
 
 from fe_contact.errors import InputError, MeshError
 from service.jobs.order import Product, Progress, WorkOrder
@@ -21,11 +22,30 @@ def work(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     progress("first", 0.5)
     _misbehave(order, wish["mode"])
     progress("first", 1.0)
-    progress("second", 1.0)
     file = order.workspace / "result.nc"
+    if wish["mode"] == "slow":
+        _write_slowly(file, slow_content(wish["text"]), progress)
+        return (Product(order.key, "database", file),)
+    progress("second", 1.0)
     left = order.workspace / "left"
     file.write_text(left.read_text() if left.exists() else wish["text"])
     return (Product(order.key, "database", file),)
+
+
+def slow_content(text: str) -> bytes:
+    """Return the result of slow work, 200 kB."""
+    return text.encode().ljust(20, b".") * 10_000
+
+
+def _write_slowly(file: Path, content: bytes, progress: Progress) -> None:
+    """Take a second or so, with part of the result on disk all the time."""
+    pieces = 25
+    size = len(content) // pieces
+    with file.open("wb", buffering=0) as stream:
+        for n in range(pieces):
+            stream.write(content[n * size : (n + 1) * size])
+            progress("second", n / pieces)
+            time.sleep(0.04)
 
 
 def _misbehave(order: WorkOrder, mode: str) -> None:

@@ -16,7 +16,18 @@ class Wish(BoundaryModel):
     """What the stand-in is to do."""
 
     mode: Literal[
-        "write", "hang", "die", "die_once", "abort", "hog", "full", "mesh", "input", "defect", "refuse"
+        "write",
+        "hang",
+        "die",
+        "die_once",
+        "abort",
+        "hog",
+        "full",
+        "mesh",
+        "input",
+        "defect",
+        "refuse",
+        "slow",
     ] = "write"
     text: str = Field(default="", max_length=1_000_000)
     number: float = Field(default=0.0, ge=0.0, le=10.0)

@@ -1,0 +1,52 @@
+"""The service with stand-in work as processes of their own: all in one, serving only, or working only.
+
+Started as ``python stand_in_process.py ROLE [DESCRIPTOR]``: DESCRIPTOR is the socket to listen on, which its
+parent keeps, so that the address outlives the process. Settings come from the environment.
+"""
+
+from __future__ import annotations
+
+import signal
+import socket
+import sys
+import threading
+
+import structlog
+import uvicorn
+from service_stand_ins import REGISTRY
+
+from service.app import create_app
+from service.jobs.machinery import job_machinery
+from service.settings import load_settings
+from service.store import DirectoryLock
+
+
+def serve(works: bool, descriptor: int) -> None:
+    """Answer on the socket until stopped."""
+    app = create_app(load_settings(), REGISTRY, works=works)
+    signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(0))  # raised again when all is shut down
+    config = uvicorn.Config(
+        app, log_config=None, access_log=False, timeout_graceful_shutdown=2, lifespan="on"
+    )
+    with socket.socket(fileno=descriptor) as listener:
+        uvicorn.Server(config).run(sockets=[listener])
+
+
+def work() -> None:
+    """Run jobs until stopped."""
+    settings, stopped = load_settings(), threading.Event()
+    DirectoryLock(settings.data_directory).acquire()
+    signal.signal(signal.SIGTERM, lambda _number, _frame: stopped.set())
+    machinery = job_machinery(settings, REGISTRY)
+    machinery.scheduler.start()
+    stopped.wait()
+    machinery.scheduler.stop()
+    machinery.close()
+
+
+if __name__ == "__main__":
+    structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))
+    if sys.argv[1] == "work":
+        work()
+    else:
+        serve(sys.argv[1] == "all", int(sys.argv[2]))
