@@ -7,13 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import brentq
 
-from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact import ContactProblem, ContactSolution, solve_contact
 from fe_contact.geometry import FlankModification, GearPair
 from service.hardcases.posed import Posed, nominal_gear, nominal_pair, posed
 from service.hardcases.scene import HardScene, Measured
 from service.hardcases.soundness import soundness
 
 _POSITION = np.array([0.3])
+_LOADS = np.array([0.5, 1.0 - 1e-6, 1.0 + 1e-6, 1.0 + 1e-3])
 _LENGTH = 2.5e-3
 """Of the relief in m, along the radius."""
 _NUDGES = np.array([-1e-3, -1e-6, -1e-9, -1e-12, -1e-15, 0.0, 1e-15, 1e-12, 1e-9, 1e-6, 1e-3])
@@ -28,12 +29,16 @@ def relief_that_touches() -> Sequence[Measured]:
     ste = np.array([solution.deflection[0, 0] for _, solution in solved])
     rise, widening = np.diff(ste), np.diff(reliefs)
     rounding = 1e-14 * ste.max()
-    checks = [soundness(*each) for each in solved]
+    raised = _raised(*solved[_NUDGES.size // 2])
+    checks = [soundness(*each) for each in (*solved, raised)]
+    entering = np.sort(raised[1].force[0], axis=1)[:, -2] / raised[1].load
     return (
         *(max(column, key=lambda m: m.value) for column in zip(*checks, strict=True)),
         Measured("relief found, um", 1e6 * exact),
         Measured("its gap off the closed form of a straight ramp", _off_the_ramp(case, exact), most=1e-3),
         Measured("share of the touching pair", float(_share(*solved[_NUDGES.size // 2])), most=1e-9),
+        Measured("its share a millionth below the load at which it touches", float(entering[1]), most=0.0),
+        Measured("a millionth above it, raised to it", float(entering[2]), most=1e-6, least=1e-9),
         Measured("least rise of STE with relief, m", float((rise + rounding).min()), least=0.0),
         Measured("largest rise over the relief's", float(((rise - rounding) / widening).max()), most=1.0),
     )
@@ -45,6 +50,11 @@ def _solve(case: Posed, relief: float) -> tuple[ContactProblem, ContactSolution]
     pair = GearPair(nominal_gear(), nominal_gear(modification=modification), case.pair.center_distance)
     relieved = posed(pair, case.pair.torque(case.plan.load), bodies=case.contact)
     return relieved.solve(_POSITION, case.plan.load)
+
+
+def _raised(problem: ContactProblem, touching: ContactSolution) -> tuple[ContactProblem, ContactSolution]:
+    """Raise the load through that at which the pair touches: it was out of contact at the load before."""
+    return problem, solve_contact(problem, touching.load[-1] * _LOADS)
 
 
 def _reach(case: Posed, relief: float) -> float:
@@ -86,6 +96,7 @@ RELIEF_THAT_TOUCHES = HardScene(
     "Tip relief equal to the deflection to the last digit: the entering pair touches without force, so that"
     " rounding decides whether it belongs to the active set.",
     "The gap is that of a straight ramp; STE rises with relief and never faster than it (the deflection is "
-    "non-expansive in the gaps), through nudges of 1e-15 to 1e-3; two solvers agree.",
+    "non-expansive in the gaps), and the pair carries a millionth above the load that brings it into touch; "
+    "through nudges of 1e-15 to 1e-3; two solvers agree.",
     relief_that_touches,
 )
