@@ -22,6 +22,7 @@ from benchmarks import (
     predictions,
     reference_errors,
     run_up,
+    service_queries,
     solvers_3d,
     static_table,
     tolerance_promise,
@@ -51,6 +52,7 @@ SUBJECTS = (
     dynamic_worth_estimates,
     effects_off,
     page_redraw,
+    service_queries,
 )
 
 

@@ -141,7 +141,7 @@ def test_no_spoiled_body_is_a_defect(client: TestClient) -> None:
             assert answer.headers["content-type"] == "application/problem+json", told
             assert answer.json()["detail"], told
     assert sum(statuses.values()) == COUNT
-    assert min(statuses[422], statuses[200] + statuses[201]) > COUNT // 20, statuses
+    assert min(statuses[422], statuses[200] + statuses[201]) > COUNT // 50, statuses
     if "LOA_FUZZED_BODIES" in os.environ:
         Path("out").mkdir(exist_ok=True)
         Path("out/fuzzed_bodies.json").write_text(json.dumps(dict(sorted(statuses.items()))))

@@ -1,0 +1,196 @@
+"""Start, memory and force queries of the service, asked over loopback by this process."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from statistics import median, quantiles
+from urllib.request import urlopen
+
+import numpy as np
+
+from benchmarks.example_pair import PAIR, TORQUES
+from benchmarks.figures import Figure
+from benchmarks.fresh_process import measure
+from service.client import LineOfActionClient
+from service.store import stored_results
+
+KEY = "ab" * 32
+PATH = f"/v1/databases/{KEY}/query"
+RAW, JSON = "application/octet-stream", "application/json"
+POINTS, BATCHES = 10_000, 30
+CALLERS, SECONDS = 8, 4.0
+_TABLE = (
+    PAIR + 'analyze(pair, torques={torques}, model="plane_strain").to_netcdf({table!r})\nmeasured = {{}}\n'
+)
+_JOB = "import os\nos.nice(10)\nwhile True:\n    sum(range(100_000))"
+_TICK = os.sysconf("SC_CLK_TCK")
+
+
+def figures() -> list[Figure]:
+    """Start a service on a fresh directory with one table, and ask it."""
+    with tempfile.TemporaryDirectory() as folder:
+        directory = Path(folder)
+        table = directory / "ste.nc"
+        measure(_TABLE.format(torques=list(TORQUES), table=str(table)))
+        stored_results(directory).put(KEY, "database", table)
+        with _service(directory) as (address, process, started):
+            at_start, idle = _memory_mb(process.pid), _idle_memory_mb(process.pid)
+            with LineOfActionClient(address, cache_dir=directory / "cache") as client:
+                client.query(KEY, [0.0], [5.0])  # reads the table, compiles where nothing is cached yet
+                client.fetch(KEY)
+                cached = min(_seconds(lambda: client.fetch(KEY)) for _ in range(5))
+            batches = [*_batch_figures(address)]
+            single = _single_figures(address, process.pid)
+            at_rest = _memory_mb(process.pid)
+    return [
+        Figure("service", "start until it answers", started[0], "s", 3.0),
+        Figure("service", "start until it answers, CPU time", started[1], "CPU s"),
+        Figure("service", "memory when it answers", at_start, "MB"),
+        Figure("service", "idle memory, libraries loaded", idle, "MB", 300.0),
+        Figure("service", "memory after these queries", at_rest, "MB"),
+        Figure("service", "cached table through the client", 1e3 * cached, "ms", 20.0),
+        *batches,
+        *single,
+    ]
+
+
+@contextmanager
+def _service(directory: Path) -> Iterator[tuple[str, subprocess.Popen[str], tuple[float, float]]]:
+    """Run the service; its address, process, and seconds elapsed and CPU seconds until it answered."""
+    begin = time.perf_counter()
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    process = subprocess.Popen(
+        [*command, "--data-directory", str(directory)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
+    try:
+        assert process.stdout is not None
+        address = re.search(r"http://\S+", process.stdout.readline())
+        assert address is not None
+        _wait_for(f"{address.group()}/health")
+        yield address.group(), process, (time.perf_counter() - begin, _cpu_seconds(process.pid))
+    finally:
+        process.terminate()
+        process.wait(timeout=30.0)
+
+
+def _wait_for(url: str) -> None:
+    """Ask until there is an answer."""
+    end = time.perf_counter() + 120.0
+    while True:
+        try:
+            with urlopen(url, timeout=60.0) as answer:
+                answer.read()
+                return
+        except OSError:
+            if time.perf_counter() > end:
+                raise
+            time.sleep(0.01)
+
+
+def _batch_figures(address: str) -> Iterator[Figure]:
+    """Time of a point in batches, with everything between question and answer in hand."""
+    points = np.random.default_rng(1).uniform(0.0, 1.0, POINTS)
+    deflection_um = np.random.default_rng(2).uniform(0.0, 15.0, POINTS)
+    raw = np.array([points, deflection_um], dtype="<f8").tobytes()
+    text = json.dumps({"position": points.tolist(), "deflection_um": deflection_um.tolist()}).encode()
+    connection = _connection(address)
+    for name, body, kind, limit in (("raw float64", raw, RAW, 0.5), ("JSON", text, JSON, 2.0)):
+        ask = lambda body=body, kind=kind: _ask(connection, body, kind)  # noqa: E731
+        ask()
+        taken = [1e6 * _seconds(ask) / POINTS for _ in range(BATCHES)]
+        yield Figure("force queries", f"a point of {POINTS}, {name}, best", min(taken), "us", limit)
+        yield Figure("force queries", f"a point of {POINTS}, {name}, median", median(taken), "us")
+    connection.close()
+
+
+def _single_figures(address: str, pid: int) -> list[Figure]:
+    """Time of one-point queries while two processes of a job's priority compute."""
+    jobs = [subprocess.Popen([sys.executable, "-c", _JOB]) for _ in range(2)]
+    try:
+        taken: list[float] = []
+        callers = [threading.Thread(target=_call, args=(address, taken)) for _ in range(CALLERS)]
+        begin, cpu = time.perf_counter(), _cpu_seconds(pid)
+        for caller in callers:
+            caller.start()
+        for caller in callers:
+            caller.join()
+        elapsed, cpu = time.perf_counter() - begin, _cpu_seconds(pid) - cpu
+    finally:
+        for job in jobs:
+            job.kill()
+            job.wait()
+    subject = f"one-point queries, {CALLERS} callers, two jobs"
+    return [
+        Figure(subject, "time between answers", 1e6 * elapsed / len(taken), "us", 1e6 / 1500.0),
+        Figure(subject, "CPU time of the service for one", 1e6 * cpu / len(taken), "us"),
+        Figure(subject, "latency, median", 1e3 * median(taken), "ms"),
+        Figure(subject, "latency, 99 %", 1e3 * quantiles(taken, n=100)[-1], "ms", 50.0),
+    ]
+
+
+def _call(address: str, taken: list[float]) -> None:
+    """Ask one point after the other for a while."""
+    connection, end = _connection(address), time.perf_counter() + SECONDS
+    body = b'{"position": [0.3], "deflection_um": [5.0]}'
+    while time.perf_counter() < end:
+        taken.append(_seconds(lambda: _ask(connection, body, JSON)))
+    connection.close()
+
+
+def _connection(address: str) -> http.client.HTTPConnection:
+    """Return a connection that is kept."""
+    return http.client.HTTPConnection(address.removeprefix("http://"), timeout=60.0)
+
+
+def _ask(connection: http.client.HTTPConnection, body: bytes, kind: str) -> bytes:
+    """Post a query and read the answer."""
+    connection.request("POST", PATH, body, {"Content-Type": kind})
+    answer = connection.getresponse()
+    content = answer.read()
+    if answer.status != 200:
+        raise RuntimeError(f"the service answered {answer.status}: {content[:500]!r}")
+    return content
+
+
+def _seconds(work: Callable[[], object]) -> float:
+    """Return how long something takes."""
+    begin = time.perf_counter()
+    work()
+    return time.perf_counter() - begin
+
+
+def _cpu_seconds(pid: int) -> float:
+    """Return the CPU time of a process."""
+    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / _TICK
+
+
+def _idle_memory_mb(pid: int) -> float:
+    """Return the memory of a process once it has nothing more to do."""
+    before, now = -1.0, _cpu_seconds(pid)
+    while now - before > 0.05:
+        time.sleep(2.0)
+        before, now = now, _cpu_seconds(pid)
+    return _memory_mb(pid)
+
+
+def _memory_mb(pid: int) -> float:
+    """Return the resident memory of a process."""
+    status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
+    found = re.search(r"VmRSS:\s+(\d+)", status)
+    assert found is not None
+    return int(found.group(1)) / 1024.0
