@@ -32,6 +32,8 @@ VERBS = (
     "report",
     "sensitivity",
     "frontier",
+    "optimise",
+    "scatter",
     "plan",
     "serve",
     "submit",
