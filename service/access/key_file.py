@@ -19,7 +19,7 @@ from service.problems import BadInput
 
 _PREFIX = "loa_"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-_FIELDS = {"name", "sha256", "created", "requests_per_minute"}
+_FIELDS = {"name", "sha256", "created", "requests_per_minute", "unfinished_jobs"}
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,15 @@ class AccessKey:
         RFC 3339, UTC.
     requests_per_minute : int or None
         Beyond it requests are answered with 429; None: no limit.
+    unfinished_jobs : int or None
+        Jobs of this key that may wait or run at the same time; None: no limit but the queue's.
     """
 
     name: str
     sha256: str
     created: str
     requests_per_minute: int | None = None
+    unfinished_jobs: int | None = None
 
 
 class KeyFile:
@@ -135,7 +138,7 @@ def _checked(entry: dict[str, object]) -> AccessKey:
     key = AccessKey(**{name: entry[name] for name in _FIELDS & set(entry)})  # type: ignore[arg-type]
     if len(bytes.fromhex(key.sha256)) != hashlib.sha256().digest_size or not isinstance(key.name, str):
         raise ValueError(entry)
-    limit = key.requests_per_minute
-    if limit is not None and (not isinstance(limit, int) or limit < 1):
-        raise ValueError(entry)
+    for limit in (key.requests_per_minute, key.unfinished_jobs):
+        if limit is not None and (not isinstance(limit, int) or limit < 1):
+            raise ValueError(entry)
     return key

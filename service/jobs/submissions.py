@@ -46,6 +46,25 @@ class Job:
         return self.status in _ENDED
 
 
+@dataclass(frozen=True)
+class Caller:
+    """Who submits.
+
+    Attributes
+    ----------
+    name : str
+        Of the access key; empty without one.
+    unfinished_jobs : int or None
+        Jobs that may wait or run at the same time; None: no limit but the queue's.
+    """
+
+    name: str = ""
+    unfinished_jobs: int | None = None
+
+
+ANYBODY = Caller()
+
+
 class Submissions:
     """Jobs as their callers see them."""
 
@@ -53,31 +72,50 @@ class Submissions:
         self._engine = engine
         self._queue_limit = queue_limit
 
-    def submit(self, process: str, key: str, inputs: dict[str, Any], *, stored: bool) -> Job:
+    def submit(
+        self,
+        process: str,
+        key: str,
+        inputs: dict[str, Any],
+        *,
+        stored: bool,
+        caller: Caller = ANYBODY,
+    ) -> Job:
         """Enter a job; equal work that waits, runs or is `stored` already is shared.
 
         Raises
         ------
         QueueFull
-            New work, and as many computations wait as the limit allows.
+            New work, and as many computations wait as the limit allows; or the caller has as many
+            unfinished jobs as it may.
         """
         identifier = str(uuid.uuid4())
-        self._submit(identifier, process, key, inputs, stored)
+        self._submit(identifier, process, key, inputs, stored, caller)
         return self.find(identifier)
 
     @retried
-    def _submit(self, identifier: str, process: str, key: str, inputs: dict[str, Any], stored: bool) -> None:
+    def _submit(
+        self,
+        identifier: str,
+        process: str,
+        key: str,
+        inputs: dict[str, Any],
+        stored: bool,
+        caller: Caller,
+    ) -> None:
         """Enter a job of this identifier, unless it is in already."""
         with writing(self._engine, in_turn=True) as connection:
             if connection.execute(select(jobs.c.id).where(jobs.c.id == identifier)).first() is not None:
                 return
+            if not stored:
+                _refuse_if_busy(connection, caller)
             computation = _shared(connection, key, stored)
             if computation is None:
                 if not stored:
                     self._refuse_if_full(connection)
                 computation = _enter(connection, process, key, inputs, stored)
             row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
-            connection.execute(insert(jobs).values(**row))
+            connection.execute(insert(jobs).values(**row, caller=caller.name))
 
     def _refuse_if_full(self, connection: Connection) -> None:
         """Raise if the queue is at its limit."""
@@ -166,6 +204,20 @@ def _is_identifier(text: str) -> bool:
         return str(uuid.UUID(text)) == text
     except ValueError:
         return False
+
+
+def _refuse_if_busy(connection: Connection, caller: Caller) -> None:
+    """Raise if a caller has as many unfinished jobs as it may."""
+    if caller.unfinished_jobs is None:
+        return
+    mine = (jobs.c.caller == caller.name, jobs.c.dismissed.is_(None))
+    live = computations.c.state.in_(("accepted", "running"))
+    count = select(func.count()).select_from(jobs.join(computations)).where(*mine, live)
+    if connection.execute(count).scalar_one() >= caller.unfinished_jobs:
+        raise QueueFull(
+            f"Key {caller.name!r} has {caller.unfinished_jobs} unfinished jobs, as many as it may. "
+            "Wait for one of them or dismiss it."
+        )
 
 
 def _shared(connection: Connection, key: str, stored: bool) -> str | None:

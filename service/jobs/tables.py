@@ -51,7 +51,9 @@ jobs = Table(
     Column("created", String, nullable=False),
     Column("dismissed", String),
     Column("asked", String),
+    Column("caller", String, nullable=False, default=""),
 )
+Index("job_by_caller", jobs.c.caller)
 Index("job_by_computation", jobs.c.computation_id)
 Index("job_by_use", jobs.c.asked)
 Index("job_by_time", jobs.c.created)

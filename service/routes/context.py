@@ -8,11 +8,12 @@ from typing import Annotated
 from fastapi import Depends, Request
 from sqlalchemy import Engine
 
+from service.access import AccessKey
 from service.jobs.elsewhere import WorkElsewhere
 from service.jobs.live_desk import LiveDesk
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
-from service.jobs.submissions import Submissions
+from service.jobs.submissions import ANYBODY, Caller, Submissions
 from service.routes.open_databases import OpenDatabases
 from service.routes.streams import Streams
 from service.settings import Settings
@@ -44,4 +45,11 @@ def context_of(request: Request) -> Context:
     return context
 
 
+def caller_of(request: Request) -> Caller:
+    """Return who sent a request; see `service.routes.access`."""
+    key: AccessKey | None = getattr(request.state, "caller", None)
+    return ANYBODY if key is None else Caller(key.name, key.unfinished_jobs)
+
+
+From = Annotated[Caller, Depends(caller_of)]
 Ctx = Annotated[Context, Depends(context_of)]

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, cast
 
+import structlog
 from fastapi import APIRouter, Header, Query, Response
 from pydantic import BaseModel, Field, create_model
 
 from service.jobs.process import Process, Registry
-from service.routes.context import Context, Ctx
+from service.jobs.submissions import Caller
+from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.errors import documented
 from service.routes.jobs import status_info
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import Link, ProcessDescription, ProcessList, ProcessSummary, StatusInfo
 from service.schemas.result_kinds import RESULT_KINDS
+
+logger = structlog.get_logger(__name__)
 
 After = Annotated[str, Query(max_length=64, description="Last process of the page before")]
 Prefer = Annotated[str, Header(description="Jobs are always asynchronous (RFC 7240)", max_length=1000)]
@@ -71,11 +75,15 @@ def _add_execution(router: APIRouter, process: Process) -> None:
     body = _execute_model(process)
 
     def execute(
-        request: BaseModel, response: Response, context: Ctx, prefer: Prefer = "respond-async"
+        request: BaseModel,
+        response: Response,
+        context: Ctx,
+        caller: From,
+        prefer: Prefer = "respond-async",
     ) -> StatusInfo:
         """Check the inputs and enter a job; equal work is shared, stored results are used."""
         inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)  # type: ignore[attr-defined]
-        status = _submit(context, process, inputs)
+        status = _submit(context, process, inputs, caller)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [wish.partition(";")[0].strip().lower() for wish in prefer.split(",")]:
             response.headers["Preference-Applied"] = "respond-async"
@@ -95,11 +103,12 @@ def _add_execution(router: APIRouter, process: Process) -> None:
     )
 
 
-def _submit(context: Context, process: Process, inputs: dict[str, Any]) -> StatusInfo:
+def _submit(context: Context, process: Process, inputs: dict[str, Any], caller: Caller) -> StatusInfo:
     """Enter a job and wake the scheduler."""
     key = process.key(inputs)
     stored = context.store.find(key, process.kind) is not None
-    job = context.submissions.submit(process.id, key, inputs, stored=stored)
+    job = context.submissions.submit(process.id, key, inputs, stored=stored, caller=caller)
+    logger.info("job entered", job=job.id, process=process.id, key=key, stored=stored)
     context.scheduler.wake()
     return status_info(job, context.registry)
 

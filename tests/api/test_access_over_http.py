@@ -9,6 +9,7 @@ import pytest
 import structlog.contextvars
 import structlog.testing
 from fastapi.testclient import TestClient
+from httpx2 import Response
 from service_stand_ins import REGISTRY
 
 from service.access import KeyFile
@@ -123,3 +124,26 @@ def test_the_client_takes_its_key_from_its_caller_or_the_environment(
     monkeypatch.setenv("LOA_KEY", secret)
     with client(None) as found:
         assert found.submit("standin", {"wish": {"text": "table"}}).process == "standin"
+
+
+def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(settings: Settings) -> None:
+    file = KeyFile(settings.key_file)
+    few, many = bearing(file.add("few", unfinished_jobs=2)), bearing(file.add("many"))
+
+    def enter(number: float, who: dict[str, str]) -> Response:
+        wish = {"mode": "hang", "number": number}
+        return http.post("/v1/processes/standin/execution", json={"inputs": {"wish": wish}}, headers=who)
+
+    with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as http:
+        first, second = enter(1.0, few), enter(2.0, few)
+        refused = enter(3.0, few)
+        assert [a.status_code for a in (first, second, refused)] == [201, 201, 429]
+        assert "'few' has 2 unfinished jobs" in refused.json()["detail"]
+        assert refused.headers["retry-after"]
+        assert enter(1.0, few).status_code == 429, "shared work is a job of its own"
+        assert enter(3.0, many).status_code == 201
+        assert http.delete(second.headers["location"], headers=few).status_code == 200
+        for number in (3.0, 4.0):  # the first is work that another key shares, and goes on
+            entered = enter(number, few)
+            assert entered.status_code == 201, "what is dismissed makes room"
+            http.delete(entered.headers["location"], headers=few)

@@ -24,13 +24,17 @@ KeysFile = Annotated[
 def add(
     name: Name,
     requests_per_minute: Annotated[int | None, typer.Option(help="Default: no limit.")] = None,
+    unfinished_jobs: Annotated[
+        int | None, typer.Option(help="Jobs that may wait or run at the same time; default: no limit.")
+    ] = None,
     file: KeysFile = None,
     json: AsJson = False,
 ) -> None:
     """Make a key, print it once, and keep its hash."""
     from service.cli.keys import run_add  # noqa: PLC0415 (start-up time)
 
-    run_add(name, file, as_json=json, requests_per_minute=requests_per_minute)
+    limits = {"requests_per_minute": requests_per_minute, "unfinished_jobs": unfinished_jobs}
+    run_add(name, file, as_json=json, **limits)
 
 
 @verbs.command("list")

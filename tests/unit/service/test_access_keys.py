@@ -24,7 +24,7 @@ def test_a_key_opens_and_is_nowhere_on_disk(tmp_path: Path) -> None:
     assert secret not in file.path.read_text()
     holder = Keyring(file).holder(secret)
     assert holder is not None
-    assert (holder.name, holder.requests_per_minute) == ("bench", 60)
+    assert (holder.name, holder.requests_per_minute, holder.unfinished_jobs) == ("bench", 60, None)
 
 
 def test_only_its_owner_reads_the_file_whatever_the_mask(tmp_path: Path) -> None:
@@ -90,7 +90,7 @@ def test_a_file_spoilt_meanwhile_opens_nothing_and_shuts_nobody_out(tmp_path: Pa
         "{}",
         '{"keys": [{}]}',
         '{"keys": [{"name": "a", "sha256": "12", "created": ""}]}',
-        json.dumps({"keys": [{"name": "a", "sha256": "0" * 64, "created": "", "requests_per_minute": 0}]}),
+        json.dumps({"keys": [{"name": "a", "sha256": "0" * 64, "created": "", "unfinished_jobs": 0}]}),
     ],
 )
 def test_a_spoilt_file_is_never_one_without_keys(tmp_path: Path, text: str) -> None:
