@@ -37,6 +37,8 @@ _DEEP_RING = 9.4
 
 _READ_PLANE, _READ_SOLID = 1.5e-3, {True: 0.02, False: 0.007}
 """CPU seconds to read what is kept of a gear in the plane, and over the face of a helical or a spur gear."""
+_WORKING = 1.2
+"""Memory of a solid over its largest working set: what was given back is not all used again."""
 _SECTOR_BYTES, _HUB_BYTES = 9_000, 12_000
 """For each freedom of a sector, and for each of a hub of so many: the factors of larger ones fill more."""
 _HUB_FREEDOMS, _FILL = 20_000, 0.33
@@ -178,7 +180,7 @@ def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> Cost:
     if kept := solid_kept(gear, recipe, cache):
         return Cost(_READ_SOLID[gear.helix_angle != 0.0], 0.0, kept)
     predicted = predict_cost(gear, recipe)
-    return Cost(predicted.seconds, predicted.bytes, 0.0)
+    return Cost(predicted.seconds, _WORKING * predicted.bytes, 0.0)
 
 
 def _free_ends(
@@ -196,7 +198,7 @@ def _free_ends(
             yield Cost(_READ_PLANE, 0.0, kept)
         else:
             predicted = predict_cost(gear, recipe)
-            yield Cost(2.0 * predicted.seconds, predicted.bytes, 0.0)
+            yield Cost(2.0 * predicted.seconds, _WORKING * predicted.bytes, 0.0)
 
 
 def _section(

@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.analysis import check_request
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.run_plan import plan_run
+from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
-from fe_contact.planning import host_speed
+from fe_contact.planning import cost_model, host_speed, predict_run
+from fe_contact.planning.contact_cost import contact_bytes
 from fe_contact.planning.error_model import ExpectedError
 from fe_contact.planning.host_speed import FILE, host_slowness
 from fe_contact.planning.mesh_choice import MeshOption, mesh_for_time, mesh_for_tolerance
@@ -208,3 +212,39 @@ def test_a_plan_tells_the_error_that_its_mesh_is_chosen_by(relief):
     gear = replace(helical.pinion, modification=relieved)
     found = plan_run(replace(helical, pinion=gear), torques=[20.0, 60.0], tolerance=0.05)
     assert found.chosen.error == found.choice.option.error
+
+
+def predicted_memory(gears, cache=None, **options):
+    checked = check_request(gears, normal_forces=[1000.0], **({"level": "draft"} | options))
+    plan = decide(checked, cache).plan
+    return predict_run(gears, plan, checked.model, checked.request.alignments, cache).memory_bytes
+
+
+def test_memory_grows_with_meshes_positions_and_slices():
+    plane, face = pair(), pair(helix=0.3)
+    for gears in (plane, face):
+        sizes = [predicted_memory(gears, level=level) for level in LEVELS]
+        assert cost_model.PROCESS_BYTES < sizes[0] < sizes[1] < sizes[2]
+    assert predicted_memory(face, positions=4096) > 1.3 * predicted_memory(face, positions=64)
+    plan = decide(check_request(face, normal_forces=[1000.0], level="draft")).plan
+    finer = replace(plan, discretisation=replace(plan.discretisation, slices=61))
+    ratio = (61 / plan.discretisation.slices) ** 2
+    assert contact_bytes(face, finer) == pytest.approx(ratio * contact_bytes(face, plan), rel=1e-12)
+
+
+def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
+    """Nothing is factorised then: every gear and mesh counts with the bytes that are read."""
+    gears = pair(helix=0.3)
+    fresh = predicted_memory(gears, tmp_path)
+    monkeypatch.setattr(cost_model, "solid_kept", lambda *_: 3_000_000)
+    kept = predicted_memory(gears, tmp_path)
+    plan = decide(check_request(gears, normal_forces=[1000.0], level="draft")).plan
+    alike = 2 * 3_000_000  # gears alike but for the hand are read once, the mesh and the coarse one
+    assert kept == int(cost_model.PROCESS_BYTES + contact_bytes(gears, plan) + alike)
+    assert kept < fresh
+
+
+def test_the_size_of_what_is_kept_is_that_of_its_file(tmp_path):
+    assert kept_size(None, "key") == kept_size(tmp_path, "key") == 0
+    (tmp_path / "compliance-key.npz").write_bytes(bytes(17))
+    assert kept_size(tmp_path, "key") == 17
