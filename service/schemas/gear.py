@@ -32,7 +32,11 @@ class MaterialInput(BoundaryModel):
     """Linear elastic, isotropic material."""
 
     youngs_modulus_gpa: float = Field(
-        default=210.0, gt=0.0, le=2000.0, description="Young's modulus in GPa; steel is 210", examples=[210.0]
+        default=210.0,
+        ge=1e-3,
+        le=2000.0,
+        description="Young's modulus in GPa; steel is 210",
+        examples=[210.0],
     )
     poissons_ratio: float = Field(
         default=0.3, ge=0.0, le=0.499, description="Poisson's ratio; steel is 0.3", examples=[0.3]

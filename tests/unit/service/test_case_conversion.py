@@ -22,6 +22,7 @@ from service.convert.units import factor
 from service.jobs.key import content_key
 from service.problems import BadInput, JobFailed
 from service.schemas import Case, read_model, validated
+from service.schemas.request_examples import CASE
 
 ROOT = Path(__file__).parents[3]
 
@@ -344,3 +345,9 @@ def test_bad_pitch_errors_are_refused_by_the_name_of_the_case(
     fault = caught.value.faults[0]
     assert fault.field == field
     assert words in fault.bound
+
+
+def test_a_modulus_below_that_of_rubber_is_refused() -> None:
+    with pytest.raises(BadInput, match=r"youngs_modulus_gpa = 5e-324: must be from 0\.001 to 2000"):
+        validated(Case, CASE | {"material": {"youngs_modulus_gpa": 5e-324}})
+    assert validated(Case, CASE | {"material": {"youngs_modulus_gpa": 0.001}})
