@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from sqlalchemy import Connection, Engine, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
 
 from service.jobs.job_filter import EVERY_JOB, JobFilter
 from service.jobs.tables import computations, jobs
@@ -79,9 +79,19 @@ class Submissions:
         inputs: dict[str, Any],
         *,
         stored: bool,
+        looked: str | None = None,
         caller: Caller = ANYBODY,
     ) -> Job:
         """Enter a job; equal work that waits, runs or is `stored` already is shared.
+
+        Parameters
+        ----------
+        process, key, inputs
+            What to do; its name.
+        stored : bool
+            Whether the store was seen to have the result.
+        looked : str, optional
+            When that was asked: work that has ended since is shared too, its result being there by now.
 
         Raises
         ------
@@ -90,7 +100,8 @@ class Submissions:
             unfinished jobs as it may.
         """
         identifier = str(uuid.uuid4())
-        self._submit(identifier, process, key, inputs, stored, caller)
+        ended = _ended_since(key, looked or now(), stored)
+        self._submit(identifier, process, key, inputs, stored, ended, caller)
         return self.find(identifier)
 
     @retried
@@ -101,6 +112,7 @@ class Submissions:
         key: str,
         inputs: dict[str, Any],
         stored: bool,
+        ended: ColumnElement[bool],
         caller: Caller,
     ) -> None:
         """Enter a job of this identifier, unless it is in already."""
@@ -109,7 +121,7 @@ class Submissions:
                 return
             if not stored:
                 _refuse_if_busy(connection, caller)
-            computation = _shared(connection, key, stored)
+            computation = _shared(connection, key, ended)
             if computation is None:
                 if not stored:
                     self._refuse_if_full(connection)
@@ -220,10 +232,16 @@ def _refuse_if_busy(connection: Connection, caller: Caller) -> None:
         )
 
 
-def _shared(connection: Connection, key: str, stored: bool) -> str | None:
-    """Return the computation of `key` that waits, runs or, if its result is stored, has succeeded."""
-    states = ["accepted", "running", *(["successful"] if stored else [])]
-    statement = select(computations.c.id).where(computations.c.key == key, computations.c.state.in_(states))
+def _ended_since(key: str, looked: str, stored: bool) -> ColumnElement[bool]:
+    """Condition of computations that succeeded and whose result is there: all, or those of late."""
+    succeeded = (computations.c.key == key) & (computations.c.state == "successful")
+    return succeeded if stored else succeeded & (computations.c.finished >= looked)
+
+
+def _shared(connection: Connection, key: str, ended: ColumnElement[bool]) -> str | None:
+    """Return the computation of `key` that waits, runs or has `ended` with a result."""
+    live = (computations.c.key == key) & computations.c.state.in_(("accepted", "running"))
+    statement = select(computations.c.id).where(live | ended)
     return connection.execute(statement.order_by(computations.c.created.desc()).limit(1)).scalar()
 
 

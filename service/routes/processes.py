@@ -17,6 +17,7 @@ from service.routes.jobs import status_info
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import Link, ProcessDescription, ProcessList, ProcessSummary, StatusInfo
 from service.schemas.result_kinds import RESULT_KINDS
+from service.store import now
 
 logger = structlog.get_logger(__name__)
 
@@ -106,8 +107,9 @@ def _add_execution(router: APIRouter, process: Process) -> None:
 def _submit(context: Context, process: Process, inputs: dict[str, Any], caller: Caller) -> StatusInfo:
     """Enter a job and wake the scheduler."""
     key = process.key(inputs)
+    looked = now()
     stored = context.store.find(key, process.kind) is not None
-    job = context.submissions.submit(process.id, key, inputs, stored=stored, caller=caller)
+    job = context.submissions.submit(process.id, key, inputs, stored=stored, looked=looked, caller=caller)
     logger.info("job entered", job=job.id, process=process.id, key=key, stored=stored)
     context.scheduler.wake()
     return status_info(job, context.registry)

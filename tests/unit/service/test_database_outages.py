@@ -12,9 +12,10 @@ from fastapi.testclient import TestClient
 from postgres_server import PostgresServer, running_server
 from running_service import Bench, bench
 from service_stand_ins import REGISTRY
-from sqlalchemy import event
+from sqlalchemy import event, false
 
 from service.app import create_app
+from service.jobs.submissions import ANYBODY
 from service.problems import BadInput, DatabaseUnavailable
 from service.settings import Settings, load_settings
 from service.store import open_database
@@ -63,7 +64,8 @@ def test_steps_go_on_when_their_connections_are_ended(machine: Bench, postgres: 
 def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) -> None:
     """The transaction was committed; the connection broke before the answer came: the step runs again."""
     submit = machine.submissions._submit.__wrapped__  # type: ignore[attr-defined]
-    arguments = ("7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f", "standin", "ab" * 32, {"wish": {}}, False)
+    identifier = "7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f"
+    arguments = (identifier, "standin", "ab" * 32, {"wish": {}}, False, false(), ANYBODY)
     for _ in range(2):
         submit(machine.submissions, *arguments)
     assert len(machine.submissions.page(10)) == 1

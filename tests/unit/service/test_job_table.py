@@ -12,7 +12,7 @@ from running_service import Bench, bench
 from service_stand_ins import REGISTRY
 
 from service.problems import NoSuchJob, QueueFull
-from service.store import Mark
+from service.store import Mark, now
 
 
 @pytest.fixture
@@ -65,6 +65,21 @@ def test_stored_results_are_successful_at_once(machine: Bench, tmp_path: Path) -
     machine.submissions.dismiss(job.id)
     again = machine.submit(text="kept")
     assert (again.status, again.fraction, again.key) == ("successful", 1.0, job.key)
+
+
+def test_work_that_ends_while_its_result_is_looked_for_is_not_done_again(machine: Bench) -> None:
+    """The store did not have the result yet, and the table has the computation no more as running."""
+    key, inputs = "ab" * 32, {"wish": {}}
+    machine.submissions.submit("standin", key, inputs, stored=False)
+    claim = machine.claims.claim()
+    assert claim is not None
+    looked = now()
+    machine.claims.succeed(claim)
+    shared = machine.submissions.submit("standin", key, inputs, stored=False, looked=looked)
+    assert shared.status == "successful"
+    assert machine.submissions.counts() == {"successful": 1}
+    lost = machine.submissions.submit("standin", key, inputs, stored=False)
+    assert lost.status == "accepted"  # it ended before we looked, and its result is gone
 
 
 def test_failed_work_may_be_tried_anew(machine: Bench) -> None:
