@@ -164,12 +164,12 @@ def test_a_body_that_does_not_tell_its_length_is_counted(client: TestClient) -> 
 @pytest.mark.parametrize(
     ("text", "field"),
     [
-        ('{"inputs": {"wish": {"number": NaN}}}', "number"),
-        ('{"inputs": {"wish": {"number": Infinity}}}', "number"),
-        ('{"inputs": {"wish": {"number": 1e999}}}', "number"),
-        ('{"inputs": {"wish": {"number": "1"}}}', "number"),
-        ('{"inputs": {"wish": {"number": 11}}}', "number"),
-        ('{"inputs": {"wish": {"unknown": 1}}}', "unknown"),
+        ('{"inputs": {"wish": {"number": NaN}}}', "inputs.wish.number"),
+        ('{"inputs": {"wish": {"number": Infinity}}}', "inputs.wish.number"),
+        ('{"inputs": {"wish": {"number": 1e999}}}', "inputs.wish.number"),
+        ('{"inputs": {"wish": {"number": "1"}}}', "inputs.wish.number"),
+        ('{"inputs": {"wish": {"number": 11}}}', "inputs.wish.number"),
+        ('{"inputs": {"wish": {"unknown": 1}}}', "inputs.wish.unknown"),
         ('{"inputs": {"wish": {"\\ud800": 1}}}', "inputs.wish"),
         ('{"inputs": {"wish": {"mode": "refuse"}}}', "mode"),
         ('{"inputs": {"wish": []}}', "inputs.wish"),

@@ -25,6 +25,7 @@ SCENE: dict[str, Any] = {
     "figures": {"STE left": 1e-15},
     "bounds": {"STE left": "<= 1e-12"},
     "seconds": 2.0,
+    "cpu_seconds": 1.5,
 }
 FIGURES = {
     "points": 5,

@@ -46,7 +46,9 @@ def test_what_meets_its_bound_exactly_is_no_margin() -> None:
 
 def test_cpu_time_counts_what_a_scene_starts() -> None:
     outcome = stand_in.STARTING.run()
-    assert 0.1 <= outcome.cpu_seconds < 60.0
+    assert (
+        0.08 <= outcome.cpu_seconds < 60.0
+    )  # the child takes 0.1 by its own clock, times are told in ticks of 0.01
 
 
 def test_the_verb_prints_json_and_fails_with_its_scenes(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
