@@ -36,7 +36,8 @@ def run_serve(*, works: bool = True, **given: object) -> None:
 
 
 def _announce(listener: socket.socket) -> None:
-    """Print the address."""
+    """Print the address; who reads it may connect, and is answered as soon as the app has started."""
+    listener.listen()
     host, port = listener.getsockname()[:2]
     name = f"[{host}]" if ":" in host else host
     print(f"lineofaction serves at http://{name}:{port}", flush=True)  # noqa: T201 (this is the command line)

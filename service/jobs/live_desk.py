@@ -140,8 +140,7 @@ class LiveDesk:
 
     def _answer(self, order: LiveOrder) -> bytes:
         """Ask the worker, starting it if there is none."""
-        worker = self._ready()
-        kind, body = worker.ask(order, self._limits.answer_s)
+        kind, body = self._asked(order)
         if kind == "problem":
             raise relayed(body)
         if kind == "memory":
@@ -153,6 +152,17 @@ class LiveDesk:
             logger.error("live question failed", entry=order.entry, reference=reference, log=str(self._log))
             raise Unexpected(reference)
         return body
+
+    def _asked(self, order: LiveOrder) -> tuple[str, bytes]:
+        """Return kind and bytes of the answer; a worker that ended since its last answer is replaced once."""
+        worker = self._ready()
+        try:
+            return worker.ask(order, self._limits.answer_s)
+        except WorkerGone as gone:
+            if gone.late or not worker.has_answered:
+                raise
+        self._end_worker()
+        return self._ready().ask(order, self._limits.answer_s)
 
     def _ready(self) -> LiveWorker:
         """Return a worker that runs."""

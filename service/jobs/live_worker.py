@@ -30,6 +30,7 @@ class LiveWorker:
 
     def __init__(self, log: Path, memory_limit_mb: int) -> None:
         self._rest = b""
+        self.has_answered = False
         self._channel, theirs = os.pipe()
         try:
             with log.open("wb") as stream:
@@ -82,6 +83,7 @@ class LiveWorker:
             pieces.append(self._piece(end))
             missing -= len(pieces[-1])
         body, self._rest = b"".join(pieces), b""
+        self.has_answered = True
         return head.kind, body
 
     def _piece(self, end: float) -> bytes:

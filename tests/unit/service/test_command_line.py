@@ -9,6 +9,7 @@ import json
 import math
 import os
 import signal
+import socket
 import subprocess
 import sys
 import urllib.request
@@ -211,6 +212,12 @@ def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
     if process.poll() is None:
         process.kill()
     process.communicate()
+
+
+def test_who_reads_the_address_may_connect(server: tuple[subprocess.Popen[str], str]) -> None:
+    _, address = server
+    host, _, port = address.removeprefix("http://").rpartition(":")
+    socket.create_connection((host, int(port)), timeout=10.0).close()
 
 
 def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[str], str]) -> None:

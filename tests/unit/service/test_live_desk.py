@@ -93,6 +93,17 @@ def test_one_killed_between_two_questions_is_not_noticed(desk: LiveDesk) -> None
     assert answer(desk.ask(order("echo", word="b")))["asked"] == ["b"]
 
 
+def test_one_that_dies_unseen_after_an_answer_is_replaced_once(
+    desk: LiveDesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A process whose threads still end looks alive when it is asked."""
+    first = answer(desk.ask(order("echo", word="a")))["pid"]
+    os.kill(first, signal.SIGKILL)
+    until(lambda: not lives(first))
+    monkeypatch.setattr("service.jobs.live_worker.LiveWorker.alive", True)
+    assert answer(desk.ask(order("echo", word="b")))["pid"] != first
+
+
 def test_what_takes_too_long_is_ended(tmp_path: Path) -> None:
     desk = LiveDesk(tmp_path, 512, LiveLimits(answer_s=1.0))
     pid = []
