@@ -1,5 +1,6 @@
 # syntax=docker/dockerfile:1
-# The service in a container. Until access keys exist it listens on loopback only, so run it on the host's network:
+# The service in a container; compose.yaml has it with PostgreSQL and workers of their own. Without access keys it listens on
+# loopback only, so one container alone runs on the host's network:
 #   docker build -t lineofaction . && docker run --rm --network host -v lineofaction:/data lineofaction
 ARG BASE=python:3.13-slim-trixie
 
@@ -13,7 +14,7 @@ WORKDIR /source
 # The requirements change seldom: they make a layer of their own.
 COPY requirements.lock pyproject.toml ./
 RUN pip install -c requirements.lock setuptools \
-    && python -c "import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['dependencies'], sep='\n')" > wanted \
+    && python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; e = p['optional-dependencies']; print(*p['dependencies'], *e['postgres'], *e['s3'], sep='\n')" > wanted \
     && pip install --no-compile -c requirements.lock -r wanted
 
 COPY README.md LICENSE ./
@@ -22,13 +23,18 @@ COPY dynamics dynamics
 COPY service service
 RUN pip install --no-compile --no-deps --no-build-isolation . && pip uninstall --yes pip setuptools
 
-# What no run reads: tests of the libraries, Python objects for plotly's figures (its JavaScript is what we use), symbols
-# of the compiler. Then byte code of just the modules that the service and its workers load.
+# What no run reads: tests and C sources of the libraries, manuals, Python objects for plotly's figures (its JavaScript is what
+# we use), fonts for PDF and the codec of AVIF (we write PNG), symbols of the compiler. Then byte code of just the modules
+# that the service and its workers load.
 RUN apt-get update && apt-get install -y --no-install-recommends binutils
 COPY scripts/image_modules.py ./
 RUN set -eu; packages=$(python -c "import sysconfig; print(sysconfig.get_path('purelib'))"); \
     find "$packages" -type d -name tests -prune -exec rm -rf {} +; \
-    rm -rf "$packages"/plotly/graph_objs "$packages"/plotly/labextension /opt/lineofaction/lib/gmsh.jl; \
+    find "$packages" -type f -not -path '*/dynamics/*' -regextype egrep -regex '.*\.(pyi|pyx|pxd|c|cpp|h|hpp|a)' -delete; \
+    rm -rf "$packages"/plotly/graph_objs "$packages"/plotly/validators "$packages"/plotly/labextension \
+        "$packages"/plotly/package_data/widgetbundle.js "$packages"/matplotlib/mpl-data/fonts/pdfcorefonts \
+        "$packages"/PIL/_avif*.so "$packages"/pillow.libs/libavif* \
+        /opt/lineofaction/lib/gmsh.jl /opt/lineofaction/share /opt/lineofaction/include; \
     strip --strip-unneeded "$packages"/llvmlite/binding/libllvmlite.so; \
     env -u PYTHONDONTWRITEBYTECODE python image_modules.py
 
@@ -42,7 +48,7 @@ RUN apt-get update \
         $(dpkg-query -W -f '${Package}\n' 'libllvm*' 'libz3*' 'mesa-libgallium' 'libgl1-mesa-dri' 2>/dev/null) \
     && apt-get clean && rm -rf /var/lib/apt/lists/* \
     && useradd --system --uid 10001 --no-create-home --shell /usr/sbin/nologin lineofaction \
-    && install -d -o lineofaction -g lineofaction /data /data/cache
+    && install -d -o lineofaction -g lineofaction /data /data/cache /data/service /data/service/compliance /results
 COPY --from=build /opt/lineofaction /opt/lineofaction
 
 # The compiled loops are cached beside the data, so that they survive the container.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import socket
 import subprocess
 import sys
 import tempfile
@@ -11,41 +10,12 @@ import uuid
 from collections.abc import Sequence
 from pathlib import Path
 
-import httpx2
-import numpy as np
+from containers import STOP_S, await_health, free_port, judge, podman, same_table, the_case, tried
 
-from fe_contact.analysis import analyze
 from service.client import LineOfActionClient
-from service.convert.case import analysis_arguments, case_json
-from service.convert.checks import check_case
-from service.schemas import Case, read_model
+from service.schemas import Case
 
-CASE = Path("examples/palermo_spur_20_20.toml")
-LARGEST_MB, STOP_S, START_S = 800.0, 5.0, 30.0
-SAME = 1e-9  # of a table computed here: another Python, the same libraries
-
-
-def podman(*words: str) -> str:
-    """Return what a command of podman prints."""
-    return subprocess.run(["podman", *words], check=True, capture_output=True, text=True).stdout.strip()
-
-
-def tried(*words: str) -> subprocess.CompletedProcess[str]:
-    """Run a command of podman that may fail."""
-    return subprocess.run(["podman", *words], check=False, capture_output=True, text=True)
-
-
-def judge(what: str, figure: object, *, good: bool) -> bool:
-    """Print one line of the verdict."""
-    print(f"{'ok  ' if good else 'FAIL'}  {what}: {figure}", flush=True)
-    return good
-
-
-def free_port() -> int:
-    """Return a port nobody listens on."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
+_LARGEST_MB = 800.0
 
 
 class Service:
@@ -53,35 +23,11 @@ class Service:
 
     def __init__(self, image: str, volume: str) -> None:
         self.port, self.name = free_port(), f"lineofaction-{uuid.uuid4().hex[:8]}"
-        rights = [
-            "--read-only",
-            "--tmpfs",
-            "/tmp",
-            "--cap-drop",
-            "all",
-            "--security-opt",
-            "no-new-privileges",
-        ]
-        limits = [
-            "--ulimit",
-            "nofile=4096:4096",
-            "--ulimit",
-            "nproc=4096:4096",
-        ]  # podman's own exceed some hosts'
+        rights = ["--read-only", "--tmpfs", "/tmp", "--cap-drop", "all"]
+        rights += ["--security-opt", "no-new-privileges"]
         place = ["--network", "host", "--env", f"LOA_PORT={self.port}", "--volume", f"{volume}:/data"]
-        begin = time.monotonic()
-        podman("run", "--detach", "--runtime", "runc", "--name", self.name, *rights, *limits, *place, image)
-        self.start_s = self._await_health(begin)
-
-    def _await_health(self, begin: float) -> float:
-        """Return the seconds until it answered."""
-        while time.monotonic() - begin < START_S:
-            try:
-                if httpx2.get(f"{self.url}/health").status_code == 200:
-                    return time.monotonic() - begin
-            except httpx2.TransportError:
-                time.sleep(0.05)
-        raise SystemExit(f"The service did not answer within {START_S:g} s:\n{podman('logs', self.name)}")
+        podman("run", "--detach", "--name", self.name, *rights, *place, image)
+        self.start_s = await_health(self.url)
 
     @property
     def url(self) -> str:
@@ -90,9 +36,7 @@ class Service:
 
     def inside(self, *words: str) -> subprocess.CompletedProcess[str]:
         """Run a command in the container."""
-        return subprocess.run(
-            ["podman", "exec", self.name, *words], check=False, capture_output=True, text=True
-        )
+        return tried("exec", self.name, *words)
 
     def stop(self) -> tuple[float, int]:
         """Send SIGTERM; return the seconds it took and the exit code."""
@@ -103,18 +47,13 @@ class Service:
 
     def remove(self) -> None:
         """Remove the container, running or not."""
-        subprocess.run(
-            ["podman", "rm", "--force", "--time", "0", self.name], check=False, capture_output=True
-        )
+        tried("rm", "--force", "--time", "0", self.name)
 
 
 def rights(service: Service) -> list[bool]:
     """Judge what the process may do."""
-    status = dict(
-        line.split(":\t", 1)
-        for line in service.inside("cat", "/proc/1/status").stdout.splitlines()
-        if ":\t" in line
-    )
+    lines = service.inside("cat", "/proc/1/status").stdout.splitlines()
+    status = dict(line.split(":\t", 1) for line in lines if ":\t" in line)
     user = status["Uid"].split()[0]
     healthy = tried("healthcheck", "run", service.name).returncode
     writing = service.inside("touch", "/opt/x").returncode
@@ -127,17 +66,12 @@ def rights(service: Service) -> list[bool]:
     ]
 
 
-def answers(client: LineOfActionClient, case: Case) -> list[bool]:
-    """Judge a table computed in the container against one computed here."""
-    here = analyze(check_case(case), **analysis_arguments(case), case=case_json(case))
-    there = client.analyze(case)
-    ours, theirs = (np.asarray(t.to_xarray()["static_transmission_error"]) for t in (here, there))
-    apart = float(np.max(np.abs(theirs - ours)) / np.max(np.abs(ours)))
-    return [
-        judge(
-            f"table off the one computed here, relative (below {SAME:g})", f"{apart:.1e}", good=apart < SAME
-        )
-    ]
+def drawn(service: Service) -> bool:
+    """Judge whether the container draws the pictures of its table."""
+    draw = "loa report $(find /data -name '*.nc' | head -1) -o /data/page.html --images /data/pictures"
+    done = service.inside("sh", "-c", f"{draw} && ls /data/pictures")
+    count = done.stdout.count(".png") if done.returncode == 0 else 0
+    return judge("pictures drawn of the table", count or done.stderr[-500:], good=count > 2)
 
 
 def interrupted(service: Service, client: LineOfActionClient, case: Case) -> tuple[str, list[bool]]:
@@ -168,12 +102,12 @@ def resumed(client: LineOfActionClient, job: str, case: Case) -> list[bool]:
 
 def verdicts_of(image: str, volume: str, scratch: Path) -> list[bool]:
     """Judge two containers, one after the other, on one volume."""
-    case = read_model(Case, CASE)
+    case = the_case()
     first = Service(image, volume)
     try:
         verdicts = [judge("first answer after, s", f"{first.start_s:.1f}", good=True), *rights(first)]
         with LineOfActionClient(first.url, cache_dir=scratch / "first") as client:
-            verdicts += answers(client, case)
+            verdicts += [same_table(client, case), drawn(first)]
             job, stopped = interrupted(first, client, case)
             verdicts += stopped
     finally:
@@ -193,7 +127,7 @@ def main(words: Sequence[str]) -> int:
     """Judge the image named on the command line."""
     (image,) = words
     size_mb = int(podman("image", "inspect", "--format", "{{.Size}}", image)) / 1e6
-    small = judge(f"size, MB (at most {LARGEST_MB:g})", f"{size_mb:.0f}", good=size_mb <= LARGEST_MB)
+    small = judge(f"size, MB (at most {_LARGEST_MB:g})", f"{size_mb:.0f}", good=size_mb <= _LARGEST_MB)
     volume = f"lineofaction-{uuid.uuid4().hex[:8]}"
     try:
         with tempfile.TemporaryDirectory() as scratch:
