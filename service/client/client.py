@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import base64
 import hashlib
-import json
 import os
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, Self
@@ -16,9 +15,10 @@ import httpx2
 
 from service.client.cache import ResultCache
 from service.client.connection import Connection
-from service.client.portable import CaseLike, SceneLike, case_of, inputs_of, portable_scene, scene_of
+from service.client.portable import CaseLike, SceneLike, case_of, portable_scene, scene_of
 from service.client.raw_columns import query_columns, read_answer
 from service.client.status import JobState, Result
+from service.client.studies import Studies, Watch
 from service.problems import DamagedFile, JobFailed, Unreachable
 from service.schemas.query import QueryOutput
 from service.schemas.result_kinds import RESULT_KINDS
@@ -28,10 +28,8 @@ if TYPE_CHECKING:
     from dynamics.results import RunResult
     from fe_contact.ste import SteDatabase
 
-Watch = Callable[[JobState], None]
 
-
-class LineOfActionClient:
+class LineOfActionClient(Studies):
     """Submit cases and scenes, wait for them, fetch what they make.
 
     Parameters
@@ -206,183 +204,6 @@ class LineOfActionClient:
 
         result = self.wait(self.submit_scene(scene).id, progress)
         return RunResult.from_netcdf(self.fetch_file(result.key, "run"))
-
-    def flank_file(self, case: CaseLike, progress: Watch | None = None, **point: float) -> Path:
-        """Return the file of a case's flank results: submit, wait, fetch.
-
-        Parameters
-        ----------
-        case : Case, mapping or Path
-        progress : callable, optional
-        **point : float
-            ``torque_n_m`` or ``normal_force_n``, ``misalignment_um``, ``center_distance_change_mm``; what is
-            left out is taken from the case. Read the file with `fe_contact.LoadDistribution.from_netcdf`.
-        """
-        return self._study("flank", case, progress, point)
-
-    def sensitivity_file(
-        self, case: CaseLike, progress: Watch | None = None, **deviations: Sequence[float]
-    ) -> Path:
-        """Return the file of a case's sensitivity study: submit, wait, fetch.
-
-        Parameters
-        ----------
-        case : Case, mapping or Path
-        progress : callable, optional
-        **deviations : sequence of float
-            ``misalignment_um``, ``center_distance_change_percent``. ``loa report`` draws the file.
-        """
-        return self._study(
-            "sensitivity", case, progress, {name: list(values) for name, values in deviations.items()}
-        )
-
-    def ablate(
-        self,
-        given: CaseLike | SceneLike,
-        progress: Watch | None = None,
-        *,
-        only: Sequence[str] | None = None,
-    ) -> dict[str, Any]:
-        """Return what each effect of a case or a scene changes: submit, wait, fetch.
-
-        Parameters
-        ----------
-        given : Case, SceneInput, mapping or Path
-            A scene is told by its shafts.
-        progress : callable, optional
-        only : sequence of str, optional
-            Effects to switch over; default all.
-
-        Returns
-        -------
-        dict
-            As ``loa ablate --json`` prints it, lengths in um.
-        """
-        return self._json("ablate", given, progress, {} if only is None else {"only": list(only)})
-
-    def frontier(
-        self,
-        given: CaseLike | SceneLike,
-        progress: Watch | None = None,
-        *,
-        rungs: Sequence[str] | None = None,
-    ) -> dict[str, Any]:
-        """Return the error of each rung of the accuracy ladder against its time: submit, wait, fetch.
-
-        Parameters
-        ----------
-        given : Case, SceneInput, mapping or Path
-            A scene is told by its shafts.
-        progress : callable, optional
-        rungs : sequence of str, optional
-            Rungs to run, at least two; default all that are valid.
-
-        Returns
-        -------
-        dict
-            As ``loa frontier --json`` prints it; times are those of the service's machine.
-        """
-        return self._json("frontier", given, progress, {} if rungs is None else {"rungs": list(rungs)})
-
-    def optimise(
-        self, case: CaseLike, study: Mapping[str, Any], progress: Watch | None = None
-    ) -> dict[str, Any]:
-        """Return the micro-geometry of least transmission error: submit, wait, fetch.
-
-        Parameters
-        ----------
-        case : Case, mapping or Path
-            Its modifications are the start.
-        study : mapping
-            Variables, scatter, objective, limits and search, as in the file of ``loa optimise``.
-        progress : callable, optional
-
-        Returns
-        -------
-        dict
-            As ``loa optimise --json`` prints it.
-        """
-        return self._json("optimise", case_of(case), progress, dict(study))
-
-    def modes_file(
-        self,
-        scene: SceneLike,
-        progress: Watch | None = None,
-        *,
-        speed_rpm: Sequence[float] = (),
-        orders: int = 10,
-    ) -> Path:
-        """Return the file of a scene's modal analysis: submit, wait, fetch.
-
-        Parameters
-        ----------
-        scene : SceneInput, mapping or Path
-        progress : callable, optional
-        speed_rpm : sequence of float
-            Of the first driven shaft, increasing; empty: modes at rest only.
-        orders : int
-            Multiples of the mesh frequencies. Read the file with
-            `dynamics.linearize.ModalAnalysis.from_netcdf`.
-        """
-        return self._scene_study("modes", scene, progress, {"speed_rpm": list(speed_rpm), "orders": orders})
-
-    def response_file(
-        self,
-        scene: SceneLike,
-        progress: Watch | None = None,
-        *,
-        speed_rpm: Sequence[float],
-        orders: int = 10,
-    ) -> Path:
-        """Return the file of a scene's forced response over speeds: submit, wait, fetch.
-
-        As `modes_file`; read it with `dynamics.linearize.ForcedResponse.from_netcdf`.
-        """
-        return self._scene_study(
-            "response", scene, progress, {"speed_rpm": list(speed_rpm), "orders": orders}
-        )
-
-    def steady_file(
-        self,
-        scene: SceneLike,
-        progress: Watch | None = None,
-        *,
-        speed_rpm: Sequence[float],
-        branch: bool = True,
-        repeat: int = 1,
-        settling_periods: int = 64,
-    ) -> Path:
-        """Return the file of a scene's periodic steady states over speeds: submit, wait, fetch.
-
-        As `modes_file`; read it with `dynamics.periodic.SteadyStates.from_netcdf`.
-        """
-        further = {"speed_rpm": list(speed_rpm), "branch": branch, "repeat": repeat}
-        return self._scene_study("steady", scene, progress, further | {"settling_periods": settling_periods})
-
-    def _scene_study(
-        self, process: str, scene: SceneLike, progress: Watch | None, further: dict[str, Any]
-    ) -> Path:
-        """Submit a scene with further inputs, wait, fetch the file."""
-        result = self.wait(self.submit_scene(scene, process, **further).id, progress)
-        return self.fetch_file(result.key, result.kind)
-
-    def _json(
-        self,
-        process: str,
-        given: CaseLike | SceneLike,
-        progress: Watch | None,
-        further: dict[str, Any],
-    ) -> dict[str, Any]:
-        """Submit a case or a scene with further inputs, wait, read the JSON."""
-        result = self.wait(self.submit(process, inputs_of(given) | further).id, progress)
-        found: dict[str, Any] = json.loads(self.fetch_file(result.key, result.kind).read_bytes())
-        return found
-
-    def _study(self, process: str, case: CaseLike, progress: Watch | None, further: dict[str, Any]) -> Path:
-        """Submit a case with further inputs, wait, fetch the file."""
-        inputs = {"case": case_of(case).model_dump(mode="json"), **further}
-        result = self.wait(self.submit(process, inputs).id, progress)
-        return self.fetch_file(result.key, result.kind)
 
     def query(
         self,
