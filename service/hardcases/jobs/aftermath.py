@@ -22,6 +22,8 @@ Json = dict[str, Any]
 Settle = Callable[[float], Json]
 """Settings of the service for the job, from the elapsed seconds that the small one took."""
 
+_SETTLING_S = 2.0
+
 _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
 
 
@@ -115,11 +117,19 @@ def _left(service: JobService) -> tuple[Measured, ...]:
         sound = table.execute("PRAGMA integrity_check").fetchone()[0] == "ok"
     return (
         Measured("processes left", float(len(service.processes())), most=0.0),
-        Measured("workspaces left", float(len(list((service.directory / "work").iterdir()))), most=0.0),
+        Measured("workspaces left", float(_workspaces_left(service)), most=0.0),
         Measured("jobs that never end", float(waiting), most=0.0),
         Measured("job table sound", float(sound), least=1.0),
         Measured("turns of the scheduler that failed", float(_failed_turns(service)), most=0.0),
     )
+
+
+def _workspaces_left(service: JobService) -> int:
+    """Count workspaces; a job is told as ended just before its own is removed."""
+    end = time.monotonic() + _SETTLING_S
+    while (left := len(list((service.directory / "work").iterdir()))) and time.monotonic() < end:
+        time.sleep(0.05)
+    return left
 
 
 def _failed_turns(service: JobService) -> int:
