@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
+from service.cli.output import Report, console, output_files, print_json, progress_bar, table
 from service.problems import BadInput
 from service.report.figure import Figure, Table
 from service.report.image import png
@@ -35,7 +35,7 @@ def run_frontier(
 ) -> None:
     """Climb the ladder, write, print."""
     content = read_table(file)
-    targets = [] if output is None else _targets(output)
+    targets = [] if output is None else output_files(output, "frontier", tuple(_WRITERS))
     names = None if rungs is None else _named(rungs, of_scene="shafts" in content)
     with progress_bar() as report:
         if "shafts" in content:
@@ -86,26 +86,6 @@ def _of_scene(file: Path, names: list[str] | None, full_contact: int | None, rep
     found = run_frontier_of(scene, names, report)
     figure, page = run_frontier_figure(found), run_frontier_page(found, _TITLE)
     return _Climbed(found.to_json(), found.left_out, run_frontier_table(found), figure, page)
-
-
-def _targets(output: Path) -> list[Path]:
-    """Files to write: one by its ending, or all kinds in a folder, which is made if missing.
-
-    Raises
-    ------
-    BadInput
-        Neither, or not writable.
-    """
-    endings = ", ".join(_WRITERS)
-    if output.suffix and not output.is_dir():
-        if output.suffix not in _WRITERS:
-            raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
-        check_writable(output)
-        return [output]
-    if output.is_file():
-        raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
-    check_writable(output / "x" if output.is_dir() else output)
-    return [output / f"frontier{ending}" for ending in _WRITERS]
 
 
 def _picture(found: _Climbed, target: Path) -> None:

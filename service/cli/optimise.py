@@ -7,10 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fe_contact.microgeometry import Optimisation
-from service.cli.output import check_writable, console, print_json, progress_bar, table
+from service.cli.output import console, output_files, print_json, progress_bar, table
 from service.convert.optimisation import boundary_values, optimisation_json, optimisation_of
 from service.convert.task_workers import Hands, working_hands
-from service.problems import BadInput
 from service.report.image import png
 from service.report.optimisation import (
     harris_figure,
@@ -27,7 +26,7 @@ from service.settings import cache_home
 def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, as_json: bool) -> None:
     """Optimise, write, print."""
     given, wanted = read_model(Case, case), read_model(OptimisationInput, study)
-    targets = [] if output is None else _targets(output)
+    targets = [] if output is None else output_files(output, "optimum", tuple(_WRITERS))
     with working_hands(hands) as workers, progress_bar() as report:
         found = optimisation_of(given, wanted, cache_home() / "compliance", report, workers)
     for target in targets:
@@ -37,26 +36,6 @@ def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, 
         print_json({"written": [str(target) for target in targets], **optimisation_json(found)})
     else:
         _show(found, targets)
-
-
-def _targets(output: Path) -> list[Path]:
-    """Files to write: one by its ending, or all kinds in a folder, which is made if missing.
-
-    Raises
-    ------
-    BadInput
-        Neither, or not writable.
-    """
-    endings = ", ".join(_WRITERS)
-    if output.suffix and not output.is_dir():
-        if output.suffix not in _WRITERS:
-            raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
-        check_writable(output)
-        return [output]
-    if output.is_file():
-        raise BadInput.of("output", str(output), f"a folder, or a file ending in one of {endings}")
-    check_writable(output / "x" if output.is_dir() else output)
-    return [output / f"optimum{ending}" for ending in _WRITERS]
 
 
 def _picture(found: Optimisation, target: Path) -> None:

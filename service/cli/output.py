@@ -75,3 +75,23 @@ def check_writable(output: Path) -> None:
         raise BadInput.of("output", str(output), "in a folder that exists", "Make the folder first.")
     if output.is_dir():
         raise BadInput.of("output", str(output), "a file", "Add a file name.")
+
+
+def output_files(output: Path, stem: str, endings: Sequence[str]) -> list[Path]:
+    """Return the files to write: one by its ending, or `stem` with all endings in a folder, made if missing.
+
+    Raises
+    ------
+    BadInput
+        Neither, or not writable.
+    """
+    bound = f"a folder, or a file ending in one of {', '.join(endings)}"
+    if output.suffix and not output.is_dir():
+        if output.suffix not in endings:
+            raise BadInput.of("output", str(output), bound)
+        check_writable(output)
+        return [output]
+    if output.is_file():
+        raise BadInput.of("output", str(output), bound)
+    check_writable(output / "x" if output.is_dir() else output)
+    return [output / f"{stem}{ending}" for ending in endings]
