@@ -8,7 +8,7 @@ from fe_contact.analysis.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.analysis.flank_results import flank_results
 from fe_contact.analysis.frontier import Frontier, frontier
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.root_stress import RootStress, root_stress
 from fe_contact.analysis.root_stress_history import RootPassage, RootPeak, RootStressHistory
 from fe_contact.analysis.run_plan import RunPlan, plan_run

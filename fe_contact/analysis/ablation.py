@@ -11,7 +11,8 @@ import numpy as np
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.effect_ledger import switched_over
 from fe_contact.analysis.model_choice import decide
-from fe_contact.analysis.request import Checked, check_asked, check_request
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_asked, check_request
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.worth import Worth, estimate_worth

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from fe_contact.analysis.compute_database import compute_database
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase

@@ -14,8 +14,10 @@ import numpy as np
 
 from fe_contact.analysis.pair_contact import PairContact, bodies_are_kept, pair_contact
 from fe_contact.analysis.position_nodes import unmeasured_nodes
-from fe_contact.analysis.request import Checked, Request, axis, check_asked, load_levels
+from fe_contact.analysis.request import Checked, Request
+from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.solved_table import assembled_table
+from fe_contact.analysis.table_axes import axis, load_levels
 from fe_contact.analysis.table_places import table_places
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.bore_seat import BoreSeatElasticity

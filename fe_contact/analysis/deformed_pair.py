@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.analysis.request import check_one_load
+from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.checks import integer

@@ -7,7 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from fe_contact.analysis.assumptions import Assumption
-from fe_contact.analysis.request import Checked, check_asked
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_asked
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.flipping import flipped
 from fe_contact.effects.worth import Worth, estimate_worth, estimate_worths

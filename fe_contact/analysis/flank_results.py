@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike
 from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versions
 from fe_contact.analysis.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
-from fe_contact.analysis.request import Checked, check_one_load
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.solved_place import checked_positions, settled_place
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes

@@ -17,7 +17,8 @@ from fe_contact.analysis.measured_full_contact import (
 )
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pareto import knee_of
-from fe_contact.analysis.request import Checked, check_request
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.rung_result import RungResult, rung_results
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.warm_up import warm_up

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from fe_contact.analysis.request import Checked, Request, check_asked
+from fe_contact.analysis.request import Checked, Request
+from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.ripple import expected_ripple
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.worth import estimate_worth

@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import TypeVar
 
 from fe_contact.analysis.assumptions import Assumption, SolvedRun, violated
-from fe_contact.analysis.request import Checked, check_asked
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_asked
 from fe_contact.errors import SolveError
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import Json

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_contact.analysis.flank_results import POSITIONS
-from fe_contact.analysis.request import check_one_load
+from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, settled_place
 from fe_contact.analysis.solved_table import Progress

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.model_choice import decide, model_name
-from fe_contact.analysis.request import Checked, check_request
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.ripple import expected_ripple
 from fe_contact.checks import positive
 from fe_contact.geometry import ParallelAxes

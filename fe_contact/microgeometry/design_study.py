@@ -10,8 +10,10 @@ import numpy as np
 
 from fe_contact.analysis.model_choice import Decided, decide
 from fe_contact.analysis.pair_contact import pair_contact
-from fe_contact.analysis.request import LARGEST_DEVIATION, Checked, check_asked, check_request
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_asked, check_request
 from fe_contact.analysis.solved_table import Progress
+from fe_contact.analysis.table_axes import LARGEST_DEVIATION
 from fe_contact.checks import increasing, integer, within
 from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.misalignment import Misalignment

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.model_choice import decide
-from fe_contact.analysis.request import Checked, check_asked
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.errors import InputError

@@ -13,7 +13,7 @@ import pytest
 
 from fe_contact import Gear, GearPair, deformed_pairs
 from fe_contact.analysis.deformed_pair import mesh_angles
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.solved_place import SolvedPlace, solve_place
 from fe_contact.contact import (
     contact_problem,

@@ -10,7 +10,7 @@ from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, Ring
 from fe_contact.analysis.frontier import chosen_rung, frontier
 from fe_contact.analysis.ladder import ISO6336, RUNGS, THIN_SLICES
 from fe_contact.analysis.pareto import front_of, knee_of
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.slice_springs import SpringContact, slice_stiffness
 from fe_contact.contact import solve_contact
 from fe_contact.contact.problem import ContactProblem

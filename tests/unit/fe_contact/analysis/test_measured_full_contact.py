@@ -14,7 +14,8 @@ from fe_contact.analysis import measured_full_contact as measuring
 from fe_contact.analysis.frontier import frontier
 from fe_contact.analysis.ladder import THIN_SLICES
 from fe_contact.analysis.measured_full_contact import full_contact_refusal, measure_full_contact
-from fe_contact.analysis.request import Checked, check_request
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_request
 from fe_contact.errors import InputError
 from fe_contact.full_contact import FullContactPoint
 from fe_contact.ste import SteDatabase

@@ -10,7 +10,7 @@ import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis.model_choice import alternatives, decide, plane_strain_error
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.ripple import expected_ripple
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.ste.curve_errors import SOURCES

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.root_stress import pair_histories
 from fe_contact.analysis.root_stress_history import crests
 from fe_contact.analysis.solved_place import SolvedPlace, solve_place

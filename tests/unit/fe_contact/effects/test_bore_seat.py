@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import BoreSeat, Gear, GearPair
-from fe_contact.analysis.request import check_request
+from fe_contact.analysis.request_check import check_request
 from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene
 from fe_contact.effects.bore_seat import BoreSeatElasticity
