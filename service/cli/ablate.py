@@ -18,7 +18,9 @@ from service.report.ablation import (
     scene_ablation_figure,
     scene_ablation_table,
 )
+from service.report.ablation_page import ablation_page
 from service.report.image import png
+from service.report.write import write_whole
 from service.schemas import Case, read_model, read_table
 from service.settings import cache_home
 
@@ -26,8 +28,8 @@ from service.settings import cache_home
 def run_ablate(file: Path, output: Path | None, only: str | None, *, as_json: bool) -> None:
     """Switch the effects of a case or a scene over, write, print."""
     if output is not None:
-        if output.suffix not in (".png", ".json"):
-            raise BadInput.of("output", str(output), "a file ending in .png or .json")
+        if output.suffix not in (".png", ".json", ".html"):
+            raise BadInput.of("output", str(output), "a file ending in .png, .json or .html")
         check_writable(output)
     names = None if only is None else [name.strip() for name in only.split(",")]
     with progress_bar() as report:
@@ -49,10 +51,13 @@ def _found(file: Path, only: list[str] | None, report: Report) -> Ablation | Sce
 
 
 def _write(found: Ablation | SceneAblation, output: Path) -> None:
-    """PNG or JSON."""
+    """PNG, JSON or the report page."""
     if output.suffix == ".json":
         text = json.dumps(ablation_json(found), allow_nan=False, indent=1)
         output.write_text(f"{text}\n", encoding="utf-8")
+        return
+    if output.suffix == ".html":
+        write_whole(ablation_page(found), output)
         return
     figure = case_ablation_figure(found) if isinstance(found, Ablation) else scene_ablation_figure(found)
     output.write_bytes(png(figure))

@@ -200,3 +200,12 @@ def scene_ablation_figure(found: SceneAblation) -> Figure:
         content=tuple(panels),
         table=scene_ablation_table(found),
     )
+
+
+def largest_change(found: Ablation | SceneAblation) -> tuple[str, str]:
+    """Return the effect without which peak-to-peak changes most, and by how much."""
+    if isinstance(found, Ablation):
+        first = _sorted(found)[0]
+        return first.name, f"{_signed(_percent(first)[1])} %"
+    one = max(found.effects, key=lambda each: abs(_most(each.peak_to_peak_change)))
+    return one.name, f"{_signed(1e6 * _most(one.peak_to_peak_change))} µm"

@@ -13,15 +13,12 @@ from typing import Any
 from service.problems import NotFound
 from service.report.content import page_of
 from service.report.figure import Figure, Table
-from service.report.frontier import frontier_page
 from service.report.inputs import read_inputs
 from service.report.interactive import plotly_figure
 from service.report.page import Page, Section
-from service.report.stored_ladder import case_ladder
+from service.report.stored_study import PAGES
 
 Json = dict[str, Any]
-
-_LADDER_TITLE = "What accuracy costs in time"
 
 
 def stored_figures(inputs: Json) -> Json:
@@ -33,11 +30,9 @@ def stored_figures(inputs: Json) -> Json:
         There are no figures of this kind of result.
     """
     kind, file = inputs["kind"], Path(inputs["file"])
-    if kind == "frontier":
-        content = json.loads(file.read_text(encoding="utf-8"))
-        if (found := case_ladder(content)) is not None:
-            return page_json(frontier_page(found, _LADDER_TITLE))
-    elif file.suffix == ".nc":
+    if kind in PAGES:
+        return page_json(PAGES[kind](json.loads(file.read_text(encoding="utf-8"))))
+    if file.suffix == ".nc":
         return page_json(page_of(read_inputs([file])))
     raise NotFound(f"There are no figures of this {kind}; its JSON has all numbers.")
 

@@ -17,7 +17,9 @@ from service.report.steady import steady_figure
 
 
 def page_of(read: Inputs) -> Page:
-    """Put the page together: results first, then how they were made."""
+    """Put the page together: results first, then how they were made; a study alone has its own page."""
+    if read.only_page is not None:
+        return read.only_page
     database, flanks, run = read.database, read.flanks, read.run
     headlines: list[Headline] = []
     results: list[Section] = []
@@ -41,6 +43,9 @@ def page_of(read: Inputs) -> Page:
         results.append(Section("Forced response", figures=(response_figure(read.response),)))
     if read.steady is not None:
         results.append(Section("Steady states", figures=(steady_figure(read.steady),)))
+    for study in read.pages:
+        headlines += study.headlines
+        results += study.sections
     if run is not None:
         headlines += dynamic_headlines(run)
         results += dynamic_results(run)
@@ -60,7 +65,9 @@ def _title(read: Inputs) -> str:
     """Name the pair, or the run."""
     facts = pair_facts(read)
     if facts is None:
-        return "Sensitivity of gear pairs" if read.studies else "Dynamics of geared shafts"
+        if read.studies or read.pages:
+            return "Studies of gear pairs" if read.pages else "Sensitivity of gear pairs"
+        return "Dynamics of geared shafts"
     one, other = facts.teeth
     return f"Gear pair {one}/{other}, internal" if facts.internal else f"Gear pair {one}/{other}"
 

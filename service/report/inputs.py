@@ -22,6 +22,8 @@ from fe_contact.ste import SteDatabase
 from service.convert.sensitivity import PairStudy
 from service.convert.sensitivity_file import read_studies
 from service.problems import BadInput
+from service.report.page import Page
+from service.report.stored_study import PAGES, stored_study
 
 _KINDS = {
     ("format", "lineofaction STE database"): "database",
@@ -32,7 +34,10 @@ _KINDS = {
     ("schema", RESPONSE_SCHEMA): "forced response",
     ("schema", STEADY_SCHEMA): "steady states",
 }
-_BOUND = "an STE database, flank results, a study (sensitivity, modes, response, steady states) or a run"
+_BOUND = (
+    "an STE database, flank results, a study (sensitivity, modes, response, steady states; as JSON an "
+    "ablation, a ladder, an optimisation) or a run"
+)
 _READERS: dict[str, Callable[[Path], Any]] = {
     "database": SteDatabase.from_netcdf,
     "flank results": LoadDistribution.from_netcdf,
@@ -55,7 +60,7 @@ _FIELDS = {
 
 @dataclass(frozen=True)
 class Inputs:
-    """What was read; at least one of them."""
+    """What was read; at least one of them. `pages` are those of studies kept as JSON."""
 
     database: SteDatabase | None = None
     flanks: LoadDistribution | None = None
@@ -64,6 +69,14 @@ class Inputs:
     modal: ModalAnalysis | None = None
     response: ForcedResponse | None = None
     steady: SteadyStates | None = None
+    pages: tuple[Page, ...] = ()
+
+    @property
+    def only_page(self) -> Page | None:
+        """The page of a study in JSON, if nothing else was read."""
+        others = (self.database, self.flanks, self.run, self.modal, self.response, self.steady)
+        alone = len(self.pages) == 1 and not self.studies and all(one is None for one in others)
+        return self.pages[0] if alone else None
 
 
 def read_inputs(files: Sequence[Path]) -> Inputs:
@@ -78,12 +91,17 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
         raise BadInput.of("file", None, _BOUND, "Name at least one file.")
     read: dict[str, Any] = {}
     for file in files:
-        kind = file_kind(file)
+        if file.suffix == ".json" and file.is_file():
+            kind, content = stored_study(file)
+        else:
+            kind = file_kind(file)
+            content = _read(file, kind)
         if kind in read:
             advice = "One page shows one file of each kind."
             raise BadInput.of("file", str(file), f"the only {kind}", advice)
-        read[kind] = _read(file, kind)
-    return Inputs(**{_FIELDS[kind]: content for kind, content in read.items()})
+        read[kind] = content
+    pages = tuple(read.pop(kind) for kind in PAGES if kind in read)
+    return Inputs(**{_FIELDS[kind]: content for kind, content in read.items()}, pages=pages)
 
 
 def file_kind(file: Path) -> str:

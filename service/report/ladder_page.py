@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from dynamics.ladder import Frontier as SceneFrontier
 from fe_contact.analysis import Frontier as CaseFrontier
 from service.report.figure import Figure, Table, number
@@ -20,4 +22,6 @@ def ladder_page(
     ]
     left = Table("Rungs that were not run", ("rung", "because"), tuple(found.left_out.items()))
     tables = (rungs, *([left] if found.left_out else []))
-    return Page(title, lead, tuple(heads), (Section(rungs.caption, "", (figure,), tables),))
+    return Page(
+        title, lead, tuple(heads), (Section(rungs.caption, "", (replace(figure, table=None),), tables),)
+    )

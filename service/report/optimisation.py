@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from fe_contact.microgeometry import ConfirmedDesign, Optimisation
 from service.convert.units import UM, factor
 from service.convert.vocabulary import boundary_name
 from service.report import palette
 from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number, thousands
 from service.report.page import Headline, Page, Section
+from service.report.stored_optimisation import ShownDesign, ShownOptimisation
 
 MOST_CURVES = 8
 _POSITION = Axis("position, base pitches")
 
 
-def harris_figure(found: Optimisation) -> Figure:
+def harris_figure(found: ShownOptimisation) -> Figure:
     """Draw both Harris maps on equal axes, and peak-to-peak over torque."""
     designs = (("before", found.start), ("after", found.optimum))
     curves = [_shown(found, design) for _, design in designs]
@@ -37,19 +39,19 @@ def harris_figure(found: Optimisation) -> Figure:
     )
 
 
-def _chosen(found: Optimisation) -> list[int]:
+def _chosen(found: ShownOptimisation) -> list[int]:
     """Torques whose curves are drawn: those of the map nearest to evenly spaced ones."""
     torque = found.start.harris_map.torque
     even = np.linspace(torque[0], torque[-1], min(torque.size, MOST_CURVES))
     return sorted({int(np.abs(torque - value).argmin()) for value in even})
 
 
-def _shown(found: Optimisation, design: ConfirmedDesign) -> FloatArray:
+def _shown(found: ShownOptimisation, design: ShownDesign) -> FloatArray:
     """Curves (P, K) of the chosen torques, um."""
     return np.asarray(design.harris_map.ste[:, _chosen(found)] / UM)
 
 
-def _curves(found: Optimisation, values: FloatArray, design: ConfirmedDesign) -> tuple[Line, ...]:
+def _curves(found: ShownOptimisation, values: FloatArray, design: ShownDesign) -> tuple[Line, ...]:
     """One line per torque, closed over its period."""
     harris, index = design.harris_map, _chosen(found)
     names = thousands([float(harris.torque[k]) for k in index])
@@ -61,7 +63,7 @@ def _curves(found: Optimisation, values: FloatArray, design: ConfirmedDesign) ->
     )
 
 
-def _scattered(found: Optimisation) -> str:
+def _scattered(found: ShownOptimisation) -> str:
     """Say what the lines of the scatter are."""
     if found.nodes.weight.size == 1:
         return "Nothing scatters."
@@ -71,7 +73,7 @@ def _scattered(found: Optimisation) -> str:
     )
 
 
-def _ripple(found: Optimisation) -> Panel:
+def _ripple(found: ShownOptimisation) -> Panel:
     """Draw the expectation of both designs over torque, between the extremes of their nodes."""
     lines: list[Line] = []
     for name, design, colour in (
@@ -92,7 +94,7 @@ def _ripple(found: Optimisation) -> Panel:
     return Panel(across, Axis("peak to peak, µm"), tuple(lines), counted, title="Ripple over torque")
 
 
-def ripple_table(found: Optimisation) -> Table:
+def ripple_table(found: ShownOptimisation) -> Table:
     """Return peak-to-peak at the torques of the map, with errors."""
     before, after = found.start.harris_map, found.optimum.harris_map
     rows = tuple(
@@ -117,7 +119,7 @@ def _value(value: float, error: float) -> tuple[str, str]:
     return number(value / UM, 3), number(error / UM, 2)
 
 
-def optimum_table(found: Optimisation) -> Table:
+def optimum_table(found: ShownOptimisation) -> Table:
     """Return the variables, and what a step aside changes."""
     rows = []
     for one, step in zip(found.variables, found.sensitivity, strict=True):
@@ -133,22 +135,23 @@ def optimum_table(found: Optimisation) -> Table:
     return Table("Design, and the change of the objective by a step aside", head, tuple(rows))
 
 
-def node_table(found: Optimisation) -> Table:
+def node_table(found: ShownOptimisation) -> Table:
     """Return every node of the scatter with the ripple at the torques that count."""
     head = [*(f"{boundary_name(name)} by" for name in found.nodes.names), "weight"]
     for word in ("before", "after"):
         head += [f"{word}, {torque} N m, µm" for torque in thousands(found.torque.tolist())]
+    counted = np.flatnonzero(np.isin(found.start.harris_map.torque, found.torque))
     rows = []
     for node, weight in enumerate(found.nodes.weight):
         units = [factor(boundary_name(name)) for name in found.nodes.names]
         deviation = (f"{x / u:+.3g}" for x, u in zip(found.nodes.deviation[node], units, strict=True))
-        ripples = (d.figures.peak_to_peak[node] / UM for d in (found.start, found.optimum))
+        ripples = (d.harris_map.peak_to_peak[node, counted] / UM for d in (found.start, found.optimum))
         cells = (number(float(x), 3) for ripple in ripples for x in ripple)
         rows.append((*deviation, number(float(weight), 3), *cells))
     return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
 
 
-def run_table(found: Optimisation) -> Table:
+def run_table(found: ShownOptimisation) -> Table:
     """Return the searches."""
     rows = tuple(
         (
@@ -163,7 +166,7 @@ def run_table(found: Optimisation) -> Table:
     return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
 
 
-def optimisation_page(found: Optimisation) -> Page:
+def optimisation_page(found: ShownOptimisation) -> Page:
     """Return the page of an optimisation."""
     one, two = found.start.objective, found.optimum.objective
     heads = (
@@ -172,7 +175,7 @@ def optimisation_page(found: Optimisation) -> Page:
         Headline("gain", f"{number(found.gain.value / UM, 3)} µm", found.outcome.replace("_", " ")),
     )
     lead = f"{found.reason}; {found.evaluations} designs of {len(found.variables)} variables"
-    figure = Section("Harris map", "", (harris_figure(found),), (ripple_table(found),))
+    figure = Section("Harris map", "", (replace(harris_figure(found), table=None),), (ripple_table(found),))
     design = Section("Design", "", tables=(optimum_table(found), run_table(found)))
     robust = Section("Scatter", "", tables=(node_table(found),))
     return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust))

@@ -1,4 +1,4 @@
-"""The accuracy ladder of a case read back from the JSON that it was stored as."""
+"""An accuracy ladder, of a case or of a scene, read back from the JSON that it was stored as."""
 
 from __future__ import annotations
 
@@ -7,19 +7,32 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.ladder import Frontier as SceneFrontier
+from dynamics.ladder import RungResult as SceneRung
+from dynamics.ladder.frontier import FIGURES
+from dynamics.ladder.vibration import Vibration
 from fe_contact.analysis import Frontier
 from fe_contact.analysis.rung_result import RungResult
 
 Json = dict[str, Any]
 
 
-def case_ladder(content: Json) -> Frontier | None:
-    """Return the ladder in `content` (`Frontier.to_json`), None if it is that of a scene."""
-    rungs = content["rungs"]
-    if any("mean_m" not in rung for rung in rungs):
-        return None
+def stored_ladder(content: Json) -> Frontier | SceneFrontier:
+    """Return the ladder in `content` (`Frontier.to_json` of either library).
+
+    Not stored, and so not in it: what full finite-element contact gave on a case; the orders of the vibration
+    that the rungs of a scene were compared to, which are NaN.
+    """
+    of_case = "solves" in content
+    return _of_case(content) if of_case else _of_scene(content)
+
+
+def _of_case(content: Json) -> Frontier:
+    """Return that of a case."""
     names = ("left_out", "solves", "knee", "chosen")
-    return Frontier(tuple(_rung(rung) for rung in rungs), **{name: content[name] for name in names})
+    return Frontier(
+        tuple(_rung(rung) for rung in content["rungs"]), **{name: content[name] for name in names}
+    )
 
 
 def _rung(content: Json) -> RungResult:
@@ -32,3 +45,22 @@ def _rung(content: Json) -> RungResult:
         mean_error=content.get("mean_error", math.nan),
         peak_to_peak_error=content.get("peak_to_peak_error", math.nan),
     )
+
+
+def _of_scene(content: Json) -> SceneFrontier:
+    """Return that of a scene."""
+    names = ("left_out", "orders", "blocks", "knee", "chosen")
+    rms = np.array(content["transmission_error_rms_m"], dtype=float)
+    unknown = np.full((*rms.shape, content["orders"]), np.nan)
+    return SceneFrontier(
+        tuple(_scene_rung(rung) for rung in content["rungs"]),
+        reference=Vibration(rms, unknown, unknown[:, :0]),
+        **{name: content[name] for name in names},
+    )
+
+
+def _scene_rung(content: Json) -> SceneRung:
+    """One rung; an error that is not known was left out."""
+    rms, orders, forces = (content["errors"].get(name, math.nan) for name in FIGURES)
+    names = content["name"], content["title"], content["family"]
+    return SceneRung(*names, rms, orders, forces, content["cpu_seconds"])

@@ -18,7 +18,7 @@ verbs = typer.Typer()
 def report(
     files: Annotated[
         list[Path],
-        typer.Argument(help="STE database, flank results, studies, run; one of each kind."),
+        typer.Argument(help="STE database, flank results, studies, run, netCDF or JSON; one of each kind."),
     ],
     output: Annotated[Path, typer.Option("-o", "--output", help="Page to write.")] = Path("report.html"),
     images: Annotated[Path | None, typer.Option(help="Folder to write the plots to as PNG.")] = None,
@@ -28,7 +28,7 @@ def report(
     ] = False,
     json: AsJson = False,
 ) -> None:
-    """Write one HTML page with the plots of a database, flank results or a run."""
+    """Write one HTML page with the plots of a database, flank results, studies or a run."""
     from service.cli.report import run_report  # noqa: PLC0415 (start-up time)
 
     run_report(files, output, images, flank=flank, as_json=json)

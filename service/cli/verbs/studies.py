@@ -58,7 +58,7 @@ def frontier(
 def ablate(
     file: Annotated[Path, typer.Argument(help="Case or scene file.")],
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="File to write, ending in .png or .json.")
+        Path | None, typer.Option("-o", "--output", help="File to write, ending in .png, .json or .html.")
     ] = None,
     only: Annotated[
         str | None, typer.Option(help="Effects to switch over, separated by commas; default: all.")

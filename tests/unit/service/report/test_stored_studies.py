@@ -1,0 +1,128 @@
+"""Studies kept as JSON: drawn from their file as they are drawn fresh."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from geared_scenes import gear_pair_scene
+
+from dynamics.ablation import ablate as ablate_scene
+from dynamics.ladder import Frontier as SceneFrontier
+from dynamics.ladder import RungResult as SceneRung
+from dynamics.ladder.vibration import Vibration
+from fe_contact.analysis import ablate
+from fe_contact.geometry import FlankModification, Gear, GearPair
+from fe_contact.microgeometry import DesignVariable, GaussHermite, Scatter, Search, optimise
+from fe_contact.ste import SteDatabase
+from service.convert.ablation import ablation_json
+from service.convert.optimisation import optimisation_json
+from service.problems import BadInput
+from service.report.ablation_page import ablation_page
+from service.report.as_json import page_json, stored_figures
+from service.report.content import page_of
+from service.report.inputs import read_inputs
+from service.report.optimisation import optimisation_page
+from service.report.page import Page
+from service.report.run_frontier import run_frontier_page
+from service.report.stored_study import LADDER_TITLE
+
+RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
+GEAR = Gear(20, 4e-3, 0.025, 0.04, modification=RELIEF)
+PAIR = GearPair(GEAR, GEAR, 0.08)
+QUICK: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
+
+
+@pytest.fixture(scope="module")
+def compliance(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("compliance")
+
+
+@pytest.fixture(scope="module")
+def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
+    """Kind, JSON and fresh page of one study of every sort."""
+    only = ["tooth_coupling", "profile_modification", "misalignment"]
+    of_case = ablate(PAIR, torques=[20.0, 100.0], positions=16, only=only, cache=compliance, **QUICK)
+    of_scene = ablate_scene(gear_pair_scene(duration=0.03), only=["lateral"])
+    found = optimise(
+        PAIR,
+        [50.0, 100.0],
+        [
+            DesignVariable("pinion.tip_relief", 0.0, 40e-6),
+            DesignVariable("wheel.tip_relief_length", 5e-4, 3e-3),
+        ],
+        Scatter(modification={"wheel.profile_slope": 2e-6}, rule=GaussHermite(2)),
+        search=Search(evaluations=20, positions=16),
+        cache=compliance,
+        **QUICK,
+    )
+    told = (("rigid", "model", 0.2, 0.1), ("coarse", "steps", 0.01, 1.0), ("fine", "steps", 1e-4, 9.0))
+    rungs = tuple(
+        SceneRung(name, name, family, error, 2.0 * error, float("nan"), seconds)
+        for name, family, error, seconds in told
+    )
+    vibration = Vibration(np.ones((3, 1)), np.ones((3, 1, 5)), np.ones((3, 0, 5)))
+    ladder = SceneFrontier(rungs, {"modes": "no bearings"}, 5, 3, vibration, "coarse", None)
+    return {
+        "ablation of a case": ("ablation", ablation_json(of_case), ablation_page(of_case)),
+        "ablation of a scene": ("ablation", ablation_json(of_scene), ablation_page(of_scene)),
+        "ladder of a scene": ("frontier", ladder.to_json(), run_frontier_page(ladder, LADDER_TITLE)),
+        "optimisation": ("optimisation", optimisation_json(found), optimisation_page(found)),
+    }
+
+
+ALL = ("ablation of a case", "ablation of a scene", "ladder of a scene", "optimisation")
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_its_file_is_drawn_as_it_is_drawn_fresh(
+    studies: dict[str, tuple[str, dict[str, Any], Page]], name: str, tmp_path: Path
+) -> None:
+    kind, content, fresh = studies[name]
+    file = tmp_path / "study.json"
+    file.write_text(json.dumps(content, allow_nan=False), encoding="utf-8")
+    told = stored_figures({"kind": kind, "file": str(file)})
+    assert told == page_json(fresh)
+    assert all(f["alternative"] and f["plot"]["data"] for s in told["sections"] for f in s["figures"])
+    assert page_json(page_of(read_inputs([file]))) == told, "a report and the service show the same"
+
+
+def test_a_report_takes_a_study_beside_a_table(
+    studies: dict[str, tuple[str, dict[str, Any], Page]], database: SteDatabase, tmp_path: Path
+) -> None:
+    table, study = tmp_path / "ste.nc", tmp_path / "optimum.json"
+    database.to_netcdf(table)
+    study.write_text(json.dumps(studies["optimisation"][1]), encoding="utf-8")
+    keys = [f.key for s in page_of(read_inputs([study, table])).sections for f in s.figures]
+    assert keys.index("ste") < keys.index("harris_map")
+    with pytest.raises(BadInput, match="the only optimisation"):
+        read_inputs([study, study])
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("{", "cannot be read"),
+        ("[1]", "of another kind"),
+        ('{"of": "case"}', "of another kind"),
+        ('{"of": "case", "nominal": {}, "effects": []}', "undamaged ablation"),
+        ('{"start": 1, "optimum": 2, "variables": []}', "undamaged optimisation"),
+    ],
+)
+def test_a_file_that_holds_no_study_is_refused(text: str, told: str, tmp_path: Path) -> None:
+    file = tmp_path / "study.json"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(BadInput, match=told):
+        read_inputs([file])
+
+
+def test_an_ablation_of_nothing_has_its_reasons_and_no_plot(
+    studies: dict[str, tuple[str, dict[str, Any], Page]], compliance: Path
+) -> None:
+    none = ablate(PAIR, torques=[20.0], positions=16, only=["misalignment"], cache=compliance, **QUICK)
+    (section,) = ablation_page(none).sections
+    assert not section.figures
+    assert section.tables[-1].rows == (("misalignment", "the gears are aligned"),)
