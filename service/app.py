@@ -19,6 +19,7 @@ from service.routes import (
     effects,
     events,
     health,
+    job_results,
     jobs,
     landing,
     live,
@@ -95,7 +96,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     install_description(app)
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
-    jobs_shown = (landing.router, processes_router(offered), jobs.router, events.router)
+    jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results.router, events.router)
     stored = (databases.router, results.router, figures_router(), queries.router, live.router)
     for router in (*jobs_shown, *stored, cases.router, effects.router):
         app.include_router(router, prefix="/v1", responses=documented(503))

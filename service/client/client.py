@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from dynamics.results import RunResult
     from fe_contact.ste import SteDatabase
 
+_REFERENCES = {"response": "document", "transmissionMode": "reference"}
+"""Whatever form a job was submitted with: say where its result is."""
+
 
 class LineOfActionClient(Studies):
     """Submit cases and scenes, wait for them, fetch what they make.
@@ -143,7 +146,7 @@ class LineOfActionClient(Studies):
 
     def result(self, job: str) -> Result:
         """Return where the result of a job is; raises as `wait`, or `ResultNotReady`."""
-        found = self._connection.request("GET", f"/v1/jobs/{job}/results").json()
+        found = self._connection.request("GET", f"/v1/jobs/{job}/results", params=_REFERENCES).json()
         kind, reference = next(iter(found.items()))
         return Result(reference["hash"], kind, reference["href"])
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
 
+from service.jobs.delivery import AS_IT_IS, Delivery
 from service.jobs.job_filter import EVERY_JOB, JobFilter
 from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, QueueFull
@@ -39,6 +40,7 @@ class Job:
     updated: str
     faults: tuple[dict[str, Any], ...]
     reference: str
+    delivery: Delivery
 
     @property
     def ended(self) -> bool:
@@ -81,6 +83,7 @@ class Submissions:
         stored: bool,
         looked: str | None = None,
         caller: Caller = ANYBODY,
+        delivery: Delivery = AS_IT_IS,
     ) -> Job:
         """Enter a job; equal work that waits, runs or is `stored` already is shared.
 
@@ -92,6 +95,9 @@ class Submissions:
             Whether the store was seen to have the result.
         looked : str, optional
             When that was asked: work that has ended since is shared too, its result being there by now.
+        caller : Caller
+        delivery : Delivery
+            The form in which this job shows its result.
 
         Raises
         ------
@@ -101,7 +107,7 @@ class Submissions:
         """
         identifier = str(uuid.uuid4())
         ended = _ended_since(key, looked or now(), stored)
-        self._submit(identifier, process, key, inputs, stored, ended, caller)
+        self._submit(identifier, process, key, inputs, stored, ended, caller, delivery)
         return self.find(identifier)
 
     @retried
@@ -114,6 +120,7 @@ class Submissions:
         stored: bool,
         ended: ColumnElement[bool],
         caller: Caller,
+        delivery: Delivery,
     ) -> None:
         """Enter a job of this identifier, unless it is in already."""
         with writing(self._engine, in_turn=True) as connection:
@@ -127,7 +134,7 @@ class Submissions:
                     self._refuse_if_full(connection)
                 computation = _enter(connection, process, key, inputs, stored)
             row = {"id": identifier, "computation_id": computation, "created": now(), "dismissed": None}
-            connection.execute(insert(jobs).values(**row, caller=caller.name))
+            connection.execute(insert(jobs).values(**row, caller=caller.name, delivery=str(delivery)))
 
     def _refuse_if_full(self, connection: Connection) -> None:
         """Raise if the queue is at its limit."""
@@ -279,6 +286,7 @@ def _jobs() -> Any:
         jobs.c.created.label("job_created"),
         jobs.c.dismissed,
         jobs.c.asked,
+        jobs.c.delivery,
         computations,
     ).join(computations, jobs.c.computation_id == computations.c.id)
 
@@ -302,4 +310,5 @@ def _job(row: Any) -> Job:
         updated=row.dismissed or row.updated,
         faults=tuple(json.loads(row.faults)),
         reference=row.reference,
+        delivery=Delivery.of(row.delivery),
     )

@@ -52,6 +52,7 @@ jobs = Table(
     Column("dismissed", String),
     Column("asked", String),
     Column("caller", String, nullable=False, default=""),
+    Column("delivery", String, nullable=False),
 )
 Index("job_by_caller", jobs.c.caller)
 Index("job_by_computation", jobs.c.computation_id)

@@ -1,4 +1,4 @@
-"""Jobs: list, status, results, dismissal (OGC API - Processes 1.0, clauses 7.12, 7.13, 11, 13)."""
+"""Jobs: list, status, dismissal (OGC API - Processes 1.0, clauses 7.12, 11, 13)."""
 
 from __future__ import annotations
 
@@ -6,13 +6,11 @@ from fastapi import APIRouter, Request
 
 from service.jobs.process import Registry
 from service.jobs.submissions import Job
-from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.errors import documented
 from service.routes.job_query import Wanted
-from service.schemas.ogc import JobList, JobStatus, Link, ResultReference, StatusInfo
-from service.schemas.result_kinds import RESULT_KINDS
+from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
 from service.store import Mark
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
@@ -35,33 +33,12 @@ def job(job_id: str, context: Ctx) -> StatusInfo:
     return status_info(context.submissions.find(job_id), context.registry)
 
 
-@router.get("/{job_id}/results", summary="Results of a job", responses=documented(404, 410, 422, 500))
-def results(job_id: str, context: Ctx) -> dict[str, ResultReference]:
-    """Where the result is; why there is none."""
-    job = context.submissions.find(job_id)
-    _refuse_without_result(job)
-    process = context.registry[job.process]
-    kind = RESULT_KINDS[process.kind]
-    reference = ResultReference(href=f"{kind.path}/{job.key}", type=kind.media_type, hash=job.key)
-    return {process.output: reference}
-
-
 @router.delete("/{job_id}", summary="Dismiss a job", responses=documented(404))
 def dismiss(job_id: str, context: Ctx) -> StatusInfo:
     """Cancel: the work ends unless other jobs share it. A job that has ended stays as it is."""
     job = context.submissions.dismiss(job_id)
     context.scheduler.wake()
     return status_info(job, context.registry)
-
-
-def _refuse_without_result(job: Job) -> None:
-    """Raise what says why a job has no result."""
-    if job.status == "failed":
-        raise JobFailed(job.message, [Fault(**fault) for fault in job.faults])
-    if job.status == "dismissed":
-        raise JobDismissed(f"Job {job.id} was cancelled.")
-    if job.status != "successful":
-        raise ResultNotReady(f"Job {job.id} is {job.status}: {job.message}")
 
 
 def status_info(job: Job, registry: Registry) -> StatusInfo:

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, cast
 
 import structlog
 from fastapi import APIRouter, Header, Query, Response
-from pydantic import BaseModel, Field, create_model
 
+from service.jobs.delivery import Delivery, delivery
 from service.jobs.process import Process, Registry
 from service.jobs.submissions import Caller
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.errors import documented
 from service.routes.jobs import status_info
+from service.schemas.execute import execute_model
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import Link, ProcessDescription, ProcessList, ProcessSummary, StatusInfo
-from service.schemas.result_kinds import RESULT_KINDS
+from service.schemas.result_kinds import JSON, RESULT_KINDS
 from service.store import now
 
 logger = structlog.get_logger(__name__)
@@ -73,18 +74,22 @@ def _unknown(registry: Registry) -> Any:
 
 def _add_execution(router: APIRouter, process: Process) -> None:
     """Add the execution route of one process."""
-    body = _execute_model(process)
+    media_type = RESULT_KINDS[process.kind].media_type
+    body = execute_model(process.id, process.inputs, process.output, media_type)
 
     def execute(
-        request: BaseModel,
+        request: Any,
         response: Response,
         context: Ctx,
         caller: From,
         prefer: Prefer = "respond-async",
     ) -> StatusInfo:
         """Check the inputs and enter a job; equal work is shared, stored results are used."""
-        inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)  # type: ignore[attr-defined]
-        status = _submit(context, process, inputs, caller)
+        wanted = getattr(request.outputs, process.output)
+        field = f"outputs.{process.output}.transmissionMode"
+        form = delivery(request.response, wanted and wanted.transmissionMode, media_type, field)
+        inputs = process.prepare(cast(BoundaryModel, request.inputs), context.store)
+        status = _submit(context, process, inputs, caller, form)
         response.headers["Location"] = f"/v1/jobs/{status.jobID}"
         if "respond-async" in [wish.partition(";")[0].strip().lower() for wish in prefer.split(",")]:
             response.headers["Preference-Applied"] = "respond-async"
@@ -104,28 +109,19 @@ def _add_execution(router: APIRouter, process: Process) -> None:
     )
 
 
-def _submit(context: Context, process: Process, inputs: dict[str, Any], caller: Caller) -> StatusInfo:
+def _submit(
+    context: Context, process: Process, inputs: dict[str, Any], caller: Caller, form: Delivery
+) -> StatusInfo:
     """Enter a job and wake the scheduler."""
     key = process.key(inputs)
     looked = now()
     stored = context.store.find(key, process.kind) is not None
-    job = context.submissions.submit(process.id, key, inputs, stored=stored, looked=looked, caller=caller)
+    job = context.submissions.submit(
+        process.id, key, inputs, stored=stored, looked=looked, caller=caller, delivery=form
+    )
     logger.info("job entered", job=job.id, process=process.id, key=key, stored=stored)
     context.scheduler.wake()
     return status_info(job, context.registry)
-
-
-def _execute_model(process: Process) -> type[BaseModel]:
-    """Return the model of a process' execute request (only documents with references are offered)."""
-    fields: dict[str, Any] = {
-        "inputs": (process.inputs, Field(description="Inputs of the process")),
-        "outputs": (
-            dict[str, Any],
-            Field({}, description="Outputs wanted; there is one, always by reference"),
-        ),
-        "response": (Literal["document"], Field("document", description="Form of the results")),
-    }
-    return create_model(f"Execute{process.id.capitalize()}", __base__=BoundaryModel, **fields)
 
 
 def _summary(process: Process) -> dict[str, Any]:
@@ -137,7 +133,7 @@ def _summary(process: Process) -> dict[str, Any]:
         "description": process.description,
         "version": process.version,
         "jobControlOptions": ["async-execute", "dismiss"],
-        "outputTransmission": ["reference"],
+        "outputTransmission": ["value", "reference"],
         "links": [
             Link(href=path, rel="self", title="Description"),
             Link(
@@ -160,6 +156,8 @@ def _description(process: Process) -> ProcessDescription:
         }
         for name, field in process.inputs.model_fields.items()
     }
-    output = {"type": "string", "contentMediaType": RESULT_KINDS[process.kind].media_type}
+    media_type = RESULT_KINDS[process.kind].media_type
+    value = {"type": "object"} if media_type == JSON else {"type": "string", "contentEncoding": "binary"}
+    output = {**value, "contentMediaType": media_type}
     outputs = {process.output: {"title": process.output, "description": process.title, "schema": output}}
     return ProcessDescription(**_summary(process), inputs=inputs, outputs=outputs)

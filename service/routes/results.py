@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Request
@@ -40,7 +41,7 @@ def _add_result(kind: ResultKind) -> None:
         """Figures or the file, by Accept; never changes."""
         stored = context.store.verified(key, kind.name)
         if kind.media_type == JSON or negotiated(accept, (JSON, kind.media_type)) == kind.media_type:
-            return _file(stored, request)
+            return file_response(stored, request)
         return _metadata(stored, request, _figures(context, stored))
 
     router.add_api_route(
@@ -68,9 +69,11 @@ for _kind in RESULT_KINDS.values():
     _add_result(_kind)
 
 
-def _file(stored: StoredResult, request: Request) -> Response:
+def file_response(
+    stored: StoredResult, request: Request, further: Mapping[str, str] | None = None
+) -> Response:
     """Return the file with its digest (RFC 9530), or 304."""
-    headers, kind = _headers(f'"{stored.sha256}"'), RESULT_KINDS[stored.kind]
+    headers, kind = _headers(f'"{stored.sha256}"') | dict(further or {}), RESULT_KINDS[stored.kind]
     digest = base64.b64encode(bytes.fromhex(stored.sha256)).decode()
     if _known(request, headers["ETag"]):
         return Response(status_code=304, headers=headers)

@@ -35,10 +35,10 @@ _SUMMARY: Json = {
     "description": "Contact analysis of a gear pair over positions and loads; makes an STE database.",
     "version": "1",
     "jobControlOptions": ["async-execute", "dismiss"],
-    "outputTransmission": ["reference"],
+    "outputTransmission": ["value", "reference"],
     "links": [_LINK | {"href": "/v1/processes/analyze", "title": "Description"}],
 }
-_OUTPUT = {"type": "string", "contentMediaType": "application/x-netcdf"}
+_OUTPUT = {"type": "string", "contentEncoding": "binary", "contentMediaType": "application/x-netcdf"}
 _RESULT: Json = {"hash": HASH, "sha256": HASH[::-1], "size": 153_344}
 _CURVE: Json = {
     "torque_n_m": 100.0,

@@ -30,7 +30,7 @@ class ResultKind:
     @property
     def suffix(self) -> str:
         """Ending of their files."""
-        return _SUFFIXES[self.media_type]
+        return suffix_of_type(self.media_type)
 
 
 RESULT_KINDS: dict[str, ResultKind] = {
@@ -48,6 +48,11 @@ RESULT_KINDS: dict[str, ResultKind] = {
         ResultKind("steady", "/v1/steadies"),
     )
 }
+
+
+def suffix_of_type(media_type: str) -> str:
+    """Return the ending of files of a media type."""
+    return _SUFFIXES[media_type]
 
 
 def suffix_of(kind: str) -> str:

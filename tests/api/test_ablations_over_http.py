@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from running_service import REFERENCES
 from scene_files import scene_file
 
 from fe_contact.effects import EFFECTS
@@ -97,7 +98,7 @@ def test_its_file_is_json_whatever_is_accepted(served: Served) -> None:
     told = client.ablate(CASE, only=ONLY)
     job = client.submit("ablate", {"case": CASE, "only": ONLY[::-1]})  # the same question: stored already
     assert job.status == "successful"
-    reference = http.get(f"/v1/jobs/{job.id}/results").json()["ablation"]
+    reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["ablation"]
     assert reference["type"] == "application/json"
     for accept in ("application/json", "application/x-netcdf", "*/*"):
         answer = http.get(reference["href"], headers={"Accept": accept})

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from running_service import REFERENCES
 from scene_files import scene_file
 
 from dynamics.ladder.registry import RUNGS as SCENE_RUNGS
@@ -108,7 +109,7 @@ def test_its_file_is_json_whatever_is_accepted(served: Served) -> None:
     told = client.frontier(CASE, rungs=CLOSED)
     job = client.submit("frontier", {"case": CASE, "rungs": CLOSED[::-1]})  # the same question: stored
     assert job.status == "successful"
-    reference = http.get(f"/v1/jobs/{job.id}/results").json()["frontier"]
+    reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["frontier"]
     assert reference["type"] == "application/json"
     for accept in ("application/json", "application/x-netcdf", "*/*"):
         answer = http.get(reference["href"], headers={"Accept": accept})

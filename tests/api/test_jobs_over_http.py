@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
-from running_service import until
+from running_service import REFERENCES, until
 from service_stand_in_work import SECRET
 from service_stand_ins import REGISTRY
 
@@ -58,7 +58,7 @@ def test_a_job_runs_from_execution_to_result(client: TestClient) -> None:
     status = ended(client, answer.headers["location"])
     assert (status["processID"], status["type"], status["status"]) == ("standin", "process", "successful")
     assert status["progress"] == 100
-    reference = client.get(f"{answer.headers['location']}/results").json()["database"]
+    reference = client.get(f"{answer.headers['location']}/results", params=REFERENCES).json()["database"]
     file = client.get(reference["href"], headers={"Accept": "application/x-netcdf"})
     assert file.content == b"table"
     assert file.headers["cache-control"] == "public, max-age=31536000, immutable"
@@ -73,7 +73,7 @@ def test_links_of_a_job_lead_to_it_and_to_its_results(client: TestClient) -> Non
 def test_a_known_version_is_not_sent_again(client: TestClient) -> None:
     location = execute(client, text="table").headers["location"]
     ended(client, location)
-    href = client.get(f"{location}/results").json()["database"]["href"]
+    href = client.get(f"{location}/results", params=REFERENCES).json()["database"]["href"]
     accept = {"Accept": "application/x-netcdf"}
     tag = client.get(href, headers=accept).headers["etag"]
     again = client.get(href, headers=accept | {"If-None-Match": tag})

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from running_service import REFERENCES
 
 from service.app import create_app
 from service.settings import Settings
@@ -41,7 +42,7 @@ def analysed(client: TestClient, asked: dict[str, Any]) -> str:
         assert time.monotonic() < end
         time.sleep(0.05)
     assert status["status"] == "successful", status
-    return str(client.get(f"/v1/jobs/{job['jobID']}/results").json()["database"]["hash"])
+    return str(client.get(f"/v1/jobs/{job['jobID']}/results", params=REFERENCES).json()["database"]["hash"])
 
 
 @pytest.fixture(scope="module")

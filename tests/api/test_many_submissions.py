@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
-from running_service import until
+from running_service import REFERENCES, until
 from service_stand_ins import REGISTRY
 
 from service.app import create_app
@@ -57,7 +57,7 @@ def test_equal_cases_are_computed_once_and_all_are_answered(client: TestClient, 
     assert max(waiting) <= QUEUE
     assert len(set(locations)) == SUBMISSIONS
     for text, location in zip(wishes, locations, strict=True):
-        reference = client.get(f"{location}/results").json()["database"]
+        reference = client.get(f"{location}/results", params=REFERENCES).json()["database"]
         assert client.get(reference["href"], headers=FILE).text == text
     starts = [line for file in tmp_path.glob("started_*") for line in file.read_text().splitlines()]
     assert len(starts) == CASES

@@ -1,7 +1,7 @@
 """Requirements of OGC API - Processes 1.0 (OGC 18-062r2) by their identifiers.
 
 Of the classes core, ogc-process-description, json, job-list and dismiss, as far as they concern what is
-offered: asynchronous execution whose results are documents of references.
+offered: asynchronous execution of processes with one output.
 """
 
 from __future__ import annotations
@@ -11,10 +11,12 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from httpx2 import Response
 from running_service import until
-from service_stand_ins import REGISTRY
+from service_stand_ins import REPORT, STAND_IN
 
 from service.app import create_app
+from service.jobs.process import Registry
 from service.settings import Settings
 
 BASE = "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/"
@@ -39,7 +41,8 @@ def requirement(*names: str) -> Callable[[Check], Check]:
 @pytest.fixture(scope="module")
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A client of a running service with one job that succeeded and one that failed."""
-    with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("ogc")), REGISTRY)) as found:
+    settings = Settings(data_directory=tmp_path_factory.mktemp("ogc"))
+    with TestClient(create_app(settings, Registry(STAND_IN, REPORT))) as found:
         yield found
 
 
@@ -51,7 +54,14 @@ def link(document: dict[str, Any], relation: str) -> str:
 
 def executed(client: TestClient, **wish: Any) -> dict[str, Any]:
     """Enter a job and wait for its end."""
-    location = client.post(EXECUTION, json={"inputs": {"wish": wish}}).headers["location"]
+    return ended(client, "standin", {"inputs": {"wish": wish}})
+
+
+def ended(client: TestClient, process: str, body: dict[str, Any]) -> dict[str, Any]:
+    """Execute a process and wait for the end of its job."""
+    answer = client.post(f"/v1/processes/{process}/execution", json=body)
+    assert answer.status_code == 201, answer.text
+    location = answer.headers["location"]
     until(lambda: client.get(location).json()["status"] in ("successful", "failed", "dismissed"))
     status: dict[str, Any] = client.get(location).json()
     return status
@@ -138,7 +148,6 @@ def no_such_process(client: TestClient) -> None:
     "/req/core/process-execute-op",
     "/req/core/process-execute-request",
     "/req/core/process-execute-inputs",
-    "/req/core/process-execute-input-inline-object",
     "/req/core/process-execute-default-execution-mode",
     "/req/core/process-execute-auto-execution-mode",
     "/req/core/process-execute-success-async",
@@ -147,17 +156,32 @@ def no_such_process(client: TestClient) -> None:
 )
 def execution(client: TestClient) -> None:
     body = {"inputs": {"wish": {"text": "ogc"}}, "outputs": {}, "response": "document"}
+    options = client.get("/v1/processes/standin").json()["jobControlOptions"]
+    assert "sync-execute" not in options and "async-execute" in options
     for prefer in (
         {},
         {"Prefer": "respond-async"},
         {"Prefer": "respond-async, wait=1"},
         {"Prefer": "wait=9"},
+        {"Prefer": "respond-sync"},
     ):
         answer = client.post(EXECUTION, json=body, headers=prefer)
         assert answer.status_code == 201
         assert answer.headers["location"] == f"/v1/jobs/{answer.json()['jobID']}"
         applied = answer.headers.get("preference-applied")
-        assert applied == (None if prefer.get("Prefer") == "wait=9" else "respond-async")
+        assert applied == (None if prefer.get("Prefer") in ("wait=9", "respond-sync") else "respond-async")
+
+
+@requirement("/req/core/process-execute-input-inline-object")
+def qualified_inputs(client: TestClient) -> None:
+    plain, value = {"text": "qualified"}, {"value": {"text": "qualified"}}
+    hashes = set()
+    for given in (plain, value, {**value, "mediaType": "application/json"}):
+        status = ended(client, "report", {"inputs": {"wish": given}})
+        hashes.add(client.get(link(status, f"{REL}results")).headers["content-location"])
+    assert len(hashes) == 1
+    refused = client.post(EXECUTION, json={"inputs": {"wish": {"value": {"number": 11}}}})
+    assert [fault["field"] for fault in refused.json()["errors"]] == ["inputs.wish.number"]
 
 
 @requirement("/req/core/process-execute-input-validation", "/req/core/process-execute-default-outputs")
@@ -183,13 +207,55 @@ def no_such_job(client: TestClient) -> None:
         assert (answer.status_code, answer.json()["type"]) == (404, f"{EXCEPTIONS}no-such-job")
 
 
-@requirement("/req/core/job-results", "/req/core/job-results-async-document")
-def results(client: TestClient) -> None:
-    status = executed(client, text="results")
-    (name,) = client.get("/v1/processes/standin").json()["outputs"]
-    reference = client.get(link(status, f"{REL}results")).json()[name]
-    answer = client.get(reference["href"], headers={"Accept": reference["type"]})
-    assert (answer.status_code, answer.headers["content-type"]) == (200, reference["type"])
+def delivered(client: TestClient, process: str, text: str, **form: Any) -> Response:
+    """Execute with a form and get the results."""
+    status = ended(client, process, {"inputs": {"wish": {"text": text}}, **form})
+    return client.get(link(status, f"{REL}results"))
+
+
+@requirement("/req/core/job-results", "/req/core/job-results-async-raw-value-one")
+def raw_value(client: TestClient) -> None:
+    """Also of an execution that leaves everything out: raw and value are the defaults of the standard."""
+    wanted = {"response": "raw", "outputs": {"database": {"transmissionMode": "value"}}}
+    for form in ({}, wanted, {"outputs": {}}):
+        answer = delivered(client, "standin", "results", **form)
+        assert (answer.status_code, answer.content) == (200, b"results")
+        assert answer.headers["content-type"] == "application/x-netcdf"
+        where = client.get(answer.headers["content-location"], headers={"Accept": "application/x-netcdf"})
+        assert where.content == answer.content
+        assert where.headers["content-digest"] == answer.headers["content-digest"]
+    answer = delivered(client, "report", "results")
+    assert (answer.headers["content-type"], answer.json()) == ("application/json", {"text": "results"})
+
+
+@requirement("/req/core/job-results-async-raw-ref")
+def raw_reference(client: TestClient) -> None:
+    for process, name in (("standin", "database"), ("report", "ablation")):
+        outputs = {name: {"transmissionMode": "reference"}}
+        answer = delivered(client, process, "raw", outputs=outputs)
+        assert (answer.status_code, answer.content) == (204, b"")
+        (reference,) = answer.links.values()
+        found = client.get(reference["url"], headers={"Accept": reference["type"]})
+        assert (found.status_code, found.headers["content-type"]) == (200, reference["type"])
+        assert reference["title"] == name
+
+
+@requirement("/req/core/job-results-async-document")
+def document(client: TestClient) -> None:
+    """Of netCDF a link, of JSON a qualified value, as the standard's schema of results has objects."""
+    for outputs in ({}, {"database": {"transmissionMode": "reference"}}):
+        answer = delivered(client, "standin", "document", response="document", outputs=outputs)
+        assert answer.headers["content-type"] == "application/json"
+        reference = answer.json()["database"]
+        found = client.get(reference["href"], headers={"Accept": reference["type"]})
+        assert (found.content, found.headers["content-type"]) == (b"document", reference["type"])
+    for outputs in ({}, {"ablation": {"format": {"mediaType": "application/json"}}}):
+        answer = delivered(client, "report", "document", response="document", outputs=outputs)
+        value = {"value": {"text": "document"}, "mediaType": "application/json"}
+        assert (answer.headers["content-type"], answer.json()) == ("application/json", {"ablation": value})
+    outputs = {"ablation": {"transmissionMode": "reference"}}
+    reference = delivered(client, "report", "document", response="document", outputs=outputs).json()
+    assert client.get(reference["ablation"]["href"]).json() == {"text": "document"}
 
 
 @requirement("/req/core/job-results-exception/results-not-ready")
@@ -284,3 +350,46 @@ def json_everywhere(client: TestClient) -> None:
 @pytest.mark.parametrize("name", REQUIREMENTS)
 def test_the_requirement_is_met(client: TestClient, name: str) -> None:
     REQUIREMENTS[name](client)
+
+
+REFUSED = [
+    ({"subscriber": {"successUri": "http://caller.example/done"}}, "subscriber"),
+    ({"inputs": {"wish": {"href": "http://caller.example/wish"}}}, "inputs.wish.href"),
+    ({"inputs": {"wish": {"value": {}, "mediaType": "text/plain"}}}, "inputs.wish.mediaType"),
+    ({"inputs": {"wish": {"value": {}, "encoding": "base64"}}}, "inputs.wish.encoding"),
+    ({"outputs": {"flanks": {}}}, "outputs.flanks"),
+    ({"outputs": {"database": {"format": {"mediaType": "text/csv"}}}}, "outputs.database.format.mediaType"),
+    ({"outputs": {"database": {"transmissionMode": "pigeon"}}}, "outputs.database.transmissionMode"),
+    (
+        {"response": "document", "outputs": {"database": {"transmissionMode": "value"}}},
+        "outputs.database.transmissionMode",
+    ),
+    ({"response": "xml"}, "response"),
+    ({"mode": "sync"}, "mode"),
+]
+
+
+@pytest.mark.parametrize(("part", "field"), REFUSED)
+def test_what_is_not_offered_is_refused_by_name(client: TestClient, part: dict[str, Any], field: str) -> None:
+    jobs = len(client.get("/v1/jobs", params={"limit": 1000}).json()["jobs"])
+    answer = client.post(EXECUTION, json={"inputs": {"wish": {"text": "refused"}}, **part})
+    assert answer.status_code == 422
+    (fault,) = answer.json()["errors"]
+    assert fault["field"] == field and fault["bound"]
+    assert len(client.get("/v1/jobs", params={"limit": 1000}).json()["jobs"]) == jobs
+
+
+def test_a_callback_is_refused_with_its_reason(client: TestClient) -> None:
+    body = {"inputs": {"wish": {}}, "subscriber": {"successUri": "http://caller.example/done"}}
+    assert "sends no requests to addresses" in client.post(EXECUTION, json=body).json()["detail"]
+
+
+def test_a_request_for_results_may_ask_for_another_form(client: TestClient) -> None:
+    status = ended(client, "standin", {"inputs": {"wish": {"text": "other form"}}})
+    path = link(status, f"{REL}results")
+    assert client.get(path, params={"response": "document"}).json()["database"]["href"]
+    assert client.get(path, params={"transmissionMode": "reference"}).status_code == 204
+    refused = client.get(path, params={"response": "document", "transmissionMode": "value"})
+    assert refused.status_code == 422
+    assert refused.json()["errors"][0]["field"] == "transmissionMode"
+    assert client.get(path).content == b"other form"

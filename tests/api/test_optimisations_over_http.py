@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from running_service import REFERENCES
 
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
@@ -79,7 +80,7 @@ def test_the_optimisation_is_that_of_python(served: Served, tmp_path: Path) -> N
     assert progress == sorted(progress) and progress[-1] == 100
     job = client.submit("optimise", {"case": CASE, **STUDY})  # the same question: stored already
     assert job.status == "successful"
-    reference = http.get(f"/v1/jobs/{job.id}/results").json()["optimisation"]
+    reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["optimisation"]
     assert http.get(reference["href"], headers={"Accept": "application/x-netcdf"}).json() == told
 
 

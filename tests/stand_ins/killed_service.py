@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx2
-from running_service import until
+from running_service import REFERENCES, until
 from service_stand_in_work import slow_content
 
 EXECUTION = "/v1/processes/standin/execution"
@@ -212,7 +212,7 @@ class KilledService:
 
     def _look_at(self, client: httpx2.Client, job: str, text: str) -> None:
         """Fetch one result."""
-        status = client.get(f"/v1/jobs/{job}/results")
+        status = client.get(f"/v1/jobs/{job}/results", params=REFERENCES)
         if status.status_code != 200:
             if status.status_code not in (404, 503):
                 self.faults.append(f"job {job}: {status.status_code} {status.text}")

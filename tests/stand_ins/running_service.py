@@ -17,6 +17,9 @@ from service.jobs.submissions import Job, Submissions
 from service.settings import Settings
 from service.store import ResultStore, identity_of, open_database, result_store
 
+REFERENCES = {"response": "document", "transmissionMode": "reference"}
+"""Parameters of a job's results: where they are, whatever form was asked for."""
+
 
 @dataclass(frozen=True)
 class Bench:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Literal
 
 from pydantic import Field
@@ -60,3 +61,7 @@ STAND_IN = Process(
     stages=(Stage("first", 0.25), Stage("second", 0.75)),
 )
 REGISTRY = Registry(STAND_IN)
+REPORT = replace(
+    STAND_IN, id="report", output="ablation", kind="ablation", entry="service_stand_in_work:report"
+)
+"""One whose results are JSON."""

@@ -20,8 +20,13 @@ export async function runJob(target, process, inputs, { expected } = {}) {
   const card = new JobCard(target, process, status, expected);
   const ended = await watched(status, (now) => card.show(now));
   if (ended.status === "dismissed") throw new Problem({ title: "Cancelled", detail: "The job was cancelled.", status: 410 });
-  const results = await get(`/v1/jobs/${status.jobID}/results`);
+  const results = await get(whereItsResultIs(status.jobID));
   return Object.values(results)[0];
+}
+
+/** The address that says where a job's result is, whatever form it was submitted with. */
+export function whereItsResultIs(job) {
+  return `/v1/jobs/${job}/results?response=document&transmissionMode=reference`;
 }
 
 async function watched(status, show) {

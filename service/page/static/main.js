@@ -4,7 +4,7 @@ import { Problem, get, post } from "./api.js";
 import { Drawing } from "./drawing.js";
 import { byId, make, save } from "./elements.js";
 import { CaseForm } from "./form.js";
-import { runJob, showFailure } from "./job.js";
+import { runJob, showFailure, whereItsResultIs } from "./job.js";
 import { Live } from "./live.js";
 import { noPlan, showPlan } from "./plan.js";
 import { showReport } from "./report.js";
@@ -129,7 +129,7 @@ class Page {
     list.replaceChildren(make("option", { value: "" }, "none"), ...done.map(named));
     list.onchange = async () => {
       if (!list.value) return;
-      const { database } = await get(`/v1/jobs/${list.value}/results`);
+      const { database } = await get(whereItsResultIs(list.value));
       await this.open(database.hash);
     };
   }

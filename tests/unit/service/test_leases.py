@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from running_service import Bench, bench, lives, until
+from running_service import REFERENCES, Bench, bench, lives, until
 from service_stand_ins import REGISTRY
 from sqlalchemy import select, update
 
@@ -172,7 +172,7 @@ def test_a_process_that_only_serves_leaves_the_work_to_another(
         assert client.get("/ready").json()["computations"] == {"accepted": 1}
         elsewhere.scheduler.start()
         until(lambda: client.get(location).json()["status"] == "successful")
-        href = client.get(f"{location}/results").json()["database"]["href"]
+        href = client.get(f"{location}/results", params=REFERENCES).json()["database"]["href"]
         assert client.get(href, headers={"Accept": "application/x-netcdf"}).content == b"far"
 
         hangs = client.post(execution, json={"inputs": {"wish": {"mode": "hang"}}}).headers["location"]

@@ -1,0 +1,86 @@
+"""Bodies of executions (OGC 18-062r2, clause 7.11.1): inputs, the output wanted, and its form."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any, Literal
+
+from pydantic import Field, create_model, model_validator
+
+from service.schemas.model import BoundaryModel, refuse
+from service.schemas.result_kinds import JSON, suffix_of_type
+
+_FORMAT = {"mediaType", "encoding", "schema"}
+_LINK = {"href", "rel", "type", "hreflang", "title"}
+
+
+class ExecuteBody(BoundaryModel):
+    """What the bodies of all executions share: inputs may be qualified values; nobody is called back."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _as_offered(cls, body: Any) -> Any:
+        """Refuse what is not offered, and take values out of their qualification."""
+        if not isinstance(body, dict):
+            return body
+        if "subscriber" in body:
+            bound = "left out: the service sends no requests to addresses that its callers name"
+            refuse("subscriber", None, bound, "Ask /v1/jobs/{id}, or follow /v1/jobs/{id}/events.")
+        inputs = body.get("inputs")
+        if not isinstance(inputs, dict):
+            return body
+        return body | {"inputs": {name: _value(name, given) for name, given in inputs.items()}}
+
+
+def _value(name: str, given: Any) -> Any:
+    """Return an input without the qualification it may have."""
+    if not isinstance(given, dict):
+        return given
+    if "href" in given and set(given) <= _LINK:
+        bound = "written out: the service reads no addresses that its callers name"
+        refuse(f"inputs.{name}.href", given["href"], bound, "Put what is there in its place.")
+    if "value" not in given or not set(given) <= _FORMAT | {"value"}:
+        return given
+    for field in sorted(_FORMAT & set(given)):
+        if field != "mediaType" or given[field] != JSON:
+            refuse(f"inputs.{name}.{field}", given[field], f"left out, or mediaType {JSON}", "")
+    return given["value"]
+
+
+@lru_cache(maxsize=8)
+def _wanted_output(media_type: str) -> type[BoundaryModel]:
+    """Return the model of what can be asked of an output of this type."""
+    kind = suffix_of_type(media_type).removeprefix(".").capitalize()
+    type_field: Any = (Literal[media_type], Field(media_type, description="The one type of the output"))
+    form = create_model(f"{kind}Format", __base__=BoundaryModel, mediaType=type_field)
+    said = "Default: value; of netCDF in a document: reference"
+    fields: dict[str, Any] = {
+        "format": (form | None, Field(None, description="There is one format")),
+        "transmissionMode": (Literal["value", "reference"] | None, Field(None, description=said)),
+    }
+    return create_model(f"Wanted{kind}Output", __base__=BoundaryModel, **fields)
+
+
+def execute_model(
+    process: str, inputs: type[BoundaryModel], output: str, media_type: str
+) -> type[ExecuteBody]:
+    """Return the model of a process' body.
+
+    Parameters
+    ----------
+    process : str
+        Its identifier.
+    inputs : type[BoundaryModel]
+        Model of its inputs.
+    output, media_type : str
+        Name and type of its one output.
+    """
+    wanted: Any = (_wanted_output(media_type) | None, Field(None, description="The one output"))
+    outputs = create_model(f"{process.capitalize()}Outputs", __base__=BoundaryModel, **{output: wanted})
+    form = Field("raw", description="Results as they are, or as a JSON object by name")
+    fields: dict[str, Any] = {
+        "inputs": (inputs, Field(description="Inputs of the process")),
+        "outputs": (outputs, Field(default_factory=outputs, description="Outputs wanted; default: all")),
+        "response": (Literal["raw", "document"], form),
+    }
+    return create_model(f"Execute{process.capitalize()}", __base__=ExecuteBody, **fields)
