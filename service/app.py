@@ -13,6 +13,7 @@ from service.jobs.key import solver_version
 from service.jobs.live_desk import live_desk
 from service.jobs.machinery import job_machinery
 from service.jobs.process import Registry
+from service.jobs.workload import WorkloadReader
 from service.routes import (
     cases,
     databases,
@@ -32,7 +33,7 @@ from service.routes.context import Context
 from service.routes.errors import documented, install_error_handlers
 from service.routes.figures import figures_router
 from service.routes.metrics import Metrics
-from service.routes.middleware import Guard
+from service.routes.middleware import API_PREFIX, Guard
 from service.routes.openapi import install_description
 from service.routes.processes import processes_router
 from service.routes.warm_up import warm_up
@@ -91,7 +92,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         redoc_url=None,
     )
     app.state.context = context
-    app.state.metrics = Metrics(context.submissions)
+    app.state.metrics = Metrics(WorkloadReader(context.engine))
     install_error_handlers(app)
     install_description(app)
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
@@ -99,7 +100,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results.router, events.router)
     stored = (databases.router, results.router, figures_router(), queries.router, live.router)
     for router in (*jobs_shown, *stored, cases.router, effects.router):
-        app.include_router(router, prefix="/v1", responses=documented(503))
+        app.include_router(router, prefix=API_PREFIX, responses=documented(503))
     app.include_router(page.router)
     app.include_router(health.router)
     return app

@@ -25,6 +25,7 @@ from typing import Any, TextIO
 from service.jobs.disk import no_space
 from service.jobs.memory import hold_to, machine_memory_mb, out_of_memory
 from service.jobs.order import USABLE, Product, WorkOrder
+from service.jobs.usage import own_peak_mb
 from service.problems import ServiceError
 
 _NICENESS = 10
@@ -41,7 +42,7 @@ def main() -> None:
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
     with os.fdopen(int(sys.argv[1]), "w", buffering=1) as channel:
-        _send(channel, _outcome(order, _Reporter(channel)))
+        _send(channel, _outcome(order, _Reporter(channel)) | {"peak_mb": own_peak_mb()})
 
 
 def _first_line() -> bytes:

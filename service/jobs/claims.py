@@ -15,6 +15,7 @@ from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Engine, Row, select, update
 
+from service.jobs.durations import end_computations
 from service.jobs.tables import computations
 from service.store import dialect_of, now, reading, retried, writing
 
@@ -119,20 +120,26 @@ class Claims:
     def succeed(self, claim: Claim) -> None:
         """End with the result stored."""
         done = {"state": "successful", "message": "Done.", "fraction": 1.0, "stage_fraction": 1.0}
-        self._change(claim, done | {"finished": now()})
+        self._end_with(claim, done)
 
     def fail(
         self, claim: Claim, message: str, faults: Sequence[dict[str, Any]] = (), reference: str = ""
     ) -> None:
         """End without a result."""
-        facts = {"faults": json.dumps(list(faults)), "reference": reference, "finished": now()}
-        self._change(claim, {"state": "failed", "message": message.replace("\0", "")} | facts)
+        facts = {"faults": json.dumps(list(faults)), "reference": reference}
+        self._end_with(claim, {"state": "failed", "message": message.replace("\0", "")} | facts)
 
     def put_back(self, claim: Claim, message: str, *, counted: bool) -> None:
         """Let it wait again; an attempt that ended through no fault of its own is not counted."""
         attempts = claim.attempts if counted else claim.attempts - 1
         values = {"state": "accepted", "message": message, "stage": "", "stage_fraction": 0.0}
         self._change(claim, values | {"fraction": 0.0, "attempts": attempts})
+
+    @retried
+    def _end_with(self, claim: Claim, values: dict[str, Any]) -> None:
+        """End a computation that runs under the lease of `claim`, and count it."""
+        with writing(self._engine) as connection:
+            end_computations(connection, _under([claim]), values)
 
     @retried
     def _change(self, claim: Claim, values: dict[str, Any]) -> None:

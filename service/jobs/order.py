@@ -96,3 +96,12 @@ class Outcome:
     faults: tuple[dict[str, Any], ...] = ()
     unexpected: bool = False
     died: bool = False
+
+    @property
+    def name(self) -> str:
+        """One word for the log."""
+        if self.died:
+            return "died"
+        if self.unexpected:
+            return "defect"
+        return "failed" if self.failure else "done"

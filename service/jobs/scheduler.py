@@ -9,34 +9,23 @@ import shutil
 import threading
 import time
 import uuid
-from dataclasses import dataclass
-from pathlib import Path
 
 import structlog
 
+from service.jobs.attempt import Attempt, begun
 from service.jobs.claims import Claim, Claims
 from service.jobs.housekeeper import Housekeeper
 from service.jobs.leases import RENEWALS, Leases
-from service.jobs.memory import machine_memory_mb
-from service.jobs.order import Outcome, WorkOrder
+from service.jobs.order import Outcome
 from service.jobs.process import Registry
 from service.jobs.settlement import Ended, Settlement
 from service.jobs.worker import Worker
 from service.problems import ServiceError
-from service.settings import LEAST_MEMORY_MB, Settings
+from service.settings import Settings
 from service.store import ResultStore
 
 _HEARTBEAT_S = 0.5
 logger = structlog.get_logger(__name__)
-
-
-@dataclass(frozen=True)
-class _Running:
-    """A claim and the process that works on it."""
-
-    claim: Claim
-    worker: Worker
-    log: Path
 
 
 class Scheduler:
@@ -54,7 +43,7 @@ class Scheduler:
         self._housekeeper = housekeeper
         self._settlement = Settlement(claims, store, settings.attempts)
         self._leases = Leases(claims, settings.lease_s)
-        self._running: dict[int, _Running] = {}
+        self._running: dict[int, Attempt] = {}
         self._unsettled: list[Ended] = []
         self._stopping = threading.Event()
         self._thread: threading.Thread | None = None
@@ -124,7 +113,7 @@ class Scheduler:
         """End all workers; without a database the leases end by themselves."""
         running = list(self._running.values())
         for one in running:
-            self._forget(one).kill()
+            self._kill(one, "stopped")
         with contextlib.suppress(ServiceError):
             self._settle_all()
             for one in running:
@@ -152,60 +141,45 @@ class Scheduler:
 
     def _begin(self, claim: Claim) -> None:
         """Start a worker for a claim."""
-        workspace, log = self._workspace(claim), self._settings.data_directory / "log" / f"{claim.id}.log"
         try:
-            workspace.mkdir(parents=True, exist_ok=True)
-            worker = Worker(self._order(claim, workspace), log)
+            attempt = begun(self._settings, self._registry[claim.process].entry, claim)
         except Exception:
             reference = uuid.uuid4().hex[:12]
             logger.exception("no worker could be started", computation=claim.id, reference=reference)
             text = f"No worker could be started. The log has the details under {reference}."
             self._claims.fail(claim, text, reference=reference)
             return
-        self._leases.hold(claim, worker.beat)
-        self._running[worker.channel] = _Running(claim, worker, log)
-        self._selector.register(worker.channel, selectors.EVENT_READ)
-        logger.info("worker started", computation=claim.id, process=claim.process, pid=worker.pid)
+        self._leases.hold(claim, attempt.worker.beat)
+        self._running[attempt.worker.channel] = attempt
+        self._selector.register(attempt.worker.channel, selectors.EVENT_READ)
 
-    def _order(self, claim: Claim, workspace: Path) -> WorkOrder:
-        """Return the order of a claim."""
-        return WorkOrder(
-            entry=self._registry[claim.process].entry,
-            inputs=claim.inputs,
-            key=claim.key,
-            workspace=workspace,
-            data_directory=self._settings.data_directory,
-            memory_limit_mb=_memory_mb(self._settings),
-            database_url=self._settings.database_address,
-            results_url=self._settings.results_url,
-            lease_s=self._settings.lease_s,
-        )
-
-    def _workspace(self, claim: Claim) -> Path:
-        """Directory of a computation."""
-        return self._settings.data_directory / "work" / claim.id
-
-    def _listen(self, running: _Running) -> None:
+    def _listen(self, running: Attempt) -> None:
         """Note progress; take the outcome when the channel ends."""
         steps, ended = running.worker.listen()
         process = self._registry[running.claim.process]
         if ended:
             self._end(running, self._forget(running, keep_lease=True).finish())
+            running.note_end(self._unsettled[-1].outcome.name)
         elif steps:
             stage, fraction = steps[-1]
             self._claims.progress(running.claim, stage, fraction, process.overall(stage, fraction))
 
-    def _end(self, running: _Running, outcome: Outcome) -> None:
+    def _end(self, running: Attempt, outcome: Outcome) -> None:
         """Let an attempt be settled; its lease is held until then."""
-        self._unsettled.append(Ended(running.claim, outcome, self._workspace(running.claim), running.log))
+        self._unsettled.append(Ended(running.claim, outcome, running.workspace, running.log))
 
-    def _forget(self, running: _Running, *, keep_lease: bool = False) -> Worker:
+    def _forget(self, running: Attempt, *, keep_lease: bool = False) -> Worker:
         """Stop listening to a worker."""
         self._selector.unregister(running.worker.channel)
         del self._running[running.worker.channel]
         if not keep_lease:
             self._leases.drop(running.claim)
         return running.worker
+
+    def _kill(self, running: Attempt, why: str, *, keep_lease: bool = False) -> None:
+        """End a worker that has not ended."""
+        self._forget(running, keep_lease=keep_lease).kill()
+        running.note_end(why)
 
     def _settle_all(self) -> None:
         """Settle what has ended, in its turn; what the database or the store do not take waits for them."""
@@ -238,7 +212,7 @@ class Scheduler:
         """End workers whose lease lapsed: by now another scheduler may run their computations."""
         for running in list(self._running.values()):
             if self._leases.lapsed(running.claim):
-                self._forget(running).kill()
+                self._kill(running, "lease lost")
                 logger.warning("lease lost", computation=running.claim.id)
                 with contextlib.suppress(ServiceError):
                     self._claims.put_back(running.claim, "Waits: the database was lost.", counted=False)
@@ -247,7 +221,7 @@ class Scheduler:
         """End workers that are past the deadline."""
         for running in list(self._running.values()):
             if running.worker.age > self._settings.deadline_s:
-                self._forget(running, keep_lease=True).kill()
+                self._kill(running, "too late", keep_lease=True)
                 self._end(running, Outcome(failure=_too_late(self._settings.deadline_s)))
 
     def _enforce_dismissals(self) -> None:
@@ -255,15 +229,8 @@ class Scheduler:
         held = self._claims.held([running.claim for running in self._running.values()])
         for running in list(self._running.values()):
             if running.claim.id not in held:
-                self._forget(running).kill()
-                shutil.rmtree(self._workspace(running.claim), ignore_errors=True)
-
-
-def _memory_mb(settings: Settings) -> int:
-    """Return what one worker may have, MB: what is set, or its share of the machine's memory."""
-    if settings.memory_limit_mb is not None:
-        return settings.memory_limit_mb
-    return max(LEAST_MEMORY_MB, machine_memory_mb() // settings.workers)
+                self._kill(running, "not wanted")
+                shutil.rmtree(running.workspace, ignore_errors=True)
 
 
 def _too_late(deadline_s: float) -> str:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import uuid
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Engine, func, insert, select, update
 
+from service.jobs.caller import ANYBODY, Caller
 from service.jobs.delivery import AS_IT_IS, Delivery
+from service.jobs.durations import end_computations
+from service.jobs.job import ENDED, Job, job_of, select_jobs
 from service.jobs.job_filter import EVERY_JOB, JobFilter
 from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, QueueFull
@@ -18,53 +20,6 @@ from service.store import Mark, behind, instant, now, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
 
 _LOOKED_AT = 500  # at a time, where durations are asked for
-_ENDED = ("successful", "failed", "dismissed")
-
-
-@dataclass(frozen=True)
-class Job:
-    """A job with the state of its computation; times are RFC 3339 in UTC."""
-
-    id: str
-    process: str
-    key: str
-    status: str
-    message: str
-    stage: str
-    stage_fraction: float
-    fraction: float
-    attempts: int
-    created: str
-    started: str | None
-    finished: str | None
-    updated: str
-    faults: tuple[dict[str, Any], ...]
-    reference: str
-    delivery: Delivery
-
-    @property
-    def ended(self) -> bool:
-        """Whether nothing more will happen to it."""
-        return self.status in _ENDED
-
-
-@dataclass(frozen=True)
-class Caller:
-    """Who submits.
-
-    Attributes
-    ----------
-    name : str
-        Of the access key; empty without one.
-    unfinished_jobs : int or None
-        Jobs that may wait or run at the same time; None: no limit but the queue's.
-    """
-
-    name: str = ""
-    unfinished_jobs: int | None = None
-
-
-ANYBODY = Caller()
 
 
 class Submissions:
@@ -154,16 +109,16 @@ class Submissions:
         row = None
         if _is_identifier(identifier):
             with reading(self._engine) as connection:
-                row = connection.execute(_jobs().where(jobs.c.id == identifier)).one_or_none()
+                row = connection.execute(select_jobs().where(jobs.c.id == identifier)).one_or_none()
         if row is None:
             raise NoSuchJob(f"There is no job {identifier!r}.")
         self._note_use(row)
-        return _job(row)
+        return job_of(row)
 
     def _note_use(self, row: Any) -> None:
         """Note, once an hour, that an ended job was asked for."""
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
-        if row.state in _ENDED and (row.asked or row.job_created) < before:
+        if row.state in ENDED and (row.asked or row.job_created) < before:
             with writing(self._engine) as connection:
                 connection.execute(update(jobs).where(jobs.c.id == row.job_id).values(asked=now()))
 
@@ -181,14 +136,14 @@ class Submissions:
     @retried
     def _newest(self, limit: int, wanted: JobFilter, after: Mark | None) -> list[Job]:
         """Return jobs that meet what the database decides."""
-        statement = _jobs().where(*wanted.conditions())
+        statement = select_jobs().where(*wanted.conditions())
         if after is not None:
             statement = statement.where(behind(after, jobs.c.created, jobs.c.id))
         with reading(self._engine) as connection:
             rows = connection.execute(
                 statement.order_by(jobs.c.created.desc(), jobs.c.id.desc()).limit(limit)
             )
-            return [_job(row) for row in rows]
+            return [job_of(row) for row in rows]
 
     def dismiss(self, identifier: str) -> Job:
         """Dismiss one caller's job, unless it ended; the work goes on while other jobs share it."""
@@ -275,40 +230,5 @@ def _enter(connection: Connection, process: str, key: str, inputs: dict[str, Any
 def _abandon(connection: Connection, owner: Any) -> None:
     """End a computation that nobody wants; the scheduler kills its worker."""
     live = computations.c.state.in_(("accepted", "running"))
-    values = {"state": "dismissed", "message": "Cancelled.", "finished": now(), "updated": now()}
-    connection.execute(update(computations).where(computations.c.id == owner, live).values(**values))
-
-
-def _jobs() -> Any:
-    """Select jobs with their computations."""
-    return select(
-        jobs.c.id.label("job_id"),
-        jobs.c.created.label("job_created"),
-        jobs.c.dismissed,
-        jobs.c.asked,
-        jobs.c.delivery,
-        computations,
-    ).join(computations, jobs.c.computation_id == computations.c.id)
-
-
-def _job(row: Any) -> Job:
-    """Return a row as a job: a caller who dismissed sees that, whatever became of the shared work."""
-    dismissed = row.dismissed is not None
-    return Job(
-        id=row.job_id,
-        process=row.process,
-        key=row.key,
-        status="dismissed" if dismissed else row.state,
-        message="Cancelled." if dismissed else row.message,
-        stage=row.stage,
-        stage_fraction=row.stage_fraction,
-        fraction=row.fraction,
-        attempts=row.attempts,
-        created=row.job_created,
-        started=row.started,
-        finished=row.dismissed or row.finished,
-        updated=row.dismissed or row.updated,
-        faults=tuple(json.loads(row.faults)),
-        reference=row.reference,
-        delivery=Delivery.of(row.delivery),
-    )
+    values = {"state": "dismissed", "message": "Cancelled."}
+    end_computations(connection, (computations.c.id == owner) & live, values)

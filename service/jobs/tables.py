@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sqlalchemy import Column, Float, ForeignKey, Index, Integer, String, Table, Text, text
+from sqlalchemy import BigInteger, Column, Float, ForeignKey, Index, Integer, String, Table, Text, text
 
 from service.store.database import metadata
 
@@ -42,6 +42,18 @@ Index(
 )
 Index("computation_by_lease", computations.c.lease)
 Index("computation_by_state", computations.c.state, computations.c.created)
+
+# Counts of ended computations: they outlive the computations, see `service.jobs.durations`.
+durations = Table(
+    "duration",
+    metadata,
+    Column("process", String, primary_key=True),
+    Column("outcome", String, primary_key=True),
+    Column("le", String, primary_key=True),
+    Column("number", BigInteger, nullable=False),
+    Column("seconds", Float, nullable=False),
+    Column("attempts", BigInteger, nullable=False),
+)
 
 jobs = Table(
     "job",

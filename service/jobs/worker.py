@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from service.jobs.order import Outcome, Product, WorkOrder
+from service.jobs.usage import Usage
 
 _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
@@ -34,7 +35,9 @@ class Worker:
 
     def __init__(self, order: WorkOrder, log: Path) -> None:
         self.started = time.monotonic()
+        self.usage: Usage | None = None
         self._outcome: Outcome | None = None
+        self._peak_mb: float | None = None
         self._rest = b""
         self._giving = threading.Lock()
         self.channel, theirs = os.pipe()
@@ -102,6 +105,7 @@ class Worker:
         """Return a message as progress, or keep it as the outcome."""
         if "stage" in message:
             return message["stage"], message["fraction"]
+        self._peak_mb = message.get("peak_mb")
         products = tuple(Product(p["key"], p["kind"], Path(p["file"])) for p in message.get("products", ()))
         facts = {name: message[name] for name in ("failure", "unexpected") if name in message}
         self._outcome = Outcome(products=products, faults=tuple(message.get("faults", ())), **facts)
@@ -131,13 +135,20 @@ class Worker:
         if self._process.returncode is None:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.pid, signal.SIGKILL)
-            self._process.wait()
+            self._reap()
         if self._process.stdin is not None:
             with self._giving, contextlib.suppress(BrokenPipeError):
                 self._process.stdin.close()
         if self.channel >= 0:
             os.close(self.channel)
             self.channel = -1
+
+    def _reap(self) -> None:
+        """Wait for the child's end, and note what it took."""
+        _, status, spent = os.wait4(self.pid, 0)
+        self._process.returncode = os.waitstatus_to_exitcode(status)
+        peak_mb = spent.ru_maxrss / 1024.0 if self._peak_mb is None else self._peak_mb
+        self.usage = Usage(self.age, spent.ru_utime + spent.ru_stime, peak_mb)
 
 
 def _cause(code: int) -> str:

@@ -9,11 +9,12 @@ from fastapi import Depends, Request
 from sqlalchemy import Engine
 
 from service.access import AccessKey
+from service.jobs.caller import ANYBODY, Caller
 from service.jobs.elsewhere import WorkElsewhere
 from service.jobs.live_desk import LiveDesk
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
-from service.jobs.submissions import ANYBODY, Caller, Submissions
+from service.jobs.submissions import Submissions
 from service.routes.open_databases import OpenDatabases
 from service.routes.streams import Streams
 from service.settings import Settings

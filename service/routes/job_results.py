@@ -10,7 +10,7 @@ from starlette.responses import JSONResponse, Response
 
 from service.jobs.delivery import Delivery, Transmission, delivery
 from service.jobs.delivery import Response as Form
-from service.jobs.submissions import Job
+from service.jobs.job import Job
 from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
+from service.jobs.job import Job
 from service.jobs.process import Registry
-from service.jobs.submissions import Job
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.errors import documented

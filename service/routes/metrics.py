@@ -1,28 +1,30 @@
-"""Figures for Prometheus."""
+"""Figures for Prometheus: requests of this process, and what the database tells of all together."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from prometheus_client import CollectorRegistry, Counter, Histogram, generate_latest
-from prometheus_client.core import GaugeMetricFamily
+from prometheus_client import CollectorRegistry, Counter, Histogram, Metric, generate_latest
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily
 from prometheus_client.registry import Collector
 
-from service.jobs.submissions import Submissions
+from service.jobs.workload import Workload, WorkloadReader
+from service.problems import DatabaseUnavailable
 
 _STATES = ("accepted", "running", "successful", "failed", "dismissed")
+_ENDED = ["process", "outcome"]
 
 
 class Metrics:
-    """Counters of one app."""
+    """Figures of one app."""
 
-    def __init__(self, submissions: Submissions) -> None:
+    def __init__(self, workload: WorkloadReader) -> None:
         self._registry = CollectorRegistry()
         self._requests = Counter(
             "loa_requests", "Requests answered", ["method", "route", "status"], registry=self._registry
         )
         self._seconds = Histogram("loa_request_seconds", "Time to answer", ["route"], registry=self._registry)
-        self._registry.register(_Computations(submissions))
+        self._registry.register(_FromDatabase(workload))
 
     def observe(self, method: str, route: str, status: int, seconds: float) -> None:
         """Note one answered request."""
@@ -34,16 +36,57 @@ class Metrics:
         return generate_latest(self._registry)
 
 
-class _Computations(Collector):
-    """Computations by state, counted when asked."""
+class _FromDatabase(Collector):
+    """What is read when asked; without a database, that it is gone."""
 
-    def __init__(self, submissions: Submissions) -> None:
-        self._submissions = submissions
+    def __init__(self, workload: WorkloadReader) -> None:
+        self._workload = workload
 
-    def collect(self) -> Iterable[GaugeMetricFamily]:
-        """Return the gauge."""
-        gauge = GaugeMetricFamily("loa_computations", "Computations by state", labels=["state"])
-        counts = self._submissions.counts()
-        for state in _STATES:
-            gauge.add_metric([state], counts.get(state, 0))
-        yield gauge
+    def collect(self) -> Iterable[Metric]:
+        """Return the figures."""
+        up = GaugeMetricFamily("loa_database_up", "Whether the database answers this process")
+        try:
+            load = self._workload.read()
+        except DatabaseUnavailable:
+            up.add_metric([], 0)
+            yield up
+            return
+        up.add_metric([], 1)
+        yield up
+        yield from _queue(load)
+        yield from _ended(load)
+        yield from _results(load)
+
+
+def _queue(load: Workload) -> Iterable[Metric]:
+    """Return what waits, runs and has ended."""
+    states = GaugeMetricFamily("loa_computations", "Computations by state", labels=["state"])
+    for state in _STATES:
+        states.add_metric([state], load.states.get(state, 0))
+    oldest = GaugeMetricFamily("loa_oldest_waiting_seconds", "Age of the oldest computation that waits")
+    oldest.add_metric([], load.oldest_waiting_s)
+    return states, oldest
+
+
+def _ended(load: Workload) -> Iterable[Metric]:
+    """Return how long computations took, and in how many attempts."""
+    text = "Computations that ended, from their first start"
+    taken = HistogramMetricFamily("loa_computation_seconds", text, labels=_ENDED)
+    attempts = CounterMetricFamily(
+        "loa_computation_attempts", "Attempts at computations that ended", labels=_ENDED
+    )
+    for one in load.durations:
+        names = [one.process, one.outcome]
+        taken.add_metric(names, list(one.buckets), one.seconds)
+        attempts.add_metric(names, one.attempts)
+    return taken, attempts
+
+
+def _results(load: Workload) -> Iterable[Metric]:
+    """Return what is stored."""
+    number = GaugeMetricFamily("loa_results", "Results in the store", labels=["kind"])
+    size = GaugeMetricFamily("loa_result_bytes", "Bytes of results in the store", labels=["kind"])
+    for kind, count, total in load.results:
+        number.add_metric([kind], count)
+        size.add_metric([kind], total)
+    return number, size

@@ -13,6 +13,7 @@ from service.problems import ServiceError, TooLarge, Unexpected
 from service.routes.errors import problem_of
 from service.routes.metrics import Metrics
 
+API_PREFIX = "/v1"
 logger = structlog.get_logger(__name__)
 
 
@@ -50,11 +51,20 @@ class Guard:
 
     def _note(self, scope: Scope, exchange: _Exchange, seconds: float) -> None:
         """Count and log; a route is named by its template, so that figures stay few."""
-        route = getattr(scope.get("route"), "path", "unknown")
+        route = _template(scope)
         status = exchange.status or 0
         self._metrics.observe(scope["method"], route, status, seconds)
         facts = {"method": scope["method"], "route": route, "status": status, "seconds": round(seconds, 6)}
         logger.info("request", **facts)
+
+
+def _template(scope: Scope) -> str:
+    """Return the template of the path, with the prefix that routes may have been included under."""
+    template = getattr(scope.get("route"), "path", None)
+    if template is None:
+        return "unknown"
+    inside = scope["path"].startswith(API_PREFIX) and not template.startswith(API_PREFIX)
+    return f"{API_PREFIX}{template}" if inside else str(template)
 
 
 class _Exchange:

@@ -7,9 +7,9 @@ from typing import Annotated, Any, cast
 import structlog
 from fastapi import APIRouter, Header, Query, Response
 
+from service.jobs.caller import Caller
 from service.jobs.delivery import Delivery, delivery
 from service.jobs.process import Process, Registry
-from service.jobs.submissions import Caller
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.errors import documented
@@ -119,7 +119,8 @@ def _submit(
     job = context.submissions.submit(
         process.id, key, inputs, stored=stored, looked=looked, caller=caller, delivery=form
     )
-    logger.info("job entered", job=job.id, process=process.id, key=key, stored=stored)
+    facts = {"job": job.id, "computation": job.computation, "process": process.id, "key": key}
+    logger.info("job entered", **facts, stored=stored)
     context.scheduler.wake()
     return status_info(job, context.registry)
 

@@ -11,9 +11,10 @@ from typing import Any
 from sqlalchemy import Engine
 
 from service.jobs.claims import Claims
+from service.jobs.job import Job
 from service.jobs.process import Registry
 from service.jobs.scheduler import Scheduler
-from service.jobs.submissions import Job, Submissions
+from service.jobs.submissions import Submissions
 from service.settings import Settings
 from service.store import ResultStore, identity_of, open_database, result_store
 

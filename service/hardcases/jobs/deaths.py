@@ -16,7 +16,7 @@ from service.hardcases.jobs.aftermath import MEDIUM, aftermath, largest_differen
 from service.hardcases.jobs.job_service import Disturb, JobService
 from service.hardcases.jobs.limits import AFTER
 from service.hardcases.scene import HardScene, Measured
-from service.jobs.submissions import Job
+from service.jobs.job import Job
 from service.schemas import Case, validated
 
 MESHER_COMMAND, WORKER_COMMAND = "gmsh_worker", "service.jobs.child"

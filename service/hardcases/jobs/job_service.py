@@ -19,9 +19,10 @@ from fe_contact.types import FloatArray
 from service.hardcases.scene import TIME_LIMIT
 from service.jobs.catalogue import ANALYZE, default_registry
 from service.jobs.elsewhere import WorkElsewhere
+from service.jobs.job import Job
 from service.jobs.machinery import job_machinery
 from service.jobs.scheduler import Scheduler
-from service.jobs.submissions import Job, Submissions
+from service.jobs.submissions import Submissions
 from service.schemas import Case, validated
 from service.schemas.process_inputs import AnalyzeInputs
 from service.settings import Settings

@@ -15,7 +15,7 @@ from service_stand_ins import REGISTRY
 from sqlalchemy import event, false
 
 from service.app import create_app
-from service.jobs.submissions import ANYBODY
+from service.jobs.caller import ANYBODY
 from service.problems import BadInput, DatabaseUnavailable
 from service.settings import Settings, load_settings
 from service.store import open_database

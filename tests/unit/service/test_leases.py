@@ -21,7 +21,7 @@ from service_stand_ins import REGISTRY
 from sqlalchemy import select, update
 
 from service.app import create_app
-from service.jobs.submissions import Job
+from service.jobs.job import Job
 from service.jobs.tables import computations
 from service.settings import Settings
 from service.store import reading, writing

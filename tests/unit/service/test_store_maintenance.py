@@ -16,8 +16,8 @@ from sqlalchemy import update
 from typer.testing import CliRunner
 
 from service.cli.commands import app
+from service.jobs.job import Job
 from service.jobs.retention import Retention
-from service.jobs.submissions import Job
 from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, NotFound
 from service.store import writing

@@ -1,0 +1,24 @@
+"""Who submits, and how much at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Caller:
+    """Who submits.
+
+    Attributes
+    ----------
+    name : str
+        Of the access key; empty without one.
+    unfinished_jobs : int or None
+        Jobs that may wait or run at the same time; None: no limit but the queue's.
+    """
+
+    name: str = ""
+    unfinished_jobs: int | None = None
+
+
+ANYBODY = Caller()

@@ -1,0 +1,45 @@
+"""What a worker took: time, CPU time, memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+_KB_PER_MB = 1024.0
+
+
+@dataclass(frozen=True)
+class Usage:
+    """What a worker took from its start to its end.
+
+    Attributes
+    ----------
+    seconds : float
+        Elapsed.
+    cpu_s : float
+        CPU time of the process and of what it has waited for, s.
+    peak_mb : float
+        Most resident memory, MB: as the process itself has told with its outcome; of one that told none at
+        least that of the process that started it, whose memory the system counts until the program is loaded.
+    """
+
+    seconds: float
+    cpu_s: float
+    peak_mb: float
+
+    def as_json(self) -> dict[str, float]:
+        """Return it rounded, for a line of the log."""
+        return {
+            "seconds": round(self.seconds, 3),
+            "cpu_s": round(self.cpu_s, 3),
+            "peak_mb": round(self.peak_mb, 1),
+        }
+
+
+def own_peak_mb(status: Path = Path("/proc/self/status")) -> float | None:
+    """Return the most resident memory this process has had, MB; None where the system does not tell."""
+    try:
+        line = next(line for line in status.read_text().splitlines() if line.startswith("VmHWM:"))
+    except (OSError, StopIteration):
+        return None
+    return int(line.split()[1]) / _KB_PER_MB
