@@ -2,13 +2,14 @@
 
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.harris_map import HarrisMap
+from fe_contact.microgeometry.iso1328 import iso1328_tolerances
 from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimisation import Optimisation, Outcome, StepAside
 from fe_contact.microgeometry.optimise import optimise
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import DifferentialEvolution, NelderMead, Search, SearchRun
 from fe_contact.microgeometry.tolerance_study import ToleranceStudy, scatter
-from fe_contact.microgeometry.tolerances import Tolerances, iso1328_tolerances
+from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
 
 __all__ = [

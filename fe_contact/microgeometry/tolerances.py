@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
@@ -10,11 +9,10 @@ from typing import Literal
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from fe_contact.checks import integer, positive
+from fe_contact.checks import positive
 from fe_contact.errors import InputError
-from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.microgeometry.scatter import MISALIGNMENT
-from fe_contact.microgeometry.variables import GEARS, gear_and_quantity
+from fe_contact.microgeometry.variables import gear_and_quantity
 from fe_contact.types import FloatArray, Json
 
 Distribution = Literal["normal", "uniform"]
@@ -73,56 +71,3 @@ class Tolerances:
             "modification_m": dict(self.modification),
             "distribution": self.distribution,
         }
-
-
-def iso1328_tolerances(
-    pair: ParallelAxes,
-    tolerance_class: int,
-    *,
-    misalignment: float = 0.0,
-    across_face: bool = True,
-    distribution: Distribution = "normal",
-) -> Tolerances:
-    """Return tolerances of profile and helix slope of both gears by ISO 1328-1:2013, clause 5.3.
-
-    Parameters
-    ----------
-    pair : GearPair or InternalGearPair
-    tolerance_class : int
-        1 (finest) to 11.
-    misalignment : float
-        Of the assembly, m; the standard has none.
-    across_face : bool
-        Whether helix slopes deviate too; a plane model cannot have it.
-    distribution : str
-
-    Notes
-    -----
-    In um, d, b and m_n in mm: f_HaT = (0.4 m_n + 0.001 d + 4) sqrt(2)^(A - 5) and
-    f_HbT = (0.05 sqrt(d) + 0.35 sqrt(b) + 4) sqrt(2)^(A - 5), not rounded as the standard's drawings are.
-    """
-    integer("tolerance_class", tolerance_class, 1, 11)
-    widths = {}
-    for name in GEARS:
-        gear: Toothing = getattr(pair, name)
-        widths[f"{name}.profile_slope"] = _profile_slope(gear, tolerance_class)
-        if across_face:
-            widths[f"{name}.helix_slope"] = _helix_slope(gear, tolerance_class)
-    return Tolerances(misalignment, widths, distribution)
-
-
-def _step(tolerance_class: int) -> float:
-    """Tolerance of a class over that of class 5."""
-    return math.sqrt(2.0) ** (tolerance_class - 5)
-
-
-def _profile_slope(gear: Toothing, tolerance_class: int) -> float:
-    """f_HaT in m."""
-    module, diameter = 1e3 * gear.normal_module, 2e3 * gear.reference_radius
-    return 1e-6 * (0.4 * module + 0.001 * diameter + 4.0) * _step(tolerance_class)
-
-
-def _helix_slope(gear: Toothing, tolerance_class: int) -> float:
-    """f_HbT in m."""
-    diameter, width = 2e3 * gear.reference_radius, 1e3 * gear.face_width
-    return 1e-6 * (0.05 * math.sqrt(diameter) + 0.35 * math.sqrt(width) + 4.0) * _step(tolerance_class)

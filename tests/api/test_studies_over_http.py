@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -32,10 +33,15 @@ PLANE = CASE | {"accuracy": CASE["accuracy"] | {"model": "plane_strain"}}
 
 
 @pytest.fixture(scope="module")
-def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[LineOfActionClient, TestClient]]:
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The service's directory of data."""
+    return tmp_path_factory.mktemp("service") / "data"
+
+
+@pytest.fixture(scope="module")
+def served(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]:
     """A client of a running service with its real processes, and the bare HTTP one."""
-    directory = tmp_path_factory.mktemp("service")
-    app, results = create_app(Settings(data_directory=directory / "data")), directory / "results"
+    app, results = create_app(Settings(data_directory=data)), data.parent / "results"
     with (
         TestClient(app) as service,
         LineOfActionClient("http://testserver", cache_dir=results, transport=service._transport) as found,
@@ -43,12 +49,13 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[LineOfAct
         yield found, service
 
 
-def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, TestClient]) -> None:
+def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:
     client, http = served
     seen: list[JobState] = []
     file = client.flank_file(PLANE, seen.append, torque_n_m=30.0)
     found = LoadDistribution.from_netcdf(file)
-    here = flanks_of(case_at(validated(Case, PLANE), FlankPoint(torque_n_m=30.0)), None)
+    # on the gears as the job condensed them: linear algebra in more threads sums in another order
+    here = flanks_of(case_at(validated(Case, PLANE), FlankPoint(torque_n_m=30.0)), data / "compliance")
     assert np.array_equal(found.force, here.force)
     assert found.metadata.content_hash == here.metadata.content_hash
     assert [state.progress for state in seen] == sorted(state.progress for state in seen)

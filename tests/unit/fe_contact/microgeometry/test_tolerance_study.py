@@ -11,7 +11,7 @@ from scipy.special import ndtr
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import Tolerances, ToleranceStudy, iso1328_tolerances, scatter
+from fe_contact.microgeometry import Tolerances, ToleranceStudy, scatter
 from fe_contact.microgeometry.spread import quantile, rank_correlation
 from fe_contact.microgeometry.variables import modified
 
@@ -88,16 +88,6 @@ def test_parts_lie_within_their_tolerances(distribution: Any) -> None:
     expected = {"normal": cut, "uniform": 1.0 / np.sqrt(3.0)}[distribution]
     np.testing.assert_allclose(drawn.std(axis=0) / [5e-6, 1e-6], expected, rtol=0.02)
     assert np.abs(np.corrcoef(drawn.T)[0, 1]) < 0.03
-
-
-def test_iso_1328_classes_step_by_the_root_of_two(pair: GearPair) -> None:
-    five, seven = (iso1328_tolerances(pair, grade).modification for grade in (5, 7))
-    # m_n 4, d 80, b 25: 0.4 * 4 + 0.08 + 4 and 0.05 * 8.944 + 0.35 * 5 + 4
-    assert five["pinion.profile_slope"] == pytest.approx(5.68e-6, rel=1e-9, abs=0.0)
-    assert five["wheel.helix_slope"] == pytest.approx(6.1972e-6, rel=1e-4, abs=0.0)
-    assert all(seven[name] == pytest.approx(2.0 * five[name], rel=1e-12, abs=0.0) for name in five)
-    flat = iso1328_tolerances(pair, 5, across_face=False).modification
-    assert set(flat) == {"pinion.profile_slope", "wheel.profile_slope"}
 
 
 @pytest.mark.parametrize(
