@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis.solved_table import Progress
-from fe_contact.checks import integer, within
+from fe_contact.checks import increasing, integer, within
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import full_table
-from fe_contact.microgeometry.design_study import Accuracies, design_study
+from fe_contact.microgeometry.design_study import Accuracies, check_study, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import ONE_NODE, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.spread import Quantile, quantile, rank_correlation
@@ -159,10 +159,9 @@ def scatter(
     within("confidence", confidence, 0.5, 0.9999)
     for index, fraction in enumerate(fractions):
         within(f"fractions[{index}]", fraction, 0.0, 1.0)
-    widths = Scatter(tolerances.misalignment, tolerances.modification, ACTING)
     accuracy = Accuracies(tolerance, level, time_budget, model, effects)
     study = design_study(
-        pair, torques, [], {}, widths, misalignment, positions, accuracy, clock, report, cache
+        pair, torques, [], {}, _widths(tolerances), misalignment, positions, accuracy, clock, report, cache
     )
     deviation = tolerances.sample(samples, seed)
     with clock.stage("samples"):
@@ -171,6 +170,7 @@ def scatter(
         nominal = replace(study.evaluator, nodes=ONE_NODE)
         table = full_table(nominal, {}, study.decided, cache)
         error = [table.peak_to_peak(force=float(f), misalignment=misalignment).error for f in table.force]
+    report("confirmation", 1.0)
     return ToleranceStudy(
         study.torque,
         tuple(tolerances.widths),
@@ -188,6 +188,30 @@ def scatter(
             "misalignment_m": misalignment,
         },
     )
+
+
+def check_scatter(
+    pair: ParallelAxes,
+    torques: Sequence[float] | FloatArray,
+    tolerances: Tolerances,
+    misalignment: float,
+    accuracy: Accuracies,
+    positions: int = 64,
+) -> None:
+    """Check what `scatter` is given, without computing anything.
+
+    Raises
+    ------
+    InputError
+        As `scatter`.
+    """
+    loads = increasing("torques", torques)
+    check_study(pair, loads, {}, _widths(tolerances), misalignment, positions, accuracy)
+
+
+def _widths(tolerances: Tolerances) -> Scatter:
+    """Return a scatter in which everything deviates that may."""
+    return Scatter(tolerances.misalignment, tolerances.modification, ACTING)
 
 
 def _evaluated(

@@ -16,7 +16,7 @@ from service.problems import BadInput, NotFound, ResultNotReady
 from service.schemas import Case, read_table, validated
 from service.schemas.result_kinds import RESULT_KINDS
 
-_OF_CASES = ("analyze", "flank", "sensitivity", "optimise")
+_OF_CASES = ("analyze", "flank", "sensitivity", "optimise", "scatter")
 _OF_SCENES = ("simulate", "modes", "response", "steady")
 _OF_BOTH = ("ablate", "frontier")
 

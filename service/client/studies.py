@@ -132,6 +132,25 @@ class Studies(ABC):
         """
         return self._json("optimise", case_of(case), progress, dict(study))
 
+    def scatter(self, case: CaseLike, progress: Watch | None = None, **sampling: Any) -> dict[str, Any]:
+        """Return how peak-to-peak STE is distributed within tolerances: submit, wait, fetch.
+
+        Parameters
+        ----------
+        case : Case, mapping or Path
+            Its modifications are the design.
+        progress : callable, optional
+        **sampling
+            ``tolerance_class`` (ISO 1328-1:2013), ``misalignment_um``, ``distribution``, ``samples``,
+            ``seed``; what is left out has the default of ``loa scatter``.
+
+        Returns
+        -------
+        dict
+            As ``loa scatter --json`` prints it, every pair included.
+        """
+        return self._json("scatter", case_of(case), progress, sampling)
+
     def modes_file(
         self,
         scene: SceneLike,

@@ -8,12 +8,15 @@ from pathlib import Path
 from typing import Any, Literal
 
 from fe_contact.microgeometry import ToleranceStudy, iso1328_tolerances, scatter
+from fe_contact.microgeometry.design_study import Accuracies
+from fe_contact.microgeometry.tolerance_study import check_scatter
 from fe_contact.workers import Workers
 from service.convert.ablation import in_um
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.convert.units import UM
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
+from service.schemas.sampling import SamplingInput
 
 Json = dict[str, Any]
 _ACCURACY = ("tolerance", "level", "time_budget", "model", "effects")
@@ -29,6 +32,13 @@ class Sampling:
     distribution: Literal["normal", "uniform"]
     samples: int
     seed: int
+
+
+def sampling_of(given: SamplingInput) -> Sampling:
+    """Return what a request asks for."""
+    return Sampling(
+        given.tolerance_class, given.misalignment_um, given.distribution, given.samples, given.seed
+    )
 
 
 def scatter_of_case(
@@ -47,29 +57,46 @@ def scatter_of_case(
     JobFailed
         The case cannot be computed.
     """
-    pair = gear_pair(case)
-    load = case.load
     with boundary_errors():
-        tolerances = iso1328_tolerances(
-            pair,
-            sampling.tolerance_class,
-            misalignment=sampling.misalignment_um * UM,
-            across_face=case.accuracy.model not in _PLANE,
-            distribution=sampling.distribution,
-        )
-        torques = load.torque_n_m or [float(pair.torque(force)) for force in load.normal_force_n or ()]
         return scatter(
-            pair,
-            list(torques),
-            tolerances,
+            **_drawn(case, sampling),
             samples=sampling.samples,
             seed=sampling.seed,
-            misalignment=case.errors.misalignment_um[0] * UM,
-            **{name: analysis_arguments(case)[name] for name in _ACCURACY},
+            **_accuracy(case),
             workers=workers,
             progress=report,
             cache=cache,
         )
+
+
+def check_scatter_of(case: Case, sampling: Sampling) -> None:
+    """Raise `BadInput` for what `scatter_of_case` would, without computing anything."""
+    with boundary_errors():
+        check_scatter(**_drawn(case, sampling), accuracy=Accuracies(**_accuracy(case)))
+
+
+def _drawn(case: Case, sampling: Sampling) -> Json:
+    """Return what is drawn from what, in SI."""
+    pair, load = gear_pair(case), case.load
+    tolerances = iso1328_tolerances(
+        pair,
+        sampling.tolerance_class,
+        misalignment=sampling.misalignment_um * UM,
+        across_face=case.accuracy.model not in _PLANE,
+        distribution=sampling.distribution,
+    )
+    torques = load.torque_n_m or [float(pair.torque(force)) for force in load.normal_force_n or ()]
+    return {
+        "pair": pair,
+        "torques": list(torques),
+        "tolerances": tolerances,
+        "misalignment": case.errors.misalignment_um[0] * UM,
+    }
+
+
+def _accuracy(case: Case) -> Json:
+    """Return what the case says of its model."""
+    return {name: analysis_arguments(case)[name] for name in _ACCURACY}
 
 
 def scatter_json(found: ToleranceStudy) -> Json:

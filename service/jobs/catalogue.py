@@ -1,4 +1,4 @@
-"""The processes of the service: analyze, flank, sensitivity, ablate, frontier, optimise, simulate ..."""
+"""The processes of the service: analyze, flank, sensitivity, ablate, frontier, optimise, scatter ..."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from service.schemas.process_inputs import (
     ModesInputs,
     OptimiseInputs,
     ResponseInputs,
+    ScatterInputs,
     SensitivityInputs,
     SimulateInputs,
     SteadyInputs,
@@ -93,6 +94,19 @@ OPTIMISE = Process(
     entry="service.jobs.optimisation_work:optimise_flanks",
     stages=(Stage("compliance", 0.2), Stage("search", 0.6), Stage("confirmation", 0.2)),
 )
+SCATTER = Process(
+    id="scatter",
+    title="Transmission error within tolerances",
+    description="Tolerance Monte Carlo: pairs drawn within a class of ISO 1328-1 and a misalignment, the "
+    "distribution of their peak-to-peak transmission error with bounds, and what it depends on.",
+    version="1",
+    inputs=ScatterInputs,
+    output="scatter",
+    kind="scatter",
+    prepare=on_demand("service.jobs.preparations:prepare_scatter"),
+    entry="service.jobs.scatter_work:draw_pairs",
+    stages=(Stage("compliance", 0.2), Stage("samples", 0.7), Stage("confirmation", 0.1)),
+)
 SIMULATE = Process(
     id="simulate",
     title="Dynamics of a geared system",
@@ -149,5 +163,5 @@ STEADY = Process(
 def default_registry() -> Registry:
     """Return the processes every service offers."""
     return Registry(
-        ANALYZE, FLANK, SENSITIVITY, ABLATE, FRONTIER, OPTIMISE, SIMULATE, MODES, RESPONSE, STEADY
+        ANALYZE, FLANK, SENSITIVITY, ABLATE, FRONTIER, OPTIMISE, SCATTER, SIMULATE, MODES, RESPONSE, STEADY
     )

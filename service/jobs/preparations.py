@@ -16,6 +16,7 @@ from service.convert.checks import check_case
 from service.convert.flanks import case_at
 from service.convert.optimisation import check_optimisation_of
 from service.convert.rungs import rungs_asked
+from service.convert.scatter import check_scatter_of, sampling_of
 from service.convert.sensitivity import Deviations, check_study
 from service.jobs.scene_inputs import check_scene_inputs
 from service.schemas.ablation import AblationInput
@@ -28,6 +29,7 @@ from service.schemas.process_inputs import (
     ModesInputs,
     OptimiseInputs,
     ResponseInputs,
+    ScatterInputs,
     SensitivityInputs,
     SimulateInputs,
     SteadyInputs,
@@ -89,6 +91,13 @@ def prepare_optimisation(inputs: BoundaryModel, _store: ResultStore) -> Json:
     """Check that everything can be varied as asked; return the inputs with all defaults."""
     assert isinstance(inputs, OptimiseInputs)
     check_optimisation_of(inputs.case, inputs)
+    return inputs.model_dump(mode="json")
+
+
+def prepare_scatter(inputs: BoundaryModel, _store: ResultStore) -> Json:
+    """Check that the pair exists within these tolerances; return the inputs with all defaults."""
+    assert isinstance(inputs, ScatterInputs)
+    check_scatter_of(inputs.case, sampling_of(inputs))
     return inputs.model_dump(mode="json")
 
 

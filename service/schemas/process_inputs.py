@@ -9,6 +9,7 @@ from service.schemas.dynamic_studies import ModesInput, ResponseInput, SteadyInp
 from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
 from service.schemas.optimisation import OptimisationInput
+from service.schemas.sampling import SamplingInput
 from service.schemas.scene import SceneInput
 from service.schemas.sensitivity import DeviationsInput
 
@@ -59,3 +60,9 @@ class OptimiseInputs(OptimisationInput):
     """Inputs of the process optimise."""
 
     case: Case = Field(description="The case, as in a case file; its modifications are the start")
+
+
+class ScatterInputs(SamplingInput):
+    """Inputs of the process scatter."""
+
+    case: Case = Field(description="The case, as in a case file; its modifications are the design")

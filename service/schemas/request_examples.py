@@ -58,6 +58,7 @@ INPUTS: dict[str, Json] = {
         "torque_n_m": [50.0, 100.0, 200.0],
         "variables": {"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}},
     },
+    "scatter": {"case": CASE, "tolerance_class": 6, "samples": 200},
     "simulate": {"scene": SCENE},
     "modes": {"scene": SCENE, "speed_rpm": [0.0, 1500.0, 3000.0]},
     "response": {"scene": SCENE, "speed_rpm": [300.0, 600.0, 900.0]},

@@ -43,6 +43,7 @@ RESULT_KINDS: dict[str, ResultKind] = {
         ResultKind("ablation", "/v1/ablations", JSON),
         ResultKind("frontier", "/v1/frontiers", JSON),
         ResultKind("optimisation", "/v1/optimisations", JSON),
+        ResultKind("scatter", "/v1/scatters", JSON),
         ResultKind("modes", "/v1/modes"),
         ResultKind("response", "/v1/responses"),
         ResultKind("steady", "/v1/steadies"),

@@ -126,8 +126,8 @@ def test_both_processes_are_described(served: tuple[LineOfActionClient, TestClie
     _, http = served
     listed = {process["id"] for process in http.get("/v1/processes").json()["processes"]}
     assert listed == {
-        "analyze", "flank", "sensitivity", "ablate", "frontier", "optimise", "simulate", "modes", "response",
-        "steady",
+        "analyze", "flank", "sensitivity", "ablate", "frontier", "optimise", "scatter", "simulate", "modes",
+        "response", "steady",
     }  # fmt: skip
     inputs = http.get("/v1/processes/flank").json()["inputs"]
     assert set(inputs) == {
