@@ -15,6 +15,7 @@ from benchmarks import (
     error_honesty,
     finite_width,
     full_contact_cost,
+    live_honesty,
     long_phase,
     other_engine,
     page_redraw,
@@ -47,6 +48,7 @@ SUBJECTS = (
     predictions,
     predicted_memory,
     error_honesty,
+    live_honesty,
     tolerance_promise,
     worth_estimates,
     dynamic_worth_estimates,
@@ -74,6 +76,8 @@ def main(arguments: Sequence[str]) -> int:
         _publish(record, tuple(names))
         if "error_honesty" in record:
             error_honesty.publish(error_honesty.judged(), machine)
+        if "live_honesty" in record:
+            live_honesty.publish(live_honesty.judged(), machine)
         if "tolerance_promise" in record:
             tolerance_promise.publish(tolerance_promise.study())
         if "worth_estimates" in record:

@@ -26,13 +26,14 @@ _SHARE, _MEDIAN = 90.0, 3.0
 
 @dataclass(frozen=True)
 class Judged:
-    """One case on one rung: value, stated and true error (3 quantities, loads) in m."""
+    """One case on one rung: value, stated and true error (3 quantities, loads) in m; `flanks` by name."""
 
     case: str
     level: str
     value: FloatArray
     stated: FloatArray
     true: FloatArray
+    flanks: str = ""
 
     @property
     def held_out(self) -> bool:
@@ -81,15 +82,15 @@ def judged_rungs(case: HonestyCase) -> list[RungOf]:
     return [RungOf("corrected", "draft"), RungOf("corrected", "standard")]
 
 
-def counts(found: Sequence[Judged]) -> list[Figure]:
+def counts(found: Sequence[Judged], subject: str = SUBJECT, kind: str = "pair x level") -> list[Figure]:
     """Return how often the stated errors hold, and how much larger than the true ones they are."""
     ratio = np.concatenate([one.ratio for one in found], axis=1)
-    rows = [Figure(SUBJECT, "cases (pair x level)", float(len(found)), "-")]
+    rows = [Figure(subject, f"cases ({kind})", float(len(found)), "-")]
     for name, values in zip(QUANTITIES, ratio, strict=True):
         missed = 100.0 * float(np.mean(values < 1.0))
         rows += [
-            Figure(SUBJECT, f"{name}: true error beyond the estimate", missed, "%", 100.0 - _SHARE),
-            Figure(SUBJECT, f"{name}: median over-estimate", float(np.median(values)), "times", _MEDIAN),
+            Figure(subject, f"{name}: true error beyond the estimate", missed, "%", 100.0 - _SHARE),
+            Figure(subject, f"{name}: median over-estimate", float(np.median(values)), "times", _MEDIAN),
         ]
     return rows
 
@@ -108,10 +109,10 @@ def markdown(found: Sequence[Judged]) -> str:
         "that of standard: true errors are that uncertain.\nAll constants of the estimates were set on the "
         "pairs that are not marked; those marked * were held out.\n\n"
     )
-    return head + _table_of_counts(found) + "\n" + _table_of_cases(found)
+    return head + table_of_counts(found) + "\n" + _table_of_cases(found)
 
 
-def _table_of_counts(found: Sequence[Judged]) -> str:
+def table_of_counts(found: Sequence[Judged]) -> str:
     """Coverage and over-estimate by quantity: all, those held out, and by rung."""
     lines = [
         "| | loads | " + " | ".join(f"{name}: held | median over-estimate" for name in QUANTITIES) + " |",

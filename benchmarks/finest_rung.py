@@ -10,11 +10,12 @@ import numpy as np
 
 from benchmarks.honesty_cases import HonestyCase
 from fe_contact.analysis import check_request
-from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.analysis.pair_contact import PairContact, pair_contact
+from fe_contact.analysis.request import Checked
 from fe_contact.analysis.table_places import table_places
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning import FaceDiscretisation, PlaneDiscretisation, make_plan
+from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation, make_plan
 from fe_contact.planning.discretisation import Discretisation
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
@@ -47,14 +48,26 @@ def finest(case: HonestyCase, cache: Path, model: str | None = None) -> Quantiti
     options: dict[str, Any] = {name: value for name, value in case.options.items() if name != "positions"}
     options |= {"model": model} if model else {}
     checked = check_request(case.pair, normal_forces=case.forces, level="fine", **options)
+    plan = finest_plan(checked, finer=model is None)
+    return solved_finely(checked, pair_contact(checked.request.pair, plan, cache))
+
+
+def finest_plan(checked: Checked, *, finer: bool = True) -> Plan:
+    """Plan a request of the level fine on meshes, or in slices, beyond it."""
     request = checked.request
     plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
-    if model is None:
-        plan = replace(plan, discretisation=_finer(plan.discretisation, plan.bodies(request.pair)))
-    (place,) = table_places(request.scene, request.choices, pair_contact(request.pair, plan, cache)).places
-    flat = isinstance(plan.discretisation, PlaneDiscretisation)
+    if not finer:
+        return plan
+    return replace(plan, discretisation=_finer(plan.discretisation, plan.bodies(request.pair)))
+
+
+def solved_finely(checked: Checked, contact: PairContact) -> Quantities:
+    """Solve the one place of a request at many positions."""
+    request = checked.request
+    (place,) = table_places(request.scene, request.choices, contact).places
+    flat = isinstance(contact.plan.discretisation, PlaneDiscretisation)
     position = np.arange(count := PLANE_POSITIONS if flat else FACE_POSITIONS) / count
-    curve = place.solve(position, plan.load)[1].deflection
+    curve = place.solve(position, request.load)[1].deflection
     even = interpolate(Axis(position, 1.0), curve, np.arange(_SAMPLES) / _SAMPLES)
     lines = 2.0 * np.abs(np.fft.rfft(even, axis=0)[1]) / _SAMPLES
     return Quantities(even.mean(axis=0), np.ptp(curve, axis=0), lines)

@@ -2,7 +2,8 @@
 
 from fe_contact.analysis.ablation import Ablation, EffectAblation, ablate
 from fe_contact.analysis.analyze import analyze
-from fe_contact.analysis.condensed_pair import CondensedPair, condensed_pair
+from fe_contact.analysis.condensed_lookup import condensed_pair
+from fe_contact.analysis.condensed_pair import CondensedPair
 from fe_contact.analysis.contact_pattern import ContactPattern, contact_pattern
 from fe_contact.analysis.deformed_pair import DeformedPair, deformed_pairs
 from fe_contact.analysis.flank_results import flank_results

@@ -1,32 +1,40 @@
 """A pair whose bodies are condensed: other flanks, loads and alignments are a matter of contact alone.
 
-The compliance of a gear depends on its macro geometry, not on its flank modifications, the load or the
-alignment. With it in memory a new curve costs the gaps and the contact, no finite elements.
+The compliance of a gear depends on its macro geometry, not on its flank modifications, the load, the
+alignment or the centre distance. With it in memory a new curve costs the gaps and the contact, no finite
+elements; and its errors about as much again.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from pathlib import Path
+from collections import OrderedDict
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
-from fe_contact.analysis.pair_contact import PairContact, bodies_are_kept, pair_contact
-from fe_contact.analysis.position_nodes import unmeasured_nodes
-from fe_contact.analysis.request import Checked, Request
+from fe_contact.analysis.condensed_assumptions import CondensedRun, check_condensed
+from fe_contact.analysis.condensed_contacts import CondensedContacts
+from fe_contact.analysis.condensed_errors import condensed_errors
+from fe_contact.analysis.condensed_receipt import condensed_receipt
+from fe_contact.analysis.pair_contact import PairContact
+from fe_contact.analysis.position_nodes import PositionNodes, unmeasured_nodes
+from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked
+from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.solved_table import assembled_table
 from fe_contact.analysis.table_axes import axis, load_levels
-from fe_contact.analysis.table_places import table_places
-from fe_contact.effects import FaceLoadDistribution, FiniteWidth
-from fe_contact.effects.bore_seat import BoreSeatElasticity
+from fe_contact.analysis.table_places import Places, table_places
+from fe_contact.effects import FiniteWidth
 from fe_contact.effects.corner_contact import CornerContact
-from fe_contact.effects.thin_rim import ThinRim
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes
-from fe_contact.planning import Accuracy, make_plan
+from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.planning import LEFT_OUT, Plan
+from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import LARGEST_SUPPORT
+from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.types import FloatArray
 
@@ -35,8 +43,8 @@ PLANE_POSITIONS, FACE_POSITIONS = 192, 64
 handovers are steep, and positions cost little."""
 MOST_ROWS, FEWEST_POSITIONS = 4096, 16
 """Of longer periods, which repeat the positions in every base pitch."""
-OF_BODIES = (FaceLoadDistribution.name, FiniteWidth.name, ThinRim.name, BoreSeatElasticity.name)
-"""Effects that decide which finite elements there are."""
+KEPT_DISTANCES = 2
+"""Changes of the centre distance at which the compliance stays assembled."""
 
 
 @dataclass(frozen=True)
@@ -47,19 +55,34 @@ class CondensedPair:
     ----------
     checked : Checked
         What the table was asked, its model bound to the bodies it had.
-    contact : PairContact
-        At the nominal centre distance; keeps what was assembled for the positions.
+    contacts : CondensedContacts
+        At the nominal centre distance; they keep what was assembled for the positions.
+    spared : mapping of str to str
+        Effects of the bodies that the tolerance of the table left off, and why.
     """
 
     checked: Checked
-    contact: PairContact
+    contacts: CondensedContacts
+    spared: Mapping[str, str] = field(default_factory=dict)
+    _apart: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
+
+    @property
+    def contact(self) -> PairContact:
+        """The pair at its nominal centre distance."""
+        return self.contacts.own
 
     @property
     def largest_load(self) -> float:
         """Highest normal force in N for which the load patches were laid out."""
         return LARGEST_SUPPORT * float(self.checked.request.load[-1])
 
-    def table(self, pair: ParallelAxes, torques: FloatArray, misalignment: float = 0.0) -> SteDatabase:
+    def table(
+        self,
+        pair: ParallelAxes,
+        torques: FloatArray,
+        misalignment: float = 0.0,
+        center_distance_change: float = 0.0,
+    ) -> SteDatabase:
         """Solve the contact of the same bodies with other flanks.
 
         Parameters
@@ -70,36 +93,45 @@ class CondensedPair:
             On the driving gear in N m, increasing, > 0.
         misalignment : float
             Growth of the gap over the common face width in the plane of action, m.
+        center_distance_change : float
+            In m. The compliance between the teeth is assembled anew at another one, and the last few kept.
 
         Returns
         -------
         SteDatabase
-            At equally spaced positions and the nominal centre distance; errors are not estimated, corner
-            contact is on unless the table's case switched it off. It has no support loads, so no forces for
-            dynamics. The receipt counts the points at which a contact strip outgrew its load patch.
+            At equally spaced positions; corner contact is on unless the table's case switched it off. It has
+            no support loads, so no forces for dynamics, and between its loads no errors. The receipt has the
+            errors by source, CPU time by stage, what was taken for granted, and the number of points at
+            which a contact strip outgrew its load patch.
 
         Raises
         ------
         InputError
-            Other bodies, loads beyond those of the table, or flanks that its model cannot hold.
+            Other bodies, loads beyond those of the table, flanks that its model cannot hold, or a centre
+            distance at which more teeth meet than are condensed.
         """
+        clock = StageClock()
         self._refuse_other_bodies(pair)
         load = self._levels(pair, torques)
-        checked = self._checked(pair, load, misalignment)
-        most = FACE_POSITIONS if checked.model.across_face else PLANE_POSITIONS
-        count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, most))
-        nodes = unmeasured_nodes(count, load.size)
-        plan = replace(self.contact.plan, load=load, positions=count)
-        contact = replace(self.contact, pair=pair, plan=plan)
-        places = table_places(checked.request.scene, checked.request.choices, contact)
-        solved = [
-            place.solve_pitches(nodes.position, load, np.arange(places.period)) for place in places.places
-        ]
-        beyond = sum(int(solution.beyond.sum()) for _, solution in solved)
+        checked = self._checked(pair, load, misalignment, center_distance_change)
+        nodes, plan = self._laid_out(checked)
+        alignment = checked.request.misalignment, checked.request.center_distance_change
+        sample = TableSample.of(nodes.position, checked.model.period, (load, *alignment))
+        with clock.stage("compliance"):
+            contacts, places = self._placed(checked)
+            contacts.assemble(places.places[0].model, sample)
+        with clock.stage("contact"):
+            solved = places.places[0].solve_pitches(nodes.position, load, np.arange(places.period))
+            table = assembled_table(checked.request, places, nodes, [solved], [])
+        with clock.stage("error estimate"):
+            stands_in = self._plane_strain_error(pair)
+            judged = condensed_errors(table, places, solved[1], contacts, sample, plan, stands_in)
+        found = check_condensed(CondensedRun(checked, plan, places, [solved]), self.spared)
+        receipt = condensed_receipt(plan, solved[1], judged, found, clock)
+        receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
-        table = assembled_table(checked.request, places, nodes, solved, [])
-        receipt = {"beyond_load_patches": beyond, "plan": plan.to_json()}
-        return replace(table, metadata=Metadata(effect_ledger=ledger, receipt=receipt))
+        metadata = Metadata(effect_ledger=ledger, receipt=receipt)
+        return replace(table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
 
     def _refuse_other_bodies(self, pair: ParallelAxes) -> None:
         """Refuse gears or a centre distance that this compliance is not of."""
@@ -118,7 +150,7 @@ class CondensedPair:
             raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, advice)
         return load
 
-    def _checked(self, pair: ParallelAxes, load: FloatArray, misalignment: float) -> Checked:
+    def _checked(self, pair: ParallelAxes, load: FloatArray, misalignment: float, change: float) -> Checked:
         """Compose the model of other flanks on the bodies there are."""
         request = self.checked.request
         asked = request.effects.get(CornerContact.name, "auto")
@@ -130,12 +162,59 @@ class CondensedPair:
                 pair=pair,
                 load=load,
                 misalignment=axis("misalignments", [misalignment]),
-                center_distance_change=np.zeros(1),
+                center_distance_change=axis("center_distance_changes", [change]),
                 effects={**request.effects, CornerContact.name: corners},
             ),
             whole_table=False,
             spare=False,
         )
+
+    def _laid_out(self, checked: Checked) -> tuple[PositionNodes, Plan]:
+        """Return the positions, and the plan with them and the loads."""
+        most = FACE_POSITIONS if checked.model.across_face else PLANE_POSITIONS
+        count = int(np.clip(MOST_ROWS // checked.model.period, FEWEST_POSITIONS, most))
+        load = checked.request.load
+        return unmeasured_nodes(count, load.size), replace(self.contact.plan, load=load, positions=count)
+
+    def _placed(self, checked: Checked) -> tuple[CondensedContacts, Places]:
+        """Return the contacts of the asked flanks at the asked distance, and the place they make."""
+        request = checked.request
+        contacts = self._at(float(request.center_distance_change[0]))
+        distance = contacts.own.pair.center_distance
+        nominal = distance == request.pair.center_distance
+        pair = request.pair if nominal else request.pair.at_center_distance(distance)
+        here = contacts.with_flanks(pair)
+        scene = replace(request.scene, center_distance_change=np.zeros(1))  # the contacts stand there
+        return here, table_places(scene, request.choices, here.own)
+
+    def _at(self, change: float) -> CondensedContacts:
+        """Return the contacts at a change of the centre distance in m; those asked for last are kept."""
+        if change == 0.0:
+            return self.contacts
+        if change not in self._apart:
+            apart = self.contacts.apart(change)
+            _refuse_more_teeth(apart.own, change)
+            self._apart[change] = apart
+        self._apart.move_to_end(change)
+        while len(self._apart) > KEPT_DISTANCES:
+            self._apart.popitem(last=False)
+        return self._apart[change]
+
+    def _plane_strain_error(self, pair: ParallelAxes) -> float:
+        """Return the relative error of plane strain where a tolerance took it for a finite width, else 0."""
+        taken = FiniteWidth.name in self.spared and not self.checked.model.across_face
+        return LEFT_OUT * finite_width_excess(pair) if taken else 0.0
+
+
+def _refuse_more_teeth(contact: PairContact, change: float) -> None:
+    """Refuse a distance at which more teeth may touch than the compliance in the plane has."""
+    if contact.plane is None:
+        return
+    teeth, needed = int(contact.plane[0].teeth.size), condensed_teeth(contact.pair)
+    if needed > teeth:
+        bound = f"a change at which at most {teeth} teeth can touch: so many are condensed, {needed} can"
+        advice = "Put it on the axis of the case and analyse that."
+        raise InputError("center_distance_changes[0]", change, bound, advice)
 
 
 def _plain(pair: Any) -> Any:
@@ -143,42 +222,3 @@ def _plain(pair: Any) -> Any:
     none = FlankModification()
     pinion, wheel = (replace(gear, modification=none) for gear in (pair.pinion, pair.wheel))
     return replace(pair, pinion=pinion, wheel=wheel)
-
-
-def condensed_pair(
-    pair: ParallelAxes, database: SteDatabase, effects: dict[str, str], cache: Path | None
-) -> CondensedPair | None:
-    """Fetch the compliance with which a table was computed; None if it is not in the cache.
-
-    Parameters
-    ----------
-    pair : GearPair or InternalGearPair
-        Of the table's case.
-    database : SteDatabase
-        Its receipt and ledger say which bodies it had.
-    effects : dict
-        Choices of effects of the case.
-    cache : Path, optional
-        Directory of flank compliances.
-    """
-    receipt, ledger = database.metadata.receipt, database.metadata.effect_ledger
-    choice, plane_stress = receipt["choice"], receipt["plan"]["model"] == "plane_stress"
-    on = {entry["name"]: bool(entry["on"]) for entry in ledger if isinstance(entry, dict)}
-    bodies = {name: "on" if on[name] else "off" for name in OF_BODIES}
-    accuracy = Accuracy(
-        None, None, choice["level"], "plane_stress" if plane_stress else "auto", None, "minimal"
-    )
-    request = Request(
-        pair,
-        np.asarray(database.force),
-        accuracy,
-        np.zeros(1),
-        np.zeros(1),
-        {**effects, **bodies},
-        database.period if database.period > 1 else None,
-    )
-    checked = check_asked(request, whole_table=False, spare=False)
-    plan = make_plan(pair, request.load, accuracy, checked.model, choice["level"], choice["slices"])
-    if not bodies_are_kept(pair, plan, cache):
-        return None
-    return CondensedPair(checked, pair_contact(pair, plan, cache))

@@ -119,6 +119,11 @@ class PairContact:
         plan = replace(self.plan, discretisation=replace(made, slices=count))
         return replace(self, plan=plan, _problems={})
 
+    def in_patches(self, wider: float) -> PairContact:
+        """Return the same bodies under load patches `wider` times as wide."""
+        patch = replace(self.plan.patch, half_width=wider * self.plan.patch.half_width)
+        return replace(self, plan=replace(self.plan, patch=patch), _problems={})
+
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
         key = self._key(model, position)
@@ -186,16 +191,22 @@ def pair_contact(
     return PairContact(pair, plan, plane=corrected, uncorrected=flat)
 
 
-def bodies_are_kept(pair: ParallelAxes, plan: Plan, cache: Path | None) -> bool:
-    """Whether `pair_contact` at the nominal centre distance would find both gears in the cache."""
+def bodies_are_kept(
+    pair: ParallelAxes,
+    plan: Plan,
+    cache: Path | None,
+    distance_changes: FloatArray | None = None,
+    *,
+    coarse: bool = False,
+) -> bool:
+    """Whether `pair_contact` of the same arguments would find both gears in the cache."""
     made, gears = plan.discretisation, plan.bodies(pair)
     if isinstance(made, FaceDiscretisation):
-        return all(solid_kept(*each, cache) for each in zip(gears, made.recipes, strict=True))
-    teeth = condensed_teeth(pair)
-    kept = [
-        section_kept(*each, made.hypothesis, teeth, cache) for each in zip(gears, made.recipes, strict=True)
-    ]
-    if made.finite_width is not None:
+        solids = made.coarse_recipes if coarse else made.recipes
+        return all(solid_kept(*each, cache) for each in zip(gears, solids, strict=True))
+    teeth, recipes = _teeth(pair, distance_changes), made.coarse_recipes if coarse else made.recipes
+    kept = [section_kept(*each, made.hypothesis, teeth, cache) for each in zip(gears, recipes, strict=True)]
+    if made.finite_width is not None and not coarse:
         kept += [free_ends_kept(*each, teeth, cache) for each in zip(gears, made.finite_width, strict=True)]
     return all(kept)
 

@@ -174,9 +174,12 @@ def _support_loads(levels: FloatArray) -> FloatArray:
 
 def _patch_rule(pair: ParallelAxes, force: float, least: float) -> PatchRule:
     """Return patches wider than any contact strip, within reason, and than the meshes ask for."""
-    module = pair.pinion.normal_module
-    wanted = min(_widest_strip(pair, force) / 0.6, WIDEST_PATCH * module)
-    return PatchRule(max(least, wanted), EDGE_PATCH * module)
+    return PatchRule(max(least, wanted_patch(pair, force)), EDGE_PATCH * pair.pinion.normal_module)
+
+
+def wanted_patch(pair: ParallelAxes, force: float) -> float:
+    """Return the half-width in m of load patches that hold the strips at a load in N, whatever the mesh."""
+    return min(_widest_strip(pair, force) / 0.6, WIDEST_PATCH * pair.pinion.normal_module)
 
 
 def _widest_strip(pair: ParallelAxes, force: float) -> float:

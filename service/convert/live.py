@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from fe_contact.analysis import CondensedPair, condensed_pair
 from fe_contact.ste import SteDatabase
 from service.convert.answers import curve_json
 from service.convert.case import boundary_errors, gear_pair
-from service.convert.units import UM
+from service.convert.units import MM, UM
 from service.problems import BadInput, Fault, NotAnalysed
 from service.schemas import Case
 from service.schemas.live import LiveInput
@@ -48,17 +48,47 @@ def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
     """Return the curves of the changed flanks; raises `BadInput` by the fields of the question."""
     try:
         pair = gear_pair(changed_case(case, change))
+        torques, skew = np.array(change.torque_n_m), change.misalignment_um * UM
         with boundary_errors():
-            table = bodies.table(pair, np.array(change.torque_n_m), change.misalignment_um * UM)
-        curves = [curve_json(table, torque_n_m=float(torque)) for torque in table.torque]
+            table = bodies.table(pair, torques, skew, change.center_distance_change_mm * MM)
+        curves = [_curve(table, k) for k in range(table.force.size)]
     except BadInput as error:
         raise BadInput(_as_asked(fault) for fault in error.faults) from None
-    ledger: Any = table.metadata.effect_ledger
-    return {
-        "curves": curves,
-        "effects": {entry["name"]: entry["on"] for entry in ledger},
-        "beyond_load_patches": table.metadata.receipt["beyond_load_patches"],
+    return {"curves": curves, **_receipt(table)}
+
+
+def _curve(table: SteDatabase, k: int) -> Json:
+    """Return the curve at a load with its errors by source."""
+    return curve_json(table, force_n=float(table.force[k])) | {
+        "error_by_source_um": {
+            source: {name.removesuffix("_m"): _known(values[k] / UM) for name, values in errors.items()}
+            for source, errors in table.metadata.receipt["curve_error"].items()
+        }
     }
+
+
+def _receipt(table: SteDatabase) -> Json:
+    """Return what is known of the making of the curves."""
+    receipt, ledger = table.metadata.receipt, cast("list[Json]", table.metadata.effect_ledger)
+    found: list[Json] = receipt["assumptions"]
+    stages = receipt["stages"]
+    return {
+        "effects": {entry["name"]: entry["on"] for entry in ledger},
+        "beyond_load_patches": receipt["beyond_load_patches"],
+        "discretisation_error": receipt["discretisation_error"],
+        "not_estimated": receipt["not_estimated"],
+        "residuals_max": receipt["residuals_max"],
+        "assumptions": [one for one in found if one["holds"] is not None],
+        "not_checked": [one for one in found if one["holds"] is None],
+        "cost": {
+            f"{name.replace(' ', '_')}_cpu_seconds": stage["cpu_seconds"] for name, stage in stages.items()
+        },
+    }
+
+
+def _known(value: float) -> float | None:
+    """Return a number; None for what was not estimated."""
+    return value if np.isfinite(value) else None
 
 
 def changed_case(case: Case, change: LiveInput) -> Case:
@@ -70,6 +100,7 @@ def changed_case(case: Case, change: LiveInput) -> Case:
 
 
 def _as_asked(fault: Fault) -> Fault:
-    """Name a fault by the field of the question."""
-    name = next((fault.field.removeprefix(p) for p in _PLACES if fault.field.startswith(p)), fault.field)
+    """Name a fault by the field of the question, whose alignments are single values."""
+    name = fault.field.removesuffix("[0]") if fault.field.startswith("errors.") else fault.field
+    name = next((name.removeprefix(place) for place in _PLACES if name.startswith(place)), name)
     return Fault(name, fault.value, fault.bound, fault.suggestion)

@@ -29,9 +29,9 @@ _REFUSED = documented(400, 409, 413, 422, 429, 500, 503)
     responses={200: {"model": LiveOutput, "description": "The curves"}, **_REFUSED, **documented(404)},
 )
 async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
-    """Curves of the gears of a database with other flank modifications, torques and misalignment.
+    """Curves of the gears of a database with other flanks, torques, misalignment and centre distance.
 
-    They come from the compliance in the cache, without finite elements and without error estimates.
+    They come from the compliance in the cache, without finite elements, and say what they may be wrong by.
     """
     stored = await run_in_threadpool(context.store.verified, key, "database")
     question = body.model_dump(mode="json", exclude_none=True)

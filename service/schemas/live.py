@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Optional
+from typing import Annotated, Any, Literal, Optional
 
 from pydantic import Field, Strict, create_model
 
@@ -52,6 +52,13 @@ class LiveInput(BoundaryModel):
         description="Gap growth in um over the common face width in the plane of action, zero at mid-face",
         examples=[0.0],
     )
+    center_distance_change_mm: float = Field(
+        default=0.0,
+        ge=-10.0,
+        le=10.0,
+        description="Change of the centre distance in mm; each new one is assembled first (0.2 to 1 s)",
+        examples=[0.0],
+    )
     pinion: FlankChange = Field(  # type: ignore[valid-type]
         default=FlankChange(), description="Flanks of the driving gear", examples=[{"tip_relief_um": 10.0}]
     )
@@ -65,8 +72,19 @@ class LiveInput(BoundaryModel):
     )
 
 
+class SourceError(BoundaryModel):
+    """Error of one source; null where it is not known."""
+
+    mean: float | None = Field(description="Of the mean in um", examples=[0.01])
+    peak_to_peak: float | None = Field(description="Of peak-to-peak in um", examples=[0.02])
+    first_harmonic: float | None = Field(description="Of the first mesh harmonic in um", examples=[0.01])
+
+
 class LiveCurve(BoundaryModel):
-    """Transmission error over one period at one load; without errors, which are not estimated live."""
+    """Transmission error over one period at one load, with what it may be wrong by.
+
+    An error covers the discretisation of the same model, all sources together; see docs/accuracy.md.
+    """
 
     torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])
     normal_force_n: float = Field(description="Normal tooth force in N", examples=[2660.4])
@@ -82,12 +100,43 @@ class LiveCurve(BoundaryModel):
         description="Share of each pair", examples=[[[0.5, 0.5], [0.0, 1.0]]]
     )
     mean_um: float = Field(description="Mean in um", examples=[10.9])
+    mean_error_um: float | None = Field(default=None, description="Its error in um", examples=[0.02])
     peak_to_peak_um: float = Field(description="Peak to peak in um", examples=[2.8])
+    peak_to_peak_error_um: float | None = Field(default=None, description="Its error in um", examples=[0.03])
     harmonics_um: list[float] = Field(
         description="Amplitudes of the mesh harmonics in um", examples=[[1.1, 0.4]]
     )
+    harmonics_error_um: list[float] | None = Field(
+        default=None, description="Their errors in um", examples=[[0.02, 0.01]]
+    )
+    error_by_source_um: dict[str, SourceError] = Field(
+        description="What the errors are made of: root of the sum of squares",
+        examples=[{"discretisation": {"mean": 0.01, "peak_to_peak": 0.02, "first_harmonic": 0.01}}],
+    )
     order: list[float] | None = Field(default=None, description="Orders of a period of several base pitches")
     amplitude_um: list[float] | None = Field(default=None, description="Their amplitudes in um")
+
+
+class LiveAssumption(BoundaryModel):
+    """One thing that the answer took for granted."""
+
+    effect: str = Field(description="The effect that would not need it; empty if there is none")
+    assumption: str = Field(description="What", examples=["coast flanks stay apart"])
+    holds: bool | None = Field(description="Null: not checked, or it could not be judged", examples=[True])
+    reason: str = Field(description="What was found", examples=["the least room is 12 um"])
+    change: float | None = Field(
+        default=None, description="Largest relative change of mean or peak-to-peak that it can make"
+    )
+
+
+class LiveCost(BoundaryModel):
+    """CPU seconds of the parts of an answer."""
+
+    compliance_cpu_seconds: float = Field(
+        description="Reading and assembling it: next to nothing if it was in memory", examples=[0.001]
+    )
+    contact_cpu_seconds: float = Field(description="The curves", examples=[0.02])
+    error_estimate_cpu_seconds: float = Field(description="Their errors", examples=[0.02])
 
 
 class LiveOutput(BoundaryModel):
@@ -101,6 +150,16 @@ class LiveOutput(BoundaryModel):
         description="Points at which a contact strip outgrew its load patch: 0.5 % of the mean there",
         examples=[0],
     )
+    discretisation_error: Literal["measured", "expected"] = Field(
+        description="How the error of the meshes is known: measured on coarse ones with these flanks, or, "
+        "where those are not in the cache (the table has a minimal receipt), as usual of the level",
+        examples=["measured"],
+    )
+    not_estimated: list[str] = Field(description="Sources of errors that are not known", examples=[[]])
+    residuals_max: float = Field(description="Largest relative residual of the contact", examples=[1e-12])
+    assumptions: list[LiveAssumption] = Field(description="What was taken for granted, and checked")
+    not_checked: list[LiveAssumption] = Field(description="What was taken for granted, and was not")
+    cost: LiveCost = Field(description="Of that work its parts")
     cpu_seconds: float = Field(description="Work of the answer", examples=[0.03])
 
 

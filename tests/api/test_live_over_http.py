@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator
 from typing import Any
@@ -11,6 +12,7 @@ from fastapi.testclient import TestClient
 from running_service import REFERENCES
 
 from service.app import create_app
+from service.schemas.live import LiveOutput
 from service.settings import Settings
 
 GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
@@ -62,12 +64,47 @@ def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key:
     assert live["effects"]["profile_modification"] and live["beyond_load_patches"] == 0
 
 
+def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, key: str) -> None:
+    questions = [{"torque_n_m": [0.5, 1.0], "pinion": RELIEF | {"tip_relief_um": x}} for x in (4.0, 5.0)]
+    first, again = (client.post(f"/v1/databases/{key}/ste", json=question).json() for question in questions)
+    for curve in again["curves"]:
+        assert 0.0 < curve["peak_to_peak_error_um"] < 0.2 * curve["peak_to_peak_um"]
+        assert 0.0 < curve["mean_error_um"] < 0.05 * curve["mean_um"]
+        assert len(curve["harmonics_error_um"]) == len(curve["harmonics_um"])
+        by_source = curve["error_by_source_um"].values()
+        total = sum(source["peak_to_peak"] ** 2 for source in by_source) ** 0.5
+        assert curve["peak_to_peak_error_um"] == pytest.approx(total, rel=1e-9, abs=0.0)
+    assert again["discretisation_error"] == "expected"  # the table has a minimal receipt
+    assert again["not_estimated"] == [] and 0.0 < again["residuals_max"] < 1e-6
+    assert {one["assumption"]: one["holds"] for one in again["assumptions"]} == {
+        "load even over the face": True,
+        "plane strain stands for the whole face": False,  # as asked for by name
+        "contact strips within the load patches": True,
+    }
+    assert [one["assumption"] for one in again["not_checked"]] == ["coast flanks stay apart"]
+    assert sum(again["cost"].values()) <= again["cpu_seconds"]
+    assert again["cost"]["compliance_cpu_seconds"] < 0.5 * sum(again["cost"].values())
+    LiveOutput.model_validate_json(json.dumps(first))
+
+
+def test_a_live_centre_distance_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:
+    question = {"torque_n_m": [1.0], "center_distance_change_mm": 0.05, "pinion": RELIEF}
+    (curve,) = client.post(f"/v1/databases/{key}/ste", json=question).json()["curves"]
+    asked = case(**RELIEF) | {"errors": {"center_distance_change_mm": [0.05]}}
+    context = client.app.state.context  # type: ignore[attr-defined]
+    table = context.databases.get(context.store, analysed(client, asked)).database
+    whole = table.curve(torque=1.0, center_distance_change=0.05e-3)
+    assert curve["center_distance_change_mm"] == 0.05
+    assert curve["ste_um"] == pytest.approx((1e6 * whole.ste).tolist(), rel=1e-12, abs=0.0)
+
+
 @pytest.mark.parametrize(
     ("question", "field"),
     [
         ({"torque_n_m": [2.5]}, "torque_n_m[0]"),
         ({"torque_n_m": [1.0, 0.5]}, "torque_n_m"),
         ({"torque_n_m": [1.0], "misalignment_um": 5.0}, "misalignment_um"),
+        ({"torque_n_m": [1.0], "center_distance_change_mm": 3.0}, "center_distance_change_mm"),
         ({"torque_n_m": [1.0], "wheel": {"helix_crowning_um": 2.0}}, "wheel.helix_crowning_um"),
         ({"torque_n_m": [1.0], "wheel": {"tip_relief_um": 2.0}}, "wheel.tip_relief_length_mm"),
         ({"torque_n_m": [1.0], "wheel": {"teeth": 21}}, "wheel.teeth"),

@@ -1,0 +1,162 @@
+"""Do the errors of live answers hold? Other flanks, loads and alignments against the finest rung."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from benchmarks.error_honesty import PAGE, Judged, counts, table_of_counts
+from benchmarks.figures import Figure
+from benchmarks.finest_rung import finest_plan, solved_finely
+from benchmarks.held_out_cases import held_out_face_cases, held_out_plane_cases
+from benchmarks.honesty_cases import HonestyCase, M, face_cases, plane_cases
+from benchmarks.marked_section import replace_section
+from benchmarks.measured_rungs import ROOT, needs_face
+from fe_contact import FlankModification, analyze
+from fe_contact.analysis import CondensedPair, check_request, condensed_pair
+from fe_contact.analysis.pair_contact import PairContact, pair_contact
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import FloatArray
+
+SECTION, SUBJECT = "live honesty", "error estimates of live answers against the finest rung"
+FOLDER = ROOT / "live"
+LOADS = (0.25, 0.5, 1.5)
+LEVELS = ("draft", "standard")
+PLAIN = FlankModification()
+
+
+@dataclass(frozen=True)
+class Question:
+    """Flanks of both gears, and a misalignment in m."""
+
+    pinion: FlankModification = PLAIN
+    wheel: FlankModification = PLAIN
+    misalignment: float = 0.0
+
+    def pair(self, plain: ParallelAxes) -> Any:
+        """Return a pair with these flanks."""
+        gears = {name: replace(getattr(plain, name), modification=getattr(self, name)) for name in _GEARS}
+        return replace(plain, **gears)  # type: ignore[call-arg]
+
+
+_GEARS = ("pinion", "wheel")
+_SHORT = FlankModification(tip_relief=10e-6, tip_relief_length=0.5 * M)
+_LONG = FlankModification(tip_relief=25e-6, tip_relief_length=0.9 * M)
+_ROUND = FlankModification(profile_crowning=8e-6)
+_LEAD = FlankModification(helix_crowning=10e-6, tip_relief=8e-6, tip_relief_length=0.6 * M)
+PROFILES = {
+    "plain": Question(),
+    "short tip relief on both": Question(_SHORT, _SHORT),
+    "long tip relief": Question(_LONG),
+    "profile crowning": Question(_ROUND),
+}
+ACROSS = {
+    "misaligned": Question(misalignment=12e-6),
+    "crowned, relieved, misaligned": Question(_LEAD, PLAIN, 12e-6),
+}
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Gears that questions are asked of; `options` are of `analyze`."""
+
+    case: HonestyCase
+    plain: ParallelAxes
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def forces(self) -> list[float]:
+        """Normal forces in N, up to that of the table."""
+        return replace(self.case, loads=LOADS).forces
+
+    @property
+    def questions(self) -> dict[str, Question]:
+        """By name; in the plane nothing acts across the face."""
+        return PROFILES | (ACROSS if self.options else {})
+
+
+def figures() -> list[Figure]:
+    """Return the counts."""
+    return counts(judged(), SUBJECT, "pair x level x flanks")
+
+
+@cache
+def judged() -> tuple[Judged, ...]:
+    """Judge all questions."""
+    return tuple(found for bodies in all_bodies() for found in study(bodies))
+
+
+def all_bodies() -> list[Bodies]:
+    """Return the pairs of the cases of docs/accuracy.md, each once and without its modifications."""
+    found: dict[str, Bodies] = {}
+    for case in (*plane_cases(), *face_cases(), *held_out_plane_cases(), *held_out_face_cases()):
+        plain = Question().pair(case.pair)
+        options = {"model": "3d"} if needs_face(case) else {}
+        found.setdefault(repr((plain, options)), Bodies(case, plain, options))
+    return list(found.values())
+
+
+def study(bodies: Bodies, levels: Sequence[str] = LEVELS) -> Iterator[Judged]:
+    """Hold the live answers of a pair against the finest rung of the same flanks."""
+    exact = _exact(bodies)
+    for level in levels:
+        live = _condensed(bodies, level)
+        torques = live.checked.request.torque
+        for name, question in bodies.questions.items():
+            table = live.table(question.pair(bodies.plain), torques, question.misalignment)
+            curves = [table.curve(force=float(force)) for force in table.force]
+            shown = [[one.mean, one.peak_to_peak, one.harmonics[0]] for one in curves]
+            value = np.array([[each.value for each in row] for row in shown]).T
+            stated = np.array([[each.error for each in row] for row in shown]).T
+            rung = f"{'3d' if bodies.options else 'corrected'} {level}"
+            yield Judged(bodies.case.name, rung, value, stated, np.abs(value - exact[name]), name)
+
+
+def _exact(bodies: Bodies) -> dict[str, FloatArray]:
+    """Return mean, peak-to-peak and first harmonic of every question on the finest rung, (3, loads) in m."""
+    contact: PairContact | None = None
+    found = {}
+    for name, question in bodies.questions.items():
+        checked = check_request(
+            question.pair(bodies.plain),
+            normal_forces=bodies.forces,
+            level="fine",
+            misalignments=(question.misalignment,),
+            effects={"corner_contact": "on"},
+            **bodies.options,
+        )
+        if contact is None:
+            contact = pair_contact(checked.request.pair, finest_plan(checked), FOLDER)
+        found[name] = solved_finely(checked, replace(contact, pair=checked.request.pair)).rows
+    return found
+
+
+def _condensed(bodies: Bodies, level: str) -> CondensedPair:
+    """Analyse the plain pair and fetch its bodies, as the service does."""
+    wish = {"normal_forces": bodies.forces, "level": level, "positions": 32, "cache": FOLDER}
+    table = analyze(bodies.plain, **wish, **bodies.options)
+    found = condensed_pair(bodies.plain, table, {}, FOLDER)
+    if found is None:
+        raise RuntimeError(f"the compliance of {bodies.case.name} is not in {FOLDER}, where it was put")
+    return found
+
+
+def publish(found: Sequence[Judged], machine: Mapping[str, str]) -> None:
+    """Write the section of docs/accuracy.md."""
+    versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
+    text = f"{head(found)}\n{table_of_counts(found)}\nMeasured with {versions}.\n"
+    replace_section(PAGE, SECTION, text)
+
+
+def head(found: Sequence[Judged]) -> str:
+    """Say what was judged."""
+    points = sum(one.value.shape[1] for one in found)
+    return (
+        f"{len({one.case for one in found})} pairs on two meshes each, with {len(PROFILES)} profiles, over "
+        f"the face with {len(ACROSS)} more that are crowned or misaligned: {len(found)} cases at "
+        f"{len(LOADS)} loads, {points} answers.\n"
+    )

@@ -1,0 +1,28 @@
+"""What load patches cost that are wider than the contact strips, because the mesh asks for it.
+
+A patch spreads the load of a strip over more of the flank than it has, which shows where the gap changes
+within it: at the knee of a relief above all. Coarse meshes do not tell, as they carry the same patches;
+patches wider still do. Their error is of second order in the width.
+"""
+
+from __future__ import annotations
+
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning import Plan
+from fe_contact.planning.discretisation import FaceDiscretisation
+from fe_contact.planning.plan import LARGEST_SUPPORT, wanted_patch
+
+WIDER = 1.25
+"""Width over that of the run at which the change is measured."""
+
+
+def left_by_patches(pair: ParallelAxes, plan: Plan) -> float:
+    """Return the error left over the change to patches `WIDER` times as wide.
+
+    Against patches as wide as the strips of the largest load ask for; 0 where the run has those. Over the
+    face it is in what is left by the mesh, whose part was set with it.
+    """
+    wanted = wanted_patch(pair, LARGEST_SUPPORT * float(plan.load[-1]))
+    if isinstance(plan.discretisation, FaceDiscretisation) or plan.patch.half_width <= wanted:
+        return 0.0
+    return (1.0 - (wanted / plan.patch.half_width) ** 2) / (WIDER**2 - 1.0)
