@@ -21,8 +21,8 @@ def summary(table: Path, run: Path, seconds: Mapping[str, float]) -> str:
     """Return the main numbers of an STE database and of a run made with it, and the wall times."""
     database, result = SteDatabase.from_netcdf(table), RunResult.from_netcdf(run)
     lines = [
-        *_static(database),
-        *_dynamic(result),
+        *static_lines(database),
+        *dynamic_lines(result),
         "",
         *(f"{name + ', wall time':<34}{value:9.2f} s" for name, value in seconds.items()),
         f"{'STE database, CPU time':<34}{database.metadata.receipt['cpu_seconds']:9.2f} s",
@@ -31,7 +31,7 @@ def summary(table: Path, run: Path, seconds: Mapping[str, float]) -> str:
     return "\n".join(lines)
 
 
-def _static(database: SteDatabase) -> list[str]:
+def static_lines(database: SteDatabase) -> list[str]:
     """Mean and peak-to-peak STE with their errors."""
     load = f" at {TORQUE:g} N m"
     return [
@@ -45,7 +45,7 @@ def _estimate(name: str, estimate: Estimate) -> str:
     return f"{name:<34}{1e6 * estimate.value:9.3f} ± {1e6 * estimate.error:.3f} µm"
 
 
-def _dynamic(run: RunResult) -> list[str]:
+def dynamic_lines(run: RunResult) -> list[str]:
     """Mean contact force, and where the bearing force peaks between the mesh frequencies of the window."""
     bearing, direction = _loudest(run)
     made = window_spectrum(run, "bearing_force", *WINDOW)

@@ -9,7 +9,6 @@ from fastapi import FastAPI
 
 from service.access import open_keyring
 from service.jobs.catalogue import default_registry
-from service.jobs.key import solver_version
 from service.jobs.live_desk import live_desk
 from service.jobs.machinery import job_machinery
 from service.jobs.process import Registry
@@ -39,6 +38,7 @@ from service.routes.processes import processes_router
 from service.routes.warm_up import warm_up
 from service.settings import Settings
 from service.store import DirectoryLock
+from service.version import solver_version
 
 _DESCRIPTION = (
     "Contact analysis of gear pairs and the dynamics it excites. Jobs follow OGC API - Processes 1.0; "

@@ -7,6 +7,7 @@
     |- Unauthorised      no key, or an unknown one
     |- NotFound          no such process, job, result
     |- ResultNotReady    the job has not ended
+    |- StillRunning      the job did not end in the time it was waited for; it goes on
     |- JobFailed         the job ended without a result; says at what
     |- JobDismissed      the job was cancelled
     |- TooLarge          the request body is beyond the limit
@@ -178,6 +179,15 @@ class ResultNotReady(NotFound):
 
     type = f"{_OGC}result-not-ready"
     title = "The result is not ready"
+
+
+class StillRunning(ServiceError, TimeoutError):
+    """The job did not end in the time it was waited for; it goes on."""
+
+    status = 504
+    type = "urn:lineofaction:problem:still-running"
+    title = "The job has not ended yet"
+    exit_code = EXIT_FAILED
 
 
 class JobDismissed(ServiceError):

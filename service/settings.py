@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 import ipaddress
-import os
 from pathlib import Path
 
 from pydantic import Field, SecretStr, ValidationError
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from service.directories import data_home
 from service.problems import BadInput, Fault
 
 LEAST_MEMORY_MB = 256
 """What a worker needs to load the program."""
-
-
-def data_home() -> Path:
-    """Return the directory for results and jobs (XDG base directory specification)."""
-    return Path(os.environ.get("XDG_DATA_HOME") or Path.home() / ".local" / "share") / "lineofaction"
-
-
-def cache_home() -> Path:
-    """Return the directory for what can be computed or fetched again."""
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "lineofaction"
 
 
 class Settings(BaseSettings):

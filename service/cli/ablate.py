@@ -11,6 +11,7 @@ from service.cli.output import Report, check_writable, console, print_json, prog
 from service.cli.scene_tables import scene_with_tables
 from service.client.portable import scene_of
 from service.convert.ablation import ablation_json, ablation_of_case, ablation_of_scene
+from service.directories import cache_home
 from service.problems import BadInput
 from service.report.ablation import (
     case_ablation_figure,
@@ -22,7 +23,6 @@ from service.report.ablation_page import ablation_page
 from service.report.image import png
 from service.report.write import write_whole
 from service.schemas import Case, read_model, read_table
-from service.settings import cache_home
 
 
 def run_ablate(file: Path, output: Path | None, only: str | None, *, as_json: bool) -> None:

@@ -13,9 +13,9 @@ from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
 from service.convert.units import UM
+from service.directories import cache_home
 from service.problems import JobFailed
 from service.schemas import Case, read_model
-from service.settings import cache_home
 
 _SHOWN_HARMONICS = 3
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+import warnings
+from typing import Annotated, TextIO
 
 import typer
 
@@ -32,13 +33,29 @@ app.add_typer(upkeep.store, name="store")
 
 def main() -> None:
     """Run the command line."""
+    foreign = warnings.showwarning
+
+    def show(
+        message: Warning | str,
+        category: type[Warning],
+        filename: str,
+        lineno: int,
+        file: TextIO | None = None,
+        line: str | None = None,
+    ) -> None:
+        if category.__module__.startswith("service."):
+            typer.echo(f"note: {message}", err=True)
+        else:
+            foreign(message, category, filename, lineno, file, line)
+
+    warnings.showwarning = show  # what our own say is for people, without a line of code
     app()
 
 
 def _version(asked: bool) -> None:
     """Print the version and end."""
     if asked:
-        from service.jobs.key import solver_version  # noqa: PLC0415 (start-up time)
+        from service.version import solver_version  # noqa: PLC0415 (start-up time)
 
         typer.echo(f"loa {solver_version()}")
         raise typer.Exit

@@ -14,10 +14,10 @@ from service.convert.case import boundary_errors
 from service.convert.checks import check_case
 from service.convert.flanks import case_at, point_arguments
 from service.convert.units import UM
+from service.directories import cache_home
 from service.problems import BadInput
 from service.schemas import Case, read_model, validated
 from service.schemas.flank import FlankPoint
-from service.settings import cache_home
 
 _MOST_POSITIONS = 256
 

@@ -9,9 +9,9 @@ from service.cli.effects import assumption_lines
 from service.cli.output import check_writable, console, print_json, progress_bar
 from service.convert.checks import check_case
 from service.convert.flanks import case_at, flank_json, flanks_of
+from service.directories import cache_home
 from service.schemas import Case, read_model, validated
 from service.schemas.flank import FlankPoint
-from service.settings import cache_home
 
 
 def run_flank(file: Path, output: Path, point: dict[str, float | None], *, as_json: bool) -> None:

@@ -29,7 +29,7 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
         except (typer.Exit, typer.Abort):
             raise
         except KeyboardInterrupt as stop:
-            _leave(str(stop) or "interrupted", EXIT_INTERRUPTED)
+            _leave("\n".join((str(stop) or "interrupted", *_notes(stop))), EXIT_INTERRUPTED)
         except BrokenPipeError:
             _close_pipe()
         except Exception as error:  # noqa: BLE001 (the last line of defence: logged by number below)
@@ -49,7 +49,7 @@ def _known(error: Exception) -> ServiceError:
 
 def _logged(error: Exception) -> Unexpected:
     """Write a defect to a log and return it by number."""
-    directory = importlib.import_module("service.settings").cache_home() / "log"
+    directory = importlib.import_module("service.directories").cache_home() / "log"
     reference = uuid.uuid4().hex[:12]
     directory.mkdir(parents=True, exist_ok=True)
     file = directory / f"{reference}.log"
@@ -59,7 +59,13 @@ def _logged(error: Exception) -> Unexpected:
 
 def _text(error: ServiceError) -> str:
     """Return an error as lines: each fault on its own."""
-    return "\n".join(f"error: {line}" for line in (error.faults or (str(error),)))
+    lines = [f"error: {line}" for line in (error.faults or (str(error),))]
+    return "\n".join((*lines, *_notes(error)))
+
+
+def _notes(error: BaseException) -> list[str]:
+    """Return what was added to an error on its way."""
+    return list(getattr(error, "__notes__", ()))
 
 
 def _leave(text: str, code: int) -> NoReturn:

@@ -10,6 +10,7 @@ from fe_contact.microgeometry import Optimisation
 from service.cli.output import console, output_files, print_json, progress_bar, table
 from service.convert.optimisation import boundary_values, optimisation_json, optimisation_of
 from service.convert.task_workers import Hands, working_hands
+from service.directories import cache_home
 from service.report.image import png
 from service.report.optimisation import (
     harris_figure,
@@ -20,7 +21,6 @@ from service.report.optimisation import (
 from service.report.write import write_whole
 from service.schemas import Case, read_model
 from service.schemas.optimisation import OptimisationInput
-from service.settings import cache_home
 
 
 def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, as_json: bool) -> None:

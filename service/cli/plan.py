@@ -9,8 +9,8 @@ from fe_contact.planning.cost_model import STAGES
 from service.cli.effects import ledger_lines
 from service.cli.output import console, print_json, table
 from service.convert.plan import plan_of
+from service.directories import cache_home
 from service.schemas import Case, read_model
-from service.settings import cache_home
 
 
 def run_plan(file: Path, time_budget_s: float | None, *, as_json: bool) -> None:

@@ -12,6 +12,7 @@ from pydantic import ValidationError
 from fe_contact.analysis import LoadDistribution
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
 from service.convert.flanks import case_at, flanks_of
+from service.directories import cache_home
 from service.problems import BadInput
 from service.report.aligned import aligned, headline_load
 from service.report.content import nominal_force
@@ -19,7 +20,6 @@ from service.report.inputs import Inputs, read_inputs
 from service.report.write import write_page
 from service.schemas import Case
 from service.schemas.flank import FlankPoint
-from service.settings import cache_home
 
 
 def run_report(

@@ -12,11 +12,11 @@ from service.cli.output import check_writable, console, print_json, progress_bar
 from service.convert.checks import check_case
 from service.convert.flanks import case_at
 from service.convert.root_stress import GEARS, root_stress_json, root_stress_of
+from service.directories import cache_home
 from service.report.image import png
 from service.report.root_stress import root_stress_figure
 from service.schemas import Case, read_model, validated
 from service.schemas.flank import FlankPoint
-from service.settings import cache_home
 
 _SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
 

@@ -11,12 +11,12 @@ from fe_contact.microgeometry import ToleranceStudy
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.convert.scatter import Sampling, scatter_json, scatter_of_case
 from service.convert.task_workers import Hands, working_hands
+from service.directories import cache_home
 from service.problems import BadInput
 from service.report.image import png
 from service.report.scatter import influence_table, quantile_table, scatter_figure, scatter_page
 from service.report.write import write_whole
 from service.schemas import Case, read_model
-from service.settings import cache_home
 
 
 @dataclass(frozen=True)

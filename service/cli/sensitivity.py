@@ -12,13 +12,13 @@ from pathlib import Path
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
 from service.convert.sensitivity_file import write_studies
+from service.directories import cache_home
 from service.problems import BadInput
 from service.report.image import png
 from service.report.inputs import Inputs
 from service.report.sensitivity import sensitivity_figure, sensitivity_table
 from service.report.write import write_page
 from service.schemas import Case, read_model
-from service.settings import cache_home
 
 _LARGEST_UM, _LARGEST_PERCENT = 10_000.0, 10.0
 

@@ -2,6 +2,6 @@
 
 from service.client.cache import ResultCache
 from service.client.client import LineOfActionClient
-from service.client.status import JobState, Result
+from service.client.status import JobState, OfflineWarning, Result, Watch
 
-__all__ = ["JobState", "LineOfActionClient", "Result", "ResultCache"]
+__all__ = ["JobState", "LineOfActionClient", "OfflineWarning", "Result", "ResultCache", "Watch"]

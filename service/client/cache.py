@@ -1,86 +1,116 @@
-"""Results on disk, named by the hash of their input, verified by the digest of their bytes at every read."""
+"""Results on disk, named by the hash of their input and the digest of their bytes, compared at every read."""
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
-import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from tempfile import NamedTemporaryFile
+from typing import Any, BinaryIO, cast
 
+from service.client.status import Result
+from service.problems import BadInput
 from service.schemas.result_kinds import suffix_of
+
+SET_ASIDE = ".damaged"
+"""Ending of what was found damaged: never read again, may be deleted."""
 
 
 class ResultCache:
-    """A directory of result files; safe to share between processes, since every write is atomic."""
+    """A directory of result files; processes may share it: a file comes whole, its digest in its name."""
 
     def __init__(self, directory: Path) -> None:
         self._directory = directory
 
-    def put(self, kind: str, key: str, content: bytes) -> Path:
-        """Keep a result."""
-        file = self._file(kind, key)
-        file.parent.mkdir(parents=True, exist_ok=True)
-        _write(file, content)
-        _write(_digest_file(file), hashlib.sha256(content).hexdigest().encode())
+    @contextmanager
+    def incoming(self, kind: str) -> Iterator[BinaryIO]:
+        """Yield a file to write a result of a kind into; it is gone afterwards unless it was kept.
+
+        Raises
+        ------
+        BadInput
+            The directory cannot be written.
+        """
+        with self._part(self._directory / kind) as stream:
+            yield stream
+
+    def keep(self, kind: str, key: str, stream: BinaryIO, digest: str) -> Path:
+        """Keep what was written into the file of `incoming`; `digest` is its SHA-256, hexadecimal."""
+        file = self._directory / kind / f"{_plain(key)}.{digest}{suffix_of(kind)}"
+        _settle(stream, file)
         return file
 
     def get(self, kind: str, key: str) -> Path | None:
-        """Return the file of a result if it is here and undamaged; a damaged one is removed."""
-        file = self._file(kind, key)
-        try:
-            wanted = _digest_file(file).read_text()
-            with file.open("rb") as stream:
-                found = hashlib.file_digest(stream, "sha256").hexdigest()
-        except (OSError, UnicodeDecodeError):
-            return None
-        if found == wanted:
-            return file
-        file.unlink(missing_ok=True)
-        _digest_file(file).unlink(missing_ok=True)
+        """Return the file of a result if it is here and undamaged; a damaged one is set aside."""
+        suffix = suffix_of(kind)
+        for file in sorted((self._directory / kind).glob(f"{_plain(key)}.*{suffix}")):
+            if _holds(file, file.name.removesuffix(suffix).rpartition(".")[2]):
+                return file
         return None
 
-    def remember(self, service: str, inputs: dict[str, Any], key: str) -> None:
+    def remember(self, service: str, process: str, inputs: dict[str, Any], result: Result) -> None:
         """Note which result a service gave for these inputs, for the time it cannot be reached."""
-        file = self._request_file(service, inputs)
-        file.parent.mkdir(parents=True, exist_ok=True)
-        _write(file, json.dumps({"key": key}).encode())
+        file = self._note(service, process, inputs)
+        with self._part(file.parent) as stream:
+            stream.write(json.dumps({"key": result.key, "kind": result.kind, "href": result.href}).encode())
+            _settle(stream, file)
 
-    def recall(self, service: str, inputs: dict[str, Any]) -> str | None:
-        """Return the key of the result given for these inputs before."""
+    def recall(self, service: str, process: str, inputs: dict[str, Any]) -> Result | None:
+        """Return the result that was given for these inputs before, if its file is here and undamaged."""
         try:
-            key = json.loads(self._request_file(service, inputs).read_text())["key"]
+            facts = json.loads(self._note(service, process, inputs).read_text())
+            found = Result(str(facts["key"]), str(facts["kind"]), str(facts["href"]))
         except (OSError, ValueError, KeyError, TypeError):
             return None
-        return key if isinstance(key, str) else None
+        return found if self.get(found.kind, found.key) is not None else None
 
-    def _file(self, kind: str, key: str) -> Path:
-        """Return the file of a result; the name is hashed again unless it is a plain hash."""
-        plain = len(key) == 64 and set(key) <= set("0123456789abcdef")
-        name = key if plain else hashlib.sha256(key.encode("utf-8", "replace")).hexdigest()
-        return self._directory / kind / f"{name}{suffix_of(kind)}"
-
-    def _request_file(self, service: str, inputs: dict[str, Any]) -> Path:
-        """Return the note of a request."""
-        text = json.dumps({"service": service, "inputs": inputs}, sort_keys=True)
+    def _note(self, service: str, process: str, inputs: dict[str, Any]) -> Path:
+        """Return the file of the note of a request."""
+        text = json.dumps({"service": service, "process": process, "inputs": inputs}, sort_keys=True)
         return self._directory / "requests" / f"{hashlib.sha256(text.encode()).hexdigest()}.json"
 
+    @contextmanager
+    def _part(self, folder: Path) -> Iterator[BinaryIO]:
+        """Yield a file in a folder that nobody else sees or writes."""
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            with NamedTemporaryFile(dir=folder, prefix=".", suffix=".part", delete=False) as stream:
+                try:
+                    yield cast("BinaryIO", stream)
+                finally:
+                    Path(stream.name).unlink(missing_ok=True)
+        except OSError as error:
+            bound, advice = "a folder that can be written", "Give cache_dir, or set XDG_CACHE_HOME."
+            raise BadInput.of(
+                "cache_dir", str(self._directory), bound, f"{error.strerror}. {advice}"
+            ) from None
 
-def _digest_file(file: Path) -> Path:
-    """Return the file that holds the digest of `file`."""
-    return file.with_suffix(".sha256")
+
+def _plain(key: str) -> str:
+    """Return a key as part of a file name; it is hashed again unless it is a plain hash."""
+    plain = len(key) == 64 and set(key) <= set("0123456789abcdef")
+    return key if plain else hashlib.sha256(key.encode("utf-8", "replace")).hexdigest()
 
 
-def _write(file: Path, content: bytes) -> None:
-    """Write a file so that a reader sees the old or the new one, never half of it."""
-    descriptor, name = tempfile.mkstemp(dir=file.parent, prefix=".", suffix=".part")
+def _holds(file: Path, digest: str) -> bool:
+    """Whether a file holds what its name says; if not it is set aside."""
     try:
-        with os.fdopen(descriptor, "wb") as stream:
-            stream.write(content)
-            stream.flush()
-            os.fsync(stream.fileno())
-        Path(name).replace(file)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+        with file.open("rb") as stream:
+            found = hashlib.file_digest(stream, "sha256").hexdigest()
+    except OSError:  # unreadable, or set aside by another process: as good as not here
+        return False
+    if found != digest:
+        with contextlib.suppress(OSError):
+            file.replace(f"{file}{SET_ASIDE}")
+    return found == digest
+
+
+def _settle(stream: BinaryIO, file: Path) -> None:
+    """Let what was written appear under its name: a reader sees all of it, or nothing."""
+    stream.flush()
+    os.fsync(stream.fileno())
+    Path(stream.name).replace(file)

@@ -1,42 +1,27 @@
-"""Requests to a service: retries, and problems turned back into errors."""
+"""Requests to a service: retries, downloads, and answers checked to be this service's."""
 
 from __future__ import annotations
 
+import hashlib
 import ipaddress
-import json
-from typing import Any
+from collections.abc import Callable
+from datetime import UTC, datetime
+from email.utils import parsedate_to_datetime
+from typing import Any, BinaryIO, TypeVar
 
 import httpx2
 from tenacity import RetryCallState, Retrying, retry_if_exception_type, stop_after_attempt, wait_exponential
 
-from service.problems import (
-    BadInput,
-    DamagedFile,
-    Fault,
-    JobDismissed,
-    JobFailed,
-    NotFound,
-    QueueFull,
-    RateExceeded,
-    ResultNotReady,
-    ServiceError,
-    TooLarge,
-    Unauthorised,
-    Unreachable,
-)
+from service.client.answers import problem_of, stranger
+from service.problems import BadInput, Unreachable
+from service.version import solver_version
 
 _TRY_AGAIN = (429, 502, 503, 504)
 _LONGEST_WAIT_S = 10.0
-_KNOWN: tuple[type[ServiceError], ...] = (
-    ResultNotReady,
-    NotFound,
-    JobDismissed,
-    TooLarge,
-    QueueFull,
-    RateExceeded,
-    Unauthorised,
-    DamagedFile,
-)
+_CHUNK = 1 << 18
+_RAW = "application/octet-stream"
+
+T = TypeVar("T")
 
 
 class _TryAgain(Exception):
@@ -47,10 +32,11 @@ class _TryAgain(Exception):
 
 
 class Connection:
-    """One service, at one address.
+    """One service, at one address; threads may share it.
 
     Every request may be sent again: equal submissions are one computation, and everything else only reads
-    or dismisses.
+    or dismisses. Proxies and certificates are those of the environment (``HTTPS_PROXY``, ``NO_PROXY``,
+    ``SSL_CERT_FILE``); this machine is asked without a proxy.
     """
 
     def __init__(
@@ -63,16 +49,14 @@ class Connection:
     ) -> None:
         self.base_url = base_url.rstrip("/")
         self._attempts = attempts
-        try:
-            self._http = httpx2.Client(
-                base_url=self.base_url,
-                headers={"Authorization": f"Bearer {key}"} if key else None,
-                transport=transport,
-                timeout=timeout,
-                trust_env=not _is_loopback(httpx2.URL(self.base_url).host),
-            )
-        except httpx2.InvalidURL:
-            raise _bad_address(base_url) from None
+        agent = {"User-Agent": f"lineofaction/{solver_version()}"}
+        self._http = httpx2.Client(
+            base_url=self.base_url,
+            headers=agent | ({"Authorization": f"Bearer {key}"} if key else {}),
+            transport=transport,
+            timeout=timeout,
+            trust_env=not _is_loopback(_host(base_url)),
+        )
 
     def close(self) -> None:
         """Close the connections."""
@@ -84,10 +68,59 @@ class Connection:
         Raises
         ------
         Unreachable
-            No service answers, after all attempts.
+            No service answers, after all attempts; or what answers is another program.
         ServiceError
             The problem the service answered with.
         """
+        return self._patiently(lambda: _checked(self._http.request(method, path, **arguments)))
+
+    def read(self, reader: Callable[[dict[str, Any]], T], method: str, path: str, **arguments: Any) -> T:
+        """Return what `reader` makes of the JSON object that answers a request; raises as `request`."""
+        response = self.request(method, path, **arguments)
+        try:
+            return reader(response.json())
+        except (LookupError, TypeError, ValueError, AttributeError):
+            raise stranger(response) from None
+
+    def columns(self, path: str, content: bytes, **parameters: str) -> bytes:
+        """Return the raw columns that a path makes of raw columns; raises as `request`."""
+        headers = {"Content-Type": _RAW, "Accept": _RAW}
+        response = self.request("POST", path, params=parameters, content=content, headers=headers)
+        if response.headers.get("content-type") != _RAW:
+            raise stranger(response)
+        return response.content
+
+    def download(self, path: str, media_type: str, into: BinaryIO) -> tuple[str, str]:
+        """Write the file that a path answers with, piece by piece.
+
+        Returns
+        -------
+        tuple of str
+            SHA-256 of what was written, hexadecimal, and the ``Content-Digest`` that was announced.
+
+        Raises
+        ------
+        Unreachable, ServiceError
+            As `request`.
+        """
+
+        def once() -> tuple[str, str]:
+            into.seek(0)
+            into.truncate()
+            digest = hashlib.sha256()
+            with self._http.stream("GET", path, headers={"Accept": media_type}) as response:
+                if not response.is_success:
+                    response.read()
+                _checked(response)
+                for piece in response.iter_bytes(_CHUNK):
+                    digest.update(piece)
+                    into.write(piece)
+            return digest.hexdigest(), response.headers.get("content-digest", "")
+
+        return self._patiently(once)
+
+    def _patiently(self, once: Callable[[], T]) -> T:
+        """Return what `once` returns, which is called again when the network or the service asks for it."""
         retrying = Retrying(
             retry=retry_if_exception_type((httpx2.TransportError, _TryAgain)),
             stop=stop_after_attempt(self._attempts),
@@ -95,29 +128,34 @@ class Connection:
             reraise=True,
         )
         try:
-            return retrying(self._once, method, path, **arguments)
+            return retrying(once)
         except _TryAgain as last:
-            raise _problem(last.response) from None
-        except (httpx2.UnsupportedProtocol, httpx2.InvalidURL):
-            raise _bad_address(self.base_url) from None
+            raise problem_of(last.response) from None
         except httpx2.TransportError as error:
             reason = type(error).__name__
             text = f"No service answers at {self.base_url} ({reason}). Start one with: loa serve"
             raise Unreachable(text) from None
 
-    def _once(self, method: str, path: str, **arguments: Any) -> httpx2.Response:
-        """Send a request once."""
-        response = self._http.request(method, path, **arguments)
-        if response.status_code in _TRY_AGAIN:
-            raise _TryAgain(response)
-        if response.is_error:
-            raise _problem(response)
-        return response
+
+def _checked(response: httpx2.Response) -> httpx2.Response:
+    """Return an answer that is what was asked for; raises what it says otherwise."""
+    if response.status_code in _TRY_AGAIN:
+        raise _TryAgain(response)
+    if not response.is_success:  # a redirection too: this service has none
+        raise problem_of(response)
+    return response
 
 
-def _bad_address(base_url: str) -> BadInput:
-    """Return the error of an address that is none."""
-    return BadInput.of("service", base_url, "an address such as http://127.0.0.1:8321", "Check the address.")
+def _host(base_url: str) -> str:
+    """Return the host of an address; raises `BadInput` for one that is none."""
+    try:
+        url = httpx2.URL(base_url)
+    except httpx2.InvalidURL:
+        url = httpx2.URL()
+    if url.scheme not in ("http", "https") or not url.host:
+        advice = "Begin it with http:// or https://."
+        raise BadInput.of("service", base_url, "an address such as http://127.0.0.1:8321", advice)
+    return url.host
 
 
 def _is_loopback(host: str) -> bool:
@@ -134,24 +172,16 @@ _exponential = wait_exponential(multiplier=0.1, max=2.0)
 def _wait(state: RetryCallState) -> float:
     """Wait as long as the service asks for, else exponentially longer."""
     error = state.outcome.exception() if state.outcome else None
-    asked = error.response.headers.get("retry-after", "") if isinstance(error, _TryAgain) else ""
-    return min(float(asked), _LONGEST_WAIT_S) if asked.isdigit() else _exponential(state)
+    asked = _asked_s(error.response.headers.get("retry-after", "")) if isinstance(error, _TryAgain) else None
+    return _exponential(state) if asked is None else min(max(asked, 0.0), _LONGEST_WAIT_S)
 
 
-def _problem(response: httpx2.Response) -> ServiceError:
-    """Return the error that an answer tells of."""
+def _asked_s(text: str) -> float | None:
+    """Return the seconds of a ``Retry-After``, which is a number or a date (RFC 9110, 10.2.3)."""
+    if text.isdigit():
+        return float(text)
     try:
-        facts = response.json()
-        detail, kind = str(facts["detail"]), str(facts["type"])
-        faults = [Fault(**fault) for fault in facts.get("errors", [])]
-    except (json.JSONDecodeError, UnicodeDecodeError, KeyError, TypeError):
-        status = response.status_code
-        return Unreachable(f"{response.request.url} answered with status {status}, not as this service does.")
-    if kind == BadInput.type:
-        return BadInput(faults)
-    if kind == JobFailed.type:
-        return BadInput(faults) if faults else JobFailed(detail)
-    known = next((error for error in _KNOWN if error.type == kind), None)
-    if known is not None:
-        return known(detail)
-    return NotFound(detail) if response.status_code == NotFound.status else ServiceError(detail)
+        when = parsedate_to_datetime(text)
+    except ValueError:
+        return None
+    return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp() - datetime.now(UTC).timestamp()

@@ -30,10 +30,15 @@ def scene_of(given: SceneLike) -> tuple[SceneInput, Path]:
     return validated(SceneInput, dict(given)), Path()
 
 
+def scene_inputs(given: SceneLike) -> dict[str, Any]:
+    """Return ``{"scene": ...}`` as JSON, its case files written out; raises `BadInput`."""
+    return {"scene": portable_scene(*scene_of(given)).model_dump(mode="json")}
+
+
 def inputs_of(given: CaseLike | SceneLike) -> dict[str, Any]:
     """Return ``{"case": ...}``, or of what has shafts ``{"scene": ...}``, as JSON; raises `BadInput`."""
     if isinstance(given, SceneInput) or (not isinstance(given, Case) and "shafts" in _table(given)):
-        return {"scene": portable_scene(*scene_of(given)).model_dump(mode="json")}
+        return scene_inputs(given)
     return {"case": case_of(given).model_dump(mode="json")}
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 from array import array
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 
 from service.problems import BadInput
 from service.schemas.query import QueryOutput, validity_words
 
-Column = float | Sequence[float]
+Column = float | Collection[float]
+"""One value for all points, or a list or one-dimensional array with one for each."""
 
 
 def query_columns(columns: Mapping[str, Column]) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -40,6 +41,10 @@ class JobState:
         return cls(facts["jobID"], facts["processID"], **{name: facts[name] for name in names})
 
 
+Watch = Callable[[JobState], None]
+"""What is called with every state of a job that is seen."""
+
+
 @dataclass(frozen=True)
 class Result:
     """Where a result is: its content hash, its kind (the name of the output) and its path on the service."""
@@ -47,3 +52,13 @@ class Result:
     key: str
     kind: str
     href: str
+
+    @classmethod
+    def from_json(cls, facts: dict[str, Any]) -> Result:
+        """Read the results of a job, which are one."""
+        ((kind, reference),) = facts.items()
+        return cls(reference["hash"], kind, reference["href"])
+
+
+class OfflineWarning(UserWarning):
+    """A result was taken from the cache because no service answers: it is what the service gave before."""

@@ -3,37 +3,17 @@
 from __future__ import annotations
 
 import json
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from service.client.portable import CaseLike, SceneLike, case_of, inputs_of
-from service.client.status import JobState, Result
+from service.client.jobs import JobClient
+from service.client.portable import CaseLike, SceneLike, case_of, inputs_of, scene_inputs
+from service.client.status import Watch
 
-Watch = Callable[[JobState], None]
 
-
-class Studies(ABC):
-    """The studies a client offers, by the steps that it has."""
-
-    @abstractmethod
-    def submit(self, process: str, inputs: dict[str, Any]) -> JobState:
-        """Enter a job."""
-
-    @abstractmethod
-    def submit_scene(self, scene: SceneLike, process: str = "simulate", **further: Any) -> JobState:
-        """Enter a process of a scene."""
-
-    @abstractmethod
-    def wait(
-        self, job: str, progress: Watch | None = None, *, timeout: float | None = None, interval: float = 0.2
-    ) -> Result:
-        """Wait for a job."""
-
-    @abstractmethod
-    def fetch_file(self, key: str, kind: str = "database") -> Path:
-        """Return the file of a result."""
+class Studies(JobClient):
+    """Studies of cases and scenes by a service: each submits, waits and fetches."""
 
     def flank_file(self, case: CaseLike, progress: Watch | None = None, **point: float) -> Path:
         """Return the file of a case's flank results: submit, wait, fetch.
@@ -210,7 +190,7 @@ class Studies(ABC):
         self, process: str, scene: SceneLike, progress: Watch | None, further: dict[str, Any]
     ) -> Path:
         """Submit a scene with further inputs, wait, fetch the file."""
-        result = self.wait(self.submit_scene(scene, process, **further).id, progress)
+        result = self.obtain(process, scene_inputs(scene) | further, progress)
         return self.fetch_file(result.key, result.kind)
 
     def _json(
@@ -221,12 +201,12 @@ class Studies(ABC):
         further: dict[str, Any],
     ) -> dict[str, Any]:
         """Submit a case or a scene with further inputs, wait, read the JSON."""
-        result = self.wait(self.submit(process, inputs_of(given) | further).id, progress)
+        result = self.obtain(process, inputs_of(given) | further, progress)
         found: dict[str, Any] = json.loads(self.fetch_file(result.key, result.kind).read_bytes())
         return found
 
     def _study(self, process: str, case: CaseLike, progress: Watch | None, further: dict[str, Any]) -> Path:
         """Submit a case with further inputs, wait, fetch the file."""
         inputs = {"case": case_of(case).model_dump(mode="json"), **further}
-        result = self.wait(self.submit(process, inputs).id, progress)
+        result = self.obtain(process, inputs, progress)
         return self.fetch_file(result.key, result.kind)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import rfc8785
+
+from service.version import solver_version
 
 
 def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> str:
@@ -18,11 +19,3 @@ def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> s
         "inputs": inputs,
     }
     return hashlib.sha256(rfc8785.dumps(facts)).hexdigest()
-
-
-def solver_version() -> str:
-    """Return the version of the installed project; code that runs uninstalled says so."""
-    try:
-        return version("lineofaction")
-    except PackageNotFoundError:
-        return "uninstalled"

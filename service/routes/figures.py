@@ -10,12 +10,12 @@ from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import Response
 
-from service.jobs.key import solver_version
 from service.jobs.live_order import LiveOrder
 from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.routes.results import Key
 from service.schemas.result_kinds import RESULT_KINDS, ResultKind
+from service.version import solver_version
 
 FIGURES = "service.report.as_json:stored_figures"
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter
 
 from service.schemas.ogc import CONFORMANCE, Conformance, Landing, Link
+from service.version import solver_version
 
 router = APIRouter(tags=["service"])
 
@@ -23,6 +24,7 @@ def landing() -> Landing:
     return Landing(
         title="lineofaction",
         description="STE databases of gear pairs by contact analysis, and the dynamics they excite.",
+        version=solver_version(),
         links=[Link(href=href, rel=rel, title=title) for href, rel, title in relations],
     )
 

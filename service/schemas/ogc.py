@@ -31,6 +31,7 @@ class Landing(BaseModel):
 
     title: str
     description: str
+    version: str
     links: list[Link]
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import json
+import shutil
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,6 +14,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from dynamics.simulate import simulate
 from fe_contact.analysis import analyze
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
@@ -89,6 +92,35 @@ def test_a_hash_serves_as_well_as_the_case(client: LineOfActionClient, case: dic
     by_hash["meshes"][0]["database_hash"] = client.analysis_key(case)
     run, other = client.simulate(by_hash).to_xarray(), client.simulate(scene(case)).to_xarray()
     assert np.array_equal(run["mesh_force"].to_numpy(), other["mesh_force"].to_numpy())
+
+
+@pytest.mark.parametrize("how", ["case", "case_file", "database_hash", "database_file"])
+def test_a_scene_runs_here_on_tables_of_the_service(
+    client: LineOfActionClient, case: dict[str, Any], tmp_path: Path, how: str
+) -> None:
+    """However a mesh takes its table, the run is bit by bit the one that the service makes."""
+    given, mesh = scene(case), scene(case)["meshes"][0]
+    key = client.analysis_key(case)
+    (tmp_path / "case.json").write_text(json.dumps(case))
+    shutil.copyfile(client.fetch_file(key), tmp_path / "ste.nc")
+    names = {"case": case, "case_file": "case.json", "database_hash": key, "database_file": "ste.nc"}
+    given["meshes"] = [{k: v for k, v in mesh.items() if k != "case"} | {how: names[how]}]
+    (tmp_path / "scene.json").write_text(json.dumps(given))
+    here = simulate(client.scene(tmp_path / "scene.json"))
+    there = client.simulate(scene(case))
+    assert np.array_equal(here.mesh_force, there.mesh_force)
+    assert np.array_equal(here.bearing_force, there.bearing_force)
+
+
+def test_faults_of_tables_are_named_by_the_scene(client: LineOfActionClient, case: dict[str, Any]) -> None:
+    wrong = copy.deepcopy(scene(case))
+    wrong["meshes"][0]["case"]["pair"]["pinion"]["bore_diameter_mm"] = 95.0
+    with pytest.raises(BadInput, match=r"meshes\[0\]\.case\.pair\.pinion\.bore_diameter_mm"):
+        client.scene(wrong)
+    del wrong["meshes"][0]["case"]
+    wrong["meshes"][0]["database_file"] = "nowhere.nc"
+    with pytest.raises(BadInput, match=r"meshes\[0\]\.database_file = 'nowhere\.nc': must be an STE"):
+        client.scene(wrong)
 
 
 def test_a_scene_that_cannot_be_is_refused_before_it_is_a_job(

@@ -5,10 +5,12 @@ from __future__ import annotations
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import httpx2
+import numpy as np
 import pytest
 from running_service import until
 from service_stand_ins import REGISTRY
@@ -17,15 +19,15 @@ from starlette.testclient import TestClient
 
 from fe_contact.ste import SteDatabase
 from service.app import create_app
-from service.client import JobState, LineOfActionClient
+from service.client import JobState, LineOfActionClient, OfflineWarning
 from service.problems import (
     BadInput,
     DamagedFile,
     JobDismissed,
     JobFailed,
     NotFound,
-    QueueFull,
     ServiceError,
+    StillRunning,
     Unreachable,
 )
 from service.settings import Settings
@@ -136,7 +138,7 @@ def test_a_dismissed_job_raises(client: LineOfActionClient) -> None:
 
 def test_waiting_ends_after_the_time_given_and_the_job_goes_on(client: LineOfActionClient) -> None:
     job = client.submit("standin", wish(mode="hang"))
-    with pytest.raises(JobFailed, match="It goes on"):
+    with pytest.raises(StillRunning, match="It goes on"):
         client.wait(job.id, timeout=0.1, interval=0.02)
     assert not client.status(job.id).ended
     client.dismiss(job.id)
@@ -192,29 +194,6 @@ def test_no_service_is_said_with_its_address_after_all_attempts(tmp_path: Path) 
     assert len(asked) == 2
 
 
-def test_a_full_queue_is_told_after_all_attempts(tmp_path: Path) -> None:
-    body = QueueFull("100 computations wait already.").as_json()
-
-    def full(_request: httpx2.Request) -> httpx2.Response:
-        return httpx2.Response(429, json=body, headers={"Retry-After": "0"})
-
-    with pytest.raises(QueueFull, match="100 computations"):
-        against(full, tmp_path, attempts=2).submit("standin", wish())
-
-
-def test_something_else_at_the_address_is_no_service(tmp_path: Path) -> None:
-    def stranger(_request: httpx2.Request) -> httpx2.Response:
-        return httpx2.Response(404, text="<html>nothing here</html>")
-
-    with pytest.raises(Unreachable, match="not as this service does"):
-        against(stranger, tmp_path).status("j")
-
-
-def test_an_address_that_is_none_is_bad_input(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match="service = 'nowhere'"):
-        LineOfActionClient("nowhere", cache_dir=tmp_path).status("j")
-
-
 def test_a_case_known_from_before_is_served_offline(tmp_path: Path) -> None:
     file = tmp_path / "table.nc"
     small_table().to_netcdf(file)
@@ -234,7 +213,8 @@ def test_a_case_known_from_before_is_served_offline(tmp_path: Path) -> None:
     client = against(answer, tmp_path, attempts=1)
     assert client.analyze(CASE).identical(small_table())
     online[0] = False
-    assert client.analyze(CASE).identical(small_table())
+    with pytest.warns(OfflineWarning, match=r"http://127\.0\.0\.1:1: the database .* from the cache"):
+        assert client.analyze(CASE).identical(small_table())
     with pytest.raises(Unreachable):
         client.analyze(CASE | {"load": {"torque_n_m": [1.0]}})
 
@@ -248,11 +228,46 @@ def _digest(content: bytes) -> dict[str, str]:
 
 
 def test_the_import_is_light() -> None:
-    heavy = {"gmsh", "skfem", "fastapi", "sqlalchemy", "uvicorn", "scipy", "numba", "xarray"}
-    code = f"import sys, service.client; print(sorted({heavy!r} & set(sys.modules)))"
+    heavy = {"gmsh", "skfem", "fastapi", "starlette", "sqlalchemy", "uvicorn"}
+    heavy |= {"scipy", "numpy", "numba", "xarray", "h5py", "matplotlib", "plotly"}
+    own = {"fe_contact", "dynamics", "service.app", "service.convert", "service.jobs", "service.settings"}
+    code = f"import sys, service.client; print(sorted({heavy | own!r} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 
 
 def test_a_table_fetched_is_an_ste_database(client: LineOfActionClient) -> None:
     assert isinstance(client.fetch(KEY), SteDatabase)
+
+
+def test_a_table_fetched_as_a_dataset_is_the_same_table(client: LineOfActionClient) -> None:
+    found, expected = client.fetch_dataset(KEY), small_table().to_xarray()
+    assert found.equals(expected)
+    assert found["static_transmission_error"].attrs["units"] == "m"
+    assert set(expected.attrs) <= set(found.attrs)
+
+
+def test_arrays_are_asked_as_lists_are(client: LineOfActionClient) -> None:
+    position, deflection = np.linspace(0.0, 1.0, 7), np.float64(3.0)
+    asked = client.query(KEY, position, deflection)
+    assert asked == client.query(KEY, position.tolist(), [3.0])
+    assert asked == client.query(KEY, position[::-1][::-1], np.full(7, 3.0))
+
+
+def test_threads_share_one_client(client: LineOfActionClient) -> None:
+    """Eight threads submit the same job, query and fetch: one computation, equal answers, sound files."""
+
+    def ask(number: int) -> tuple[str, bool, list[float]]:
+        result = client.wait(client.submit("standin", wish(text="shared")).id, interval=0.02)
+        return (
+            client.fetch_file(result.key).read_text(),
+            client.fetch(KEY).identical(small_table()),
+            client.query(KEY, [0.1 * number], 3.0).force_n,
+        )
+
+    with ThreadPoolExecutor(8) as pool:
+        answers = list(pool.map(ask, range(8)))
+    assert {text for text, _, _ in answers} == {"shared"}
+    assert all(same for _, same, _ in answers)
+    expected = small_table().force_at([0.1 * number for number in range(8)], 3e-6).force
+    assert [force for _, _, (force,) in answers] == pytest.approx(expected.tolist())

@@ -13,6 +13,7 @@ import socket
 import subprocess
 import sys
 import urllib.request
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -22,7 +23,9 @@ from running_service import lives, until
 from small_table import small_table
 from typer.testing import CliRunner, Result
 
+from service.cli import commands
 from service.cli.commands import app
+from service.client import OfflineWarning
 
 ROOT = Path(__file__).parents[3]
 VERBS = (
@@ -174,6 +177,21 @@ def test_no_service_is_exit_code_4(tmp_path: Path) -> None:
     result = loa("fetch", "ab" * 32, "-o", tmp_path / "x.nc", "--service", "http://127.0.0.1:9")
     assert result.exit_code == 4
     assert "loa serve" in result.stderr
+
+
+def test_what_the_client_warns_of_is_one_line_for_people(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def verb() -> None:
+        warnings.warn("the table comes from the cache", OfflineWarning, stacklevel=1)
+        warnings.warn("of a library", UserWarning, stacklevel=1)
+
+    monkeypatch.setattr(commands, "app", verb)
+    with warnings.catch_warnings(record=True) as others:
+        warnings.simplefilter("always")
+        commands.main()
+    assert capsys.readouterr().err == "note: the table comes from the cache\n"
+    assert [str(other.message) for other in others] == ["of a library"]
 
 
 def test_a_defect_is_a_number_and_a_log(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: Path) -> None:

@@ -1,0 +1,88 @@
+"""The STE databases of a scene's meshes: from files, or from whoever holds and computes them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Protocol
+
+from service.client.portable import case_of_mesh
+from service.problems import BadInput
+from service.schemas import Case
+from service.schemas.scene import MeshInput, SceneInput
+
+if TYPE_CHECKING:
+    from dynamics.system import Scene
+    from fe_contact.ste import SteDatabase
+
+
+class TableSource(Protocol):
+    """Who holds and computes STE databases."""
+
+    def by_hash(self, key: str) -> SteDatabase:
+        """Return the database of a content hash."""
+
+    def by_case(self, case: Case) -> SteDatabase:
+        """Return the database of a case."""
+
+
+class MeshTables:
+    """The databases of the meshes of one scene; equal cases are asked for once.
+
+    Parameters
+    ----------
+    folder : Path
+        What the files that the scene names are relative to.
+    source : TableSource
+    """
+
+    def __init__(self, folder: Path, source: TableSource) -> None:
+        self._folder, self._source = folder, source
+        self._asked: list[tuple[Case, SteDatabase]] = []
+
+    def of(self, index: int, mesh: MeshInput) -> SteDatabase:
+        """Return the database of a mesh, the `index`-th of its scene.
+
+        Raises
+        ------
+        BadInput
+            Named by the field of the scene.
+        DatabaseError
+            Its file is no database.
+        """
+        place = f"meshes[{index}]"
+        if mesh.database_file is not None:
+            return self._in_file(f"{place}.database_file", mesh.database_file)
+        case = case_of_mesh(mesh, place, self._folder)
+        try:
+            if case is not None:
+                return self._of_case(case)
+            assert mesh.database_hash is not None  # the schema has seen to it
+            return self._source.by_hash(mesh.database_hash)
+        except BadInput as error:
+            raise error.within(place if case is None else f"{place}.case") from None
+
+    def _in_file(self, field: str, name: str) -> SteDatabase:
+        """Return the database in a file."""
+        from fe_contact.ste import SteDatabase  # noqa: PLC0415 (keeps the import of the client light)
+
+        file = self._folder / name
+        if not file.is_file():
+            advice = "Check the path, or make one with: loa analyze"
+            raise BadInput.of(field, str(file), "an STE database", advice)
+        return SteDatabase.from_netcdf(file)
+
+    def _of_case(self, case: Case) -> SteDatabase:
+        """Return the database of a case."""
+        known = next((database for other, database in self._asked if other == case), None)
+        if known is not None:
+            return known
+        database = self._source.by_case(case)
+        self._asked.append((case, database))
+        return database
+
+
+def scene_on_tables(scene: SceneInput, tables: MeshTables) -> Scene:
+    """Return the scene in SI on the tables of its meshes; raises as these, and for what cannot move."""
+    from service.convert.scene import dynamic_scene  # noqa: PLC0415 (keeps the import of the client light)
+
+    return dynamic_scene(scene, {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)})

@@ -1,0 +1,84 @@
+"""How a job is waited for: at growing intervals, through restarts of its service."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from service.client.status import JobState
+from service.problems import (
+    DatabaseUnavailable,
+    RateExceeded,
+    StillRunning,
+    StoreUnavailable,
+    Unreachable,
+)
+
+_AWAY = (Unreachable, DatabaseUnavailable, StoreUnavailable, RateExceeded)
+_GROWTH = 1.1
+"""Of each pause over the last: what is seen late is then about a tenth of the time waited."""
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How often to look, and for how long.
+
+    Attributes
+    ----------
+    interval : float
+        Seconds between the first two looks; the pauses grow by a tenth each.
+    longest : float
+        Seconds of the longest pause (or `interval`, if that is longer).
+    timeout : float
+        Seconds to wait at most.
+    patience : float
+        Seconds for which the service may be away; jobs outlast its restart.
+    """
+
+    interval: float
+    longest: float
+    timeout: float
+    patience: float
+
+    def longer(self, pause: float) -> float:
+        """Return the pause after a pause."""
+        return max(min(pause * _GROWTH, self.longest), self.interval)
+
+
+def ended(job: str, look: Callable[[], JobState], pace: Pace) -> JobState:
+    """Return the state in which a job ended.
+
+    Raises
+    ------
+    StillRunning
+        It did not end within the time; it goes on.
+    ServiceError
+        What `look` raises; that the service is away, only if it has never answered or not for too long.
+    """
+    try:
+        return _ended(job, look, pace)
+    except KeyboardInterrupt as stop:
+        stop.add_note(f"Job {job} goes on at the service. Asking for the same again joins it.")
+        raise
+
+
+def _ended(job: str, look: Callable[[], JobState], pace: Pace) -> JobState:
+    """Look until it has ended."""
+    begin, answered, pause = time.monotonic(), -math.inf, pace.interval
+    while True:
+        try:
+            state = look()
+            if state.ended:
+                return state
+            answered = time.monotonic()
+        except _AWAY:
+            if time.monotonic() - answered > pace.patience:
+                raise
+        left = pace.timeout - (time.monotonic() - begin)
+        if left <= 0.0:
+            text = f"Job {job} did not end within {pace.timeout:g} s. It goes on; look again later."
+            raise StillRunning(text)
+        time.sleep(min(pause, left))
+        pause = pace.longer(pause)

@@ -1,0 +1,122 @@
+"""What the page of the Python client shows runs as shown; the paper's flow runs again without its service."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+import runpy
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_table import small_table
+
+from dynamics.results import RunResult
+from service.client import OfflineWarning, ResultCache
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
+KEY = "ab" * 32
+
+
+@pytest.fixture(scope="module")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A service in a process of its own, and its address."""
+    folder = tmp_path_factory.mktemp("service")
+    with subprocess.Popen(
+        [sys.executable, "-m", "service.cli", "serve", "--port", "0", "--data-directory", str(folder)],
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    ) as process:
+        assert process.stdout is not None
+        line = process.stdout.readline()
+        yield process, line[line.index("http://") :].strip()
+        process.terminate()
+        process.wait(30)
+
+
+@pytest.fixture(autouse=True)
+def _as_a_user(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, service: tuple[subprocess.Popen[str], str]
+) -> None:
+    """In the folder of the project, with a cache of one's own."""
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("LOA_SERVICE", service[1])
+
+
+def test_the_scripts_of_the_page_run_one_after_the_other(capsys: pytest.CaptureFixture[str]) -> None:
+    scripts = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+    assert len(scripts) == 4
+    names: dict[str, object] = {}
+    printed = []
+    for script in scripts:
+        exec(compile(script, "docs/client.md", "exec"), names)
+        printed.append(capsys.readouterr().out)
+    assert re.search(r"Estimate\(value=2\.\d+e-06, error=.*unit='m'\)", printed[0])
+    assert float(printed[1]) == pytest.approx(100.0 / (0.04 * np.cos(np.radians(20.0))), rel=2e-3)
+    assert "['inside', 'inside', 'inside']" in printed[2]
+    assert names["key"] == names["ste"].metadata.content_hash  # type: ignore[attr-defined]
+    assert printed[3] == ""  # nothing failed
+    assert names["file"].is_file()  # type: ignore[attr-defined]
+
+
+def test_the_paper_s_flow_runs_again_without_the_service(
+    service: tuple[subprocess.Popen[str], str],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    examples = ROOT / "examples"
+    monkeypatch.syspath_prepend(str(examples))
+
+    def run(output: Path) -> str:
+        monkeypatch.setattr(sys, "argv", ["run_up_from_service.py", "-o", str(output)])
+        runpy.run_path(str(examples / "run_up_from_service.py"), run_name="__main__")
+        return capsys.readouterr().out
+
+    first = run(tmp_path / "first.nc")
+    service[0].terminate()
+    service[0].wait(30)
+    with pytest.warns(OfflineWarning, match=re.escape(service[1])):
+        run(tmp_path / "second.nc")
+    runs = [RunResult.from_netcdf(tmp_path / f"{name}.nc") for name in ("first", "second")]
+    assert np.array_equal(runs[0].bearing_force, runs[1].bearing_force)
+    fundamental = re.search(r"spectrum: fundamental\s+([\d.]+) Hz", first)
+    assert fundamental and 286.5 < float(fundamental.group(1)) < 302.4  # the paper's figure: 287 to 303 Hz
+
+
+def test_what_the_page_installs_is_enough_to_ask_a_service(tmp_path: Path) -> None:
+    """With the other requirements out of reach, tables are fetched, opened and asked."""
+    line = re.search(r"pip install (httpx2 .*?)\s+#", PAGE)
+    assert line
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    required = {re.split(r"[^\w-]", requirement)[0] for requirement in project["dependencies"]}
+    light = set(line.group(1).split())
+    assert light < required
+    hidden = sorted({"scikit-fem": "skfem"}.get(name, name.replace("-", "_")) for name in required - light)
+    assert {"gmsh", "numba", "skfem", "fastapi", "pydantic_settings"} <= set(hidden)
+    cache, content = ResultCache(tmp_path / "tables"), tmp_path / "table.nc"
+    small_table().to_netcdf(content)
+    with cache.incoming("database") as file:
+        file.write(content.read_bytes())
+        cache.keep("database", KEY, file, hashlib.sha256(content.read_bytes()).hexdigest())
+    code = f"""
+import sys
+sys.modules.update(dict.fromkeys({hidden!r}))  # importing one of these fails now
+from service.client import LineOfActionClient
+client = LineOfActionClient("http://127.0.0.1:9", cache_dir={str(tmp_path / "tables")!r})
+table = client.fetch({KEY!r})
+print(table.peak_to_peak(torque=float(table.torque[-1])).value > 0.0, table.force_at(0.0, 3e-6).force > 0.0)
+print(client.fetch_dataset({KEY!r})["torque"].attrs["units"])
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    assert done.stdout == "True True\nN m\n"
