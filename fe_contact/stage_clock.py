@@ -9,11 +9,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from fe_contact.types import Json
+from fe_contact.workers.spent import Spent
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Time of one stage: CPU seconds of this process and its finished children, and wall seconds."""
+    """Time of one stage: CPU seconds of all who worked on it, and wall seconds."""
 
     name: str
     cpu_seconds: float
@@ -21,16 +22,23 @@ class Stage:
 
 
 class StageClock:
-    """Collects the stages of one run; repeated stages are added up."""
+    """Collects the stages of one run; repeated stages are added up.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    elsewhere : Spent, optional
+        What tasks cost that others do for this process: it counts beside its own time and its children's.
+    """
+
+    def __init__(self, elsewhere: Spent | None = None) -> None:
         self.stages: list[Stage] = []
-        self._last = _reading()
+        self._elsewhere = elsewhere or Spent()
+        self._last = self._reading()
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Time what happens inside."""
-        begun = _reading()
+        begun = self._reading()
         try:
             yield
         finally:
@@ -64,14 +72,14 @@ class StageClock:
 
     def _book(self, name: str, begun: tuple[float, float]) -> None:
         """Add a stage that ends now."""
-        self._last = _reading()
+        self._last = self._reading()
         self.stages.append(Stage(name, self._last[0] - begun[0], self._last[1] - begun[1]))
 
-
-def _reading() -> tuple[float, float]:
-    """CPU seconds of this process and its finished children, and wall seconds."""
-    usage = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-    return sum(u.ru_utime + u.ru_stime for u in usage), time.perf_counter()
+    def _reading(self) -> tuple[float, float]:
+        """CPU seconds of this process, its finished children and others' tasks, and wall seconds."""
+        usage = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+        own = sum(u.ru_utime + u.ru_stime for u in usage)
+        return own + self._elsewhere.cpu_seconds, time.perf_counter()
 
 
 def _peak_memory() -> int:

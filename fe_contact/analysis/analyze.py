@@ -11,6 +11,7 @@ from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
+from fe_contact.workers import InProcess, Workers
 
 
 def analyze(
@@ -32,6 +33,7 @@ def analyze(
     case: Json | None = None,
     progress: Progress | None = None,
     cache: Path | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteDatabase:
     """Compute the static transmission error of a gear pair.
 
@@ -70,6 +72,9 @@ def analyze(
         Called as progress(stage, fraction).
     cache : Path, optional
         Directory of flank compliances.
+    workers : Workers
+        Who condenses the gears and solves the contact: this process, an executor or a cluster. The table is
+        the same to the last bit; the receipt counts the CPU time of all of them.
 
     Returns
     -------
@@ -83,6 +88,8 @@ def analyze(
     MeshError, SolveError
         No acceptable mesh, a linear system that cannot be solved, or an assumption that does not hold where
         `on_violation` is "fail".
+    WorkersLost
+        Nobody is left to do the tasks.
     """
     checked = check_request(
         pair,
@@ -100,7 +107,8 @@ def analyze(
         receipt=receipt,
         on_violation=on_violation,
     )
-    return compute_database(checked, case or checked.request.to_json(), progress or _silent, cache)
+    phrased = case or checked.request.to_json()
+    return compute_database(checked, phrased, progress or _silent, cache, workers=workers)
 
 
 def _silent(stage: str, fraction: float) -> None:

@@ -12,7 +12,7 @@ from fe_contact.analysis.error_estimate import left_out
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_table import SolvedTable
 from fe_contact.analysis.table_places import Place, Places
-from fe_contact.analysis.tip_edges import deepest_edge
+from fe_contact.analysis.tip_edges import assemble_edges, deepest_edge
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.across_face import across_face
@@ -120,6 +120,7 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     request = run.checked.request
     if run.checked.model.corner_contact or CornerContact.name in request.spared:
         return
+    assemble_edges(run.places, run.solved)
     pairs = zip(run.places.places, run.solved, strict=True)
     depth = np.stack([deepest_edge(place, run.plan.load, *solved) for place, solved in pairs], axis=1)
     change = float(np.max(depth / np.maximum(size, 1e-12 * np.abs(_means(run)))))

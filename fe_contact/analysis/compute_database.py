@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import platform
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -24,13 +24,19 @@ from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
+from fe_contact.workers import InProcess, Workers
 
 SOLVER_VERSION = "7"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 
 def compute_database(
-    checked: Checked, case: Json, report: Progress, cache: Path | None, decided: Decided | None = None
+    checked: Checked,
+    case: Json,
+    report: Progress,
+    cache: Path | None,
+    decided: Decided | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteDatabase:
     """Compute the table of a checked request.
 
@@ -45,28 +51,32 @@ def compute_database(
         Directory of flank compliances.
     decided : Decided, optional
         Model and discretisation; default: those that the accuracy asks for.
+    workers : Workers
+        Who condenses the gears and solves the contact; the table does not depend on them.
 
     Raises
     ------
     SolveError
         An assumption of the run does not hold and `on_violation` is "fail".
     """
-    clock = StageClock()
+    clock, before = StageClock(workers.spent), replace(workers.spent)
     full = checked.request.accuracy.receipt == "full"
     run, found, repeated = settled(
-        solve_table(checked, clock, report, cache, decided=decided),
+        solve_table(checked, clock, report, cache, decided=decided, workers=workers),
         check_assumptions,
-        lambda run, needed: solve_table(with_effects(run.checked, needed), clock, report, cache, run),
+        lambda run, needed: solve_table(
+            with_effects(run.checked, needed), clock, report, cache, run, workers=workers
+        ),
         clock,
     )
     with clock.stage("contact"):
-        contact = contact_receipt(run.solved, run.support, condition=full)
+        contact = contact_receipt(run.solved, run.support, condition=full, known=run.condition)
     judged = unjudged_table(run.table, run.places, run.plan)
     if full:
-        coarse = laid_out(run.checked, run.plan, clock, report, cache, coarse=True)
+        coarse = laid_out(run.checked, run.plan, clock, report, cache, coarse=True, workers=workers)
         with clock.stage("error estimate"):
             judged = judged_table(run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan)
-    if not repeated:
+    if not repeated and isinstance(workers, InProcess):
         spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
         record(cache, run.prediction.logged, spent)
     with clock.stage("effect ledger"):
@@ -74,6 +84,8 @@ def compute_database(
     metadata = _metadata(case, run, clock, judged.to_json() | contact, ledger)
     metadata.receipt["assumptions"] = [one.to_json() for one in found]
     metadata.receipt["repeated"] = repeated
+    if not isinstance(workers, InProcess):
+        metadata.receipt["elsewhere"] = asdict(workers.spent.since(before))
     return replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.analysis.error_estimate import worst_residual
 from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact.condition import condition_numbers
 from fe_contact.types import FloatArray, Json, Status
 
 FEW_ITERATIONS = 40
@@ -17,7 +18,9 @@ FEW_ITERATIONS = 40
 Solved = Sequence[tuple[ContactProblem, ContactSolution]]
 
 
-def contact_receipt(solved: Solved, support: Solved, *, condition: bool = True) -> Json:
+def contact_receipt(
+    solved: Solved, support: Solved, *, condition: bool = True, known: FloatArray | None = None
+) -> Json:
     """Return figures over all places of a table, at its own loads and at the support loads.
 
     Parameters
@@ -26,6 +29,8 @@ def contact_receipt(solved: Solved, support: Solved, *, condition: bool = True) 
         Of every place. Support loads that failed anywhere are not in the table, and are named here.
     condition : bool
         Whether the condition number is computed, which takes some per cent of the contact; else it is None.
+    known : ndarray, optional
+        Condition numbers that were found with the solutions.
     """
     solutions = [solution for _, solution in solved]
     iterations = np.concatenate([solution.iterations.ravel() for solution in solutions])
@@ -35,7 +40,7 @@ def contact_receipt(solved: Solved, support: Solved, *, condition: bool = True) 
         "newton_iterations_mean": float(iterations.mean()),
         f"newton_points_over_{FEW_ITERATIONS}": int(np.count_nonzero(iterations > FEW_ITERATIONS)),
         "residuals_max": max(worst_residual(solution) for solution in solutions),
-        "condition_number_max": worst_condition(solved) if condition else None,
+        "condition_number_max": worst_condition(solved, known) if condition else None,
         "patch_outgrown_points": sum(int(solution.beyond.sum()) for solution in solutions),
         "failed_points": failed_points(solutions),
         "support_loads_left_out": support[0][1].load[left_out].tolist(),
@@ -48,24 +53,13 @@ def failed_points(solutions: Sequence[ContactSolution]) -> dict[str, int]:
     return {Status(code).name: count for code, count in sorted(codes.items())}
 
 
-def worst_condition(solved: Solved) -> float | None:
+def worst_condition(solved: Solved, known: FloatArray | None = None) -> float | None:
     """Return the largest condition number of the compliance between candidates; None if one is not definite.
 
     Places of one centre distance share their compliance, which is judged once.
     """
-    shared = {id(problem.compliance): problem.compliance for problem, _ in solved}
-    worst = max(float(condition_numbers(compliance).max()) for compliance in shared.values())
+    if known is None:
+        shared = {id(problem.compliance): problem.compliance for problem, _ in solved}
+        known = np.array([condition_numbers(compliance).max() for compliance in shared.values()])
+    worst = float(known.max())
     return worst if np.isfinite(worst) else None
-
-
-def condition_numbers(compliance: FloatArray) -> FloatArray:
-    """Return the condition numbers (Q,) of compliances (Q, n, n), infinite where one is not definite.
-
-    Candidates that do not exist at a position have no compliance there and are left out.
-    """
-    diagonal = np.einsum("qii->qi", compliance)
-    real = diagonal != 0.0
-    filler = np.where(real, 0.0, np.abs(diagonal).max(axis=1)[:, None])
-    eigenvalues = np.linalg.eigvalsh(compliance + filler[:, :, None] * np.eye(diagonal.shape[1]))
-    least, largest = eigenvalues[:, 0], eigenvalues[:, -1]
-    return np.asarray(np.divide(largest, least, out=np.full(least.size, np.inf), where=least > 0.0))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.analysis.solved_places import deflected_places
 from fe_contact.analysis.table_places import Place, Places, table_places
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
@@ -149,16 +150,22 @@ class _Judged:
         """Judge the changes of the centre distance, at some loads and at the positions that tell most."""
         force, some = self.table.force, sample_of(self.table.force.size, LOADS)
         middles, m = _middles(self.table.center_distance_change), self._nearest("misalignment")
-        held_out = zip(self._held_out(m, middles), middles, _telling(self.table), strict=True)
-        worst = [_worst(self._curves(place, rows, force[some], m[0], x)) for place, x, rows in held_out]
+        position = [self.table.position[rows] for rows in _telling(self.table)]
+        places, workers = self._held_out(m, middles), self.places.workers
+        solved = deflected_places(places, position, force[some], None, workers)
+        held_out = zip(position, solved, middles, strict=True)
+        worst = [_worst((self._tabulated(where, force[some], m[0], x), own)) for where, own, x in held_out]
         errors = spread(force, some, np.array(worst), 1)
         return AxisError(middles, errors, np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)]))
 
     def _curves(self, place: Place, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
         """Interpolant and solutions (positions, L), m; NaN where one did not converge."""
         position = self.table.position[rows]
-        solved = place.solve(position, load)[1].deflection
-        return self.table.ste(position[:, None], load, *alignment), solved
+        return self._tabulated(position, load, *alignment), place.solve(position, load)[1].deflection
+
+    def _tabulated(self, position: FloatArray, load: FloatArray, *alignment: float) -> FloatArray:
+        """Interpolant (positions, L), m."""
+        return self.table.ste(position[:, None], load, *alignment)
 
     def _changes(self, curves: Curves) -> FloatArray:
         """Return the changes of the quantities, (22, L) in m."""

@@ -42,6 +42,8 @@ KEPT_PROBLEMS = 2
 
 PlaneFlanks = tuple[FlankCompliance, FlankCompliance]
 FaceFlanks = tuple[FlankCompliance3D, FlankCompliance3D]
+Bodies = PlaneFlanks | FaceFlanks
+"""Compliances of both gears, in the plane or over the face."""
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,20 @@ class PairContact:
     uncorrected: PlaneFlanks | None = None
     _problems: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
 
+    @classmethod
+    def of_bodies(cls, pair: ParallelAxes, plan: Plan, bodies: Bodies) -> PairContact:
+        """Return a pair of these compliances, which are of the kind of its plan."""
+        over_face = isinstance(plan.discretisation, FaceDiscretisation)
+        return cls(pair, plan, **{"face" if over_face else "plane": bodies})  # type: ignore[arg-type]
+
+    @property
+    def bodies(self) -> Bodies:
+        """Its compliances; the same object at every centre distance."""
+        found = self.plane if self.face is None else self.face
+        if found is None:
+            raise ValueError("a pair contact needs the compliance of its gears")
+        return found
+
     def solve(
         self, model: ContactModel, position: FloatArray, load: FloatArray, pitch: IntArray | None = None
     ) -> tuple[ContactProblem, ContactSolution]:
@@ -77,31 +93,40 @@ class PairContact:
         return problem, solve_contact(problem, load)
 
     def problem(
-        self, model: ContactModel, position: FloatArray, pitch: IntArray | None = None
+        self,
+        model: ContactModel,
+        position: FloatArray,
+        pitch: IntArray | None = None,
+        largest: float | None = None,
     ) -> ContactProblem:
-        """Assemble what `solve` solves."""
+        """Assemble what `solve` solves; `largest` as in `with_gaps`."""
         problem = self._problem(model, position)
-        problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
+        problem = problem.touching(with_gaps(self.pair, problem.candidates, model, largest))
         if pitch is None and not model.tooth_gaps:
             return problem
         first = np.zeros(position.size, dtype=np.int64)
         return in_pitches(problem, model, first if pitch is None else pitch)
 
     def candidates(self, model: ContactModel, position: FloatArray) -> Candidates:
-        """Return where plain involutes can touch at positions (P,) in [0, 1)."""
-        return self._problem(model, position).candidates
+        """Return where plain involutes can touch at positions (P,) in [0, 1); nothing is assembled."""
+        kept = self._problems.get(self.key(model, position))
+        return self._located(model, position) if kept is None else kept.candidates
+
+    def take(self, model: ContactModel, problem: ContactProblem) -> None:
+        """Keep a problem of plain involutes that was assembled elsewhere."""
+        self._store(model, problem)
 
     def keep_rows(self, model: ContactModel, position: FloatArray, rows: IntArray) -> None:
         """Keep the compliance of some of the positions (P,) by itself: to `solve` them assembles nothing."""
         part = self._problem(model, position).rows(rows)
-        self._problems[self._key(model, part.candidates.position)] = part
+        self._problems[self.key(model, part.candidates.position)] = part
 
     def assemble(self, model: ContactModel, candidates: Candidates) -> None:
         """Keep the compliance at positions whose candidates are known, as they are of other bodies.
 
         To `solve` them then does not look for them again.
         """
-        if self._key(model, candidates.position) not in self._problems:
+        if self.key(model, candidates.position) not in self._problems:
             self._keep(model, candidates)
 
     @property
@@ -126,23 +151,35 @@ class PairContact:
 
     def _problem(self, model: ContactModel, position: FloatArray) -> ContactProblem:
         """Return the problem of plain involutes, kept: gaps and loads do not change its compliance."""
-        key = self._key(model, position)
+        key = self.key(model, position)
         if key not in self._problems:
-            slices = Slices.of_pair(self.pair, self.plan.discretisation.slices)
-            self._keep(model, contact_candidates(self.pair, model, position, self.plan.patch, slices))
+            self._keep(model, self._located(model, position))
         return self._problems[key]
 
-    def _key(self, model: ContactModel, position: FloatArray) -> tuple[object, ...]:
+    def _located(self, model: ContactModel, position: FloatArray) -> Candidates:
+        """Find the candidates of plain involutes."""
+        slices = Slices.of_pair(self.pair, self.plan.discretisation.slices)
+        return contact_candidates(self.pair, model, position, self.plan.patch, slices)
+
+    def key(self, model: ContactModel, position: FloatArray) -> tuple[object, ...]:
         """Return what a kept compliance depends on, beside the bodies."""
         return (position.tobytes(), model.corner_contact, model.couple_teeth, model.compliances)
 
     def _keep(self, model: ContactModel, candidates: Candidates) -> None:
         """Assemble the compliance of candidates, in the place of what was kept first."""
+        self._make_room()
+        bodies = self._assembled(candidates, model.couple_teeth)
+        self._store(model, with_compliances(self.pair, bodies, model))
+
+    def _store(self, model: ContactModel, problem: ContactProblem) -> None:
+        """Keep a problem."""
+        self._make_room()
+        self._problems[self.key(model, problem.candidates.position)] = problem
+
+    def _make_room(self) -> None:
+        """Let go of what was kept first, before the memory of another is needed."""
         while len(self._problems) >= KEPT_PROBLEMS:
             self._problems.pop(next(iter(self._problems)))
-        bodies = self._assembled(candidates, model.couple_teeth)
-        key = self._key(model, candidates.position)
-        self._problems[key] = with_compliances(self.pair, bodies, model)
 
     def _assembled(self, candidates: Candidates, couple_teeth: bool) -> ContactProblem:
         """Assemble the compliance between the candidates."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.analysis.position_nodes import PositionNodes
+from fe_contact.analysis.solved_places import deflected_places
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import Plan
@@ -86,8 +87,10 @@ def _measured(
     value = np.concatenate([solutions[k].deflection[:, some] for k in judged], axis=1)
 
     def solve(middles: FloatArray) -> FloatArray:
-        solved = [places.places[k].solve_pitches(middles, plan.load[some], pitches)[1] for k in judged]
-        return np.concatenate([solution.deflection for solution in solved], axis=1)
+        curves = deflected_places(
+            places.judged, [middles] * len(judged), plan.load[some], pitches, places.workers
+        )
+        return np.concatenate(curves, axis=1)
 
     return measured_nodes(position, value, solve, places.period, plan.nodes.tolerance)
 

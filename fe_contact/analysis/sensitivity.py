@@ -78,9 +78,9 @@ def study_sensitivity(
     tolerance, level, time_budget, model, positions, effects, progress, cache
         See `analyze`. An automatic model is three-dimensional at every point, so that the curves compare;
         the effects decide about everything but corner contact. Progress begins anew for each of the
-        four tables. With `cache` the gears are condensed once; workers elsewhere need to see it too.
+        four tables. With `cache` the gears are condensed once.
     workers : Workers
-        Who makes the four tables; elsewhere there is no progress.
+        Who condenses the gears and solves the contact of every table.
 
     Returns
     -------
@@ -94,36 +94,30 @@ def study_sensitivity(
     MeshError, SolveError
         No acceptable mesh, or points without a solution.
     """
-    axes = {
+    axes: dict[str, Any] = {
         "misalignments": np.union1d([0.0], misalignments),
         "center_distance_changes": np.union1d([0.0], center_distance_changes),
     }
-
-    shared: dict[str, Any] = {
-        "pair": pair,
-        "normal_forces": [normal_force],
-        "tolerance": tolerance,
-        "level": level,
-        "time_budget": time_budget,
-        "model": "3d" if model == "auto" else model,
-        "positions": positions,
-        "cache": cache,
-    }
-    if isinstance(workers, InProcess):
-        shared["progress"] = progress
-    wanted = [
-        {"effects": {**(effects or {}), CornerContact.name: corners}, name: axis}
+    tables = [
+        analyze(
+            pair,
+            normal_forces=[normal_force],
+            tolerance=tolerance,
+            level=level,
+            time_budget=time_budget,
+            model="3d" if model == "auto" else model,
+            positions=positions,
+            effects={**(effects or {}), CornerContact.name: corners},
+            progress=progress,
+            cache=cache,
+            workers=workers,
+            **{name: axis},
+        )
         for corners in ("off", "on")
         for name, axis in axes.items()
     ]
-    tables = list(workers.run(make_table, shared, wanted))
     curves = [_ripple(table, name) for table, name in zip(tables, [*axes, *axes], strict=True)]
     return Sensitivity(False, curves[0], curves[1]), Sensitivity(True, curves[2], curves[3])
-
-
-def make_table(shared: dict[str, Any], further: dict[str, Any]) -> SteDatabase:
-    """Make one table: one task; both are arguments of `analyze`."""
-    return analyze(**shared, **further)
 
 
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:

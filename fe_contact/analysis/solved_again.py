@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.analysis.solved_places import deflected_places
 from fe_contact.analysis.table_places import Place, Places
-from fe_contact.contact import ContactSolution
+from fe_contact.contact import Candidates, ContactSolution
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
 from fe_contact.types import FloatArray, IntArray
 
@@ -96,16 +97,13 @@ class TableSample:
     def solved(self, places: Places, known: Places) -> FloatArray:
         """Solve the points on other places, (T R, f, m, d) in m; `known` are those of the table."""
         pitches, load = np.arange(self.period), self.axes[0][self.nodes[0]]
-        curves = []
-        for k in self.places:
-            place = places.places[k]
-            self._hand_over(place, known.places[k])
-            _, solution = place.solve_pitches(self.position[self.rows], load, pitches)
-            curves.append(solution.deflection)
-        return self.shaped(curves)
+        asked = [places.places[k] for k in self.places]
+        where = [self.position[self.rows]] * len(asked)
+        candidates = self._candidates(asked[0], [known.places[k] for k in self.places])
+        return self.shaped(deflected_places(asked, where, load, pitches, places.workers, candidates))
 
-    def _hand_over(self, place: Place, known: Place) -> None:
-        """Give a place the candidates of the table's, which do not depend on the bodies."""
-        if place.contact.plan.discretisation.slices == known.contact.plan.discretisation.slices:
-            candidates = known.contact.candidates(known.model, self.position)
-            place.contact.assemble(place.model, candidates.rows(self.rows))
+    def _candidates(self, place: Place, known: Sequence[Place]) -> list[Candidates] | None:
+        """Return those of the table's places, which do not depend on the bodies; None in other slices."""
+        if place.contact.plan.discretisation.slices != known[0].contact.plan.discretisation.slices:
+            return None
+        return [one.contact.candidates(one.model, self.position).rows(self.rows) for one in known]

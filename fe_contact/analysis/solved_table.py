@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -12,17 +13,19 @@ from fe_contact.analysis.model_choice import Decided, decide
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked, Request
+from fe_contact.analysis.solved_places import Solved, solve_places
 from fe_contact.analysis.table_nodes import table_nodes
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
-from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.planning import Plan, Prediction, predict_run
+from fe_contact.compliance.condensed_elsewhere import condense_elsewhere
+from fe_contact.geometry import ParallelAxes
+from fe_contact.planning import FaceDiscretisation, Plan, Prediction, predict_run
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.types import FloatArray
+from fe_contact.workers import InProcess, Workers
 
 Progress = Callable[[str, float], None]
-Solved = list[tuple[ContactProblem, ContactSolution]]
 
 
 @dataclass(frozen=True)
@@ -41,6 +44,8 @@ class SolvedTable:
         Of every place, at the requested and at the support loads.
     table : SteDatabase
         Its errors not yet estimated.
+    condition : ndarray or None
+        Condition numbers of the compliances, where workers found them.
     """
 
     decided: Decided
@@ -50,6 +55,7 @@ class SolvedTable:
     solved: Solved
     support: Solved
     table: SteDatabase
+    condition: FloatArray | None = None
 
     @property
     def checked(self) -> Checked:
@@ -69,6 +75,7 @@ def solve_table(
     cache: Path | None,
     before: SolvedTable | None = None,
     decided: Decided | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SolvedTable:
     """Plan and solve a request.
 
@@ -84,6 +91,8 @@ def solve_table(
         The same pair with other effects: its compliance is taken if the bodies are the same.
     decided : Decided, optional
         Model and discretisation; default: those that the accuracy asks for.
+    workers : Workers
+        Who condenses the gears and solves the contact.
     """
     full = checked.request.accuracy.receipt == "full"
     with clock.stage("planning"):
@@ -92,14 +101,15 @@ def solve_table(
         wanted = request.pair, plan, checked.model, request.alignments
         prediction = predict_run(*wanted, cache, with_errors=full)
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
-    places = laid_out(checked, plan, clock, report, cache, known=known)
+    places = laid_out(checked, plan, clock, report, cache, known=known, workers=workers)
     with clock.stage("contact"):
         nodes = table_nodes(places, plan)
         report("contact", 0.3)
-        solved, support = (_solved(places, nodes, load) for load in (plan.load, plan.support))
+        loads = plan.load, plan.support
+        (solved, support), condition = solve_places(places, nodes.position, loads, conditioned=full)
         table = assembled_table(request, places, nodes, solved, support)
         report("contact", 1.0)
-    return SolvedTable(decided, prediction, places, nodes, solved, support, table)
+    return SolvedTable(decided, prediction, places, nodes, solved, support, table, condition)
 
 
 def laid_out(
@@ -111,27 +121,41 @@ def laid_out(
     *,
     coarse: bool = False,
     known: PairContact | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> Places:
     """Compute or fetch the compliances of both gears, and lay out the table over them."""
     request, stage = checked.request, "error estimate" if coarse else "compliance"
     report(stage, 0.0)
     with clock.stage(stage):
         changes = request.center_distance_change
-        nominal = known or pair_contact(request.pair, plan, cache, coarse, changes)
+        nominal = known or _condensed(request.pair, plan, cache, coarse, changes, workers)
     report(stage, 1.0)
-    return table_places(request.scene, request.choices, nominal)
+    return table_places(request.scene, request.choices, nominal, workers)
+
+
+def _condensed(
+    pair: ParallelAxes,
+    plan: Plan,
+    cache: Path | None,
+    coarse: bool,
+    changes: FloatArray,
+    workers: Workers,
+) -> PairContact:
+    """Condense the gears, those of three dimensions by the workers if there are any."""
+    made = plan.discretisation
+    if isinstance(workers, InProcess) or not isinstance(made, FaceDiscretisation):
+        return pair_contact(pair, plan, cache, coarse, changes)
+    with TemporaryDirectory() as folder:
+        kept = cache or Path(folder)
+        recipes = made.coarse_recipes if coarse else made.recipes
+        condense_elsewhere(plan.bodies(pair), recipes, kept, workers)
+        return pair_contact(pair, plan, kept, coarse, changes)
 
 
 def _same_bodies(one: Plan, other: Plan) -> bool:
     """Whether two plans of one pair have the same finite elements."""
     first, second = ((plan.discretisation, plan.thin_rim, plan.bore_seat) for plan in (one, other))
     return first == second
-
-
-def _solved(places: Places, nodes: PositionNodes, load: FloatArray) -> Solved:
-    """Solve every place at the positions of all base pitches."""
-    pitches = np.arange(places.period)
-    return [place.solve_pitches(nodes.position, load, pitches) for place in places.places]
 
 
 def assembled_table(

@@ -11,6 +11,7 @@ from fe_contact.analysis.position_nodes import (
     adaptive_nodes,
     unmeasured_nodes,
 )
+from fe_contact.analysis.solved_places import deflected_places
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactModel
 from fe_contact.planning import MOST_ROWS, Plan
@@ -54,8 +55,6 @@ def judged_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
 
 def _curves(places: Places, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
     """STE (T, P, places x L) in m of the judged places in the given pitches."""
+    found = deflected_places(places.judged, [position] * len(places.judged), load, pitches, places.workers)
     shape = (pitches.size, position.size, -1)
-    curves = [
-        place.solve_pitches(position, load, pitches)[1].deflection.reshape(shape) for place in places.judged
-    ]
-    return np.concatenate(curves, axis=2)
+    return np.concatenate([curve.reshape(shape) for curve in found], axis=2)

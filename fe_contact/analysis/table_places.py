@@ -13,6 +13,7 @@ from fe_contact.analysis.pair_contact import PairContact
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.types import FloatArray, IntArray
+from fe_contact.workers import InProcess, Workers
 
 
 @dataclass(frozen=True)
@@ -49,11 +50,14 @@ class Places:
         Those of one centre distance share their compliance.
     nominal : PairContact
         The pair at its nominal centre distance, which may be no place of the table.
+    workers : Workers
+        Who solves them.
     """
 
     shape: tuple[int, int]
     places: tuple[Place, ...]
     nominal: PairContact
+    workers: Workers = InProcess()  # noqa: RUF009 (frozen)
 
     @property
     def period(self) -> int:
@@ -92,7 +96,12 @@ class Places:
         return stacked.reshape(*stacked.shape[:2], *self.shape, *stacked.shape[3:])
 
 
-def table_places(scene: ContactScene, choices: Mapping[str, str], nominal: PairContact) -> Places:
+def table_places(
+    scene: ContactScene,
+    choices: Mapping[str, str],
+    nominal: PairContact,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> Places:
     """Lay out the places of a scene.
 
     Parameters
@@ -103,6 +112,8 @@ def table_places(scene: ContactScene, choices: Mapping[str, str], nominal: PairC
         Effect name to "on", "off" or "auto".
     nominal : PairContact
         The pair at its nominal centre distance.
+    workers : Workers
+        Who solves them.
     """
     _, ledger = compose(scene, choices, EFFECTS)
     decided = {entry.name: "on" if entry.on else "off" for entry in ledger}
@@ -112,7 +123,7 @@ def table_places(scene: ContactScene, choices: Mapping[str, str], nominal: PairC
         for contact in contacts:
             here = ContactScene(contact.pair, scene.torque, np.array([misalignment]), pitches=scene.pitches)
             places.append(Place(contact, compose(here, decided, EFFECTS)[0]))
-    return Places((scene.misalignment.size, len(contacts)), tuple(places), nominal)
+    return Places((scene.misalignment.size, len(contacts)), tuple(places), nominal, workers)
 
 
 def _contacts(nominal: PairContact, changes: FloatArray) -> Iterator[PairContact]:

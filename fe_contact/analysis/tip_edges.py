@@ -2,17 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.analysis.table_places import Place
+from fe_contact.analysis.solved_places import assemble_elsewhere
+from fe_contact.analysis.table_places import Place, Places
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
 OUTSIDE = 1e-3
 """Base pitches before A and after E at which the gap of an edge is judged: it grows from there on."""
+
+
+def assemble_edges(places: Places, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
+    """Let workers assemble the compliance at the tip edges of all places, as `edge_depth` needs it."""
+    models = [replace(place.model, corner_contact=True) for place in places.places]
+    assemble_elsewhere(places, models, _phase(solved[0][0]))
 
 
 def deepest_edge(
@@ -41,7 +49,7 @@ def edge_depth(place: Place, problem: ContactProblem, solution: ContactSolution)
     Under the forces as solved: what the loaded teeth move at the unloaded edges is in.
     """
     where = problem.candidates.position
-    phase, pitch = where[: len(problem.compliance)] % 1.0, np.floor(where).astype(np.int64)
+    phase, pitch = _phase(problem), np.floor(where).astype(np.int64)
     model = replace(place.model, corner_contact=True)
     edges = place.contact.problem(model, phase, pitch if model.tooth_gaps else None)
     touch = edges.candidates.touch
@@ -52,6 +60,11 @@ def edge_depth(place: Place, problem: ContactProblem, solution: ContactSolution)
     closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
     gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
     return np.asarray(np.max(closing - moved - gap[:, None, :], axis=(0, 2), initial=0.0))
+
+
+def _phase(problem: ContactProblem) -> FloatArray:
+    """Return the positions of a problem in one base pitch."""
+    return problem.candidates.position[: len(problem.compliance)] % 1.0
 
 
 def _carried(these: Candidates, those: Candidates, force: FloatArray) -> FloatArray:

@@ -2,7 +2,13 @@
 
 from fe_contact.contact.added_compliance import with_compliances
 from fe_contact.contact.assembly import contact_problem
-from fe_contact.contact.candidates import PatchRule, contact_candidates, teeth_in_reach, with_gaps
+from fe_contact.contact.candidates import (
+    PatchRule,
+    contact_candidates,
+    largest_modification,
+    teeth_in_reach,
+    with_gaps,
+)
 from fe_contact.contact.face_assembly import face_contact_problem
 from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_forces
 from fe_contact.contact.model import ComplianceTerm, ContactModel, GapTerm, ToothGap
@@ -27,6 +33,7 @@ __all__ = [
     "face_contact_problem",
     "face_flank_forces",
     "in_pitches",
+    "largest_modification",
     "plane_flank_forces",
     "solve_contact",
     "teeth_in_reach",

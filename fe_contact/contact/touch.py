@@ -110,7 +110,13 @@ def flank_coordinate(gear: Toothing, roll: FloatArray | float) -> FloatArray:
     return np.asarray(gear.sign * np.square(roll) / (2.0 * gear.base_radius))
 
 
-def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
+def modified_touch(
+    pair: ParallelAxes,
+    touch: Touch,
+    face: FloatArray,
+    gaps: tuple[GapTerm, ...],
+    largest: float | None = None,
+) -> Touch:
     """Touching points of modified flanks.
 
     Sloping modifications move the touching point off the line of action: over the distance x along the flank
@@ -126,16 +132,34 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
         Distance of each candidate from the pinion's mid-face, m.
     gaps : tuple of GapTerm
         At least one.
+    largest : float, optional
+        `largest_gap` in m where `touch` are some of the positions that are solved: what counts as a
+        tie must not depend on which. Default: theirs.
     """
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
-    found = _shifted(pair, touch, face, moving) if moving else touch
+    if largest is None:
+        largest = largest_gap(pair, touch, face, gaps)
+    found = _shifted(pair, touch, face, moving, largest) if largest != 0.0 else touch
     roll_1, roll_2 = rolls_at(pair, found.s_1, found.s_2)
     return replace(found, gap=found.gap + sum(term(pair, roll_1, roll_2, face) for term in steady))
 
 
-def _shifted(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
-    """Move the touching points to where conjugate gap and `gaps` together are least."""
+def largest_gap(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> float:
+    """Return the largest gap that varies along the profile, at the touching points of plain involutes, m."""
+    moving = tuple(term for term in gaps if term.along_profile)
+    if not moving:
+        return 0.0
+    possible = np.isfinite(touch.gap)
+    here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
+    along = np.broadcast_to(face, possible.shape)[possible][:, None]
+    return float(np.abs(_gap_beside(pair, here, along, moving, np.zeros((here.gap.size, 1)))).max())
+
+
+def _shifted(
+    pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...], largest: float
+) -> Touch:
+    """Move the touching points to where conjugate gap and `gaps`, `largest` at most, together are least."""
     possible = np.isfinite(touch.gap)
     here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
     along = np.broadcast_to(face, possible.shape)[possible][:, None]
@@ -145,11 +169,8 @@ def _shifted(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[Gap
     def gap(shift: FloatArray) -> FloatArray:
         return _gap_beside(pair, here, along, gaps, shift)
 
-    amount = np.abs(gap(np.zeros((low.size, 1)))).max()
-    if amount == 0.0:
-        return touch
-    reach = np.sqrt(4.0 * here.radius * amount)
-    shift = _least(gap, np.maximum(low, -reach), np.minimum(high, reach), _TIE * float(amount))
+    reach = np.sqrt(4.0 * here.radius * largest)
+    shift = _least(gap, np.maximum(low, -reach), np.minimum(high, reach), _TIE * largest)
     step = 1e-3 * reach
     at = gap(np.stack([shift, np.minimum(shift + step, high), np.maximum(shift - step, low)], axis=1))
     # at an edge the flanks open by the slope of the gap there; elsewhere the distance to it is what matters

@@ -7,11 +7,13 @@ from typing import Any
 
 from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
+from fe_contact.workers import InProcess, Workers
 from service.cli.effects import assumption_lines, ledger_lines
 from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
+from service.convert.task_workers import Hands, working_hands
 from service.convert.units import UM
 from service.directories import cache_home
 from service.problems import JobFailed
@@ -20,12 +22,12 @@ from service.schemas import Case, read_model
 _SHOWN_HARMONICS = 3
 
 
-def run_analyze(file: Path, output: Path, *, as_json: bool) -> None:
+def run_analyze(file: Path, output: Path, hands: Hands, *, as_json: bool) -> None:
     """Compute, write, print."""
     case = read_model(Case, file)
     check_writable(output)
-    with progress_bar() as report:
-        database = analyzed(case, report)
+    with working_hands(hands) as workers, progress_bar() as report:
+        database = analyzed(case, report, workers)
     database.to_netcdf(output)
     summary = {"file": str(output), **summary_json(database)}
     if as_json:
@@ -36,8 +38,12 @@ def run_analyze(file: Path, output: Path, *, as_json: bool) -> None:
         raise JobFailed(f"{database.failure_message()}. The table in {output} holds NaN there.")
 
 
-def analyzed(case: Case, report: Report) -> SteDatabase:
-    """Return the database of a case, computed here; condensed gears are kept in the user's cache."""
+def analyzed(
+    case: Case,
+    report: Report,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+) -> SteDatabase:
+    """Return the database of a case, not asked of a service; condensed gears are kept in the user's cache."""
     pair = check_case(case)
     with boundary_errors():
         return analyze(
@@ -46,6 +52,7 @@ def analyzed(case: Case, report: Report) -> SteDatabase:
             case=case_json(case),
             cache=cache_home() / "compliance",
             progress=report,
+            workers=workers,
         )
 
 
@@ -71,6 +78,9 @@ def _cost(receipt: dict[str, Any]) -> str:
     stages = ", ".join(f"{name} {spent['cpu_seconds']:.2g}" for name, spent in receipt["stages"].items())
     memory = receipt["peak_memory_bytes"] / 2**20
     text = f"\ncost {receipt['cpu_seconds']:.3g} CPU s ({stages}), {memory:.0f} MiB"
+    others = receipt.get("elsewhere", {})
+    if others.get("tasks"):
+        text += f"\nof these {others['cpu_seconds']:.3g} CPU s in {others['tasks']} tasks of workers"
     predicted = receipt.get("predicted")
     if predicted:
         pitches, seconds = predicted["pitches"], predicted["cpu_seconds"]

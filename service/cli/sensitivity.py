@@ -6,12 +6,14 @@ import csv
 import io
 import json
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
 from service.convert.sensitivity_file import write_studies
+from service.convert.task_workers import Hands, working_hands
 from service.directories import cache_home
 from service.problems import BadInput
 from service.report.image import png
@@ -23,26 +25,36 @@ from service.schemas import Case, read_model
 _LARGEST_UM, _LARGEST_PERCENT = 10_000.0, 10.0
 
 
+@dataclass(frozen=True)
+class Varied:
+    """The values of both options as they were typed: numbers separated by commas."""
+
+    misalignment_um: str
+    center_distance_change_percent: str
+
+    @property
+    def deviations(self) -> Deviations:
+        """The numbers."""
+        percent = self.center_distance_change_percent
+        return Deviations(
+            _numbers("--misalignment-um", self.misalignment_um, _LARGEST_UM),
+            _numbers("--center-distance-change-percent", percent, _LARGEST_PERCENT),
+        )
+
+
 def run_sensitivity(
-    files: Sequence[Path],
-    output: Path,
-    misalignment_um: str,
-    center_distance_change_percent: str,
-    *,
-    as_json: bool,
+    files: Sequence[Path], output: Path, varied: Varied, hands: Hands, *, as_json: bool
 ) -> None:
     """Study every case, write, print."""
-    deviations = Deviations(
-        _numbers("--misalignment-um", misalignment_um, _LARGEST_UM),
-        _numbers("--center-distance-change-percent", center_distance_change_percent, _LARGEST_PERCENT),
-    )
+    deviations = varied.deviations
     names = _names(files)
     cases = [read_model(Case, file) for file in files]
     targets = _targets(output)
     cache = cache_home() / "compliance"
-    with progress_bar() as report:
+    with working_hands(hands) as workers, progress_bar() as report:
         studies = [
-            study_case(name, case, deviations, cache, report) for name, case in zip(names, cases, strict=True)
+            study_case(name, case, deviations, cache, report, workers)
+            for name, case in zip(names, cases, strict=True)
         ]
     for target in targets:
         target.parent.mkdir(exist_ok=True)

@@ -10,6 +10,7 @@ from typing import Any
 from fe_contact.analysis import check_request
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 from fe_contact.geometry import ParallelAxes
+from fe_contact.workers import InProcess, Workers
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.convert.units import MM, UM
 from service.schemas import Case
@@ -51,6 +52,7 @@ def study_case(
     deviations: Deviations,
     cache: Path | None,
     progress: Callable[[str, float], None] | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> PairStudy:
     """Study a case at its highest load; its own misalignments and centre distances are left aside.
 
@@ -71,6 +73,7 @@ def study_case(
             **_axes(pair, deviations),
             progress=progress,
             cache=cache,
+            workers=workers,
             **{name: arguments[name] for name in _PASSED_ON},
         )
     return PairStudy(name, force, pair.center_distance, curves)

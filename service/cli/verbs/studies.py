@@ -139,12 +139,16 @@ def sensitivity(
     center_distance_change_percent: Annotated[
         str, typer.Option(help="Changes of the centre distance in per cent.")
     ] = "-0.2,-0.1,0,0.1,0.2",
+    workers: TaskWorkers = 1,
+    dask: DaskScheduler = None,
     json: AsJson = False,
 ) -> None:
     """Vary misalignment and centre distance of a case at its highest load: peak-to-peak STE."""
-    from service.cli.sensitivity import run_sensitivity  # noqa: PLC0415 (start-up time)
+    from service.cli.sensitivity import Varied, run_sensitivity  # noqa: PLC0415 (start-up time)
+    from service.convert.task_workers import Hands  # noqa: PLC0415
 
-    run_sensitivity(cases, output, misalignment_um, center_distance_change_percent, as_json=json)
+    varied = Varied(misalignment_um, center_distance_change_percent)
+    run_sensitivity(cases, output, varied, Hands(workers, dask), as_json=json)
 
 
 @verbs.command(epilog="Example: loa hardcases --only table -o hardcases.html")

@@ -8,7 +8,16 @@ from typing import Annotated
 import typer
 
 from service.cli.guard import guarded
-from service.cli.verbs.options import AsJson, CenterDistanceChange, Force, Misalignment, Torque, load_point
+from service.cli.verbs.options import (
+    AsJson,
+    CenterDistanceChange,
+    DaskScheduler,
+    Force,
+    Misalignment,
+    TaskWorkers,
+    Torque,
+    load_point,
+)
 
 verbs = typer.Typer()
 
@@ -18,12 +27,15 @@ verbs = typer.Typer()
 def analyze(
     case: Annotated[Path, typer.Argument(help="Case file (TOML, or JSON of the same shape).")],
     output: Annotated[Path, typer.Option("-o", "--output", help="STE database to write (netCDF).")],
+    workers: TaskWorkers = 1,
+    dask: DaskScheduler = None,
     json: AsJson = False,
 ) -> None:
     """Compute the STE database of a case."""
     from service.cli.analyze import run_analyze  # noqa: PLC0415 (start-up time)
+    from service.convert.task_workers import Hands  # noqa: PLC0415
 
-    run_analyze(case, output, as_json=json)
+    run_analyze(case, output, Hands(workers, dask), as_json=json)
 
 
 @verbs.command(epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")

@@ -1,0 +1,197 @@
+"""Lines of a table, cut into blocks for workers and put together again.
+
+A line is one centre distance at some misalignments: they share the compliance between the candidates, which
+costs most. It is cut between positions (see `contact_block`), by what its blocks are predicted to cost: by
+the case alone, not by who works.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from itertools import groupby
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.analysis.contact_block import ContactBlock, SolvedBlock, deflect_block, solve_block
+from fe_contact.analysis.pair_contact import Bodies, PairContact
+from fe_contact.contact import (
+    Candidates,
+    ContactModel,
+    ContactProblem,
+    ContactSolution,
+    largest_modification,
+)
+from fe_contact.planning.contact_cost import unit_work
+from fe_contact.types import FloatArray, IntArray
+from fe_contact.workers import Workers
+
+TASK_SECONDS = 0.2
+"""CPU seconds that a block is predicted to take: ten times what it costs to hand it out."""
+
+FEWEST_ROWS = 2
+"""Of a block: a single row is contiguous either way, and cannot be laid out as many are."""
+
+R = TypeVar("R")
+Arrays = TypeVar("Arrays", bound=Any)
+
+
+@dataclass(frozen=True)
+class Line:
+    """Places of one compliance.
+
+    Attributes
+    ----------
+    contact : PairContact
+    models : tuple of ContactModel
+        Of the misalignments; the same but for their gaps.
+    candidates : Candidates
+        Of plain involutes at all positions of the line.
+    pitches : ndarray of int, shape (T,), or None
+    loads : tuple of ndarray
+        Sets of normal forces in N.
+    """
+
+    contact: PairContact
+    models: tuple[ContactModel, ...]
+    candidates: Candidates
+    pitches: IntArray | None
+    loads: tuple[FloatArray, ...]
+
+    @property
+    def seconds_a_position(self) -> float:
+        """CPU seconds that one position is predicted to take."""
+        work = unit_work(self.contact.pair, self.contact.plan, self.contact.plan.discretisation.slices)
+        pitches = 1 if self.pitches is None else self.pitches.size
+        return work.of(1, len(self.models) * pitches * sum(load.size for load in self.loads))
+
+    def blocks(self, *, conditioned: bool) -> Iterator[ContactBlock]:
+        """Cut it."""
+        pair, everything = self.contact.pair, self.candidates
+        largest = tuple(largest_modification(pair, everything, model) for model in self.models)
+        whole = ContactBlock(
+            pair, self.contact.plan, everything, self.models, largest, self.pitches, self.loads, conditioned
+        )
+        count = everything.position.size
+        parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), count // FEWEST_ROWS)
+        for rows in np.array_split(np.arange(count), max(parts, 1)):
+            yield replace(whole, candidates=_laid_out_alike(everything.rows(rows), everything))
+
+
+@dataclass(frozen=True)
+class SolvedLine:
+    """A line put together; attributes as those of `SolvedBlock`."""
+
+    problems: tuple[ContactProblem, ...]
+    solutions: tuple[tuple[ContactSolution, ...], ...]
+    condition: FloatArray | None
+
+
+def solved_lines(lines: Sequence[Line], workers: Workers, *, conditioned: bool = False) -> list[SolvedLine]:
+    """Solve lines; their contacts keep what was assembled for them."""
+    found = []
+    for line, blocks in zip(lines, _by_line(lines, workers, solve_block, conditioned), strict=True):
+        whole = _joined(line, blocks)
+        plain = replace(whole.problems[0], candidates=line.candidates)
+        line.contact.take(line.models[0], plain)
+        found.append(whole)
+    return found
+
+
+def deflections(lines: Sequence[Line], workers: Workers) -> list[list[FloatArray]]:
+    """Solve lines of one set of loads; of each line the STE (T P, L) in m of every model."""
+    return [
+        [_rows([block[k][0] for block in blocks], line) for k in range(len(line.models))]
+        for line, blocks in zip(lines, _by_line(lines, workers, deflect_block, False), strict=True)
+    ]
+
+
+def _by_line(
+    lines: Sequence[Line],
+    workers: Workers,
+    function: Callable[[Bodies, ContactBlock], R],
+    conditioned: bool,
+) -> Iterator[list[R]]:
+    """Yield the results of the blocks of every line; lines of the same bodies go out together."""
+    for _, group in groupby(lines, key=lambda line: id(line.contact.bodies)):
+        together = list(group)
+        cut = [list(line.blocks(conditioned=conditioned)) for line in together]
+        results = workers.run(
+            function, together[0].contact.bodies, [block for blocks in cut for block in blocks]
+        )
+        for blocks in cut:
+            yield [next(results) for _ in blocks]
+
+
+def _laid_out_alike(part: Candidates, whole: Candidates) -> Candidates:
+    """Return candidates whose arrays lie in memory as those they are rows of.
+
+    Compiled sums along a row round otherwise where its numbers stand apart.
+    """
+    return replace(
+        part,
+        touch=_alike(part.touch, whole.touch),
+        patch_1=_alike(part.patch_1, whole.patch_1),
+        patch_2=_alike(part.patch_2, whole.patch_2),
+    )
+
+
+def _alike(part: Arrays, whole: Arrays) -> Arrays:
+    """Lay out a dataclass of arrays as another."""
+    laid_out = {
+        name: np.ascontiguousarray(vars(part)[name])
+        if values.flags.c_contiguous
+        else np.asfortranarray(vars(part)[name])
+        for name, values in vars(whole).items()
+    }
+    alike: Arrays = type(part)(**laid_out)
+    return alike
+
+
+def _joined(line: Line, blocks: list[SolvedBlock]) -> SolvedLine:
+    """Put the blocks of a line together; all models share one compliance."""
+    compliance = np.concatenate([block.problems[0].compliance for block in blocks])
+    problems, solutions = [], []
+    for k in range(len(line.models)):
+        parts = [block.problems[k] for block in blocks]
+        candidates = _joined_candidates([part.candidates for part in parts], line)
+        problems.append(replace(parts[0], candidates=candidates, compliance=compliance))
+        sets = zip(*(block.solutions[k] for block in blocks), strict=True)
+        solutions.append(tuple(_joined_arrays(list(each), line, ("load",)) for each in sets))
+    known = [block.condition for block in blocks if block.condition is not None]
+    return SolvedLine(tuple(problems), tuple(solutions), np.concatenate(known) if known else None)
+
+
+def _joined_candidates(parts: list[Candidates], line: Line) -> Candidates:
+    """Put candidates together."""
+    return replace(
+        parts[0],
+        position=_rows([part.position for part in parts], line),
+        touch=_joined_arrays([part.touch for part in parts], line),
+        patch_1=_joined_arrays([part.patch_1 for part in parts], line),
+        patch_2=_joined_arrays([part.patch_2 for part in parts], line),
+    )
+
+
+def _joined_arrays(parts: list[Arrays], line: Line, same: tuple[str, ...] = ()) -> Arrays:
+    """Put dataclasses of arrays over the rows together; those that are the `same` in all stay."""
+    joined: Arrays = replace(
+        parts[0],
+        **{
+            field.name: _rows([getattr(part, field.name) for part in parts], line)
+            for field in fields(parts[0])
+            if field.name not in same
+        },
+    )
+    return joined
+
+
+def _rows(parts: list[NDArray[Any]], line: Line) -> NDArray[Any]:
+    """Put rows together that go through the positions of a block pitch by pitch."""
+    pitches = 1 if line.pitches is None else line.pitches.size
+    by_pitch = [part.reshape(pitches, -1, *part.shape[1:]) for part in parts]
+    joined = np.concatenate(by_pitch, axis=1)
+    return joined.reshape(-1, *joined.shape[2:])

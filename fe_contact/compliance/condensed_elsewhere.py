@@ -1,0 +1,71 @@
+"""Gears condensed by workers: one task each, their results kept where they are looked for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from fe_contact.compliance.cache import kept_size, write_compliance
+from fe_contact.compliance.cyclic_compliance import (
+    compliance_key_3d,
+    compute_flank_compliance_3d,
+    usual_reach,
+)
+from fe_contact.compliance.flank_3d import FlankCompliance3D
+from fe_contact.geometry import Toothing
+from fe_contact.mesh import SectorRecipe
+from fe_contact.mesh.bore_support import BoreSupport, bore_support
+from fe_contact.workers import InProcess, Workers
+
+FEWEST = 2
+"""Gears that are worth handing out: a single one is condensed here in the same time."""
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A gear to be condensed over its face, of right hand."""
+
+    gear: Toothing
+    recipe: SectorRecipe
+    reach: int
+    support: BoreSupport
+
+    @classmethod
+    def of(cls, gear: Toothing, recipe: SectorRecipe) -> Solid:
+        """As `flank_compliances_3d` condenses it."""
+        right = gear.right_handed()
+        return cls(right, recipe, usual_reach(gear), bore_support(right))
+
+    @property
+    def key(self) -> str:
+        """Its name in the cache."""
+        return compliance_key_3d(self.gear, self.recipe, self.reach, self.support)
+
+
+def condense_elsewhere(
+    gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], cache: Path, workers: Workers
+) -> None:
+    """Let workers condense the gears that are not in the cache, and keep them there.
+
+    Nothing is done where this process is the worker, or would wait for a single one.
+
+    Raises
+    ------
+    MeshError, SolveError
+        As `flank_compliance_3d`.
+    """
+    if isinstance(workers, InProcess):
+        return
+    solids = {solid.key: solid for solid in map(Solid.of, gears, recipes)}
+    missing = {key: solid for key, solid in solids.items() if not kept_size(cache, key)}
+    if len(missing) < FEWEST:
+        return
+    found = workers.run(condense, None, list(missing.values()))
+    for key, compliance in zip(missing, found, strict=True):
+        write_compliance(cache, key, compliance)
+
+
+def condense(_: None, solid: Solid) -> FlankCompliance3D:
+    """Condense a gear: one task."""
+    return compute_flank_compliance_3d(solid.gear, solid.recipe, solid.reach, solid.support)

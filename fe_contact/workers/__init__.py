@@ -1,0 +1,13 @@
+"""Who does independent tasks: this process, an executor, or a Dask cluster; results do not depend on which.
+
+A task is a plain function of something large that all tasks share and of one small item. Items are fixed by
+the caller, whatever the number of workers, and results come in the order of the items.
+"""
+
+from fe_contact.workers.dask_cluster import ByDask, dask_workers
+from fe_contact.workers.executor import ByExecutor
+from fe_contact.workers.in_process import InProcess, Workers
+from fe_contact.workers.or_here import OrHere
+from fe_contact.workers.spent import Spent
+
+__all__ = ["ByDask", "ByExecutor", "InProcess", "OrHere", "Spent", "Workers", "dask_workers"]

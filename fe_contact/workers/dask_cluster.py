@@ -1,0 +1,153 @@
+"""Tasks by a Dask cluster."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import CancelledError
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from fe_contact.errors import InputError, WorkersLost
+from fe_contact.workers.packed import KEPT, Packed
+from fe_contact.workers.spent import Spent, do_task
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+S = TypeVar("S")
+T = TypeVar("T")
+R = TypeVar("R")
+
+PATIENCE_S = 60.0
+"""How long a cluster may be without any worker: those of a nanny come back within seconds."""
+_LOOK_S = 1.0
+"""How often it is looked whether there are any."""
+_CONNECT_S = 10.0
+
+
+@dataclass(frozen=True)
+class ByDask:
+    """A Dask cluster: tasks of workers that die are run again by others.
+
+    Attributes
+    ----------
+    client : distributed.Client
+        Stays the caller's to close.
+    patience : float
+        Seconds without any worker after which the run is given up.
+    spent : Spent
+    """
+
+    client: Client
+    patience: float = PATIENCE_S
+    spent: Spent = field(default_factory=Spent, compare=False)
+    _sent: dict[int, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
+
+    def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
+        """Submit everything, yield in order; what is not yielded any more is cancelled."""
+        import dask  # noqa: PLC0415 (an extra)
+
+        with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
+            packed = self._send(shared)
+            futures = [self.client.submit(do_task, function, packed, item, pure=False) for item in items]
+        return self._in_order(futures)
+
+    def _send(self, shared: object) -> Any:
+        """Return the future of what is shared, sent unless it was before."""
+        known = self._sent.get(id(shared))
+        if known is not None and known[1].status != "cancelled":
+            return known[1]
+        self._sent.pop(id(shared), None)
+        while len(self._sent) >= KEPT:
+            self._sent.pop(next(iter(self._sent)))
+        # a task of its own, not scattered data: the scheduler makes it again where its worker died
+        future = self.client.submit(_itself, Packed.of(shared), pure=False)
+        self._sent[id(shared)] = (shared, future)
+        return future
+
+    def _in_order(self, futures: Sequence[Any]) -> Iterator[Any]:
+        """Yield the results; cancel the rest when the caller stops or a task fails."""
+        try:
+            for count, future in enumerate(futures):
+                yield self.spent.add(self._result(future, f"{count} of {len(futures)} tasks were done"))
+        finally:
+            for future in futures:
+                future.cancel()
+
+    def _result(self, future: Any, so_far: str) -> Any:
+        """Wait for one result as long as there is somebody to make it."""
+        from distributed import KilledWorker  # noqa: PLC0415 (an extra)
+
+        alone_since = None
+        while True:
+            try:
+                if self._ended(future):
+                    return future.result(timeout=self.patience)
+            except TimeoutError:  # of the task itself, or its result did not come over in time
+                if future.status == "error":
+                    raise
+            except KilledWorker:
+                ended = "A task ended every worker that tried it; they may have run out of memory"
+                raise WorkersLost(f"{ended}: {so_far}.") from None
+            except (CancelledError, asyncio.CancelledError):
+                raise WorkersLost(f"The scheduler {self._address} is gone: {so_far}.") from None
+            alone_since = None if self._workers() else alone_since or time.monotonic()
+            if alone_since is not None and time.monotonic() - alone_since > self.patience:
+                alone = f"The cluster of {self._address} had no worker for {self.patience:g} s"
+                raise WorkersLost(f"{alone}: {so_far}. Start workers there, and run it again.")
+
+    def _ended(self, future: Any) -> bool:
+        """Whether a task ended while it was looked at."""
+        from distributed import wait  # noqa: PLC0415 (an extra)
+
+        try:
+            with self.client.as_current():
+                wait([future], timeout=_LOOK_S)  # type: ignore[no-untyped-call]
+        except TimeoutError:
+            return False
+        return True
+
+    def _workers(self) -> bool:
+        """Whether the scheduler has any; one that does not answer ends the futures by itself."""
+        try:
+            return bool(self.client.nthreads())  # type: ignore[no-untyped-call]
+        except (OSError, TimeoutError):
+            return False
+
+    @property
+    def _address(self) -> str:
+        """Where the scheduler is."""
+        return str(self.client.scheduler.address) if self.client.scheduler else "the cluster"
+
+
+def _itself(packed: Packed) -> Packed:
+    """Return what was sent, on a worker."""
+    return packed
+
+
+def dask_workers(scheduler: str) -> ByDask:
+    """Connect to a Dask scheduler.
+
+    Parameters
+    ----------
+    scheduler : str
+        Its address, ``tcp://host:port``; all its workers have this program installed, in this version.
+
+    Raises
+    ------
+    InputError
+        Dask is not installed, or no scheduler answers there.
+    """
+    try:
+        from distributed import Client  # noqa: PLC0415 (an extra)
+    except ImportError:
+        advice = "pip install 'lineofaction[dask]'"
+        raise InputError("dask", scheduler, "left out without the extra dask", advice) from None
+    try:
+        client = Client(scheduler, timeout=_CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
+        return ByDask(client)
+    except (OSError, ValueError) as error:
+        bound = "the address of a running Dask scheduler, such as tcp://host:8786"
+        raise InputError("dask", scheduler, bound, f"{error}.") from None

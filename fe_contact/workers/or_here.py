@@ -1,0 +1,50 @@
+"""Tasks by others as long as there are any, then here: the results are the same."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from fe_contact.errors import WorkersLost
+from fe_contact.workers.in_process import Workers
+from fe_contact.workers.spent import Spent
+
+S = TypeVar("S")
+T = TypeVar("T")
+R = TypeVar("R")
+
+
+@dataclass(frozen=True)
+class OrHere:
+    """Workers that may be lost; what they leave is done in this process.
+
+    Attributes
+    ----------
+    others : Workers
+    told : callable
+        Called once, with the reason, when they are lost; nobody looks for them again.
+    """
+
+    others: Workers
+    told: Callable[[WorkersLost], None]
+    _lost: list[WorkersLost] = field(default_factory=list, compare=False, repr=False)
+
+    @property
+    def spent(self) -> Spent:
+        """What the others did."""
+        return self.others.spent
+
+    def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
+        """Yield the results of the others, and from where they are lost those of this process."""
+        done = 0
+        if not self._lost:
+            try:
+                for result in self.others.run(function, shared, items):
+                    yield result
+                    done += 1
+            except WorkersLost as error:
+                self._lost.append(error)
+                self.told(error)
+        for item in items[done:]:
+            yield function(shared, item)

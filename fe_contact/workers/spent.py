@@ -1,0 +1,75 @@
+"""What tasks cost those who did them."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+from fe_contact.workers.packed import Packed
+
+R = TypeVar("R")
+
+_UNIT = 1 if sys.platform == "darwin" else 1024
+"""Bytes in which the system reports resident memory."""
+
+
+@dataclass
+class Spent:
+    """What tasks done elsewhere have cost so far; the one thing here that changes.
+
+    Work that is lost with its worker is not in it: nobody can tell.
+
+    Attributes
+    ----------
+    tasks : int
+    cpu_seconds : float
+        Of the threads that did them and of the processes they started. A worker that does its tasks in its
+        main thread, as those of a pool of processes, has no others: then of all its threads.
+    peak_memory_bytes : int
+        Largest resident memory of any of their processes.
+    """
+
+    tasks: int = 0
+    cpu_seconds: float = 0.0
+    peak_memory_bytes: int = 0
+
+    def since(self, before: Spent) -> Spent:
+        """Return what was spent after another reading of the same; the peak is that of all."""
+        cpu_seconds = self.cpu_seconds - before.cpu_seconds
+        return Spent(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes)
+
+    def add(self, done: Done[R]) -> R:
+        """Count a task, and return its result."""
+        self.tasks += 1
+        self.cpu_seconds += done.cpu_seconds
+        self.peak_memory_bytes = max(self.peak_memory_bytes, done.peak_memory_bytes)
+        return done.result
+
+
+@dataclass(frozen=True)
+class Done(Generic[R]):
+    """The result of one task, and what it cost its worker."""
+
+    result: R
+    cpu_seconds: float
+    peak_memory_bytes: int
+
+
+def do_task(function: Callable[[Any, Any], R], packed: Packed, item: Any) -> Done[R]:
+    """Do one task, on a worker."""
+    begun = _cpu_seconds()
+    result = function(packed.unpacked(), item)
+    peak = _UNIT * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return Done(result, _cpu_seconds() - begun, peak)
+
+
+def _cpu_seconds() -> float:
+    """CPU seconds of who works here, and of finished children."""
+    alone = threading.current_thread() is threading.main_thread()
+    own = resource.RUSAGE_SELF if alone else getattr(resource, "RUSAGE_THREAD", resource.RUSAGE_SELF)
+    usage = (resource.getrusage(who) for who in (own, resource.RUSAGE_CHILDREN))
+    return sum(each.ru_utime + each.ru_stime for each in usage)
