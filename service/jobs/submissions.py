@@ -16,7 +16,7 @@ from service.jobs.job import ENDED, Job, job_of, select_jobs
 from service.jobs.job_filter import EVERY_JOB, JobFilter
 from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, QueueFull
-from service.store import Mark, behind, instant, now, reading, retried, writing
+from service.store import Mark, behind, instant, now, optional, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
 
 _LOOKED_AT = 500  # at a time, where durations are asked for
@@ -115,11 +115,12 @@ class Submissions:
         self._note_use(row)
         return job_of(row)
 
+    @optional
     def _note_use(self, row: Any) -> None:
-        """Note, once an hour, that an ended job was asked for."""
+        """Note, once an hour, that an ended job was asked for; nobody waits for that."""
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         if row.state in ENDED and (row.asked or row.job_created) < before:
-            with writing(self._engine) as connection:
+            with writing(self._engine, brief=True) as connection:
                 connection.execute(update(jobs).where(jobs.c.id == row.job_id).values(asked=now()))
 
     def page(self, limit: int, wanted: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:

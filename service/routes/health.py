@@ -23,8 +23,8 @@ class NotReady(ServiceError):
 
 
 @router.get("/health", summary="Alive?")
-def health() -> dict[str, Any]:
-    """Answer that the process serves requests."""
+async def health() -> dict[str, Any]:
+    """Answer that the process serves requests, however many of them wait for the database in threads."""
     return {"status": "ok"}
 
 

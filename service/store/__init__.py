@@ -4,7 +4,7 @@ from service.store.database import instant, now, open_database, reading, writing
 from service.store.dialects import dialect_of
 from service.store.directory import DirectoryLock, identity_of
 from service.store.mark import Mark, behind
-from service.store.outages import retried
+from service.store.outages import optional, retried
 from service.store.places import DATABASE_FILE, RESULTS_DIRECTORY, result_store, stored_results
 from service.store.results import IndexLine, ResultStore, StoredResult
 
@@ -22,6 +22,7 @@ __all__ = [
     "instant",
     "now",
     "open_database",
+    "optional",
     "reading",
     "result_store",
     "retried",

@@ -68,13 +68,13 @@ def _url(text: str) -> URL:
 
 
 @contextmanager
-def writing(engine: Engine, *, in_turn: bool = False) -> Iterator[Connection]:
+def writing(engine: Engine, *, in_turn: bool = False, brief: bool = False) -> Iterator[Connection]:
     """Open a transaction that may write.
 
     With `in_turn` it is alone among all that take turns: what it has read stays so until it ends. Others
-    rely on the rows they lock.
+    rely on the rows they lock. With `brief` it fails at once rather than wait for others.
     """
-    with engine.execution_options(immediate=True).begin() as connection:
+    with engine.execution_options(immediate=True, brief=brief).begin() as connection:
         if in_turn:
             dialect_of(connection).take_turn(connection)
         yield connection

@@ -22,7 +22,16 @@ _PRAGMAS = (
 )
 _TURN = 0x6C6F61  # "loa": any number that all our processes know
 _CONNECT_TIMEOUT_S = 5
-_STALLED = "-c idle_in_transaction_session_timeout=30s"  # a stalled process must not hold rows for ever
+_STALLED = "-c idle_in_transaction_session_timeout=30s -c lock_timeout=10s"
+"""A stalled process must not hold rows for ever, nor let its callers wait for longer than a client does."""
+_SILENT: Mapping[str, Any] = {
+    "keepalives_idle": 10,
+    "keepalives_interval": 5,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 20_000,
+}
+"""A network that swallows everything is noticed after half a minute, not after the system's quarter hour."""
+_BRIEF_MS = 100
 _POOL: Mapping[str, Any] = {"pool_size": 5, "max_overflow": 15, "pool_timeout": 5.0, "pool_pre_ping": True}
 
 
@@ -87,8 +96,10 @@ def _prepare(connection: Any, _record: object) -> None:
 
 def _begin(connection: Connection) -> None:
     """Begin; a writer takes the lock at once, since a lock upgrade in mid-transaction can only fail."""
-    immediate = connection.get_execution_options().get("immediate", False)
-    connection.exec_driver_sql("BEGIN IMMEDIATE" if immediate else "BEGIN")
+    options = connection.get_execution_options()
+    if options.get("brief", False):  # the connection is not used again: there is no pool
+        connection.exec_driver_sql(f"PRAGMA busy_timeout={_BRIEF_MS}")
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get("immediate", False) else "BEGIN")
 
 
 class PostgreSQL:
@@ -108,14 +119,17 @@ class PostgreSQL:
             "connect_timeout": _CONNECT_TIMEOUT_S,
             "application_name": "lineofaction",
             "options": _STALLED,
+            **_SILENT,
         }
         pool: Mapping[str, Any] = _POOL if pooled else {"poolclass": NullPool}
         try:
-            return create_engine(url, connect_args=arguments, **pool)
+            engine = create_engine(url, connect_args=arguments, **pool)
         except ModuleNotFoundError:
             shown = url.render_as_string(hide_password=True)
             tip = "Install it: pip install 'lineofaction[postgres]'."
             raise BadInput.of("database_url", shown, "one whose driver is installed", tip) from None
+        event.listen(engine, "begin", _begin_on_server)
+        return engine
 
     def insert(self, table: Table) -> postgresql.Insert:
         """Return PostgreSQL's insert."""
@@ -132,12 +146,19 @@ class PostgreSQL:
     def lost(self, error: DBAPIError) -> bool:
         """Whether the connection broke or never was, or the server asks to try again.
 
-        Classes of SQLSTATE: 08 connection, 40 rolled back (deadlock), 53 out of resources, 57P server ends.
+        Classes of SQLSTATE: 08 connection, 40 rolled back (deadlock), 53 out of resources, 57P server ends;
+        55P03 others held a lock for too long.
         """
         state = getattr(error.orig, "sqlstate", None)
         if state is None:
             return type(error.orig).__name__ in ("OperationalError", "InterfaceError", "ConnectionTimeout")
-        return error.connection_invalidated or state.startswith(("08", "40", "53", "57P"))
+        return error.connection_invalidated or state.startswith(("08", "40", "53", "57P", "55P03"))
+
+
+def _begin_on_server(connection: Connection) -> None:
+    """Wait for locks but briefly, if that is asked for; the transaction's end undoes it."""
+    if connection.get_execution_options().get("brief", False):
+        connection.exec_driver_sql(f"SET LOCAL lock_timeout = {_BRIEF_MS}")
 
 
 _DIALECTS: Mapping[str, Dialect] = {"sqlite": SQLite(), "postgresql": PostgreSQL()}

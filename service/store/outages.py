@@ -9,13 +9,15 @@ from typing import Concatenate, ParamSpec, Protocol, TypeVar, cast
 import structlog
 from sqlalchemy import Engine
 from sqlalchemy.exc import SQLAlchemyError
-from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt
+from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt, stop_after_delay
 from tenacity.wait import wait_exponential, wait_random
 
 from service.problems import DatabaseUnavailable
 from service.store.dialects import is_lost
 
 _ATTEMPTS = 6
+_PATIENCE_S = 5.0
+"""After which a step is not tried again: one attempt may have waited for a lock as long as it may."""
 _FIRST_WAIT_S, _LONGEST_WAIT_S = 0.05, 1.0
 
 P = ParamSpec("P")
@@ -41,7 +43,7 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
     Raises
     ------
     DatabaseUnavailable
-        The database has not come back after about two seconds.
+        The database has not come back after about two seconds, or others hold what is needed for too long.
     """
 
     @functools.wraps(step)
@@ -49,7 +51,7 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
         engine = self._engine
         attempts = Retrying(
             retry=retry_if_exception(lambda error: is_lost(error, engine)),
-            stop=stop_after_attempt(_ATTEMPTS),
+            stop=stop_after_attempt(_ATTEMPTS) | stop_after_delay(_PATIENCE_S),
             wait=wait_exponential(_FIRST_WAIT_S, _LONGEST_WAIT_S) + wait_random(0.0, _FIRST_WAIT_S),
             before_sleep=_note,
             reraise=True,
@@ -62,6 +64,20 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
             raise
 
     return cast(Callable[Concatenate[S, P], R], run)
+
+
+def optional(step: Callable[Concatenate[S, P], None]) -> Callable[Concatenate[S, P], None]:
+    """Let a method pass without effect when the database is lost: what calls it goes on without."""
+
+    @functools.wraps(step)
+    def run(self: S, *args: P.args, **kwargs: P.kwargs) -> None:
+        try:
+            step(self, *args, **kwargs)
+        except SQLAlchemyError as error:
+            if not is_lost(error, self._engine):
+                raise
+
+    return cast(Callable[Concatenate[S, P], None], run)
 
 
 def _note(state: RetryCallState) -> None:

@@ -30,7 +30,7 @@ from service.store.database import instant, metadata, now, reading, writing
 from service.store.dialects import dialect_of
 from service.store.files import ResultFiles, WrongContent, digest_of
 from service.store.mark import Mark, behind
-from service.store.outages import retried
+from service.store.outages import optional, retried
 
 USE_NOTED_EVERY_S = 3600.0
 """A result that is read all the time is noted as used this often."""
@@ -208,12 +208,12 @@ class ResultStore:
         if time.monotonic() - last >= USE_NOTED_EVERY_S:
             self._note_use(key, kind)
 
-    @retried
+    @optional
     def _note_use(self, key: str, kind: str) -> None:
-        """Write down that a result was asked for."""
+        """Write down that a result was asked for; nobody waits for that."""
         mine = (results.c.key == key, results.c.kind == kind)
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
-        with writing(self._engine) as connection:
+        with writing(self._engine, brief=True) as connection:
             connection.execute(update(results).where(*mine, results.c.used < before).values(used=now()))
         self._noted[(key, kind)] = time.monotonic()
 

@@ -1,35 +1,84 @@
-"""200 submissions of 20 distinct cases at once: 20 computations, 200 right answers, a bounded queue."""
+"""Many submissions of few distinct cases at once: each computed once, right answers for all, a bounded queue.
+
+200 submissions of 20 cases in one process on SQLite; to a server with access keys and two schedulers on
+PostgreSQL a few cases here, and LOA_DISTINCT_CASES in the nightly run (20).
+"""
 
 from __future__ import annotations
 
+import os
 import random
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
+import httpx2
 import pytest
 from fastapi.testclient import TestClient
+from killed_service import KilledService
+from postgres_server import PostgresServer, migrated
+from prometheus_client.parser import text_string_to_metric_families
 from running_service import REFERENCES, until
 from service_stand_ins import REGISTRY
 
+from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 
 EXECUTION = "/v1/processes/standin/execution"
-SUBMISSIONS, CASES, QUEUE = 200, 20, 8
+SUBMISSIONS_PER_CASE, QUEUE = 10, 8
 FILE = {"Accept": "application/x-netcdf"}
+Client = TestClient | httpx2.Client
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A service that is asked: by whom, for how many cases, and where the work leaves its traces."""
+
+    clients: Sequence[Client]
+    cases: int
+    directory: Path
 
 
 @pytest.fixture
-def client(tmp_path: Path) -> Iterator[TestClient]:
-    """A client of a running app with a queue shorter than the number of cases."""
+def one_process(tmp_path: Path) -> Iterator[Asked]:
+    """One process on SQLite with a queue shorter than the number of cases."""
     settings = Settings(data_directory=tmp_path, queue_limit=QUEUE, workers=2)
     with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as found:
-        yield found
+        yield Asked([found], 20, tmp_path)
 
 
-def submit(client: TestClient, text: str) -> str:
+@pytest.fixture
+def several_processes(tmp_path: Path, postgres: PostgresServer) -> Iterator[Asked]:
+    """A server and two schedulers on PostgreSQL, and two callers with keys."""
+    keys = KeyFile(tmp_path / "keys.json")
+    settings = {
+        "LOA_DATABASE_URL": migrated(postgres.new_database()),
+        "LOA_RESULTS_URL": (tmp_path / "results").as_uri(),
+        "LOA_KEYS_FILE": str(keys.path),
+        "LOA_QUEUE_LIMIT": str(QUEUE),
+    }
+    headers = [{"Authorization": f"Bearer {keys.add(name)}"} for name in ("one", "other")]
+    with KilledService(tmp_path, settings, ["serve", "work", "work"], headers=headers[0]) as service:
+        service.request("GET", "/ready")
+        first, second = (
+            httpx2.Client(base_url=service.address, headers=one, timeout=60.0) for one in headers
+        )
+        with first, second:
+            assert httpx2.get(f"{service.address}/ready").status_code == 401
+            yield Asked([first, second], int(os.environ.get("LOA_DISTINCT_CASES", "6")), tmp_path)
+
+
+@pytest.fixture(params=["one_process", "several_processes"])
+def asked(request: pytest.FixtureRequest) -> Asked:
+    """Return one after the other."""
+    found: Asked = request.getfixturevalue(request.param)
+    return found
+
+
+def submit(client: Client, text: str) -> str:
     """Submit until there is room; return the job's address."""
     while True:
         answer = client.post(EXECUTION, json={"inputs": {"wish": {"text": text}}})
@@ -39,25 +88,36 @@ def submit(client: TestClient, text: str) -> str:
         time.sleep(1.0)  # the tests' patience is less than the 10 s asked for
 
 
-def test_equal_cases_are_computed_once_and_all_are_answered(client: TestClient, tmp_path: Path) -> None:
-    wishes = [f"case {n % CASES}" for n in range(SUBMISSIONS)]
+def submitted_at_once(asked: Asked, wishes: Sequence[str], meanwhile: Callable[[], bool]) -> list[str]:
+    """Submit in 16 threads, every other one with another key, and wait until `meanwhile` is true."""
+    with ThreadPoolExecutor(16) as pool:
+        callers = [asked.clients[n % len(asked.clients)] for n in range(len(wishes))]
+        locations = pool.map(submit, callers, wishes)
+        until(meanwhile, 600.0)
+        return list(locations)
+
+
+@pytest.mark.slow
+def test_equal_cases_are_computed_once_and_all_are_answered(asked: Asked) -> None:
+    wishes = [f"case {n % asked.cases}" for n in range(SUBMISSIONS_PER_CASE * asked.cases)]
     random.Random(7).shuffle(wishes)
-    waiting: list[int] = []
+    client, waiting = asked.clients[0], []
 
     def watch() -> bool:
         time.sleep(0.2)
         counts = client.get("/ready").json()["computations"]
         waiting.append(counts.get("accepted", 0))
-        return bool(counts == {"successful": CASES})
+        return bool(counts == {"successful": asked.cases})
 
-    with ThreadPoolExecutor(16) as pool:
-        submitted = pool.map(lambda text: submit(client, text), wishes)
-        until(watch, 600.0)
-        locations = list(submitted)
+    locations = submitted_at_once(asked, wishes, watch)
     assert max(waiting) <= QUEUE
-    assert len(set(locations)) == SUBMISSIONS
-    for text, location in zip(wishes, locations, strict=True):
-        reference = client.get(f"{location}/results", params=REFERENCES).json()["database"]
-        assert client.get(reference["href"], headers=FILE).text == text
-    starts = [line for file in tmp_path.glob("started_*") for line in file.read_text().splitlines()]
-    assert len(starts) == CASES
+    assert len(set(locations)) == len(wishes)
+    for number, (text, location) in enumerate(zip(wishes, locations, strict=True)):
+        reader = asked.clients[number % len(asked.clients)]
+        reference = reader.get(f"{location}/results", params=REFERENCES).json()["database"]
+        assert reader.get(reference["href"], headers=FILE).text == text
+    starts = [line for file in asked.directory.rglob("started_*") for line in file.read_text().splitlines()]
+    assert len(starts) == asked.cases
+    figures = {f.name: f for f in text_string_to_metric_families(client.get("/metrics").text)}
+    counted = [s.value for s in figures["loa_computation_seconds"].samples if s.name.endswith("_count")]
+    assert counted == [asked.cases]

@@ -10,7 +10,7 @@ import subprocess
 import tempfile
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,11 +30,50 @@ _FAST = (
 _ABSENT = "PostgreSQL is not installed (Debian: apt-get install postgresql); initdb and postgres were sought"
 
 
-@dataclass(frozen=True)
+@dataclass
 class PostgresServer:
-    """A running server; whoever may reach its socket is its superuser."""
+    """A server; whoever may reach its socket is its superuser.
+
+    Attributes
+    ----------
+    directory : Path
+        Of its socket, its log and its data.
+    program : str
+    user : dict
+        Whom it runs as.
+    """
 
     directory: Path
+    program: str
+    user: Mapping[str, Any]
+    _process: subprocess.Popen[bytes] | None = None
+
+    @property
+    def socket(self) -> Path:
+        """Where it answers."""
+        return self.directory / ".s.PGSQL.5432"
+
+    def start(self) -> None:
+        """Start it, and wait until it answers."""
+        options = [part for setting in _FAST for part in ("-c", setting)]
+        with (self.directory / "log").open("ab") as log:
+            arguments = [self.program, "-D", str(self.directory / "data"), "-k", str(self.directory)]
+            self._process = subprocess.Popen(
+                [*arguments, *options], stdout=log, stderr=log, cwd="/", **self.user
+            )
+        _await(self, self._process)
+
+    def fall(self) -> None:
+        """End it at once: no transaction ends, no connection is told (``pg_ctl stop -m immediate``)."""
+        assert self._process is not None
+        self._process.send_signal(signal.SIGQUIT)
+        self._process.wait()
+
+    def fall_and_rise(self, after_s: float) -> None:
+        """End it at once and start it again after a while: it recovers from its log."""
+        self.fall()
+        time.sleep(after_s)
+        self.start()
 
     def new_database(self) -> str:
         """Return the URL of a new, empty database."""
@@ -93,17 +132,12 @@ def running_server() -> Iterator[PostgresServer]:
         data = directory / "data"
         made = [initdb, "-D", str(data), "-U", "postgres", "-A", "trust", "-E", "UTF8", "--no-sync"]
         subprocess.run(made, check=True, capture_output=True, cwd="/", **user)
-        options = [part for setting in _FAST for part in ("-c", setting)]
-        with (directory / "log").open("wb") as log:
-            arguments = [postgres, "-D", str(data), "-k", str(directory), *options]
-            server = subprocess.Popen(arguments, stdout=log, stderr=log, cwd="/", **user)
+        server = PostgresServer(directory, postgres, user)
         try:
-            found = PostgresServer(directory)
-            _await(found, server)
-            yield found
+            server.start()
+            yield server
         finally:
-            server.send_signal(signal.SIGQUIT)  # at once
-            server.wait()
+            server.fall()
     finally:
         shutil.rmtree(directory, ignore_errors=True)
 
@@ -137,11 +171,15 @@ def database_url(request: pytest.FixtureRequest) -> str | None:
     """
     if request.param == "sqlite":
         return None
+    server: PostgresServer = request.getfixturevalue("postgres")
+    return migrated(server.new_database())
+
+
+def migrated(url: str) -> str:
+    """Return the URL of a database after its tables were made."""
     from service.store.database import database_engine  # noqa: PLC0415 (skipped tests need none of it)
     from service.store.schema import Schema  # noqa: PLC0415
 
-    server: PostgresServer = request.getfixturevalue("postgres")
-    url = server.new_database()
     engine = database_engine(url)
     Schema(engine).upgrade()
     engine.dispose()

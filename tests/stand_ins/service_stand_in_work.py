@@ -13,6 +13,7 @@ from fe_contact.errors import InputError, MeshError
 from service.jobs.order import Product, Progress, WorkOrder
 
 SECRET = "the text of a defect"
+_TEXT, _NONCE = 20, 20
 
 
 def work(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
@@ -42,8 +43,18 @@ def report(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 
 
 def slow_content(text: str) -> bytes:
-    """Return the result of slow work, 200 kB."""
-    return text.encode().ljust(20, b".") * 10_000
+    """Return a result of slow work, 200 kB: another for each attempt, so that a second one shows."""
+    return _repeated(text, os.urandom(_NONCE // 2).hex().encode())
+
+
+def is_slow_content(content: bytes, text: str) -> bool:
+    """Whether this is one whole result of slow work for a text."""
+    return content == _repeated(text, content[_TEXT : _TEXT + _NONCE])
+
+
+def _repeated(text: str, nonce: bytes) -> bytes:
+    """Return text and nonce over and over."""
+    return (text.encode().ljust(_TEXT, b".") + nonce) * 5_000
 
 
 def _write_slowly(file: Path, content: bytes, progress: Progress) -> None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
+import socket
 import sqlite3
 import threading
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from cut_connections import relay
 from fastapi.testclient import TestClient
-from postgres_server import PostgresServer, running_server
+from postgres_server import PostgresServer, migrated, running_server
 from running_service import Bench, bench
 from service_stand_ins import REGISTRY
 from sqlalchemy import event, false
@@ -22,6 +25,8 @@ from service.settings import Settings, load_settings
 from service.store import open_database
 from service.store.database import database_engine
 from service.store.schema import Schema
+
+KEEPALIVE = (socket.TCP_KEEPIDLE, socket.TCP_KEEPINTVL, socket.TCP_KEEPCNT)
 
 
 @pytest.fixture
@@ -104,6 +109,40 @@ def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_p
     assert answer.headers["content-type"] == "application/problem+json"
     assert answer.json()["type"] == "urn:lineofaction:problem:database-unavailable"
     app.state.context.close()
+
+
+def test_a_network_that_swallows_everything_is_noticed(postgres: PostgresServer) -> None:
+    """The system drops a connection whose packets nobody takes, within a client's patience of 30 s."""
+    with relay(postgres.socket) as between:
+        url = postgres.new_database().partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
+        engine = database_engine(url)
+        with engine.connect() as connection:
+            descriptor = os.dup(connection.connection.dbapi_connection.fileno())  # type: ignore[union-attr]
+            with socket.socket(fileno=descriptor) as wire:
+                assert 0 < wire.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT) <= 20_000
+                silent = [wire.getsockopt(socket.IPPROTO_TCP, option) for option in KEEPALIVE]
+        engine.dispose()
+    idle, interval, count = silent
+    assert idle + interval * count < 30
+
+
+def test_a_connection_that_is_cut_in_mid_statement_is_outlasted(
+    tmp_path: Path, postgres: PostgresServer
+) -> None:
+    with relay(postgres.socket) as between:
+        direct = migrated(postgres.new_database())
+        url = direct.partition("?")[0].replace("@", f"@127.0.0.1:{between.port}")
+        machine, cuts = bench(tmp_path, REGISTRY, database_url=url), []
+
+        def cut_once(*_: object) -> None:
+            if len(cuts) < 1:
+                cuts.append(between.cut())
+
+        event.listen(machine.engine, "before_cursor_execute", cut_once)
+        job = machine.submit(text="kept")
+        assert cuts[0] > 0
+        assert [found.id for found in machine.submissions.page(10)] == [job.id]
+        machine.close()
 
 
 def test_a_file_that_another_holds_is_waited_for_and_then_refused(

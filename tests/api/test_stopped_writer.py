@@ -1,0 +1,156 @@
+"""A process stopped (SIGSTOP) while it holds what all writers need: callers are told, readers served."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+import structlog
+from anyio import CapacityLimiter
+from anyio.to_thread import current_default_thread_limiter
+from fastapi.testclient import TestClient
+from running_service import until
+from service_stand_ins import REGISTRY
+from sqlalchemy import update
+from sqlalchemy.exc import DBAPIError
+from structlog.testing import LogCapture
+
+from service.app import create_app
+from service.jobs.tables import jobs
+from service.settings import Settings
+from service.store import reading, writing
+from service.store.database import database_engine
+from service.store.results import results
+
+EXECUTION = "/v1/processes/standin/execution"
+HOLD = """
+import sys
+from service.store import writing
+from service.store.database import database_engine
+with writing(database_engine(sys.argv[1]), in_turn=True):
+    print("held", flush=True)
+    sys.stdin.readline()
+"""
+ROOT = Path(__file__).parents[2]
+LONG_AGO = "2020-01-01T00:00:00.000000Z"
+
+
+@pytest.fixture
+def address(tmp_path: Path, database_url: str | None, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A database on which nobody waits for long."""
+    monkeypatch.setattr(
+        "service.store.dialects._PRAGMAS", ("PRAGMA journal_mode=WAL", "PRAGMA busy_timeout=1000")
+    )
+    monkeypatch.setattr("service.store.dialects._STALLED", "-c lock_timeout=1s")
+    monkeypatch.setattr("service.store.outages._PATIENCE_S", 0.5)
+    return database_url or f"sqlite:///{tmp_path / 'service.sqlite3'}"
+
+
+@contextmanager
+def stopped_writer(address: str) -> Iterator[subprocess.Popen[str]]:
+    """Run a process that is stopped in mid-transaction."""
+    command = [sys.executable, "-c", HOLD, address]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ["PYTHONPATH"]])}
+    pipes: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, env=environment, **pipes) as process:
+        assert process.stdout is not None and process.stdout.readline() == "held\n"
+        process.send_signal(signal.SIGSTOP)
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+@pytest.fixture
+def client(tmp_path: Path, address: str) -> Iterator[TestClient]:
+    """A client of a running app."""
+    settings: dict[str, Any] = {"data_directory": tmp_path, "database_url": address}
+    with TestClient(create_app(Settings(**settings), REGISTRY), raise_server_exceptions=False) as found:
+        yield found
+
+
+def body(text: str) -> dict[str, Any]:
+    """Return what is submitted."""
+    return {"inputs": {"wish": {"text": text}}}
+
+
+def test_writers_are_told_to_come_again_and_readers_notice_nothing(client: TestClient, address: str) -> None:
+    location = client.post(EXECUTION, json=body("done")).headers["location"]
+    until(lambda: client.get(location).json()["status"] == "successful")
+    engine = database_engine(address)
+    with writing(engine) as connection:  # so long ago that looking at them is worth a note
+        connection.execute(update(jobs).values(created=LONG_AGO))
+        connection.execute(update(results).values(used=LONG_AGO))
+    log = LogCapture()
+    with stopped_writer(address) as process:
+        structlog.configure(processors=[log])
+        for text in ("new", "done"):
+            answer = client.post(EXECUTION, json=body(text))
+            assert (answer.status_code, answer.headers["retry-after"]) == (503, "5")
+            assert answer.json()["type"] == "urn:lineofaction:problem:database-unavailable"
+        steps = [entry for entry in log.entries if entry["event"] == "request"]
+        assert [entry["status"] for entry in steps] == [503, 503]
+        for path in (location, f"{location}/results", "/v1/jobs", "/v1/databases", "/ready", "/metrics"):
+            assert client.get(path).status_code == 200, path
+        assert [entry for entry in log.entries if entry["event"] == "database lost"] == []
+        with reading(engine) as connection:
+            noted = connection.execute(jobs.select()).one().asked
+        assert (noted is None) == address.startswith("sqlite")  # there it holds rows too
+        process.send_signal(signal.SIGCONT)
+        process.communicate("go on\n")
+    answer = client.post(EXECUTION, json=body("new"))
+    assert answer.status_code == 201
+    until(lambda: client.get(answer.headers["location"]).json()["status"] == "successful")
+    assert client.get(location).status_code == 200
+    with reading(engine) as connection:
+        noted = connection.execute(jobs.select().where(jobs.c.created == LONG_AGO)).one()
+        assert noted.asked is not None
+    engine.dispose()
+
+
+def test_health_is_answered_while_every_thread_waits(tmp_path: Path) -> None:
+    """Else a supervisor would restart a service that is well."""
+    app = create_app(Settings(data_directory=tmp_path), REGISTRY)
+    with TestClient(app) as client, ThreadPoolExecutor(2) as pool:
+        assert client.portal is not None
+
+        async def all_threads() -> tuple[CapacityLimiter, list[int]]:
+            limiter = current_default_thread_limiter()
+            tokens = list(range(int(limiter.available_tokens)))
+            for token in tokens:
+                limiter.acquire_on_behalf_of_nowait(token)
+            return limiter, tokens
+
+        async def given_back() -> None:
+            for token in tokens:
+                limiter.release_on_behalf_of(token)
+
+        limiter, tokens = client.portal.call(all_threads)
+        health, ready = (pool.submit(client.get, path) for path in ("/health", "/ready"))
+        try:
+            assert health.result(timeout=20.0).json() == {"status": "ok"}
+            assert not ready.done()
+        finally:
+            client.portal.call(given_back)
+        assert ready.result().status_code == 200
+
+
+def test_one_who_can_do_without_waits_for_a_fraction_of_the_time(address: str) -> None:
+    engine, waited = database_engine(address), {}
+    with stopped_writer(address):
+        for brief in (False, True):
+            begin = time.perf_counter()
+            with pytest.raises(DBAPIError), writing(engine, in_turn=True, brief=brief):
+                pass
+            waited[brief] = time.perf_counter() - begin
+    assert waited[True] < 0.6 * waited[False]
+    engine.dispose()
