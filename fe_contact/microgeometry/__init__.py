@@ -7,7 +7,8 @@ from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, 
 from fe_contact.microgeometry.optimisation import Optimisation, Outcome, StepAside
 from fe_contact.microgeometry.optimise import optimise
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
-from fe_contact.microgeometry.search import DifferentialEvolution, NelderMead, Search, SearchRun
+from fe_contact.microgeometry.search import Ended, Search, SearchRun
+from fe_contact.microgeometry.search_method import DifferentialEvolution, NelderMead
 from fe_contact.microgeometry.tolerance_study import ToleranceStudy, scatter
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
@@ -17,6 +18,7 @@ __all__ = [
     "ConfirmedDesign",
     "DesignVariable",
     "DifferentialEvolution",
+    "Ended",
     "GaussHermite",
     "HarrisMap",
     "Limits",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -65,6 +65,12 @@ class DesignProblem:
         ends = [(v.low, v.high) for v in self.variables]
         found = [(x - low) / (high - low) for x, (low, high) in zip(values, ends, strict=True)]
         return np.asarray(np.clip(np.array(found), 0.0, 1.0))
+
+    def rough(self, positions: int) -> DesignProblem:
+        """Return the problem at fewer positions, equally spaced in a base pitch; itself if they are not."""
+        if positions >= self.evaluator.position.size:
+            return self
+        return replace(self, evaluator=self.evaluator.at(np.arange(positions) / positions))
 
     def judge(self, place: FloatArray) -> Judged:
         """Evaluate the design at a place; one whose contact cannot be solved has an infinite merit."""

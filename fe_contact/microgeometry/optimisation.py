@@ -74,6 +74,8 @@ class Optimisation:
         `best_run` is the index of the one that counts.
     best_run : int
     sensitivity : tuple of StepAside
+    not_tried : tuple of str
+        What the optimum is the best without: assumptions that were left as they are, in words.
     cost : dict
         Evaluations and CPU seconds by stage; the search's are those of all its processes.
     asked : dict
@@ -91,6 +93,7 @@ class Optimisation:
     runs: tuple[SearchRun, ...]
     best_run: int
     sensitivity: tuple[StepAside, ...]
+    not_tried: tuple[str, ...]
     cost: Json
     asked: Json
 
@@ -122,6 +125,7 @@ class Optimisation:
             "runs": [run.to_json() for run in self.runs],
             "best_run": self.best_run,
             "sensitivity": [one.to_json() for one in self.sensitivity],
+            "not_tried": list(self.not_tried),
             "cost": self.cost,
             "asked": self.asked,
         }

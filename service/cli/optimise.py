@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fe_contact.microgeometry import Optimisation
+from service.cli.interrupt import until_interrupted
 from service.cli.output import console, output_files, print_json, progress_bar, table
 from service.convert.optimisation import boundary_values, optimisation_json, optimisation_of
 from service.convert.task_workers import Hands, working_hands
@@ -27,8 +28,9 @@ def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, 
     """Optimise, write, print."""
     given, wanted = read_model(Case, case), read_model(OptimisationInput, study)
     targets = [] if output is None else output_files(output, "optimum", tuple(_WRITERS))
-    with working_hands(hands) as workers, progress_bar() as report:
-        found = optimisation_of(given, wanted, cache_home() / "compliance", report, workers)
+    with working_hands(hands) as workers, progress_bar() as report, until_interrupted() as cancel:
+        found = optimisation_of(given, wanted, cache_home() / "compliance", report, workers, cancel)
+        interrupted = cancel()
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _WRITERS[target.suffix](found, target)
@@ -36,6 +38,8 @@ def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, 
         print_json({"written": [str(target) for target in targets], **optimisation_json(found)})
     else:
         _show(found, targets)
+    if interrupted:
+        raise KeyboardInterrupt("interrupted. The design above is the best of those searched so far.")
 
 
 def _picture(found: Optimisation, target: Path) -> None:
@@ -75,6 +79,8 @@ def _show(found: Optimisation, targets: list[Path]) -> None:
     out = console()
     for rows in (optimum_table(found), ripple_table(found)):
         out.print(table(rows.head, rows.rows, rows.caption))
+    for line in found.not_tried:
+        out.print(f"not tried: {line}", highlight=False)
     search = f"{found.evaluations} designs in {found.cost['stages']['search']['cpu_seconds']:.3g} CPU s"
     out.print(f"{found.outcome.replace('_', ' ')}: {found.reason}; {search}", highlight=False)
     for target in targets:

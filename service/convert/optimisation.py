@@ -22,7 +22,7 @@ from fe_contact.microgeometry import (
 )
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.design_study import Accuracies
-from fe_contact.microgeometry.optimise import check_optimisation
+from fe_contact.microgeometry.request import OptimisationRequest
 from fe_contact.workers import InProcess, Workers
 from service.convert.ablation import in_um
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
@@ -49,8 +49,9 @@ def optimisation_of(
     cache: Path | None,
     report: Report,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    cancel: Callable[[], bool] | None = None,
 ) -> Optimisation:
-    """Optimise the modifications of a case.
+    """Optimise the modifications of a case; when `cancel` says so, end with the best so far.
 
     Raises
     ------
@@ -63,9 +64,9 @@ def optimisation_of(
         arguments = _arguments(case, study)
         return optimise(
             **arguments,
-            limits=_limits(study),
             **{name: analysis_arguments(case)[name] for name in _ACCURACY},
             workers=workers,
+            cancel=cancel,
             progress=report,
             cache=cache,
         )
@@ -74,9 +75,8 @@ def optimisation_of(
 def check_optimisation_of(case: Case, study: OptimisationInput) -> None:
     """Raise `BadInput` for what `optimisation_of` would, without computing anything."""
     with boundary_errors():
-        _limits(study)
         accuracy = Accuracies(**{name: analysis_arguments(case)[name] for name in _ACCURACY})
-        check_optimisation(**_arguments(case, study), accuracy=accuracy)
+        OptimisationRequest(**_arguments(case, study), accuracy=accuracy).check()
 
 
 def _arguments(case: Case, study: OptimisationInput) -> Json:
@@ -89,10 +89,11 @@ def _arguments(case: Case, study: OptimisationInput) -> Json:
     return {
         "pair": pair,
         "torques": list(torques),
-        "variables": _variables(study),
+        "variables": tuple(_variables(study)),
         "scatter": scatter_of(study.scatter, study.search.seed),
         "misalignment": study.misalignment_um * UM,
         "objective": objective,
+        "limits": _limits(study),
         "search": _search(study.search),
     }
 
@@ -141,7 +142,8 @@ def _search(given: SearchInput) -> Search:
     """Return how it is searched."""
     evolution = given.method == "differential_evolution"
     method = DifferentialEvolution(given.population) if evolution else NelderMead()
-    return Search(method, given.seed, given.starts, given.evaluations, given.positions)
+    counts = given.starts, given.evaluations, given.positions, given.exploration
+    return Search(method, given.seed, *counts)
 
 
 def optimisation_json(found: Optimisation) -> Json:

@@ -86,7 +86,7 @@ OPTIMISE = Process(
     title="Micro-geometry of least transmission error",
     description="Flank modifications of both gears for the least expected peak-to-peak transmission error "
     "over torques and scatter, with Harris maps before and after.",
-    version="1",
+    version="2",
     inputs=OptimiseInputs,
     output="optimisation",
     kind="optimisation",

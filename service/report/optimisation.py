@@ -157,13 +157,22 @@ def run_table(found: ShownOptimisation) -> Table:
         (
             str(k),
             number(run.judged.objective / UM, 4),
-            str(run.evaluations),
-            "converged" if run.converged else "evaluations spent",
+            f"{run.evaluations}, {run.explored} of them at few positions"
+            if run.explored
+            else str(run.evaluations),
+            run.ended.value,
             number(run.cpu_seconds, 2),
         )
         for k, run in enumerate(found.runs)
     )
     return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
+
+
+def cost_table(found: ShownOptimisation) -> Table:
+    """Return the CPU time of the stages."""
+    stages = found.cost["stages"].items()
+    rows = tuple((name, number(float(one["cpu_seconds"]), 3)) for name, one in stages)
+    return Table("Cost", ("stage", "CPU s"), rows)
 
 
 def optimisation_page(found: ShownOptimisation) -> Page:
@@ -176,6 +185,8 @@ def optimisation_page(found: ShownOptimisation) -> Page:
     )
     lead = f"{found.reason}; {found.evaluations} designs of {len(found.variables)} variables"
     figure = Section("Harris map", "", (replace(harris_figure(found), table=None),), (ripple_table(found),))
-    design = Section("Design", "", tables=(optimum_table(found), run_table(found)))
+    design = Section("Design", "", tables=(optimum_table(found),))
+    tried = f"Not tried: {'; '.join(found.not_tried)}."
+    search = Section("Search", tried, tables=(run_table(found), cost_table(found)))
     robust = Section("Scatter", "", tables=(node_table(found),))
-    return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust))
+    return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust, search))

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from fe_contact.microgeometry import DesignVariable, HarrisMap, ScatterNodes, SearchRun, StepAside
+from fe_contact.microgeometry import DesignVariable, Ended, HarrisMap, ScatterNodes, SearchRun, StepAside
 from fe_contact.microgeometry.design_problem import Judged
 from fe_contact.types import Estimate
 from service.convert.units import UM, factor
@@ -72,6 +72,14 @@ class ShownOptimisation(Protocol):
         """What a step aside changes."""
 
     @property
+    def not_tried(self) -> Sequence[str]:
+        """What the optimum is the best without, in words."""
+
+    @property
+    def cost(self) -> Json:
+        """CPU seconds by stage."""
+
+    @property
     def gain(self) -> Estimate:
         """By how much the objective fell, m."""
 
@@ -102,6 +110,8 @@ class StoredOptimisation:
     optimum: StoredDesign
     runs: tuple[SearchRun, ...]
     sensitivity: tuple[StepAside, ...]
+    not_tried: tuple[str, ...]
+    cost: Json
     gain: Estimate
     evaluations: int
 
@@ -126,7 +136,11 @@ def stored_optimisation(content: Json) -> StoredOptimisation:
         SearchRun(
             np.full(len(content["variables"]), np.nan),
             Judged(one["objective_um"] * UM, one["violation"], np.nan),
-            *(one[name] for name in ("evaluations", "converged", "cpu_seconds")),
+            one["evaluations"],
+            Ended(one["ended"]),
+            one["cpu_seconds"],
+            one["explored"],
+            one["spread_um"] * UM,
         )
         for one in content["runs"]
     )
@@ -140,6 +154,8 @@ def stored_optimisation(content: Json) -> StoredOptimisation:
         _design(content["optimum"], nodes),
         tuple(runs),
         tuple(asides),
+        tuple(content["not_tried"]),
+        content["cost"],
         Estimate(content["gain_um"] * UM, content["gain_error_um"] * UM, "m"),
         content["evaluations"],
     )

@@ -154,6 +154,9 @@ class SearchInput(BoundaryModel):
     positions: int = Field(
         default=64, ge=8, le=4096, description="In a base pitch, for the search", examples=[64]
     )
+    exploration: int = Field(
+        default=16, ge=8, le=4096, description="Positions by which evolution ranks designs", examples=[16]
+    )
 
 
 class OptimisationInput(BoundaryModel):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -94,6 +96,28 @@ def test_the_design_in_the_case_file_has_the_ripple_that_was_told(
         index = harris["torque_n_m"].index(torque)
         allowed = curve["peak_to_peak_error_um"]
         assert abs(harris["expected_peak_to_peak_um"][index] - curve["peak_to_peak_um"]) <= allowed
+
+
+def test_an_interrupted_search_writes_its_best_and_says_so(
+    files: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked = [0]
+
+    @contextmanager
+    def interrupted_after_thirty() -> Iterator[Callable[[], bool]]:
+        def cancel() -> bool:
+            asked[0] += 1
+            return asked[0] > 31  # once before the start
+
+        yield cancel
+
+    monkeypatch.setattr("service.cli.optimise.until_interrupted", interrupted_after_thirty)
+    ran = CliRunner().invoke(app, ["optimise", *map(str, files), "-o", str(tmp_path / "best.json")])
+    assert ran.exit_code == 130, ran.output
+    told = json.loads((tmp_path / "best.json").read_text(encoding="utf-8"))
+    assert told["evaluations"] == 30 and told["runs"][0]["ended"] == "interrupted"
+    assert "interrupted after 30 of at most 60 designs" in " ".join(ran.output.split())
+    assert "not tried: " in ran.output
 
 
 def test_what_cannot_be_written_is_refused_before_anything_is_computed(files: tuple[Path, Path]) -> None:

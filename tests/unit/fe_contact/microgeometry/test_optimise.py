@@ -105,6 +105,7 @@ def test_wider_bounds_never_end_worse(found: Optimisation, long_reliefs: GearPai
     held = optimise(long_reliefs, [TORQUE], narrow, search=QUICK, cache=compliances, **DRAFT, **NONE)
     assert all(v.low <= held.optimum.values[v.name] <= v.high for v in held.variables)
     assert found.runs[0].judged.objective < held.runs[0].judged.objective
+    assert "wider bounds of pinion.tip_relief, wheel.tip_relief" in held.not_tried[0]
     best = modified(long_reliefs, held.optimum.values)
     once = Search(NelderMead(), evaluations=1, positions=32)
     further = optimise(best, [TORQUE], AMOUNTS, search=once, cache=compliances, **DRAFT, **NONE)
@@ -181,6 +182,61 @@ def test_a_gain_smaller_than_the_errors_is_not_claimed(pair: GearPair, complianc
     best = optimise(pair, [TORQUE], tiny, search=QUICK, cache=compliances, **DRAFT, **NONE)
     assert best.outcome in (Outcome.WITHIN_ERROR, Outcome.NOT_IMPROVED)
     assert abs(best.gain.value) <= best.gain.error
+    assert "what is varied makes no difference" in best.reason
+
+
+def test_bounds_that_leave_the_start_out_are_told(long_reliefs: GearPair, compliances: Path) -> None:
+    """The start is the pair as it is, though no design of the search may be like it."""
+    good = {one.name: 8e-6 for one in AMOUNTS}
+    poor = [replace(one, low=30e-6, high=31e-6) for one in AMOUNTS]
+    asked: dict[str, Any] = {"cache": compliances, **DRAFT, **NONE}
+    best = optimise(modified(long_reliefs, good), [TORQUE], poor, search=QUICK, **asked)
+    assert best.start.values == good
+    assert all(30e-6 <= value <= 31e-6 for value in best.optimum.values.values())
+    assert best.outcome is Outcome.NOT_IMPROVED and best.gain.value < 0.0
+    assert (
+        "rises" in best.reason and "beyond the bounds of pinion.tip_relief, wheel.tip_relief" in best.reason
+    )
+
+
+def test_an_interrupted_search_gives_the_best_so_far_in_full(
+    found: Optimisation, long_reliefs: GearPair, compliances: Path
+) -> None:
+    asked = [0]
+
+    def cancel() -> bool:
+        asked[0] += 1
+        return asked[0] > 61  # once before the start
+
+    best = optimise(
+        long_reliefs, [TORQUE], AMOUNTS, search=FEW, cancel=cancel, cache=compliances, **DRAFT, **NONE
+    )
+    assert "interrupted after 60 of at most 250 designs" in best.reason
+    assert best.evaluations == 60 and not best.runs[0].converged
+    assert found.optimum.objective.value < best.optimum.objective.value < best.start.objective.value
+    made = modified(long_reliefs, best.optimum.values)
+    judged = analyze(made, torques=[TORQUE], cache=compliances, **DRAFT).peak_to_peak(torque=TORQUE)
+    assert abs(best.optimum.objective.value - judged.value) <= judged.error
+
+
+def test_few_positions_explore_as_well_as_many(
+    found: Optimisation, long_reliefs: GearPair, compliances: Path
+) -> None:
+    assert found.runs[0].explored > 0
+    full = optimise(
+        long_reliefs, [TORQUE], AMOUNTS, search=replace(FEW, exploration=FEW.positions), cache=compliances,
+        **DRAFT, **NONE,
+    )  # fmt: skip
+    reached = found.runs[0].judged.objective
+    assert reached == pytest.approx(full.runs[0].judged.objective, rel=0.01, abs=0.0)
+
+
+def test_what_was_not_tried_is_said(found: Optimisation) -> None:
+    told = "; ".join(found.not_tried)
+    assert "scatter of anything" in told and "effects that are off: " in told and "pitch_error" in told
+    kept = next(line for line in found.not_tried if line.startswith("other values of "))
+    assert "pinion.helix_crowning" in kept and "pinion.tip_relief," not in kept
+    assert "wider bounds" not in told
 
 
 def test_objectives_differ_over_loads(long_reliefs: GearPair, compliances: Path) -> None:

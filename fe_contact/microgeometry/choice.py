@@ -1,0 +1,127 @@
+"""The best design of all searches, judged by full analyses of it and of the design to begin with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.errors import SolveError
+from fe_contact.microgeometry.confirmation import ConfirmedDesign, confirm
+from fe_contact.microgeometry.design_problem import DesignProblem
+from fe_contact.microgeometry.design_study import DesignStudy
+from fe_contact.microgeometry.optimisation import StepAside
+from fe_contact.microgeometry.request import OptimisationRequest
+from fe_contact.microgeometry.scatter import Scatter
+from fe_contact.microgeometry.search import Cancel, Search, SearchRun, search_from
+from fe_contact.microgeometry.search_method import NelderMead
+from fe_contact.microgeometry.variables import DesignVariable
+from fe_contact.stage_clock import StageClock
+
+SLACK = 0.005
+"""Limits exceeded by less, in parts of them, are kept: the full analysis has more positions than a search."""
+REFINED = 4
+"""Where they are exceeded by more, a simplex goes on at those positions, with a quarter of the designs."""
+STEP = 0.05
+"""Step aside from the optimum in parts of a variable's range, where it does not scatter."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Both designs in full, and the search that the better one came from.
+
+    Attributes
+    ----------
+    problem : DesignProblem
+        By which `run` was judged.
+    start, optimum : ConfirmedDesign
+    runs : tuple of SearchRun
+    best : int
+        Index of the run of the optimum.
+    """
+
+    problem: DesignProblem
+    start: ConfirmedDesign
+    optimum: ConfirmedDesign
+    runs: tuple[SearchRun, ...]
+    best: int
+
+    @property
+    def run(self) -> SearchRun:
+        """The search that counts."""
+        return self.runs[self.best]
+
+
+def posed(study: DesignStudy, asked: OptimisationRequest) -> DesignProblem:
+    """Return the problem of the search, its scale the start inside the bounds.
+
+    Raises
+    ------
+    SolveError
+        Its contact cannot be solved.
+    """
+    problem = DesignProblem(study.evaluator, asked.variables, asked.objective, asked.limits, 1.0)
+    judged = problem.judge(problem.place(asked.own))
+    if not np.isfinite(judged.objective) or judged.objective <= 0.0:
+        raise SolveError(
+            "the contact of the design to begin with cannot be solved at every position and load"
+        )
+    return replace(problem, scale=judged.objective)
+
+
+def choose(
+    problem: DesignProblem,
+    runs: tuple[SearchRun, ...],
+    asked: OptimisationRequest,
+    study: DesignStudy,
+    clock: StageClock,
+    cache: Path | None,
+    cancel: Cancel,
+) -> Choice:
+    """Confirm the start and the best of all runs; go on searching where that exceeds the limits after all.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    runs : tuple of SearchRun
+    asked : OptimisationRequest
+    study : DesignStudy
+    clock : StageClock
+    cache : Path, optional
+    cancel : callable
+    """
+    best = min(range(len(runs)), key=lambda i: runs[i].judged.order)
+    with clock.stage("confirmation"):
+        start = confirm(problem, dict(zip(problem.names, asked.own, strict=True)), study, cache)
+        optimum = confirm(problem, problem.values(runs[best].place), study, cache)
+    found = Choice(problem, start, optimum, runs, best)
+    if optimum.violation <= SLACK or runs[best].judged.violation > SLACK or cancel():
+        return found
+    return _refined(found, asked.search, study, clock, cache, cancel)
+
+
+def _refined(
+    found: Choice, search: Search, study: DesignStudy, clock: StageClock, cache: Path | None, cancel: Cancel
+) -> Choice:
+    """Search on from a design that exceeds the limits between the positions of the search."""
+    shorter = replace(search, method=NelderMead(), evaluations=max(1, search.evaluations // REFINED))
+    evaluator = found.problem.evaluator.at(found.optimum.harris_map.position)
+    problem = replace(found.problem, evaluator=evaluator)
+    with clock.stage("search"):
+        run = search_from(problem, shorter, found.run.place, search.starts, cancel=cancel)
+    with clock.stage("confirmation"):
+        optimum = confirm(problem, problem.values(run.place), study, cache)
+    return Choice(problem, found.start, optimum, (*found.runs, run), len(found.runs))
+
+
+def step_aside(problem: DesignProblem, run: SearchRun, scatter: Scatter, one: DesignVariable) -> StepAside:
+    """Take a step of one variable from the best design of a run to both sides."""
+    values = problem.values(run.place)
+    step = scatter.modification.get(one.name, STEP * (one.high - one.low))
+    ends = max(one.low, values[one.name] - step), min(one.high, values[one.name] + step)
+    found = []
+    for end in ends:
+        evaluation = problem.evaluator.evaluate(values | {one.name: end})
+        found.append(problem.objective.of(problem.evaluator.expected(evaluation)) - run.judged.objective)
+    return StepAside(one.name, *ends, *found)

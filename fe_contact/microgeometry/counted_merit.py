@@ -1,0 +1,90 @@
+"""The merit of designs as a search sees it: counted, ended when enough are evaluated, the best remembered."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fe_contact.microgeometry.design_problem import DesignProblem, Judged
+from fe_contact.types import FloatArray
+
+
+class Spent(Exception):
+    """All designs that may be evaluated were."""
+
+
+class Cancelled(Exception):
+    """Somebody asked for the search to end."""
+
+
+class Budget:
+    """Designs that one search may evaluate, of whatever cost.
+
+    Parameters
+    ----------
+    total : int
+    cancel : callable
+        Asked before every design whether the search is to end.
+    report : callable
+        Called after every design with the part of all that is used.
+    """
+
+    def __init__(self, total: int, cancel: Callable[[], bool], report: Callable[[float], None]) -> None:
+        self.total, self.used = total, 0
+        self._cancel, self._report = cancel, report
+
+    def take(self, most: int) -> None:
+        """Take one design, if fewer than `most` were taken.
+
+        Raises
+        ------
+        Spent, Cancelled
+        """
+        if self._cancel():
+            raise Cancelled
+        if self.used >= min(most, self.total):
+            raise Spent
+        self.used += 1
+
+    def tell(self) -> None:
+        """Report what is used."""
+        self._report(self.used / self.total)
+
+
+class CountedMerit:
+    """Merit of a place (d,) in the unit cube.
+
+    Parameters
+    ----------
+    problem : DesignProblem
+    budget : Budget
+    most : int
+        It raises `Spent` when so many designs of the budget are used.
+
+    Attributes
+    ----------
+    best : tuple of Judged and ndarray, or None
+        Of its designs, by their order; None before the first.
+    count : int
+        Its designs.
+    least, largest : float
+        Of the objectives of its designs that could be judged, m.
+    """
+
+    def __init__(self, problem: DesignProblem, budget: Budget, most: int) -> None:
+        self.best: tuple[Judged, FloatArray] | None = None
+        self.count, self.least, self.largest = 0, np.inf, -np.inf
+        self._problem, self._budget, self._most = problem, budget, most
+
+    def __call__(self, place: FloatArray) -> float:
+        """Judge a design."""
+        self._budget.take(self._most)
+        judged = self._problem.judge(place)
+        self.count += 1
+        if self.best is None or judged.order < self.best[0].order:
+            self.best = judged, np.clip(place, 0.0, 1.0)
+        if np.isfinite(judged.objective):
+            self.least, self.largest = min(self.least, judged.objective), max(self.largest, judged.objective)
+        self._budget.tell()
+        return judged.merit

@@ -1,0 +1,153 @@
+"""How a search ends, what it keeps, and how it shares its designs between exploring and settling."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from fe_contact.errors import InputError
+from fe_contact.microgeometry import DifferentialEvolution, Ended, NelderMead, Search
+from fe_contact.microgeometry.design_problem import DesignProblem, Judged
+from fe_contact.microgeometry.search import EXPLORED, search_from
+from fe_contact.microgeometry.search_starts import search_all, search_one
+from fe_contact.types import FloatArray
+from fe_contact.workers import InProcess
+
+START = np.array([0.9, 0.1, 0.5])
+BOTTOM = np.array([0.3, 0.6, 0.2])
+
+
+@dataclass
+class Bowl:
+    """A problem with its minimum at `bottom`; the rough one has it a little beside, and counts for itself."""
+
+    bottom: FloatArray = field(default_factory=BOTTOM.copy)
+    seen: list[FloatArray] = field(default_factory=list)
+    roughened: Bowl | None = None
+    interrupt_at: int = 0
+
+    def judge(self, place: FloatArray) -> Judged:
+        self.seen.append(place)
+        if len(self.seen) == self.interrupt_at:
+            raise KeyboardInterrupt
+        value = 1.0 + float(((place - self.bottom) ** 2).sum())
+        return Judged(value, 0.0, value)
+
+    def rough(self, positions: int) -> Bowl:
+        self.roughened = Bowl(self.bottom + 0.02)
+        return self.roughened
+
+    def place(self, own: Any) -> FloatArray:
+        return np.asarray(own)
+
+
+def searched(bowl: Bowl, search: Search, cancel: Callable[[], bool] | None = None) -> Any:
+    return search_from(cast(DesignProblem, bowl), search, START, 0, cancel=cancel)
+
+
+def test_evolution_explores_roughly_and_a_simplex_settles_it() -> None:
+    bowl = Bowl()
+    run = searched(bowl, Search(seed=1, evaluations=3000))
+    assert run.ended is Ended.CONVERGED and run.converged
+    np.testing.assert_allclose(run.place, BOTTOM, atol=2e-3)  # not the bottom of the rough one
+    assert bowl.roughened is not None
+    assert run.explored == len(bowl.roughened.seen) > 0.5 * run.evaluations
+    assert run.evaluations == len(bowl.seen) + len(bowl.roughened.seen)
+
+
+def test_the_simplex_keeps_its_part_of_the_designs() -> None:
+    run = searched(Bowl(), Search(seed=1, evaluations=200))
+    assert run.explored + 1 == int(EXPLORED * 200)  # the start is judged in full
+    assert run.evaluations == 200 and run.ended is Ended.SPENT
+    longer = searched(Bowl(), Search(seed=1, evaluations=400))
+    assert longer.judged.objective <= run.judged.objective
+
+
+@pytest.mark.parametrize("method", [DifferentialEvolution(), NelderMead()])
+@pytest.mark.parametrize("evaluations", [1, 2, 3])
+def test_a_search_of_hardly_any_design_keeps_the_best(method: Any, evaluations: int) -> None:
+    bowl = Bowl()
+    run = searched(bowl, Search(method, evaluations=evaluations))
+    assert run.ended is Ended.SPENT and run.evaluations == evaluations
+    assert run.judged.objective == min(bowl.judge(place).objective for place in bowl.seen[:])
+
+
+@pytest.mark.parametrize("after", [1, 20, 150])
+def test_a_cancelled_search_keeps_the_best_so_far(after: int) -> None:
+    bowl, asked = Bowl(), [0]
+
+    def cancel() -> bool:
+        asked[0] += 1
+        return asked[0] > after
+
+    run = searched(bowl, Search(seed=2, evaluations=2000), cancel)
+    assert run.ended is Ended.CANCELLED and run.evaluations == after
+    told = Bowl().judge(run.place)  # in full, whatever it was ranked by
+    assert run.judged == told
+    if after > 1:
+        assert told.objective < Bowl().judge(START).objective
+
+
+def test_interrupted_in_a_worker_it_gives_what_it_has() -> None:
+    """A Ctrl-C reaches the processes of a pool too."""
+    search = Search(NelderMead(), evaluations=500)
+    bowl = Bowl(interrupt_at=30)
+    run = search_one((cast(DesignProblem, bowl), search), (0, START))
+    assert run.ended is Ended.CANCELLED and run.evaluations == 30
+    assert run.judged.objective == min(Bowl().judge(place).objective for place in bowl.seen[:29])
+    with pytest.raises(KeyboardInterrupt):  # here it is the caller's
+        searched(Bowl(interrupt_at=30), search)
+
+
+@dataclass(frozen=True)
+class Failing:
+    """Workers that fail after some results."""
+
+    after: int
+
+    def run(self, function: Any, shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        for count, item in enumerate(items):
+            if count == self.after:
+                raise RuntimeError("a worker died")
+            yield function(shared, item)
+
+
+def test_starts_that_have_ended_survive_an_interruption() -> None:
+    search = Search(NelderMead(), starts=4, evaluations=60)
+    every = search_all(cast(DesignProblem, Bowl()), search, tuple(START), InProcess(), _ignore, lambda: False)
+    assert len(every) == 4
+    asked = [0]
+
+    def once_one_ended() -> bool:
+        asked[0] += 1
+        return asked[0] > 1
+
+    for workers in (Failing(9), Failing(2)):  # cancelled between two, and by a dead worker
+        asked[0] = 0
+        kept = search_all(cast(DesignProblem, Bowl()), search, tuple(START), workers, _ignore, once_one_ended)
+        assert len(kept) == 2
+        for one, whole in zip(kept, every, strict=False):
+            assert one.judged == whole.judged
+    with pytest.raises(RuntimeError):
+        search_all(cast(DesignProblem, Bowl()), search, tuple(START), Failing(2), _ignore, lambda: False)
+
+
+@pytest.mark.parametrize("workers", [InProcess(), Failing(0)])
+def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> None:
+    (run,) = search_all(cast(DesignProblem, Bowl()), Search(), tuple(START), workers, _ignore, lambda: True)
+    np.testing.assert_array_equal(run.place, START)
+    assert run.ended is Ended.CANCELLED and run.evaluations == 1
+
+
+def test_exploration_needs_positions() -> None:
+    with pytest.raises(InputError) as caught:
+        Search(exploration=4)
+    assert caught.value.field == "search.exploration"
+
+
+def _ignore(stage: str, fraction: float) -> None:
+    """Take progress."""
