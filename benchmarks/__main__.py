@@ -27,6 +27,7 @@ from benchmarks import (
     solvers_3d,
     static_table,
     tolerance_promise,
+    worker_cost,
     worth_estimates,
 )
 from benchmarks.machine import describe
@@ -55,6 +56,7 @@ SUBJECTS = (
     effects_off,
     page_redraw,
     service_queries,
+    worker_cost,
 )
 
 

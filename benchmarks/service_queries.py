@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import http.client
 import json
-import os
-import re
 import subprocess
 import sys
 import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from statistics import median, quantiles
-from urllib.request import urlopen
 
 import numpy as np
 
 from benchmarks.example_pair import PAIR, TORQUES
 from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
+from benchmarks.service_process import cpu_seconds, idle_memory_mb, memory_mb, running
 from service.client import LineOfActionClient
 from service.store import stored_results
 
@@ -34,7 +31,6 @@ _TABLE = (
     PAIR + 'analyze(pair, torques={torques}, model="plane_strain").to_netcdf({table!r})\nmeasured = {{}}\n'
 )
 _JOB = "import os\nos.nice(10)\nwhile True:\n    sum(range(100_000))"
-_TICK = os.sysconf("SC_CLK_TCK")
 
 
 def figures() -> list[Figure]:
@@ -44,15 +40,15 @@ def figures() -> list[Figure]:
         table = directory / "ste.nc"
         measure(_TABLE.format(torques=list(TORQUES), table=str(table)))
         stored_results(directory).put(KEY, "database", table)
-        with _service(directory) as (address, process, started):
-            at_start, idle = _memory_mb(process.pid), _idle_memory_mb(process.pid)
+        with running(directory) as (address, process, started):
+            at_start, idle = memory_mb(process.pid), idle_memory_mb(process.pid)
             with LineOfActionClient(address, cache_dir=directory / "cache") as client:
                 client.query(KEY, [0.0], [5.0])  # reads the table, compiles where nothing is cached yet
                 client.fetch(KEY)
                 cached = min(_seconds(lambda: client.fetch(KEY)) for _ in range(5))
             batches = [*_batch_figures(address)]
             single = _single_figures(address, process.pid)
-            at_rest = _memory_mb(process.pid)
+            at_rest = memory_mb(process.pid)
     return [
         Figure("service", "start until it answers", started[0], "s", 3.0),
         Figure("service", "start until it answers, CPU time", started[1], "CPU s"),
@@ -63,42 +59,6 @@ def figures() -> list[Figure]:
         *batches,
         *single,
     ]
-
-
-@contextmanager
-def _service(directory: Path) -> Iterator[tuple[str, subprocess.Popen[str], tuple[float, float]]]:
-    """Run the service; its address, process, and seconds elapsed and CPU seconds until it answered."""
-    begin = time.perf_counter()
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
-    process = subprocess.Popen(
-        [*command, "--data-directory", str(directory)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    )
-    try:
-        assert process.stdout is not None
-        address = re.search(r"http://\S+", process.stdout.readline())
-        assert address is not None
-        _wait_for(f"{address.group()}/health")
-        yield address.group(), process, (time.perf_counter() - begin, _cpu_seconds(process.pid))
-    finally:
-        process.terminate()
-        process.wait(timeout=30.0)
-
-
-def _wait_for(url: str) -> None:
-    """Ask until there is an answer."""
-    end = time.perf_counter() + 120.0
-    while True:
-        try:
-            with urlopen(url, timeout=60.0) as answer:
-                answer.read()
-                return
-        except OSError:
-            if time.perf_counter() > end:
-                raise
-            time.sleep(0.01)
 
 
 def _batch_figures(address: str) -> Iterator[Figure]:
@@ -123,12 +83,12 @@ def _single_figures(address: str, pid: int) -> list[Figure]:
     try:
         taken: list[float] = []
         callers = [threading.Thread(target=_call, args=(address, taken)) for _ in range(CALLERS)]
-        begin, cpu = time.perf_counter(), _cpu_seconds(pid)
+        begin, cpu = time.perf_counter(), cpu_seconds(pid)
         for caller in callers:
             caller.start()
         for caller in callers:
             caller.join()
-        elapsed, cpu = time.perf_counter() - begin, _cpu_seconds(pid) - cpu
+        elapsed, cpu = time.perf_counter() - begin, cpu_seconds(pid) - cpu
     finally:
         for job in jobs:
             job.kill()
@@ -171,26 +131,3 @@ def _seconds(work: Callable[[], object]) -> float:
     begin = time.perf_counter()
     work()
     return time.perf_counter() - begin
-
-
-def _cpu_seconds(pid: int) -> float:
-    """Return the CPU time of a process."""
-    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / _TICK
-
-
-def _idle_memory_mb(pid: int) -> float:
-    """Return the memory of a process once it has nothing more to do."""
-    before, now = -1.0, _cpu_seconds(pid)
-    while now - before > 0.05:
-        time.sleep(2.0)
-        before, now = now, _cpu_seconds(pid)
-    return _memory_mb(pid)
-
-
-def _memory_mb(pid: int) -> float:
-    """Return the resident memory of a process."""
-    status = Path(f"/proc/{pid}/status").read_text(encoding="ascii")
-    found = re.search(r"VmRSS:\s+(\d+)", status)
-    assert found is not None
-    return int(found.group(1)) / 1024.0

@@ -100,7 +100,7 @@ class PostgresServer:
             yield found
 
 
-def _program(name: str) -> str | None:
+def program(name: str) -> str | None:
     """Find a program of the server: Debian keeps them off the path."""
     found = sorted(Path("/usr/lib/postgresql").glob(f"*/bin/{name}"))
     return shutil.which(name) or (str(found[-1]) if found else None)
@@ -120,7 +120,7 @@ def _other_user() -> dict[str, Any]:
 @contextmanager
 def running_server() -> Iterator[PostgresServer]:
     """Run a server; skip if none is installed."""
-    initdb, postgres = _program("initdb"), _program("postgres")
+    initdb, postgres = program("initdb"), program("postgres")
     if initdb is None or postgres is None:
         pytest.skip(_ABSENT)
     user = _other_user()
