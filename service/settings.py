@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import ipaddress
+import re
+from importlib.util import find_spec
 from pathlib import Path
 
-from pydantic import Field, SecretStr, ValidationError
+from pydantic import Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from service.directories import data_home
@@ -13,6 +15,7 @@ from service.problems import BadInput, Fault
 
 LEAST_MEMORY_MB = 256
 """What a worker needs to load the program."""
+_SCHEDULER = re.compile(r"(?:tcp|tls|ws|wss|ucx)://[^\s/]+:[0-9]{1,5}")
 
 
 class Settings(BaseSettings):
@@ -46,6 +49,8 @@ class Settings(BaseSettings):
         How long a scheduler holds a computation without a sign of life.
     attempts : int
         How often a computation whose worker died is started.
+    dask_scheduler : str or None
+        Address of a Dask scheduler whose workers share the work of jobs; None: each is done by one process.
     keys_file : Path or None
         The file of access keys; None: ``keys.json`` in the data directory.
     """
@@ -66,7 +71,20 @@ class Settings(BaseSettings):
     memory_limit_mb: int | None = Field(None, ge=LEAST_MEMORY_MB, le=1_000_000_000)
     lease_s: float = Field(60.0, ge=1.0, le=86_400.0)
     attempts: int = Field(2, ge=1, le=10)
+    dask_scheduler: str | None = None
     keys_file: Path | None = None
+
+    @field_validator("dask_scheduler")
+    @classmethod
+    def _reachable_scheduler(cls, given: str | None) -> str | None:
+        """Refuse what cannot be an address; an empty variable is none."""
+        if not given:
+            return None
+        if not _SCHEDULER.fullmatch(given):
+            raise ValueError("protocol, host and port of a Dask scheduler, such as tcp://host:8786")
+        if find_spec("distributed") is None:
+            raise ValueError("left out without the extra dask: pip install 'lineofaction[dask]'")
+        return given
 
     @property
     def database_address(self) -> str | None:

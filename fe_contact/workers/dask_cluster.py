@@ -24,7 +24,8 @@ PATIENCE_S = 60.0
 """How long a cluster may be without any worker: those of a nanny come back within seconds."""
 _LOOK_S = 1.0
 """How often it is looked whether there are any."""
-_CONNECT_S = 10.0
+CONNECT_S = 10.0
+"""How long a scheduler may take to answer."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,8 @@ class ByDask:
         """Submit everything, yield in order; what is not yielded any more is cancelled."""
         import dask  # noqa: PLC0415 (an extra)
 
+        if self._gone:
+            raise WorkersLost(f"The scheduler {self._address} is gone: 0 of {len(items)} tasks were done.")
         with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
             packed = self._send(shared)
             futures = [self.client.submit(do_task, function, packed, item, pure=False) for item in items]
@@ -73,7 +76,7 @@ class ByDask:
             for count, future in enumerate(futures):
                 yield self.spent.add(self._result(future, f"{count} of {len(futures)} tasks were done"))
         finally:
-            for future in futures:
+            for future in () if self._gone else futures:
                 future.cancel()
 
     def _result(self, future: Any, so_far: str) -> Any:
@@ -117,6 +120,11 @@ class ByDask:
             return False
 
     @property
+    def _gone(self) -> bool:
+        """Whether the scheduler was lost for good."""
+        return str(self.client.status) in ("closing", "closed")
+
+    @property
     def _address(self) -> str:
         """Where the scheduler is."""
         return str(self.client.scheduler.address) if self.client.scheduler else "the cluster"
@@ -146,7 +154,7 @@ def dask_workers(scheduler: str) -> ByDask:
         advice = "pip install 'lineofaction[dask]'"
         raise InputError("dask", scheduler, "left out without the extra dask", advice) from None
     try:
-        client = Client(scheduler, timeout=_CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
+        client = Client(scheduler, timeout=CONNECT_S, set_as_default=False)  # type: ignore[no-untyped-call]
         return ByDask(client)
     except (OSError, ValueError) as error:
         bound = "the address of a running Dask scheduler, such as tcp://host:8786"

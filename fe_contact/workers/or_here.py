@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TypeVar
 
 from fe_contact.errors import WorkersLost
@@ -28,7 +28,6 @@ class OrHere:
 
     others: Workers
     told: Callable[[WorkersLost], None]
-    _lost: list[WorkersLost] = field(default_factory=list, compare=False, repr=False)
 
     @property
     def spent(self) -> Spent:
@@ -38,13 +37,13 @@ class OrHere:
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Yield the results of the others, and from where they are lost those of this process."""
         done = 0
-        if not self._lost:
+        if not self.spent.lost:
             try:
                 for result in self.others.run(function, shared, items):
                     yield result
                     done += 1
             except WorkersLost as error:
-                self._lost.append(error)
+                self.spent.lost = str(error)
                 self.told(error)
         for item in items[done:]:
             yield function(shared, item)

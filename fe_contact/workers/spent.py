@@ -31,16 +31,19 @@ class Spent:
         main thread, as those of a pool of processes, has no others: then of all its threads.
     peak_memory_bytes : int
         Largest resident memory of any of their processes.
+    lost : str
+        Why they were lost, and the rest was done here; empty if they were not.
     """
 
     tasks: int = 0
     cpu_seconds: float = 0.0
     peak_memory_bytes: int = 0
+    lost: str = ""
 
     def since(self, before: Spent) -> Spent:
         """Return what was spent after another reading of the same; the peak is that of all."""
         cpu_seconds = self.cpu_seconds - before.cpu_seconds
-        return Spent(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes)
+        return Spent(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
 
     def add(self, done: Done[R]) -> R:
         """Count a task, and return its result."""

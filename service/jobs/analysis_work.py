@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
 from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
+from service.jobs.cluster import cluster_of
 from service.jobs.order import Product, Progress, WorkOrder
 from service.schemas import Case
 
@@ -16,12 +16,18 @@ def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Compute the STE database of a case."""
     case = Case.model_validate_json(json.dumps(order.inputs["case"]))
     file = order.workspace / "database.nc"
-    database_of(case, order.data_directory / "compliance", progress).to_netcdf(file)
+    database_of(case, order, progress).to_netcdf(file)
     return (Product(order.key, "database", file),)
 
 
-def database_of(case: Case, cache: Path, progress: Progress) -> SteDatabase:
-    """Return the STE database of a case; condensed gears are kept in `cache`."""
-    with boundary_errors():
-        arguments = analysis_arguments(case)
-        return analyze(gear_pair(case), **arguments, case=case_json(case), cache=cache, progress=progress)
+def database_of(case: Case, order: WorkOrder, progress: Progress) -> SteDatabase:
+    """Return the STE database of a case of an order; condensed gears are kept in the service's cache."""
+    with boundary_errors(), cluster_of(order) as workers:
+        return analyze(
+            gear_pair(case),
+            **analysis_arguments(case),
+            case=case_json(case),
+            cache=order.data_directory / "compliance",
+            progress=progress,
+            workers=workers,
+        )

@@ -77,6 +77,7 @@ def _order(settings: Settings, entry: str, claim: Claim) -> WorkOrder:
         database_url=settings.database_address,
         results_url=settings.results_url,
         lease_s=settings.lease_s,
+        dask_scheduler=settings.dask_scheduler,
     )
 
 

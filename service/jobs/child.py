@@ -12,6 +12,7 @@ from __future__ import annotations
 import fcntl
 import importlib
 import json
+import logging
 import os
 import select
 import signal
@@ -42,6 +43,7 @@ def main() -> None:
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
     with os.fdopen(int(sys.argv[1]), "w", buffering=1) as channel:
+        logging.getLogger("service").addHandler(_Telling(channel))
         _send(channel, _outcome(order, _Reporter(channel)) | {"peak_mb": own_peak_mb()})
 
 
@@ -68,6 +70,18 @@ def _alone_in(workspace: Path) -> None:
     """Wait until an earlier worker in the workspace, killed a moment ago, is gone."""
     descriptor = os.open(workspace, os.O_RDONLY | os.O_CLOEXEC)  # open, and so locked, until we end
     fcntl.flock(descriptor, fcntl.LOCK_EX)
+
+
+class _Telling(logging.Handler):
+    """Passes warnings on to the log of the service."""
+
+    def __init__(self, channel: TextIO) -> None:
+        super().__init__(logging.WARNING)
+        self._channel = channel
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Send one."""
+        _send(self._channel, {"warning": record.getMessage()})
 
 
 class _Reporter:

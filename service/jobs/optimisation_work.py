@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 
 from service.convert.optimisation import optimisation_json, optimisation_of
-from service.convert.task_workers import Hands, working_hands
+from service.jobs.cluster import cluster_of
 from service.jobs.order import Product, Progress, WorkOrder
 from service.schemas import Case
 from service.schemas.optimisation import OptimisationInput
-
-SCHEDULER = "LOA_DASK_SCHEDULER"
-"""Variable of the service's environment: the Dask scheduler whose workers search from the starts."""
 
 
 def optimise_flanks(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
@@ -20,8 +16,7 @@ def optimise_flanks(order: WorkOrder, progress: Progress) -> tuple[Product, ...]
     inputs = dict(order.inputs)
     case = Case.model_validate_json(json.dumps(inputs.pop("case")))
     study = OptimisationInput.model_validate_json(json.dumps(inputs))
-    hands = Hands(dask=os.environ.get(SCHEDULER) or None)
-    with working_hands(hands) as workers:
+    with cluster_of(order) as workers:
         found = optimisation_of(case, study, order.data_directory / "compliance", progress, workers)
     file = order.workspace / "optimisation.json"
     file.write_text(f"{json.dumps(optimisation_json(found), allow_nan=False)}\n", encoding="utf-8")

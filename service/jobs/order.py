@@ -37,6 +37,8 @@ class WorkOrder:
         Where the index of results is, if not in the data directory.
     results_url : str, optional
         Where the files of results are, if not in the data directory.
+    dask_scheduler : str, optional
+        Address of the scheduler whose workers do the tasks, if the service has one.
     lease_s : float, optional
         How long the worker may go on without hearing that its lease was renewed.
     """
@@ -50,6 +52,7 @@ class WorkOrder:
     database_url: str | None = None
     results_url: str | None = None
     lease_s: float | None = None
+    dask_scheduler: str | None = None
 
     def line(self) -> bytes:
         """Return the order as one line of JSON."""

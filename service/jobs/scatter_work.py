@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import json
-import os
 
 from service.convert.scatter import sampling_of, scatter_json, scatter_of_case
-from service.convert.task_workers import Hands, working_hands
-from service.jobs.optimisation_work import SCHEDULER
+from service.jobs.cluster import cluster_of
 from service.jobs.order import Product, Progress, WorkOrder
 from service.schemas import Case
 from service.schemas.sampling import SamplingInput
@@ -18,7 +16,7 @@ def draw_pairs(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     inputs = dict(order.inputs)
     case = Case.model_validate_json(json.dumps(inputs.pop("case")))
     sampling = sampling_of(SamplingInput.model_validate_json(json.dumps(inputs)))
-    with working_hands(Hands(dask=os.environ.get(SCHEDULER) or None)) as workers:
+    with cluster_of(order) as workers:
         found = scatter_of_case(case, sampling, order.data_directory / "compliance", progress, workers)
     file = order.workspace / "scatter.json"
     file.write_text(f"{json.dumps(scatter_json(found), allow_nan=False)}\n", encoding="utf-8")

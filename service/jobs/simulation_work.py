@@ -68,7 +68,7 @@ def _table(
         progress("analysis", ANALYZE.overall(stage, fraction) or 0.0)
 
     try:
-        database = database_of(mesh.case, order.data_directory / "compliance", part)
+        database = database_of(mesh.case, order, part)
     except BadInput as error:
         raise error.within(f"meshes[{index}].case") from None
     database.to_netcdf(file)

@@ -13,8 +13,12 @@ import time
 from pathlib import Path
 from typing import Any
 
+import structlog
+
 from service.jobs.order import Outcome, Product, WorkOrder
 from service.jobs.usage import Usage
+
+logger = structlog.get_logger(__name__)
 
 _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
@@ -105,6 +109,9 @@ class Worker:
         """Return a message as progress, or keep it as the outcome."""
         if "stage" in message:
             return message["stage"], message["fraction"]
+        if "warning" in message:
+            logger.warning("worker warns", pid=self.pid, reason=message["warning"])
+            return None
         self._peak_mb = message.get("peak_mb")
         products = tuple(Product(p["key"], p["kind"], Path(p["file"])) for p in message.get("products", ()))
         facts = {name: message[name] for name in ("failure", "unexpected") if name in message}

@@ -1,11 +1,12 @@
-"""The same bits whoever does the work: here, in a pool, on a cluster that loses a worker in mid-run."""
+"""The same bits whoever does the work: here or in a pool (on a cluster: `tests/flow`)."""
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 from collections.abc import Iterator
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair
-from fe_contact.errors import InputError
+from fe_contact.errors import InputError, WorkersLost
 from fe_contact.microgeometry import (
     DesignVariable,
     NelderMead,
@@ -24,7 +25,8 @@ from fe_contact.microgeometry import (
     optimise,
     scatter,
 )
-from fe_contact.workers import ByDask, ByExecutor, InProcess, Workers, dask_workers
+from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
+from fe_contact.workers.packed import Packed
 
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
 SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 5e-6})
@@ -46,11 +48,10 @@ def local(pair: GearPair, compliances: Path) -> ToleranceStudy:
     return study(pair, compliances, InProcess())
 
 
-def study(pair: GearPair, compliances: Path, workers: Workers, progress: Any = None) -> ToleranceStudy:
+def study(pair: GearPair, compliances: Path, workers: Workers) -> ToleranceStudy:
     return scatter(
-        pair, [100.0, 200.0], SLOPES, samples=200, seed=1, workers=workers, progress=progress,
-        cache=compliances, **DRAFT,
-    )  # fmt: skip
+        pair, [100.0, 200.0], SLOPES, samples=200, seed=1, workers=workers, cache=compliances, **DRAFT
+    )
 
 
 @pytest.fixture(scope="module")
@@ -94,30 +95,42 @@ def divided(shared: float, item: float) -> float:
     return shared / item
 
 
-@pytest.mark.filterwarnings("ignore")
-def test_a_cluster_that_loses_a_worker_in_mid_run_gives_the_same_bits(
-    pair: GearPair, compliances: Path, local: ToleranceStudy
-) -> None:
-    distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
-    killed: list[int] = []
-    with (
-        distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1", memory_limit=0
-        ) as cluster,
-        distributed.Client(cluster, set_as_default=False) as client,
-    ):
-        pids = list(client.run(os.getpid).values())
+def test_what_tasks_share_is_packed_once_and_passed_by_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    packed: list[int] = []
+    of = Packed.of
 
-        def kill(stage: str, fraction: float) -> None:
-            if stage == "samples" and fraction < 0.5 and not killed:
-                os.kill(pids[0], signal.SIGKILL)
-                killed.append(pids[0])
+    def counted(shared: object) -> Packed:
+        packed.append(id(shared))
+        return of(shared)
 
-        shared = study(pair, compliances, ByDask(client), kill)
-        alive = set(client.run(os.getpid).values())
-    assert killed and killed[0] not in alive
-    np.testing.assert_array_equal(shared.peak_to_peak, local.peak_to_peak)
-    assert shared.quantiles[1].value.tolist() == local.quantiles[1].value.tolist()
+    monkeypatch.setattr(Packed, "of", counted)
+    with ThreadPoolExecutor(1) as executor:
+        workers = ByExecutor(executor)
+        many = [np.full(100_000, float(k)) for k in range(4)]
+        for shared in (many[0], *many, many[3]):
+            (found,) = workers.run(np.add, shared, [1.0])
+            np.testing.assert_array_equal(found, shared + 1.0)
+        folder = workers._folder.path
+        assert packed == [id(shared) for shared in many]
+        assert len(list(folder.iterdir())) == 2  # the last ones
+        assert workers.spent.tasks == 6
+    del workers
+    gc.collect()
+    assert not folder.exists()
+
+
+def test_a_pool_that_loses_a_process_says_so(pool: ByExecutor) -> None:
+    """Nothing can be given to it any more: the last test of the pool."""
+    with pytest.raises(WorkersLost, match=r"ended in mid-run.*: 0 of 2 tasks were done"):
+        list(pool.run(end, os.getpid(), [0, 0]))
+    with pytest.raises(WorkersLost, match="0 of 1 tasks were done"):
+        list(pool.run(divided, 1.0, [2.0]))
+
+
+def end(caller: int, _: int) -> None:
+    """End this process, as the system does that has no memory left."""
+    if os.getpid() != caller:
+        os.kill(os.getpid(), signal.SIGKILL)
 
 
 def test_a_scheduler_that_is_not_there_is_named() -> None:

@@ -1,0 +1,175 @@
+"""Jobs of a service with a Dask cluster: which ones use it, and what becomes of them where it is away."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from running_service import bench
+from service_stand_ins import REGISTRY
+from structlog.testing import capture_logs
+
+from fe_contact.analysis import contact_lines, solved_places
+from fe_contact.ste import SteDatabase
+from fe_contact.workers import Spent, dask_cluster
+from service.jobs import cluster
+from service.jobs.catalogue import ANALYZE, OPTIMISE, SCATTER, SENSITIVITY
+from service.jobs.claims import Claim
+from service.jobs.order import WorkOrder
+from service.jobs.process import Process
+from service.problems import BadInput
+from service.settings import Settings, load_settings
+
+ADDRESS = "tcp://127.0.0.1:1"  # nobody may listen there
+GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 60.0}
+CASE: dict[str, Any] = {
+    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
+    "load": {"torque_n_m": [40.0, 80.0]},
+    "accuracy": {"level": "draft", "model": "plane_strain"},
+}
+STUDY = {
+    "variables": {"pinion": {"profile_crowning_um": [0.0, 20.0]}},
+    "search": {"method": "nelder_mead", "starts": 2, "evaluations": 8, "positions": 16},
+}
+DEVIATIONS = {"misalignment_um": [0.0], "center_distance_change_percent": [0.0, 0.1]}
+
+
+@pytest.fixture(autouse=True)
+def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cut small tables as large ones are."""
+    for module in (contact_lines, solved_places):
+        monkeypatch.setattr(module, "TASK_SECONDS", 1e-4)
+
+
+@pytest.fixture(scope="module")
+def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("service")
+
+
+def done(process: Process, inputs: dict[str, Any], data: Path, scheduler: str | None) -> Path:
+    """Do the work of a process as its worker would; return the file it made."""
+    given = process.inputs.model_validate_json(json.dumps(inputs))
+    prepared = process.prepare(given, None)  # type: ignore[arg-type]  # needs no store
+    workspace = data / f"{process.id} {scheduler is None}"
+    workspace.mkdir(exist_ok=True)
+    order = WorkOrder(process.entry, prepared, "0" * 64, workspace, data, dask_scheduler=scheduler)
+    module, _, name = process.entry.partition(":")
+    (product,) = getattr(import_module(module), name)(order, lambda *_: None)
+    return Path(product.file)
+
+
+class Recording:
+    """A cluster that is this process."""
+
+    def __init__(self) -> None:
+        self.functions: set[str] = set()
+        self.closed = False
+
+    @property
+    def client(self) -> Recording:
+        return self
+
+    def close(self) -> None:
+        self.closed = True
+
+    def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        self.functions.add(function.__name__)
+        return (function(shared, item) for item in items)
+
+
+@pytest.mark.parametrize(
+    ("process", "further", "task"),
+    [
+        (ANALYZE, {}, "solve_block"),
+        (SENSITIVITY, DEVIATIONS, "solve_block"),
+        (OPTIMISE, STUDY, "search_one"),
+        (SCATTER, {"samples": 30}, "ripple_of_samples"),
+    ],
+    ids=lambda given: given.id if isinstance(given, Process) else "",
+)
+def test_these_jobs_give_their_tasks_to_the_cluster(
+    process: Process, further: dict[str, Any], task: str, data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recording = Recording()
+
+    def connected(address: str, spent: Spent) -> Any:
+        assert address == ADDRESS
+        return recording
+
+    monkeypatch.setattr(cluster, "_connected", connected)
+    done(process, {"case": CASE, **further}, data, ADDRESS)
+    assert task in recording.functions and recording.closed
+
+
+def test_a_job_whose_cluster_is_away_is_done_here_and_says_so(
+    data: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    pytest.importorskip("distributed", reason="the extra dask is not installed")
+    monkeypatch.setattr(dask_cluster, "CONNECT_S", 0.2)
+    asked = {"case": CASE}
+    alone, left = (
+        SteDatabase.from_netcdf(done(ANALYZE, asked, data, address)) for address in (None, ADDRESS)
+    )
+    for name in ("static_transmission_error", "tangent_compliance", "error_estimate", "residuals"):
+        np.testing.assert_array_equal(getattr(left, name), getattr(alone, name), err_msg=name)
+    receipt = left.metadata.receipt["elsewhere"]
+    assert receipt["tasks"] == 0 and ADDRESS in receipt["lost"]
+    (told,) = [record for record in caplog.records if record.name.startswith("service")]
+    assert "cluster away, the job goes on here" in told.getMessage() and ADDRESS in told.getMessage()
+
+
+def test_a_job_without_tasks_does_not_look_for_the_cluster(
+    data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(solved_places, "TASK_SECONDS", 1e3)
+    monkeypatch.setattr(cluster, "_connected", None)  # were it called, it would be a TypeError
+    assert done(ANALYZE, {"case": CASE}, data, ADDRESS).exists()
+
+
+def test_what_a_worker_warns_of_is_in_the_log_of_the_service(tmp_path: Path) -> None:
+    with capture_logs() as log:
+        machine = bench(tmp_path, REGISTRY, workers=1)
+        machine.scheduler.start()
+        try:
+            assert machine.ended(machine.submit(mode="warn")).status == "successful"
+        finally:
+            machine.close()
+    (warning,) = [entry for entry in log if entry["event"] == "worker warns"]
+    assert warning["reason"] == "the cluster is away" and warning["log_level"] == "warning"
+
+
+def test_the_address_goes_from_the_environment_to_the_worker(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from service.jobs.attempt import _order  # noqa: PLC0415
+
+    monkeypatch.setattr("service.settings.find_spec", lambda _: object())
+    monkeypatch.setenv("LOA_DASK_SCHEDULER", "tcp://gears.example:8786")
+    claim = Claim("c", "analyze", "k", {}, 1, "lease")
+    order = _order(load_settings(data_directory=tmp_path), "a:b", claim)
+    assert WorkOrder.from_line(order.line()).dask_scheduler == "tcp://gears.example:8786"
+    monkeypatch.setenv("LOA_DASK_SCHEDULER", "")
+    assert load_settings().dask_scheduler is None
+
+
+@pytest.mark.parametrize(
+    "address", ["gears.example:8786", "http://gears.example:8786", "tcp://gears.example"]
+)
+def test_what_is_no_address_is_refused_at_the_start(address: str) -> None:
+    with pytest.raises(BadInput) as caught:
+        load_settings(dask_scheduler=address)
+    (fault,) = caught.value.faults
+    assert (fault.field, fault.value) == ("dask_scheduler", address)
+    assert "tcp://host:8786" in fault.bound and "LOA_DASK_SCHEDULER" in str(fault.suggestion)
+
+
+def test_an_address_without_the_extra_is_refused_at_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("service.settings.find_spec", lambda _: None)
+    with pytest.raises(BadInput, match="extra dask"):
+        load_settings(dask_scheduler="tcp://gears.example:8786")
+    assert Settings().dask_scheduler is None
