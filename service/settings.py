@@ -124,4 +124,5 @@ def _fault(item: dict[str, object]) -> Fault:
     """One wrong setting."""
     location = item["loc"]
     name = str(location[0]) if isinstance(location, tuple) and location else "settings"
-    return Fault(name, item.get("input"), f"valid ({item['msg']})", f"It is read from LOA_{name.upper()}.")
+    bound = str(item["msg"]).removeprefix("Input should be ")
+    return Fault(name, item.get("input"), bound, f"It is set by LOA_{name.upper()}, or by its option.")

@@ -10,6 +10,7 @@ import typer
 from service.cli.verbs import keys, motion, pages, serving, studies, tables, upkeep
 
 _EPILOG = (
+    "Start with: loa analyze examples/palermo_spur_20_20.toml -o ste.nc, then loa report ste.nc. "
     "Exit codes: 0 done; 2 bad input; 3 a mesh, a solve or a job failed; 4 no service answers; "
     "5 a defect (a log is named); 130 interrupted."
 )
@@ -25,6 +26,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 for family in (tables, motion, studies, pages, serving):
+    for verb in family.verbs.registered_commands:  # the whole sentence, which the list would cut off
+        verb.short_help = (verb.callback.__doc__ or "").partition("\n")[0]
     app.add_typer(family.verbs)
 app.add_typer(keys.verbs, name="keys")
 app.add_typer(upkeep.database, name="database")

@@ -46,6 +46,9 @@ def open_ste(file: Path) -> SteDatabase:
         raise BadInput.of(
             "file", str(file), "an STE database", "Check the path, or make one with: loa analyze"
         )
+    if file.suffix in (".toml", ".json"):
+        advice = f"Make one with: loa analyze {file} -o ste.nc"
+        raise BadInput.of("file", str(file), "an STE database (netCDF)", advice)
     return SteDatabase.from_netcdf(file)
 
 

@@ -31,6 +31,8 @@ _KINDS = {
     "json_invalid": "valid JSON",
 }
 
+_LISTS = ("tuple_type", "list_type")
+
 
 def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ...]:
     """Return the faults of a validation of `model`."""
@@ -134,7 +136,7 @@ def _bound(item: Mapping[str, Any], info: FieldInfo | None) -> str:
     kind, context = item["type"], item.get("ctx", {})
     span = _range(_constraints(info))
     if kind in _KINDS:
-        return f"{_KINDS[kind]} {span}".strip()
+        return f"{_KINDS[kind]}, each {span}" if kind in _LISTS and span else f"{_KINDS[kind]} {span}".strip()
     if kind in ("greater_than", "greater_than_equal", "less_than", "less_than_equal"):
         return span or _range({name: context[name] for name in _LIMITS if name in context})
     return _other_bound(kind, context, str(item.get("msg", "")))
@@ -175,7 +177,7 @@ def _described(info: FieldInfo | None) -> str:
     if info is None:
         return ""
     example = f"For example {info.examples[0]!r}" if info.examples else ""
-    return ". ".join(part for part in (info.description, example) if part) + "."
+    return "".join(f"{part}. " for part in (info.description, example) if part).rstrip()
 
 
 def _nearest(name: str, known: Sequence[str]) -> str:

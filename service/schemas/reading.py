@@ -65,13 +65,32 @@ def read_text(path: Path) -> str:
         raise BadInput.of("file", str(path), "a readable file", f"{reason}. Check the path.") from None
 
 
+_SIGNS = {
+    "pair": ("a case (with [pair])", "loa analyze and its like take it"),
+    "shafts": ("a scene (with [[shafts]])", "loa simulate and its like take it"),
+}
+"""The table by which a file is known: what it holds, and who takes it."""
+
+
+def _check_kind(model: type[BaseModel], table: dict[str, Any], path: Path) -> None:
+    """Refuse a case given as a scene, or a scene given as a case, by that one fault."""
+    wanted = [sign for sign in _SIGNS if sign in model.model_fields]
+    given = [sign for sign in _SIGNS if sign in table]
+    if wanted and given and not set(wanted) & set(given):
+        found, takers = _SIGNS[given[0]]
+        raise BadInput.of("file", str(path), _SIGNS[wanted[0]][0], f"It holds {found}: {takers}.")
+
+
 def read_model(model: type[M], path: Path) -> M:
     """Return the file at `path` as `model`.
 
     Raises
     ------
     BadInput
-        The file, or a flank grid or housing it names, cannot be read, or with every fault of its contents.
+        The file, or a flank grid or housing it names, cannot be read, it is a case instead of a scene (or the
+        other way round), or with every fault of its contents.
     """
-    table = with_flank_grids(read_table(path), path.parent, read_text)
+    table = read_table(path)
+    _check_kind(model, table, path)
+    table = with_flank_grids(table, path.parent, read_text)
     return validated(model, with_housing_files(table, path.parent))

@@ -199,10 +199,16 @@ class SceneInput(BoundaryModel):
     """A geared system and the run to make with it."""
 
     run: RunInput = Field(description="The run", examples=[{"duration_s": 5.0}])
-    shafts: Annotated[tuple[ShaftInput, ...], Strict(False)] = Field(min_length=1, max_length=1000)
-    gears: Annotated[tuple[GearBodyInput, ...], Strict(False)] = Field(min_length=2, max_length=1000)
+    shafts: Annotated[tuple[ShaftInput, ...], Strict(False)] = Field(
+        min_length=1, max_length=1000, description="Shafts: a table [[shafts]] for each"
+    )
+    gears: Annotated[tuple[GearBodyInput, ...], Strict(False)] = Field(
+        min_length=2, max_length=1000, description="Gears on the shafts: a table [[gears]] for each"
+    )
     bushings: Annotated[tuple[BushingInput, ...], Strict(False)] = Field(default=(), max_length=1000)
-    meshes: Annotated[tuple[MeshInput, ...], Strict(False)] = Field(min_length=1, max_length=1000)
+    meshes: Annotated[tuple[MeshInput, ...], Strict(False)] = Field(
+        min_length=1, max_length=1000, description="Gear pairs in mesh: a table [[meshes]] for each"
+    )
     drives: Annotated[tuple[DriveInput, ...], Strict(False)] = Field(default=(), max_length=1000)
     free_rotations: Annotated[tuple[FreeRotationInput, ...], Strict(False)] = Field(
         default=(), max_length=1000

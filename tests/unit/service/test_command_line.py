@@ -8,6 +8,7 @@ import io
 import json
 import math
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -177,6 +178,61 @@ def test_no_service_is_exit_code_4(tmp_path: Path) -> None:
     result = loa("fetch", "ab" * 32, "-o", tmp_path / "x.nc", "--service", "http://127.0.0.1:9")
     assert result.exit_code == 4
     assert "loa serve" in result.stderr
+
+
+CASE, SCENE = "palermo_spur_20_20.toml", "palermo_scene.toml"
+
+
+@pytest.mark.parametrize(
+    ("verb", "file", "said"),
+    [
+        ("simulate", CASE, r"a scene \(with \[\[shafts\]\]\)\. It holds a case .*: loa analyze"),
+        ("modes", CASE, r"a scene \(with \[\[shafts\]\]\)\. It holds a case .*: loa analyze"),
+        ("analyze", SCENE, r"a case \(with \[pair\]\)\. It holds a scene .*: loa simulate"),
+        ("optimise", SCENE, r"a case \(with \[pair\]\)\. It holds a scene .*: loa simulate"),
+    ],
+)
+def test_a_case_given_as_a_scene_is_one_fault(tmp_path: Path, verb: str, file: str, said: str) -> None:
+    given = [ROOT / "examples" / file] * (2 if verb == "optimise" else 1)
+    result = loa(verb, *given, "-o", tmp_path / "x.nc")
+    assert result.exit_code == 2
+    (line,) = result.stderr.splitlines()
+    assert re.search(rf"^error: file = '.*{file}': must be {said}", line)
+
+
+def test_a_scene_with_nothing_in_it_is_told_what_it_lacks(tmp_path: Path) -> None:
+    (tmp_path / "scene.toml").write_text("[run]\nduration_s = 1.0\n")
+    result = loa("simulate", tmp_path / "scene.toml", "-o", tmp_path / "x.nc")
+    assert "error: shafts = nothing: must be given. Shafts: a table [[shafts]] for each." in result.stderr
+    assert ". ." not in result.stderr
+
+
+def test_a_case_given_as_a_table_is_told_how_to_make_one() -> None:
+    result = loa("ste", ROOT / "examples" / CASE, "--torque", "100")
+    assert result.exit_code == 2
+    assert f"Make one with: loa analyze {ROOT / 'examples' / CASE} -o ste.nc" in result.stderr
+
+
+def test_a_number_where_a_list_is_due_is_told_the_bound_of_each(tmp_path: Path) -> None:
+    text = (ROOT / "examples" / CASE).read_text()
+    (tmp_path / "case.toml").write_text(re.sub(r"torque_n_m = .*", "torque_n_m = 100", text))
+    result = loa("analyze", tmp_path / "case.toml", "-o", tmp_path / "x.nc")
+    assert "load.torque_n_m = 100: must be a list in brackets, each above 0" in result.stderr
+
+
+def test_a_setting_out_of_bounds_names_bound_and_variable() -> None:
+    result = loa("serve", "--port", "99999")
+    assert result.exit_code == 2
+    assert result.stderr == (
+        "error: port = 99999: must be less than or equal to 65535. It is set by LOA_PORT, or by its option.\n"
+    )
+
+
+def test_the_list_of_verbs_says_all_that_each_says_of_itself() -> None:
+    text = " ".join(loa("--help").output.split())
+    for verb in VERBS:
+        sentence = loa(verb, "--help").output.split("\n\n")[1]
+        assert "".join(sentence.split()).replace("-", "") in text.replace(" ", "").replace("-", ""), verb
 
 
 def test_what_the_client_warns_of_is_one_line_for_people(

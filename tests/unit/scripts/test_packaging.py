@@ -1,0 +1,56 @@
+"""What is packaged is all that the packages need: files that are no Python are easily forgotten."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path, PurePath
+
+import pytest
+
+ROOT = Path(__file__).parents[3]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+DATA = PROJECT["tool"]["setuptools"]["package-data"]
+PACKAGES = ("fe_contact", "dynamics", "service")
+MADE = {".py", ".pyc", ".nbi", ".nbc"}
+
+
+def packaged(file: Path) -> bool:
+    """Whether a pattern of the package data, of the package itself or one above it, takes a file."""
+    for package, patterns in DATA.items():
+        folder = ROOT if package == "*" else ROOT / package.replace(".", "/")
+        if file.is_relative_to(folder):
+            name = PurePath(file.name) if package == "*" else file.relative_to(folder)
+            if any(_matches(name, PurePath(pattern)) for pattern in patterns):
+                return True
+    return False
+
+
+def _matches(name: PurePath, pattern: PurePath) -> bool:
+    """Whether a pattern takes a name; no part of it stands for several folders."""
+    return len(name.parts) == len(pattern.parts) and name.match(str(pattern))
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_file_of_a_package_is_packaged(package: str) -> None:
+    files = [f for f in (ROOT / package).rglob("*") if f.is_file() and f.suffix not in MADE]
+    assert files
+    assert [str(f.relative_to(ROOT)) for f in files if not packaged(f)] == []
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_folder_of_modules_is_a_package(package: str) -> None:
+    folders = {f.parent for f in (ROOT / package).rglob("*.py")}
+    assert [str(f.relative_to(ROOT)) for f in folders if not (f / "__init__.py").is_file()] == []
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_packages_say_that_they_are_typed(package: str) -> None:
+    assert (ROOT / package / "py.typed").is_file()
+
+
+def test_the_source_distribution_holds_what_a_clone_holds() -> None:
+    manifest = (ROOT / "MANIFEST.in").read_text(encoding="utf-8").split()
+    named = {*manifest, *PACKAGES, "pyproject.toml", "README.md", "LICENSE", "MANIFEST.in"}
+    hidden = (".", "out", "build", "dist")
+    there = {f.name for f in ROOT.iterdir() if not f.name.startswith(hidden) and f.suffix != ".egg-info"}
+    assert there - {"__pycache__"} <= named
