@@ -74,6 +74,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
         assert service.stop() == [0] * len(service.parts)
         until(lambda: service.marked() == [])
     assert service.witness.faults == []
+    assert [part.log.name for part in service.parts if "Traceback" in part.log.read_text()] == []
     texts = ["undisturbed", *(f"case {number}" for number in range(MOMENTS))]
     served = {text: len(digests) for text, digests in service.witness.served.items()}
     assert served == dict.fromkeys(texts, 1)

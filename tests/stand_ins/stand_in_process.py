@@ -17,6 +17,7 @@ from service_stand_ins import REGISTRY
 
 from service.app import create_app
 from service.jobs.machinery import job_machinery
+from service.problems import DatabaseUnavailable
 from service.settings import load_settings
 from service.store import DirectoryLock
 
@@ -44,9 +45,17 @@ def work() -> None:
     machinery.close()
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Do as the arguments say; a database that is gone at the start is no defect."""
     structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))
-    if sys.argv[1] == "work":
-        work()
-    else:
-        serve(sys.argv[1] == "all", int(sys.argv[2]))
+    try:
+        if sys.argv[1] == "work":
+            work()
+        else:
+            serve(sys.argv[1] == "all", int(sys.argv[2]))
+    except DatabaseUnavailable as error:
+        sys.exit(str(error))
+
+
+if __name__ == "__main__":
+    main()
