@@ -24,7 +24,12 @@ OF_BODIES = (FaceLoadDistribution.name, FiniteWidth.name, ThinRim.name, BoreSeat
 
 
 def condensed_pair(
-    pair: ParallelAxes, database: SteDatabase, effects: Mapping[str, str], cache: Path | None
+    pair: ParallelAxes,
+    database: SteDatabase,
+    effects: Mapping[str, str],
+    cache: Path | None,
+    *,
+    compute: bool = False,
 ) -> CondensedPair | None:
     """Fetch the compliance with which a table was computed; None if it is not in the cache.
 
@@ -39,13 +44,16 @@ def condensed_pair(
     cache : Path, optional
         Directory of flank compliances. The coarse meshes of the error estimate are taken from it too; where
         they are not in it (the table has a minimal receipt), errors of the mesh are those expected of it.
+    compute : bool
+        Compute what is missing, coarse meshes as well, and keep it there: with one gear after the other, so
+        that a second attempt goes on after the last that was finished.
     """
     checked, plan = _as_computed(pair, database, effects)
     changes = database.center_distance_change
-    if not bodies_are_kept(pair, plan, cache, changes):
+    if not (compute or bodies_are_kept(pair, plan, cache, changes)):
         return None
     coarse = None
-    if bodies_are_kept(pair, plan, cache, changes, coarse=True):
+    if compute or bodies_are_kept(pair, plan, cache, changes, coarse=True):
         coarse = pair_contact(pair, plan, cache, True, changes)
     contacts = CondensedContacts.of(pair_contact(pair, plan, cache, False, changes), coarse)
     return CondensedPair(checked, contacts, _spared(database))

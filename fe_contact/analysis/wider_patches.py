@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import Plan
-from fe_contact.planning.discretisation import FaceDiscretisation
 from fe_contact.planning.plan import LARGEST_SUPPORT, wanted_patch
 
 WIDER = 1.25
@@ -19,10 +18,9 @@ WIDER = 1.25
 def left_by_patches(pair: ParallelAxes, plan: Plan) -> float:
     """Return the error left over the change to patches `WIDER` times as wide.
 
-    Against patches as wide as the strips of the largest load ask for; 0 where the run has those. Over the
-    face it is in what is left by the mesh, whose part was set with it.
+    Against patches as wide as the strips of the largest load ask for; 0 where the run has those.
     """
     wanted = wanted_patch(pair, LARGEST_SUPPORT * float(plan.load[-1]))
-    if isinstance(plan.discretisation, FaceDiscretisation) or plan.patch.half_width <= wanted:
+    if plan.patch.half_width <= wanted:
         return 0.0
     return (1.0 - (wanted / plan.patch.half_width) ** 2) / (WIDER**2 - 1.0)

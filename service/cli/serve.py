@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import signal
 import socket
 import sys
@@ -13,6 +14,7 @@ import uvicorn
 from service.access import open_keyring
 from service.app import create_app
 from service.cli.log import log_to_standard_error
+from service.jobs.live_desk import LiveDesk
 from service.problems import BadInput
 from service.settings import Settings, load_settings
 
@@ -32,7 +34,20 @@ def run_serve(*, works: bool = True, **given: object) -> None:
         config = uvicorn.Config(
             app, log_config=None, access_log=False, timeout_graceful_shutdown=_STOPPING_S, lifespan="on"
         )
-        uvicorn.Server(config).run(sockets=[listener])
+        _Server(config, app.state.context.live).run(sockets=[listener])
+
+
+class _Server(uvicorn.Server):
+    """Tells those who wait for a live answer at once that the service stops; the rest have time to end."""
+
+    def __init__(self, config: uvicorn.Config, live: LiveDesk) -> None:
+        super().__init__(config)
+        self._live = live
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """End the live worker, then what uvicorn ends."""
+        await asyncio.to_thread(self._live.stop)
+        await super().shutdown(sockets)
 
 
 def _announce(listener: socket.socket) -> None:

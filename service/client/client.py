@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from service.client.mesh_tables import MeshTables, scene_on_tables
@@ -10,6 +11,7 @@ from service.client.raw_columns import Column, query_columns, read_answer
 from service.client.status import JobState, Watch
 from service.client.studies import Studies
 from service.schemas import Case
+from service.schemas.live import LiveOutput
 from service.schemas.query import QueryOutput
 
 if TYPE_CHECKING:
@@ -116,6 +118,60 @@ class LineOfActionClient(Studies):
         }
         path, content = f"/v1/databases/{key}/query", query_columns(columns)
         return read_answer(self._connection.columns(path, content, columns=",".join(columns)))
+
+    def ste(
+        self,
+        key: str,
+        torque_n_m: Sequence[float],
+        *,
+        misalignment_um: float = 0.0,
+        center_distance_change_mm: float = 0.0,
+        pinion: Mapping[str, Any] | None = None,
+        wheel: Mapping[str, Any] | None = None,
+        condense: bool = False,
+        caller: str | None = None,
+    ) -> LiveOutput:
+        """Return curves of the gears of a stored database with other flanks, loads and alignment, at once.
+
+        Parameters
+        ----------
+        key : str
+            Of the database.
+        torque_n_m : sequence of float
+            Increasing, at most twice the highest of the case.
+        misalignment_um, center_distance_change_mm : float
+        pinion, wheel : mapping, optional
+            Flank modifications as in a case file (``tip_relief_um`` ...); what is left out is as in the case.
+        condense : bool
+            Compute the compliance first if the service has none in its cache.
+        caller : str, optional
+            A name: a later question under it takes the place of one that still waits (`Superseded`).
+
+        Returns
+        -------
+        LiveOutput
+            ``curves`` with mean, peak-to-peak and harmonics, each with its error; what was taken for granted;
+            cost.
+
+        Raises
+        ------
+        BadInput
+            Named by the fields of the question.
+        NotAnalysed
+            The compliance is not in the cache of the service: ask with `condense`.
+        NotFound, QueueFull, Superseded, LiveUnavailable, Unreachable, ServiceError
+        """
+        question = {
+            "torque_n_m": list(torque_n_m),
+            "misalignment_um": misalignment_um,
+            "center_distance_change_mm": center_distance_change_mm,
+            "pinion": dict(pinion or {}),
+            "wheel": dict(wheel or {}),
+            "condense": condense,
+            "caller": caller,
+        }
+        path = f"/v1/databases/{key}/ste"
+        return self._connection.read(LiveOutput.model_validate, "POST", path, json=question)
 
 
 class ServiceTables:

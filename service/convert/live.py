@@ -13,7 +13,7 @@ from fe_contact.ste import SteDatabase
 from service.convert.answers import curve_json
 from service.convert.case import boundary_errors, gear_pair
 from service.convert.units import MM, UM
-from service.problems import BadInput, Fault, NotAnalysed
+from service.problems import BadInput, Fault, NotAnalysed, NotFound
 from service.schemas import Case
 from service.schemas.live import LiveInput
 from service.schemas.reading import validated
@@ -23,23 +23,28 @@ Json = dict[str, Any]
 _PLACES = ("pair.", "load.", "errors.")
 
 
-def condensed_of(file: Path, cache: Path) -> tuple[Case, CondensedPair]:
+def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Case, CondensedPair]:
     """Return the case of a stored table, and its gears with the compliance that it was computed with.
 
     Raises
     ------
+    NotFound
+        The table was removed since it was asked for.
     NotAnalysed
-        The compliance is no longer in the cache.
+        The compliance is not in the cache, and is not to be computed.
     """
+    if not file.exists():
+        raise NotFound("The database was removed from the store while it was asked. Submit its case again.")
     database = SteDatabase.from_netcdf(file)
     # strict models take JSON's lists for tuples only from text
     case = Case.model_validate_json(json.dumps(database.metadata.case))
     with boundary_errors():
-        found = condensed_pair(gear_pair(case), database, dict(case.effects), cache)
+        found = condensed_pair(gear_pair(case), database, dict(case.effects), cache, compute=compute)
     if found is None:
         raise NotAnalysed(
-            "The compliance of these gears is not in the cache of the service. Submit the case as a job of "
-            "the process analyze with another positions or level, which computes it again."
+            "The compliance of these gears is not in the cache of this service: they were analysed "
+            "elsewhere, or it was removed. Ask once with condense = true: it is then computed here first, in "
+            "seconds in the plane and up to some minutes over the face."
         )
     return case, found
 

@@ -132,11 +132,18 @@ class LiveDesk:
         except WorkerGone as gone:
             logger.warning("live worker gone", late=gone.late, entry=question.order.entry)
             self._end_worker()
-            late = f"It took longer than {self._limits.answer_s:g} s and was ended. Submit a job instead."
-            text = late if gone.late else "The live worker ended. Ask again."
-            question.future.set_exception(LiveUnavailable(text))
+            question.future.set_exception(LiveUnavailable(self._told(gone)))
         except Exception as error:  # noqa: BLE001 (whoever asked is told)
             question.future.set_exception(error)
+
+    def _told(self, gone: WorkerGone) -> str:
+        """Say why there is no answer."""
+        if self._stopping:
+            return "The service stops."
+        if gone.late:
+            late = f"It took longer than {self._limits.answer_s:g} s and was ended. Submit a job instead"
+            return f"{late}; a compliance that was being computed goes on when asked again."
+        return "The live worker ended. Ask again."
 
     def _answer(self, order: LiveOrder) -> bytes:
         """Ask the worker, starting it if there is none."""

@@ -25,7 +25,8 @@ def live_ste(inputs: Json) -> Json:
     """Return the curves of a question; the compliances asked for last stay in memory."""
     begin = time.process_time()
     question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
-    case, bodies = _bodies(inputs["key"], Path(inputs["file"]), Path(inputs["cache"]))
+    places = Path(inputs["file"]), Path(inputs["cache"])
+    case, bodies = _bodies(inputs["key"], *places, compute=question.condense)
     read = time.process_time() - begin
     answer = live_curves(case, bodies, question)
     answer["cost"]["compliance_cpu_seconds"] += read
@@ -38,10 +39,10 @@ def live_plan(inputs: Json) -> Json:
     return plan_of(case, inputs["time_budget_s"], Path(inputs["cache"])).to_json()
 
 
-def _bodies(key: str, file: Path, cache: Path) -> tuple[Case, CondensedPair]:
-    """Return the condensed pair of a database, from memory or from the cache on disk."""
+def _bodies(key: str, file: Path, cache: Path, *, compute: bool) -> tuple[Case, CondensedPair]:
+    """Return the condensed pair of a database, from memory, from the cache on disk, or computed."""
     if key not in _pairs:
-        _pairs[key] = condensed_of(file, cache)
+        _pairs[key] = condensed_of(file, cache, compute=compute)
     _pairs.move_to_end(key)
     while len(_pairs) > KEPT_PAIRS:
         _pairs.popitem(last=False)

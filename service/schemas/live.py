@@ -65,6 +65,13 @@ class LiveInput(BoundaryModel):
     wheel: FlankChange = Field(  # type: ignore[valid-type]
         default=FlankChange(), description="Flanks of the driven gear", examples=[{"tip_relief_um": 10.0}]
     )
+    condense: bool = Field(
+        default=False,
+        description="Compute the compliance first if this service has none in its cache, as of gears that "
+        "were analysed elsewhere (else refused, not-analysed); what a minute is too short for goes on when "
+        "asked again",
+        examples=[False],
+    )
     caller: Caller | None = Field(
         default=None,
         description="A name for whoever asks: a later question under it takes the place of one that waits",

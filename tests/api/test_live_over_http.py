@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -12,6 +13,10 @@ from fastapi.testclient import TestClient
 from running_service import REFERENCES
 
 from service.app import create_app
+from service.client import LineOfActionClient
+from service.jobs.live_order import LiveOrder
+from service.problems import ServiceError
+from service.routes.live import STE
 from service.schemas.live import LiveOutput
 from service.settings import Settings
 
@@ -120,18 +125,46 @@ def test_a_question_that_cannot_be_answered_names_its_field(
     assert [fault["field"] for fault in refused.json()["errors"]] == [field]
 
 
-def test_without_a_table_or_its_compliance_a_job_is_asked_for(client: TestClient, key: str) -> None:
+def test_a_table_that_is_unknown_or_removed_is_not_found(client: TestClient, key: str) -> None:
     question = {"torque_n_m": [1.0]}
-    missing = client.post(f"/v1/databases/{'0' * 64}/ste", json=question)
-    assert missing.status_code == 404 and "Submit its case" in missing.json()["detail"]
+    unknown = client.post(f"/v1/databases/{'0' * 64}/ste", json=question)
+    assert unknown.status_code == 404 and "Submit its case" in unknown.json()["detail"]
     context = client.app.state.context  # type: ignore[attr-defined]
-    context.live.stop()  # with its memory
-    for file in (context.settings.data_directory / "compliance").glob("compliance-*"):
-        file.rename(file.with_suffix(".away"))
-    gone = client.post(f"/v1/databases/{key}/ste", json=question)
-    for file in (context.settings.data_directory / "compliance").glob("*.away"):
-        file.rename(file.with_suffix(".npz"))
-    assert (gone.status_code, gone.json()["type"]) == (409, "urn:lineofaction:problem:not-analysed")
+    inputs = {"key": key, "file": "/removed", "cache": "/none", "question": question}
+    assert client.post(f"/v1/databases/{key}/ste", json=question).status_code == 200
+    known = context.live.ask(LiveOrder(STE, inputs)).result(timeout=60.0)
+    assert len(json.loads(known)["curves"]) == 1  # from memory
+    context.live.stop()
+    with pytest.raises(ServiceError, match="removed from the store") as gone:
+        context.live.ask(LiveOrder(STE, inputs)).result(timeout=60.0)
+    assert gone.value.as_json()["status"] == 404
+
+
+def test_a_table_computed_elsewhere_is_condensed_here_when_asked_to(
+    client: TestClient, key: str, tmp_path: Path
+) -> None:
+    """Another service with the same database and results, and a cache of its own."""
+    question = {"torque_n_m": [0.5, 1.0], "pinion": RELIEF}
+    known = client.post(f"/v1/databases/{key}/ste", json=question).json()
+    folder = client.app.state.context.settings.data_directory  # type: ignore[attr-defined]
+    settings = Settings(
+        data_directory=tmp_path,
+        database_url=f"sqlite:///{folder / 'service.sqlite3'}",
+        results_url=(folder / "results").as_uri(),
+    )
+    with TestClient(create_app(settings, works=False)) as other:
+        refused = other.post(f"/v1/databases/{key}/ste", json=question)
+        assert (refused.status_code, refused.json()["type"]) == (409, "urn:lineofaction:problem:not-analysed")
+        assert "condense = true" in refused.json()["detail"]
+        with LineOfActionClient(transport=other._transport, cache_dir=tmp_path / "client") as asker:
+            found = asker.ste(key, [0.5, 1.0], pinion=RELIEF, condense=True)
+        again = other.post(f"/v1/databases/{key}/ste", json=question).json()
+    assert found.discretisation_error == again["discretisation_error"] == "measured"
+    assert again["cost"]["compliance_cpu_seconds"] < 0.5 * found.cost.compliance_cpu_seconds
+    for curve, there, later in zip(found.curves, known["curves"], again["curves"], strict=True):
+        assert curve.ste_um == later["ste_um"] == pytest.approx(there["ste_um"], rel=1e-9, abs=0.0)
+        assert curve.peak_to_peak_error_um == later["peak_to_peak_error_um"]
+        assert curve.peak_to_peak_error_um is not None and curve.peak_to_peak_error_um > 0.0
 
 
 def test_a_plan_is_that_of_the_command_line(client: TestClient) -> None:

@@ -7,11 +7,14 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from collections.abc import Iterator
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+import httpx2
 import pytest
 from running_service import lives, until
 
@@ -20,6 +23,11 @@ from service.jobs.live_order import LiveOrder
 from service.problems import LiveUnavailable, QueueFull, ServiceError, Superseded, Unexpected
 
 WORK = "live_stand_in_work"
+GEAR = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
+CASE = {
+    "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": GEAR, "wheel": GEAR},
+    "load": {"torque_n_m": [1.0]},
+}
 
 
 def order(name: str, **inputs: Any) -> LiveOrder:
@@ -84,6 +92,86 @@ def test_a_worker_that_died_is_replaced(desk: LiveDesk, name: str, text: str) ->
     again = answer(desk.ask(order("echo", word="b")))
     assert again["asked"] == ["b"] and again["pid"] != first
     assert not lives(first)
+
+
+def test_one_killed_in_the_middle_of_an_answer_is_told_and_those_that_wait_are_answered(
+    desk: LiveDesk, tmp_path: Path
+) -> None:
+    gate = tmp_path / "never"
+    asked = desk.ask(order("echo", word="a", wait_for=str(gate)))
+    waits = desk.ask(order("echo", word="b"))
+    until(lambda: asked.running() and desk.worker_pid is not None)
+    first = desk.worker_pid
+    os.kill(first or 0, signal.SIGKILL)
+    with pytest.raises(LiveUnavailable, match="ended"):
+        asked.result(timeout=60.0)
+    assert answer(waits)["asked"] == ["b"]
+    assert first is not None and not lives(first)
+
+
+def test_sixteen_at_once_get_their_own_answers_and_the_seventeenth_is_refused(tmp_path: Path) -> None:
+    desk, gate = LiveDesk(tmp_path, 512), tmp_path / "gate"
+    try:
+        running = desk.ask(order("echo", word="first", wait_for=str(gate)))
+        until(running.running)
+        futures: dict[str, Future[bytes]] = {}
+
+        def ask(word: str) -> None:
+            futures[word] = desk.ask(order("echo", word=word), f"caller {word}")
+
+        callers = [threading.Thread(target=ask, args=(str(k),)) for k in range(16)]
+        for caller in callers:
+            caller.start()
+        for caller in callers:
+            caller.join()
+        with pytest.raises(QueueFull):
+            desk.ask(order("echo", word="one too many"))
+        gate.touch()
+        assert {word: answer(future)["asked"][-1] for word, future in futures.items()} == {
+            str(k): str(k) for k in range(16)
+        }
+    finally:
+        desk.stop()
+
+
+SERVE = """
+import sys
+from pathlib import Path
+import service.routes.live as live
+from service.cli.serve import run_serve
+live.PLAN = "live_stand_in_work:hang"
+run_serve(data_directory=Path(sys.argv[1]), port=0)
+"""
+
+
+def test_sigterm_in_the_middle_of_an_answer_ends_service_and_worker(tmp_path: Path) -> None:
+    """Long before the minute that an answer may take; whoever waits for it is told why there is none."""
+    root = Path(__file__).parents[3]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(root), os.environ["PYTHONPATH"]])}
+    command = [sys.executable, "-c", SERVE, str(tmp_path)]
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as service:
+        assert service.stdout is not None
+        address = service.stdout.readline().split()[-1]
+        with ThreadPoolExecutor(1) as pool, httpx2.Client(base_url=address, timeout=50.0) as http:
+            asked = pool.submit(http.post, "/v1/plans", json={"inputs": {"case": CASE}})
+            until(lambda: bool(_workers_of(service.pid)))
+            workers = _workers_of(service.pid)
+            service.send_signal(signal.SIGTERM)
+            assert service.wait(timeout=30.0) == 0
+            refused = asked.result(timeout=30.0)
+            assert (refused.status_code, refused.json()["detail"]) == (503, "The service stops.")
+    until(lambda: not any(lives(pid) for pid in workers))
+
+
+def _workers_of(service: int) -> list[int]:
+    """Return the live workers that a process has started."""
+    found = []
+    for place in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            parent = int((place / "stat").read_text().rpartition(")")[2].split()[1])
+            if parent == service and b"live_child" in (place / "cmdline").read_bytes():
+                found.append(int(place.name))
+    return found
 
 
 def test_one_killed_between_two_questions_is_not_noticed(desk: LiveDesk) -> None:
