@@ -13,7 +13,7 @@ from fe_contact.microgeometry.design_study import Accuracies, DesignStudy, check
 from fe_contact.microgeometry.objective import Limits, Objective
 from fe_contact.microgeometry.scatter import Scatter
 from fe_contact.microgeometry.search import Search
-from fe_contact.microgeometry.variables import DesignVariable, check_variables, start_of
+from fe_contact.microgeometry.variables import LENGTHS, DesignVariable, check_variables, start_of
 from fe_contact.types import FloatArray, Json
 
 MAP_PARTS = np.arange(1, 11) / 8.0
@@ -49,9 +49,13 @@ class OptimisationRequest:
 
     @property
     def outside(self) -> tuple[str, ...]:
-        """Variables that begin beyond their bounds."""
+        """Variables that begin beyond their bounds; a length without a relief does not count."""
         begun = zip(self.variables, self.own, strict=True)
-        return tuple(one.name for one, value in begun if not one.low <= value <= one.high)
+        return tuple(
+            one.name
+            for one, value in begun
+            if not one.low <= value <= one.high and not (one.quantity in LENGTHS and value == 0.0)
+        )
 
     @property
     def further_torques(self) -> FloatArray:
