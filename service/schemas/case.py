@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, Strict, model_validator
 
-from service.schemas.gear import GearInput, MaterialInput
+from service.schemas.gear import GearInput
+from service.schemas.gear_body import MaterialInput
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.wheel import WheelInput
 
