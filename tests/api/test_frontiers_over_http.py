@@ -9,77 +9,36 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from fastapi.testclient import TestClient
-from running_service import REFERENCES
-from scene_files import scene_file
+from study_service import CASE, Served, prepared, scene_by_hash, study_service, without
 
 from dynamics.ladder.registry import RUNGS as SCENE_RUNGS
 from fe_contact.analysis.ladder import RUNGS
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
-from service.app import create_app
-from service.client import JobState, LineOfActionClient
+from service.client import JobState
 from service.convert.frontier import frontier_of
 from service.convert.run_frontier import run_frontier_of
 from service.convert.scene import dynamic_scene
 from service.jobs.catalogue import FRONTIER
 from service.jobs.frontier_work import climb_ladder
 from service.jobs.order import WorkOrder
-from service.problems import BadInput
-from service.schemas import Case, read_model, validated
+from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
-from service.settings import Settings
 from service.store import stored_results
 
-KEY = "ab" * 32
-GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
-CASE: dict[str, Any] = {
-    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
-    "load": {"torque_n_m": [20.0, 40.0]},
-    "accuracy": {"level": "draft", "positions": 16, "model": "plane_strain"},
-}
 CLOSED = ["iso6336", "thin_slices"]
-
-Served = tuple[LineOfActionClient, TestClient, Path]
+MEASURED = ("cpu_seconds", "stages", "peak_memory_bytes", "knee")  # the knee hangs on the times
 
 
 @pytest.fixture(scope="module")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A client of a running service that holds a table, the bare HTTP one, and the data directory."""
-    directory = tmp_path_factory.mktemp("service")
-    scene_file(directory)
-    data = directory / "data"
-    with (
-        TestClient(create_app(Settings(data_directory=data))) as service,
-        LineOfActionClient(
-            "http://testserver", cache_dir=directory / "results", transport=service._transport
-        ) as found,
-    ):
-        stored_results(data).put(KEY, "database", directory / "ste.nc")
-        yield found, service, data
+    with study_service(tmp_path_factory.mktemp("service")) as found:
+        yield found
 
 
 @pytest.fixture
 def scene(tmp_path: Path) -> SceneInput:
-    """A scene of 60 ms with its table by hash."""
-    given = read_model(SceneInput, scene_file(tmp_path, duration=0.06))
-    (mesh,) = given.meshes
-    return given.model_copy(
-        update={"meshes": (mesh.model_copy(update={"database_file": None, "database_hash": KEY}),)}
-    )
-
-
-def prepared(**inputs: Any) -> dict[str, Any]:
-    """What a request with a case makes of its inputs."""
-    return FRONTIER.prepare(FRONTIER.inputs.model_validate_json(json.dumps(inputs)), None)  # type: ignore[arg-type]
-
-
-def untimed(value: Any) -> Any:
-    """Leave out what differs from run to run: times, memory, and the knee, which hangs on them."""
-    measured = ("cpu_seconds", "stages", "peak_memory_bytes", "knee")
-    if isinstance(value, dict):
-        return {name: untimed(inner) for name, inner in value.items() if name not in measured}
-    return [untimed(item) for item in value] if isinstance(value, list) else value
+    return scene_by_hash(tmp_path, 0.06)
 
 
 def worked(inputs: dict[str, Any], workspace: Path, data: Path) -> tuple[dict[str, Any], list[float]]:
@@ -92,35 +51,27 @@ def worked(inputs: dict[str, Any], workspace: Path, data: Path) -> tuple[dict[st
 
 
 def test_the_ladder_of_a_case_is_that_of_python(served: Served) -> None:
-    client, _, _ = served
     seen: list[JobState] = []
-    told = client.frontier(CASE, seen.append, rungs=CLOSED)
+    told = served.client.frontier(CASE, seen.append, rungs=CLOSED)
     here = frontier_of(validated(Case, CASE), CLOSED)
     assert [rung["name"] for rung in told["rungs"]] == CLOSED
     assert told["rungs"][0]["mean_error"] > 1e-3 and told["reference"] == "thin_slices"
     assert all(rung["cpu_seconds"] > 0.0 for rung in told["rungs"])
-    assert untimed(told) == untimed(json.loads(json.dumps(here.to_json())))
+    assert without(MEASURED, told) == without(MEASURED, json.loads(json.dumps(here.to_json())))
     progress = [state.progress for state in seen]
     assert progress == sorted(progress) and progress[-1] == 100
 
 
 def test_its_file_is_json_whatever_is_accepted(served: Served) -> None:
-    client, http, _ = served
-    told = client.frontier(CASE, rungs=CLOSED)
-    job = client.submit("frontier", {"case": CASE, "rungs": CLOSED[::-1]})  # the same question: stored
+    told = served.client.frontier(CASE, rungs=CLOSED)
+    job = served.client.submit("frontier", {"case": CASE, "rungs": CLOSED[::-1]})  # the same question: stored
     assert job.status == "successful"
-    reference = http.get(f"/v1/jobs/{job.id}/results", params=REFERENCES).json()["frontier"]
-    assert reference["type"] == "application/json"
-    for accept in ("application/json", "application/x-netcdf", "*/*"):
-        answer = http.get(reference["href"], headers={"Accept": accept})
-        assert (answer.headers["content-type"], answer.json()) == ("application/json", told)
-    known = http.get(reference["href"], headers={"If-None-Match": answer.headers["etag"]})
-    assert (known.status_code, known.content) == (304, b"")
+    served.file_is_json("frontier", told, job.id)
 
 
 def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInput, tmp_path: Path) -> None:
     """The work itself, in this process: a case goes through a child above."""
-    client, _, data = served
+    client, data = served.client, served.data
     rungs = ["quasi_static", "100_nm", "10_nm"]
     given = {"scene": scene.model_dump(mode="json"), "rungs": rungs}
     inputs = FRONTIER.prepare(FRONTIER.inputs.model_validate_json(json.dumps(given)), stored_results(data))
@@ -132,7 +83,7 @@ def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInp
         dynamic_scene(scene, {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}), rungs
     )
     assert told == made and told["reference"] == "10_nm"
-    assert untimed(told) == untimed(json.loads(json.dumps(here.to_json())))
+    assert without(MEASURED, told) == without(MEASURED, json.loads(json.dumps(here.to_json())))
 
 
 @pytest.mark.parametrize(
@@ -155,7 +106,7 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(
     rungs = [rung for rung in RUNGS if rung.name in CLOSED]
     climbing = importlib.import_module("fe_contact.analysis.frontier")
     monkeypatch.setattr(climbing, "RUNGS", (rungs[0], Failing(), rungs[1]))
-    made, progress = worked(prepared(case=CASE, rungs=[*CLOSED, "corrected"]), tmp_path, tmp_path)
+    made, progress = worked(prepared(FRONTIER, case=CASE, rungs=[*CLOSED, "corrected"]), tmp_path, tmp_path)
     assert made["left_out"] == {"corrected": said}
     assert [rung["name"] for rung in made["rungs"]] == CLOSED
     assert progress[-1] == pytest.approx(1.0)
@@ -164,7 +115,7 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(
 def test_equal_questions_in_other_words_are_one_result() -> None:
     everything = [rung.name for rung in RUNGS]
     keys = [
-        FRONTIER.key(prepared(case=CASE, **further))
+        FRONTIER.key(prepared(FRONTIER, case=CASE, **further))
         for further in ({}, {"rungs": everything}, {"rungs": [*everything[::-1], *CLOSED]}, {"rungs": CLOSED})
     ]
     assert keys[0] == keys[1] == keys[2] != keys[3]
@@ -185,15 +136,8 @@ def test_equal_questions_in_other_words_are_one_result() -> None:
 def test_bad_inputs_are_refused_by_name_before_there_is_a_job(
     served: Served, inputs: dict[str, Any], field: str
 ) -> None:
-    client, http, _ = served
-    jobs = len(http.get("/v1/jobs").json()["jobs"])
-    with pytest.raises(BadInput) as caught:
-        client.submit("frontier", inputs)
-    assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
-    assert len(http.get("/v1/jobs").json()["jobs"]) == jobs
+    served.refuses("frontier", inputs, field)
 
 
 def test_a_hash_of_another_kind_is_not_found(served: Served) -> None:
-    _, http, _ = served
-    assert http.get(f"/v1/frontiers/{KEY}").status_code == 404
-    assert http.get("/v1/frontiers/nonsense").status_code == 422
+    served.has_no("/v1/frontiers")

@@ -1,0 +1,103 @@
+"""A running service that holds a table, and what the tests of its studies of cases and scenes share."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from httpx2 import Response
+from running_service import REFERENCES
+from scene_files import scene_file
+
+from service.app import create_app
+from service.client import LineOfActionClient
+from service.jobs.process import Process
+from service.problems import BadInput
+from service.schemas import read_model
+from service.schemas.scene import SceneInput
+from service.settings import Settings
+from service.store import stored_results
+
+KEY = "ab" * 32
+"""Hash under which the service holds the table of `scene_file`."""
+
+_GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
+CASE: dict[str, Any] = {
+    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": _GEAR, "wheel": _GEAR},
+    "load": {"torque_n_m": [20.0, 40.0]},
+    "accuracy": {"level": "draft", "positions": 16, "model": "plane_strain"},
+}
+
+
+@dataclass(frozen=True)
+class Served:
+    """A running service: its client, the bare HTTP one, and the data directory."""
+
+    client: LineOfActionClient
+    http: TestClient
+    data: Path
+
+    def file_is_json(self, output: str, told: Any, job: str) -> Response:
+        """Check that the file of a job is what was told, whatever is accepted; return an answer with it."""
+        reference = self.http.get(f"/v1/jobs/{job}/results", params=REFERENCES).json()[output]
+        assert reference["type"] == "application/json"
+        for accept in ("application/json", "application/x-netcdf", "*/*"):
+            answer = self.http.get(reference["href"], headers={"Accept": accept})
+            assert (answer.headers["content-type"], answer.json()) == ("application/json", told)
+        known = self.http.get(reference["href"], headers={"If-None-Match": answer.headers["etag"]})
+        assert (known.status_code, known.content) == (304, b"")
+        return answer
+
+    def refuses(self, process: str, inputs: dict[str, Any], field: str) -> None:
+        """Check that inputs are refused by the name of a field before there is a job."""
+        jobs = len(self.http.get("/v1/jobs").json()["jobs"])
+        with pytest.raises(BadInput) as caught:
+            self.client.submit(process, inputs)
+        assert any(field in fault.field for fault in caught.value.faults), caught.value.faults
+        assert len(self.http.get("/v1/jobs").json()["jobs"]) == jobs
+
+    def has_no(self, path: str) -> None:
+        """Check that a hash of another kind is not found, and what is no hash is refused."""
+        assert self.http.get(f"{path}/{KEY}").status_code == 404
+        assert self.http.get(f"{path}/nonsense").status_code == 422
+
+
+@contextmanager
+def study_service(directory: Path) -> Iterator[Served]:
+    """Run a service in a directory."""
+    scene_file(directory)
+    data = directory / "data"
+    with (
+        TestClient(create_app(Settings(data_directory=data))) as service,
+        LineOfActionClient(
+            "http://testserver", cache_dir=directory / "results", transport=service._transport
+        ) as found,
+    ):
+        stored_results(data).put(KEY, "database", directory / "ste.nc")
+        yield Served(found, service, data)
+
+
+def scene_by_hash(directory: Path, duration: float) -> SceneInput:
+    """Return a scene of `duration` s with its table by hash."""
+    given = read_model(SceneInput, scene_file(directory, duration=duration))
+    (mesh,) = given.meshes
+    by_hash = mesh.model_copy(update={"database_file": None, "database_hash": KEY})
+    return given.model_copy(update={"meshes": (by_hash,)})
+
+
+def prepared(process: Process, **inputs: Any) -> dict[str, Any]:
+    """Return what a request with a case makes of its inputs."""
+    return process.prepare(process.inputs.model_validate_json(json.dumps(inputs)), None)  # type: ignore[arg-type]
+
+
+def without(names: tuple[str, ...], value: Any) -> Any:
+    """Leave out what differs from run to run."""
+    if isinstance(value, dict):
+        return {name: without(names, inner) for name, inner in value.items() if name not in names}
+    return [without(names, item) for item in value] if isinstance(value, list) else value
