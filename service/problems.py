@@ -11,6 +11,8 @@
     |- JobFailed         the job ended without a result; says at what
     |- JobDismissed      the job was cancelled
     |- TooLarge          the request body is beyond the limit
+    |- TooSlow           the request body does not come
+    |- NotForUs          the request names another machine
     |- UnsupportedMediaType, NotAcceptable   a body, or an answer, of a type that is not known here
     |- QueueFull         the queue is at its limit; try again later
     |- RateExceeded      the caller's key asks more often than it may; try again later
@@ -218,6 +220,24 @@ class TooLarge(ServiceError):
     status = 413
     type = "urn:lineofaction:problem:too-large"
     title = "The request is too large"
+    exit_code = EXIT_BAD_INPUT
+
+
+class TooSlow(ServiceError):
+    """The request body does not come, or drips."""
+
+    status = 408
+    type = "urn:lineofaction:problem:too-slow"
+    title = "The request is too slow"
+    exit_code = EXIT_UNREACHABLE
+
+
+class NotForUs(ServiceError):
+    """The request names another machine in its header Host."""
+
+    status = 421
+    type = "urn:lineofaction:problem:not-for-us"
+    title = "The request is meant for another machine"
     exit_code = EXIT_BAD_INPUT
 
 

@@ -13,6 +13,7 @@ import uvicorn
 
 from service.access import open_keyring
 from service.app import create_app
+from service.cli.bounded_http import MOST_CONNECTIONS, BoundedHttp
 from service.cli.log import log_to_standard_error
 from service.jobs.live_desk import LiveDesk
 from service.problems import BadInput
@@ -32,7 +33,14 @@ def run_serve(*, works: bool = True, **given: object) -> None:
             signal.signal(number, _stopped)
         _announce(listener)
         config = uvicorn.Config(
-            app, log_config=None, access_log=False, timeout_graceful_shutdown=_STOPPING_S, lifespan="on"
+            app,
+            http=BoundedHttp,
+            ws="none",
+            log_config=None,
+            access_log=False,
+            limit_concurrency=MOST_CONNECTIONS,
+            timeout_graceful_shutdown=_STOPPING_S,
+            lifespan="on",
         )
         _Server(config, app.state.context.live).run(sockets=[listener])
 

@@ -26,7 +26,7 @@ def check_scene_inputs(scene: SceneInput, store: ResultStore) -> None:
 
 def _facts(place: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
     """Return the facts of a mesh's pair, from its case or its stored database."""
-    _check_source(place, mesh.database_hash, mesh.case_file or mesh.database_file, store)
+    _check_source(place, mesh, store)
     if mesh.case is not None:
         try:
             return facts_of(check_case(mesh.case))
@@ -35,14 +35,15 @@ def _facts(place: str, mesh: MeshInput, store: ResultStore) -> PairFacts:
     return SteDatabase.from_netcdf(store.verified(str(mesh.database_hash), "database").path).facts
 
 
-def _check_source(mesh: str, key: str | None, path: str | None, store: ResultStore) -> None:
+def _check_source(place: str, mesh: MeshInput, store: ResultStore) -> None:
     """Refuse files of the callers, which a service does not read, and hashes it does not hold."""
-    if path is not None:
-        advice = "Write the case out, or submit it and give database_hash; the client does this for you."
-        raise BadInput.of(
-            f"{mesh}.case_file", path, "left out: the service reads no files of its callers", advice
-        )
+    for name, path in (("case_file", mesh.case_file), ("database_file", mesh.database_file)):
+        if path is not None:
+            bound = "left out: the service reads no files of its callers"
+            advice = "Write the case out, or submit it and give database_hash; the client does this for you."
+            raise BadInput.of(f"{place}.{name}", path, bound, advice)
+    key = mesh.database_hash
     if key is not None and store.find(key, "database") is None:
         raise BadInput.of(
-            f"{mesh}.database_hash", key, "the hash of a stored database", "Submit its case first."
+            f"{place}.database_hash", key, "the hash of a stored database", "Submit its case first."
         )

@@ -6,7 +6,8 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars
 
 from service.access import AccessKey, Keyring, RateLimits
-from service.problems import RateExceeded, Unauthorised
+from service.problems import NotForUs, RateExceeded, Unauthorised
+from service.routes.host import meant_for_us
 
 OPEN_PATHS = ("/health", "/")
 OPEN_FOLDER = "/page/"
@@ -16,7 +17,7 @@ _SCHEME = "bearer "
 
 
 class Access:
-    """Lets requests through that carry a key.
+    """Lets requests through that carry a key, and as long as there are no keys those meant for this machine.
 
     Parameters
     ----------
@@ -32,7 +33,13 @@ class Access:
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request of a known caller."""
-        if scope["type"] == "http" and not _open(scope["path"]) and (self._always or self._keyring):
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        closed = self._always or bool(self._keyring)
+        if not closed and not meant_for_us(scope):
+            raise NotForUs("A service without access keys answers to localhost and its own address only.")
+        if closed and not _open(scope["path"]):
             key = self._known(scope)
             bind_contextvars(caller=key.name)
             scope.setdefault("state", {})["caller"] = key

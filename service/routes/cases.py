@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from typing import Any
 
 from fastapi import APIRouter
@@ -11,11 +10,11 @@ from pydantic import BaseModel, Field
 from service.convert.toml import toml_text
 from service.jobs.process import on_demand
 from service.page.examples import Example, examples
-from service.problems import BadInput
 from service.routes.errors import documented
 from service.schemas import Case
 from service.schemas.model import BoundaryModel
 from service.schemas.reading import validated
+from service.schemas.toml_table import toml_table
 
 router = APIRouter(tags=["cases"])
 case_json, outline_json = (
@@ -72,11 +71,7 @@ def outline(body: CaseRequest) -> dict[str, Any]:
 @router.post("/cases/from-toml", summary="Read a case file", responses=documented(400, 413, 422))
 def from_toml(body: TomlBody) -> CaseBody:
     """Read the case in a file's text, with all defaults; files that it names cannot be read here."""
-    try:
-        content = tomllib.loads(body.toml)
-    except tomllib.TOMLDecodeError as error:
-        raise BadInput.of("toml", None, "well-formed TOML", f"{error}.") from None
-    return CaseBody(case=case_json(validated(Case, content)))
+    return CaseBody(case=case_json(validated(Case, toml_table(body.toml, "toml"))))
 
 
 @router.post("/cases/to-toml", summary="Write a case file", responses=documented(400, 413, 422))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 import uuid
 
@@ -9,12 +10,17 @@ import structlog
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars, clear_contextvars
 
-from service.problems import ServiceError, TooLarge, Unexpected
+from service.problems import ServiceError, TooLarge, TooSlow, Unexpected, UnsupportedMediaType
 from service.routes.errors import problem_of
 from service.routes.metrics import Metrics
 
 API_PREFIX = "/v1"
 logger = structlog.get_logger(__name__)
+
+PATIENCE_S, LEAST_BYTES_PER_S = 30.0, 10_000.0
+"""A body is to be there after so long, and longer by what has come at this rate."""
+
+_AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
 
 
 class Guard:
@@ -72,45 +78,61 @@ class _Exchange:
 
     def __init__(self, scope: Scope, receive: Receive, send: Send, body_limit: int) -> None:
         self._scope, self._receive, self._send, self._body_limit = scope, receive, send, body_limit
-        self._received = 0
-        self.exceeded = False
+        self._received, self._whole, self._begin = 0, False, time.perf_counter()
+        self.refusal: ServiceError | None = None
         self.status: int | None = None
         self.identifier = uuid.uuid4().hex[:12]
 
     def refuse_announced(self) -> None:
-        """Refuse a body that says itself that it is too long."""
-        announced = dict(self._scope["headers"]).get(b"content-length", b"0")
+        """Refuse a body that says itself that it is too long, or packed."""
+        headers = dict(self._scope["headers"])
+        announced = headers.get(b"content-length", b"0")
         if announced.isdigit() and int(announced) > self._body_limit:
             raise self._too_large()
+        if headers.get(b"content-encoding", b"identity").strip().lower() not in (b"identity", b""):
+            raise UnsupportedMediaType("The body is packed (Content-Encoding). Send it as it is.")
 
     def _too_large(self) -> TooLarge:
         """Return the error of a body beyond the limit."""
         return TooLarge(f"The body has more than {self._body_limit} bytes, the limit of this service.")
 
     async def receive(self) -> Message:
-        """Pass on a piece of the body, counting."""
-        message = await self._receive()
+        """Pass on a piece of the body, counting; once it is whole wait as long as it takes."""
+        if self._whole:
+            return await self._receive()
+        try:
+            async with asyncio.timeout_at(self._due()):
+                message = await self._receive()
+        except TimeoutError:
+            self.refusal = TooSlow(f"The body did not come within {time.perf_counter() - self._begin:.0f} s.")
+            raise self.refusal from None
         self._received += len(message.get("body", b""))
-        self.exceeded = self._received > self._body_limit
-        if self.exceeded:
-            raise self._too_large()
+        self._whole = not message.get("more_body", False)
+        if self._received > self._body_limit:
+            self.refusal = self._too_large()
+            raise self.refusal
         return message
+
+    def _due(self) -> float:
+        """Return when the next piece is to be there, by the clock of the event loop."""
+        left = PATIENCE_S + self._received / LEAST_BYTES_PER_S - (time.perf_counter() - self._begin)
+        return asyncio.get_running_loop().time() + left
 
     async def send(self, message: Message) -> None:
         """Pass on a piece of the answer.
 
-        The framework takes our refusal of a long body for an unreadable one: what it answers to that is
-        replaced by the refusal.
+        The framework takes our refusal of a long or slow body for an unreadable one: what it answers to that
+        is replaced by the refusal.
         """
-        if not self.exceeded:
+        if self.refusal is None:
             await self._pass(message)
         elif self.status is None:
-            await problem_of(self._too_large())(self._scope, self._receive, self._pass)
+            await problem_of(self.refusal)(self._scope, self._receive, self._pass)
 
     async def _pass(self, message: Message) -> None:
         """Pass on a piece of the answer, with the request's identifier in its headers."""
         if message["type"] == "http.response.start":
             self.status = message["status"]
-            headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode())]
+            headers = [*message.get("headers", []), (b"x-request-id", self.identifier.encode()), _AS_SAID]
             message = {**message, "headers": headers}
         await self._send(message)

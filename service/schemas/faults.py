@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import islice
 from typing import Any, Union, get_args, get_origin
 
 import annotated_types
@@ -14,6 +15,8 @@ from pydantic.fields import FieldInfo
 from service.problems import Fault
 
 Loc = Sequence[int | str]
+
+_MOST_FAULTS = 50
 
 _KINDS = {
     "int_type": "an integer",
@@ -41,13 +44,14 @@ def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ..
 
 
 def innermost(items: Sequence[Any]) -> list[Any]:
-    """Return the errors without those of a list or table whose own parts are at fault already."""
+    """Return the errors without those of a list or table whose own parts are at fault already.
+
+    At most the first 50: a body may have as many as it has bytes, and each costs a search for what was meant.
+    """
     places = [tuple(item["loc"]) for item in items]
-    return [
-        item
-        for item, place in zip(items, places, strict=True)
-        if not any(len(other) > len(place) and other[: len(place)] == place for other in places)
-    ]
+    around = {place[:depth] for place in places for depth in range(len(place))}
+    inner = (item for item, place in zip(items, places, strict=True) if place not in around)
+    return list(islice(inner, _MOST_FAULTS))
 
 
 def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -> Fault:

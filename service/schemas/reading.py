@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import tomllib
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -13,6 +12,7 @@ from service.problems import BadInput
 from service.schemas.faults import faults_of
 from service.schemas.flank_grid_csv import with_flank_grids
 from service.schemas.housing_file import with_housing_files
+from service.schemas.toml_table import toml_table
 
 M = TypeVar("M", bound=BaseModel)
 
@@ -42,14 +42,20 @@ def read_table(path: Path) -> dict[str, Any]:
         The file is missing, too large, no text, or not well formed.
     """
     text = read_text(path)
-    try:
-        table = json.loads(text) if path.suffix == ".json" else tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, json.JSONDecodeError) as error:
-        kind = "JSON" if path.suffix == ".json" else "TOML"
-        raise BadInput.of(str(path), None, f"well-formed {kind}", f"{error}.") from None
+    table = _json(text, str(path)) if path.suffix == ".json" else toml_table(text, str(path))
     if not isinstance(table, dict):
         raise BadInput.of(str(path), table, "a table of fields", "See docs/case-file.md.")
     return table
+
+
+def _json(text: str, field: str) -> Any:
+    """Return what a JSON text holds; raises `BadInput`."""
+    try:
+        return json.loads(text)
+    except ValueError as error:  # of JSON, or of a number with too many digits
+        raise BadInput.of(field, None, "well-formed JSON", f"{error}.") from None
+    except RecursionError:
+        raise BadInput.of(field, None, "JSON of less depth", "See docs/case-file.md.") from None
 
 
 def read_text(path: Path) -> str:

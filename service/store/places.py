@@ -32,6 +32,9 @@ def result_files(
     if results_url is None:
         return DirectoryFiles(data_directory / RESULTS_DIRECTORY)
     parts = urlsplit(results_url)
+    if "@" in parts.netloc:
+        advice = "Credentials come from AWS_ACCESS_KEY_ID and AWS_SECRET_ACCESS_KEY."
+        raise BadInput.of("results_url", "(not shown)", "an address without credentials", advice)
     if parts.scheme == "file" and parts.netloc in ("", "localhost") and parts.path.startswith("/"):
         return DirectoryFiles(Path(unquote(parts.path)))
     if parts.scheme == "s3" and parts.netloc:

@@ -1,0 +1,40 @@
+"""TOML from anybody: read within bounds, whatever it is made of."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from typing import Any
+
+from service.problems import BadInput
+
+_MOST_PARTS = 32
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{_MOST_PARTS}}}")
+
+
+def toml_table(text: str, field: str) -> dict[str, Any]:
+    """Return the table of a TOML text.
+
+    Parameters
+    ----------
+    text : str
+    field : str
+        What the text is called in an error.
+
+    Raises
+    ------
+    BadInput
+        It is not well formed, nested deeper than the reader's stack, has a number of thousands of digits, or
+        a key of more than 32 parts: reading such a key takes time and memory with the square of its length.
+    """
+    if _LONG_KEY.search(text) is not None:
+        raise BadInput.of(
+            field, None, f"TOML with keys of at most {_MOST_PARTS} parts", "See docs/case-file.md."
+        )
+    try:
+        return tomllib.loads(text)
+    except ValueError as error:  # of TOML, or of a number with too many digits
+        raise BadInput.of(field, None, "well-formed TOML", f"{error}.") from None
+    except RecursionError:
+        raise BadInput.of(field, None, "TOML of less depth", "See docs/case-file.md.") from None

@@ -1,0 +1,95 @@
+"""Connections that drip, or send what never ends, to the server as `loa serve` sets it up."""
+
+from __future__ import annotations
+
+import socket
+import threading
+from collections.abc import Iterator
+
+import pytest
+import uvicorn
+from running_service import until
+from service_stand_ins import REGISTRY
+
+from service.app import create_app
+from service.cli import bounded_http
+from service.cli.bounded_http import BoundedHttp
+from service.routes import middleware
+from service.settings import Settings
+
+POST = b"POST /v1/cases/from-toml HTTP/1.1\r\nHost: localhost\r\nContent-Type: application/json\r\n"
+WHOLE = b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n"
+
+
+@pytest.fixture(scope="module")
+def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+    """A server of little patience."""
+    with pytest.MonkeyPatch.context() as patch, socket.create_server(("127.0.0.1", 0)) as listener:
+        patch.setattr(bounded_http, "HEAD_WITHIN_S", 0.5)
+        patch.setattr(middleware, "PATIENCE_S", 0.5)
+        app = create_app(
+            Settings(data_directory=tmp_path_factory.mktemp("drip"), body_limit=100_000), REGISTRY
+        )
+        server = uvicorn.Server(uvicorn.Config(app, http=BoundedHttp, log_config=None, lifespan="off"))
+        thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+        thread.start()
+        until(lambda: server.started, 60.0)
+        yield listener.getsockname()[1]
+        server.should_exit = True
+        thread.join()
+
+
+def answered(port: int, *pieces: bytes) -> bytes:
+    """Send pieces and return all that comes until the other side closes."""
+    found = b""
+    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as connection:
+        try:
+            for piece in pieces:
+                connection.sendall(piece)
+            while content := connection.recv(65536):
+                found += content
+        except (ConnectionResetError, BrokenPipeError):
+            pass  # closed while we were still sending
+    return found
+
+
+def test_a_head_that_does_not_end_is_not_waited_for(port: int) -> None:
+    for begun in (b"", b"GET /health HTT", WHOLE[:-2]):
+        assert answered(port, begun).startswith(b"HTTP/1.1 408 ")
+
+
+def test_nor_is_that_of_a_later_request(port: int) -> None:
+    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as connection:
+        connection.sendall(WHOLE)
+        found = b""
+        while not found.endswith(b'{"status":"ok"}'):
+            found += connection.recv(65536)
+        connection.sendall(WHOLE[:-2])
+        assert connection.recv(65536).startswith(b"HTTP/1.1 408 ")
+        assert connection.recv(65536) == b""
+
+
+@pytest.mark.parametrize("piece", [b"X-Long: " + b"a" * 200_000, b"X-Many: a\r\n" * 20_000])
+def test_a_head_that_is_too_long_is_not_read(port: int, piece: bytes) -> None:
+    assert answered(port, WHOLE[:-2], piece)[:13] in (b"HTTP/1.1 431 ", b"HTTP/1.1 400 ", b"")
+
+
+def test_a_body_that_does_not_come_is_not_waited_for(port: int) -> None:
+    answer = answered(port, POST + b"Content-Length: 1000\r\n\r\n", b"{")
+    assert answer.startswith(b"HTTP/1.1 408 ") and b"urn:lineofaction:problem:too-slow" in answer
+
+
+def test_a_body_in_pieces_is_read_up_to_the_limit(port: int) -> None:
+    def chunk(content: bytes) -> bytes:
+        return b"%x\r\n%s\r\n" % (len(content), content)
+
+    head = POST + b"Transfer-Encoding: chunked\r\nConnection: close\r\n\r\n"
+    longer = answered(port, head, *(chunk(b" " * 20_000) for _ in range(8)))
+    assert longer.startswith(b"HTTP/1.1 413 ") or longer == b""
+    whole = answered(port, head, chunk(b'{"toml": '), chunk(b'""}'), chunk(b""))
+    assert whole.startswith(b"HTTP/1.1 422 ") and b"pair" in whole
+
+
+def test_a_caller_in_time_is_answered_again_and_again_on_a_connection(port: int) -> None:
+    closing = WHOLE[:-2] + b"Connection: close\r\n\r\n"
+    assert answered(port, WHOLE, WHOLE, closing).count(b'{"status":"ok"}') == 3
