@@ -6,11 +6,12 @@ import ipaddress
 import re
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Annotated
 
-from pydantic import Field, SecretStr, ValidationError, field_validator
+from pydantic import AfterValidator, Field, SecretStr, ValidationError, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-from service.directories import data_home
+from service.directories import absolute, data_home
 from service.problems import BadInput, Fault
 
 LEAST_MEMORY_MB = 256
@@ -59,7 +60,7 @@ class Settings(BaseSettings):
 
     host: str = "127.0.0.1"
     port: int = Field(8321, ge=0, le=65535)
-    data_directory: Path = Field(default_factory=data_home)
+    data_directory: Annotated[Path, AfterValidator(absolute)] = Field(default_factory=data_home)
     database_url: SecretStr | None = None
     results_url: str | None = None
     results_cache_mb: int = Field(10_000, ge=1, le=1_000_000_000)
@@ -72,7 +73,7 @@ class Settings(BaseSettings):
     lease_s: float = Field(60.0, ge=1.0, le=86_400.0)
     attempts: int = Field(2, ge=1, le=10)
     dask_scheduler: str | None = None
-    keys_file: Path | None = None
+    keys_file: Annotated[Path, AfterValidator(absolute)] | None = None
 
     @field_validator("dask_scheduler")
     @classmethod

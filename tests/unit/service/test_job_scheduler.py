@@ -13,8 +13,9 @@ from running_service import Bench, bench, lives, until
 from service_stand_in_work import SECRET
 from service_stand_ins import REGISTRY
 
+from service.directories import cache_home, data_home
 from service.jobs.memory import machine_memory_mb
-from service.settings import LEAST_MEMORY_MB
+from service.settings import LEAST_MEMORY_MB, Settings
 from service.store import ResultStore
 from service.store.results import StoredResult
 
@@ -46,6 +47,31 @@ def test_work_is_stored_under_its_key_and_the_workspace_is_gone(machine: Bench) 
     assert (job.status, job.fraction, job.attempts) == ("successful", 1.0, 1)
     assert machine.store.verified(job.key, "database").path.read_text() == "hello"
     assert list((machine.settings.data_directory / "work").iterdir()) == []
+
+
+def test_a_data_directory_may_be_named_from_where_one_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Workers work in other folders, where the same name would mean another place."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert Settings(data_directory=Path("~/data"), keys_file=Path("keys.json")).data_directory.is_absolute()
+    found = bench(Path("data"), REGISTRY)
+    found.scheduler.start()
+    try:
+        assert found.ended(found.submit(text="hello")).status == "successful"
+    finally:
+        found.close()
+
+
+def test_base_directories_that_are_relative_are_ignored(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("XDG_DATA_HOME", "data")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "elsewhere"))
+    assert data_home() == tmp_path / ".local" / "share" / "lineofaction"
+    assert cache_home() == tmp_path / "elsewhere" / "lineofaction"
 
 
 def test_workers_are_nice_and_keep_to_one_thread(machine: Bench) -> None:
