@@ -26,6 +26,7 @@ from service.routes import (
     page,
     queries,
     results,
+    scenes,
 )
 from service.routes.access import Access
 from service.routes.context import Context
@@ -99,7 +100,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.add_middleware(Guard, body_limit=settings.body_limit, metrics=app.state.metrics)
     jobs_shown = (landing.router, processes_router(offered), jobs.router, job_results.router, events.router)
     stored = (databases.router, results.router, figures_router(), queries.router, live.router)
-    for router in (*jobs_shown, *stored, cases.router, effects.router):
+    for router in (*jobs_shown, *stored, cases.router, scenes.router, effects.router):
         app.include_router(router, prefix=API_PREFIX, responses=documented(503))
     app.include_router(page.router)
     app.include_router(health.router)

@@ -86,11 +86,11 @@ def _example(found: Example) -> ExampleBody:
     return ExampleBody(name=found.name, title=found.title, note=found.note, case=case)
 
 
-def _explained(handler: Any, model: type[BaseModel]) -> None:
+def explained(handler: Any, model: type[BaseModel]) -> None:
     """Name the model that explains refused fields."""
     handler.body_model = model
 
 
-_explained(outline, CaseRequest)
-_explained(from_toml, TomlBody)
-_explained(to_toml, CaseRequest)
+explained(outline, CaseRequest)
+explained(from_toml, TomlBody)
+explained(to_toml, CaseRequest)

@@ -105,6 +105,8 @@ ANSWERS: dict[str, Any] = {
     "/v1/cases/outline": {"pinion": {"teeth": 20}, "wheel": {"teeth": 20}},
     "/v1/cases/from-toml": {"case": CASE},
     "/v1/cases/to-toml": BODIES["/v1/cases/from-toml"],
+    "/v1/scenes/from-toml": BODIES["/v1/scenes/to-toml"]["inputs"],
+    "/v1/scenes/to-toml": BODIES["/v1/scenes/from-toml"],
     "/v1/effects": [
         {
             "name": "corner_contact",

@@ -68,6 +68,39 @@ INPUTS: dict[str, Json] = {
 
 QUERY: Json = {"position": [0.0, 0.25], "deflection_um": [5.0, 7.5]}
 
+_SCENE_FILE = """[run]
+duration_s = 0.1
+[[shafts]]
+name = "input"
+length_mm = 200.0
+diameter_mm = 40.0
+[[shafts]]
+name = "output"
+length_mm = 200.0
+diameter_mm = 40.0
+origin_mm = [80.0, 0.0, 0.0]
+[[gears]]
+name = "pinion"
+shaft = "input"
+position_mm = 100.0
+bore_diameter_mm = 40.0
+[[gears]]
+name = "wheel"
+shaft = "output"
+position_mm = 100.0
+bore_diameter_mm = 40.0
+[[meshes]]
+name = "mesh"
+driver = "pinion"
+driven = "wheel"
+database_hash = "9b4f26e85c1a7d30e8f2b6c4a1d93e57f08b2c6d4e5a7193c8d0f1e2b3a49567"
+[[drives]]
+name = "motor"
+shaft = "input"
+time_s = [0.0]
+speed_rpm = [955.0]
+"""
+
 BODIES: dict[str, Json] = {
     "/v1/databases/{key}/query": QUERY,
     "/v1/databases/{key}/ste": {"torque_n_m": [100.0], "pinion": {"tip_relief_um": 10.0}},
@@ -80,6 +113,8 @@ BODIES: dict[str, Json] = {
         "[pair.wheel]\nteeth = 20\nface_width_mm = 25.0\nbore_diameter_mm = 40.0\n"
         "[load]\ntorque_n_m = [100.0]\n"
     },
+    "/v1/scenes/to-toml": {"inputs": {"scene": SCENE}},
+    "/v1/scenes/from-toml": {"toml": _SCENE_FILE},
 }
 """Other bodies, by path."""
 

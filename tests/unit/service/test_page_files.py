@@ -21,6 +21,7 @@ from service.convert.toml import toml_text
 from service.page.examples import examples
 from service.schemas import Case
 from service.schemas.reading import validated
+from service.schemas.scene import SceneInput
 from service.settings import Settings
 
 ROOT = Path(__file__).parents[3]
@@ -142,3 +143,22 @@ def test_text_that_is_no_case_is_refused_by_field(client: TestClient) -> None:
     assert [fault["field"] for fault in broken["errors"]] == ["toml"]
     incomplete = client.post("/v1/cases/from-toml", json={"toml": "[pair]\nnormal_module_mm = 4.0\n"}).json()
     assert "pair.center_distance_mm" in [fault["field"] for fault in incomplete["errors"]]
+
+
+SCENES = ("palermo_scene", "planetary_scene", "flexible_shafts_scene", "wind_turbine_scene")
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_scene_file_read_and_written_is_the_same_scene(client: TestClient, name: str) -> None:
+    text = (ROOT / "examples" / f"{name}.toml").read_text(encoding="utf-8")
+    read = client.post("/v1/scenes/from-toml", json={"toml": text}).json()["scene"]
+    written = client.post("/v1/scenes/to-toml", json={"inputs": {"scene": read}}).json()["toml"]
+    assert validated(SceneInput, tomllib.loads(written)) == validated(SceneInput, tomllib.loads(text))
+    assert "sample_rate_hz" not in written or "sample_rate_hz" in text, "no defaults are added"
+
+
+def test_a_scene_that_is_none_is_refused_by_field(client: TestClient) -> None:
+    broken = client.post("/v1/scenes/from-toml", json={"toml": "[run"})
+    assert (broken.status_code, broken.json()["errors"][0]["field"]) == (422, "toml")
+    misspelt = client.post("/v1/scenes/from-toml", json={"toml": "[run]\nduration_s = 1.0\nend_s = 2.0\n"})
+    assert "run.end_s" in [fault["field"] for fault in misspelt.json()["errors"]]

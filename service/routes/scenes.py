@@ -1,0 +1,60 @@
+"""Scenes of dynamics before anything is computed: TOML in and out."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fastapi import APIRouter
+from pydantic import BaseModel, Field
+
+from service.convert.toml import toml_text
+from service.routes.cases import TomlBody, explained
+from service.routes.errors import documented
+from service.schemas.model import BoundaryModel
+from service.schemas.reading import toml_table, validated
+from service.schemas.scene import SceneInput
+
+router = APIRouter(tags=["scenes"])
+
+
+class SceneInputs(BoundaryModel):
+    """A scene."""
+
+    scene: SceneInput = Field(description="The scene, as in a scene file")
+
+
+class SceneRequest(BoundaryModel):
+    """A scene, where an execution of simulate has it."""
+
+    inputs: SceneInputs = Field(description="The scene, as in an execution of simulate")
+
+
+class SceneToml(TomlBody):
+    """The text of a scene file."""
+
+
+class SceneBody(BaseModel):
+    """A scene as it was given, without defaults."""
+
+    scene: dict[str, Any]
+
+
+@router.post("/scenes/from-toml", summary="Read a scene file", responses=documented(400, 413, 422))
+def from_toml(body: SceneToml) -> SceneBody:
+    """Read the scene in a file's text; files that it names cannot be read here."""
+    return SceneBody(scene=_given(validated(SceneInput, toml_table(body.toml, "toml"))))
+
+
+@router.post("/scenes/to-toml", summary="Write a scene file", responses=documented(400, 413, 422))
+def to_toml(body: SceneRequest) -> SceneToml:
+    """Write the scene as a file's text, without defaults."""
+    return SceneToml(toml=toml_text(_given(body.inputs.scene)))
+
+
+def _given(scene: SceneInput) -> dict[str, Any]:
+    """Return what was given of a scene."""
+    return scene.model_dump(mode="json", exclude_unset=True)
+
+
+explained(from_toml, SceneToml)
+explained(to_toml, SceneRequest)
