@@ -12,6 +12,9 @@ from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Referen
 SHOWN = 4  # positions
 _FACE = "face position, mm (0 = mid-face of the pinion)"
 
+_ROUNDING = 1e-9
+"""Part of the face width; a centroid nearer to mid-face is the rounding of a symmetric load."""
+
 
 def line_load_figure(found: LoadDistribution) -> Figure:
     """Draw the load of all pairs per unit of face width, and the gap left on the pair that carries most."""
@@ -51,7 +54,8 @@ def line_load_figure(found: LoadDistribution) -> Figure:
 def load_centroid_figure(found: LoadDistribution) -> Figure:
     """Draw where along the face the load acts, and how unevenly it lies, over position."""
     factor = found.mean_face_load_factor
-    centroid = 1e3 * found.load_centroid
+    rounding = _ROUNDING * float(np.ptp(found.face_position))
+    centroid = 1e3 * np.where(np.abs(found.load_centroid) > rounding, found.load_centroid, 0.0)
     return Figure(
         key="load_centroid",
         title="Load centroid and face load factor",

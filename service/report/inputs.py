@@ -36,7 +36,7 @@ _KINDS = {
 }
 _BOUND = (
     "an STE database, flank results, a study (sensitivity, modes, response, steady states; as JSON an "
-    "ablation, a ladder, an optimisation) or a run"
+    "ablation, a ladder, an optimisation, a tolerance Monte Carlo) or a run"
 )
 _READERS: dict[str, Callable[[Path], Any]] = {
     "database": SteDatabase.from_netcdf,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fe_contact.microgeometry import ToleranceStudy
@@ -95,7 +97,7 @@ def scatter_page(found: ToleranceStudy) -> Page:
         Headline(f"{100 * last.fraction:g} % of all pairs below", f"{number(last.value[-1] / UM, 3)} µm"),
     )
     tables = (quantile_table(found), influence_table(found))
-    section = Section("Distribution", "", (scatter_figure(found),), tables)
+    section = Section("Distribution", "", (replace(scatter_figure(found), table=None),), tables)
     lead = f"{found.peak_to_peak.shape[0]} pairs drawn within their tolerances"
     return Page("Transmission error within tolerances", lead, heads, (section,))
 

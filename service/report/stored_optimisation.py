@@ -174,7 +174,7 @@ def _si(name: str, values: Sequence[float]) -> list[float]:
 def _nodes(content: Json) -> ScatterNodes:
     """Return the nodes of the scatter."""
     names = content["names"]
-    deviation = np.array(content["deviation"], dtype=float).reshape(-1, len(names))
+    deviation = np.array(content["deviation"], dtype=float).reshape(len(content["weight"]), len(names))
     unit = np.array([factor(name) for name in names])
     return ScatterNodes(
         tuple(map(_library, names)), deviation * unit, np.array(content["weight"], dtype=float)

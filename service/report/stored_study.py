@@ -14,9 +14,11 @@ from service.report.frontier import frontier_page
 from service.report.optimisation import optimisation_page
 from service.report.page import Page
 from service.report.run_frontier import run_frontier_page
+from service.report.scatter import scatter_page
 from service.report.stored_ablation import stored_ablation
 from service.report.stored_ladder import Json, stored_ladder
 from service.report.stored_optimisation import stored_optimisation
+from service.report.stored_scatter import stored_scatter
 
 LADDER_TITLE = "What accuracy costs in time"
 
@@ -33,12 +35,14 @@ PAGES: dict[str, Callable[[Json], Page]] = {
     "ablation": lambda content: ablation_page(stored_ablation(content)),
     "frontier": _ladder,
     "optimisation": lambda content: optimisation_page(stored_optimisation(content)),
+    "scatter": lambda content: scatter_page(stored_scatter(content)),
 }
 """By the kind of the result."""
 _FIELDS = {
     "ablation": {"of", "nominal", "effects"},
     "frontier": {"rungs", "knee", "chosen"},
     "optimisation": {"start", "optimum", "variables"},
+    "scatter": {"samples", "quantiles", "influence"},
 }
 """What only that kind has."""
 

@@ -11,8 +11,9 @@ from service.convert.toml import toml_text
 from service.routes.cases import TomlBody, explained
 from service.routes.errors import documented
 from service.schemas.model import BoundaryModel
-from service.schemas.reading import toml_table, validated
+from service.schemas.reading import validated
 from service.schemas.scene import SceneInput
+from service.schemas.toml_table import toml_table
 
 router = APIRouter(tags=["scenes"])
 

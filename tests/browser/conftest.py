@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from page_visit import computed, served
 from playwright.sync_api import Browser, sync_playwright
 
 CLOSED_FORMS = Path(__file__).parents[1] / "unit" / "service" / "report" / "conftest.py"
@@ -37,6 +38,19 @@ def browser() -> Iterator[Browser]:
         started = playwright.chromium.launch(executable_path=path, args=list(FLAGS))
         yield started
         started.close()
+
+
+@pytest.fixture(scope="session")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """One service for all tests of the page."""
+    with served(tmp_path_factory.mktemp("service")) as found:
+        yield found
+
+
+@pytest.fixture(scope="session")
+def analysed(address: str) -> str:
+    """Hash of the small case's table in that service."""
+    return computed(address)
 
 
 @pytest.fixture(scope="session")

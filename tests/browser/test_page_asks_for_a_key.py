@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import page_visit
 import pytest
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, expect
@@ -20,19 +18,8 @@ def served(tmp_path: Path) -> Iterator[tuple[str, str]]:
     """The address of a service and its key."""
     file = tmp_path / "keys.json"
     secret = KeyFile(file).add("reader")
-    root = str(Path(__file__).parents[2])
-    path = os.pathsep.join(part for part in (root, os.environ.get("PYTHONPATH", "")) if part)
-    own = {"PYTHONPATH": path, "XDG_DATA_HOME": str(tmp_path), "LOA_KEYS_FILE": str(file)}
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
-    with (
-        (tmp_path / "log").open("wb") as log,
-        subprocess.Popen(
-            command, env=os.environ | own, stdout=subprocess.PIPE, stderr=log, text=True
-        ) as service,
-    ):
-        assert service.stdout is not None
-        yield service.stdout.readline().split()[-1], secret
-        service.terminate()
+    with page_visit.served(tmp_path, LOA_KEYS_FILE=str(file)) as address:
+        yield address, secret
 
 
 def test_it_asks_until_the_key_is_right_and_keeps_it_for_the_tab(

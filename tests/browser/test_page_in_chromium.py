@@ -3,27 +3,15 @@
 from __future__ import annotations
 
 import json
-import os
 import re
-import subprocess
-import sys
 import tomllib
-from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import pytest
-from axe_playwright_python.sync_playwright import Axe
+from page_visit import PATIENCE, Visit, answers, choose_case, found_inaccessible, opened, unfold
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
-GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
-CASE = {
-    "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": GEAR, "wheel": GEAR},
-    "load": {"torque_n_m": [0.5, 1.0]},
-    "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16, "receipt": "minimal"},
-}
 FIGURES = (
     "ste",
     "load_sharing",
@@ -33,56 +21,6 @@ FIGURES = (
     "live_harmonics",
     "live_load_share",
 )
-PATIENCE = 120_000.0  # milliseconds; what never comes fails, what is slow does not
-
-
-@dataclass
-class Visit:
-    """An opened page and what it did."""
-
-    page: Page
-    console: list[str] = field(default_factory=list)
-    requests: list[str] = field(default_factory=list)
-
-
-@pytest.fixture(scope="module")
-def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """Serve on a free port and an empty directory."""
-    home = tmp_path_factory.mktemp("service")
-    root = str(Path(__file__).parents[2])
-    path = os.pathsep.join(part for part in (root, os.environ.get("PYTHONPATH", "")) if part)
-    environment = {**os.environ, "PYTHONPATH": path, "XDG_DATA_HOME": str(home)}
-    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
-    with (
-        (home / "log").open("wb") as log,
-        subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=log, text=True) as service,
-    ):
-        assert service.stdout is not None
-        yield service.stdout.readline().split()[-1]
-        service.terminate()
-
-
-def opened(browser: Browser, address: str, scheme: str, width: int) -> Visit:
-    """Open the page and note what it does."""
-    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)  # type: ignore[arg-type]
-    page.set_default_timeout(PATIENCE)
-    seen = Visit(page)
-    page.on("console", lambda message: seen.console.append(f"{message.type}: {message.text}"))
-    page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
-    page.on("request", lambda request: seen.requests.append(request.url))
-    page.goto(address)
-    page.wait_for_selector("html[data-ready=yes]")
-    return seen
-
-
-def choose_case(page: Page, folder: Path) -> None:
-    """Open the small case as a file."""
-    file = folder / "case.json"
-    file.write_text(json.dumps(CASE), encoding="utf-8")
-    page.locator("#import-file").set_input_files(file)
-    expect(page.locator("#example-note")).to_have_text("case.json")
-    expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
-    expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
 
 
 def tab_to(page: Page, target: str, most: int = 120) -> None:
@@ -108,11 +46,6 @@ def visit(browser: Browser, address: str, tmp_path_factory: pytest.TempPathFacto
     return seen
 
 
-def answers(page: Page) -> int:
-    """Count the live answers so far."""
-    return int(page.locator("#live-body").get_attribute("data-answers") or 0)
-
-
 def peak_to_peak(page: Page) -> str:
     """Return what the page says of the live curve."""
     return page.locator("#live-figures dd").first.text_content() or ""
@@ -120,7 +53,7 @@ def peak_to_peak(page: Page) -> str:
 
 @pytest.mark.parametrize("key", FIGURES)
 def test_every_plot_is_drawn_and_has_words(visit: Visit, key: str) -> None:
-    node = visit.page.locator(f"#figure-{key} .plot")
+    node = visit.page.locator(f"[data-figure='{key}'] .plot")
     expect(node).to_have_attribute("data-drawn", re.compile("yes|words"), timeout=PATIENCE)
     if key != "database":  # a surface is drawn by WebGL, or said in words where there is none
         lines = node.locator(".scatterlayer .trace path.js-line, .barlayer .point path")
@@ -136,7 +69,7 @@ def test_a_slider_redraws_the_curve_by_arrow_keys(visit: Visit) -> None:
         page.keyboard.press("ArrowRight")
     until(lambda: answers(page) > count)
     expect(page.locator("#live-figures dd").first).not_to_have_text(before)
-    now = page.locator("#figure-live_ste .scatterlayer .trace path.js-line")
+    now = page.locator("[data-figure=live_ste] .scatterlayer .trace path.js-line")
     assert now.nth(0).get_attribute("d") != now.nth(1).get_attribute("d")
     page.get_by_role("button", name="As analysed").press("Enter")
     expect(page.locator("#live-figures dd").first).to_have_text(before)
@@ -220,10 +153,8 @@ def test_the_page_is_accessible(
     page = visit.page
     page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
     page.set_viewport_size({"width": width, "height": 900})
-    page.evaluate("() => { for (const folded of document.querySelectorAll('details')) folded.open = true; }")
-    found = Axe().run(page)
-    told = {v["id"]: [node["html"][:160] for node in v["nodes"]] for v in found.response["violations"]}
-    assert not told, json.dumps(told, indent=1)
+    unfold(page)
+    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
     assert page.evaluate("document.documentElement.scrollWidth") <= width
 
 

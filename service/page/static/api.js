@@ -25,14 +25,24 @@ async function answer(response) {
   throw new Problem({ ...facts, retryAfter: response.headers.get("Retry-After") });
 }
 
+let answers = true;
+
+/** Tell the page when the service stops answering, and when it does again. */
+function heard(now) {
+  if (now === answers) return;
+  answers = now;
+  document.dispatchEvent(new Event(now ? "service-back" : "service-away"));
+}
+
 async function asked(path, options = {}) {
   let response;
   try {
     response = await fetch(path, { ...options, headers: { ...options.headers, ...keyHeader() } });
-  } catch (error) {
-    if (error.name === "AbortError") throw error;
+  } catch {
+    heard(false);
     throw new Problem({ title: "No answer", detail: "The service does not answer. Is it still running?", status: 0 });
   }
+  heard(true);
   if (response.status !== 401) return response;
   const refused = await response.clone().json().catch(() => ({ detail: "" }));
   return (await askForKey(refused.detail)) ? asked(path, options) : response;
@@ -42,9 +52,9 @@ export async function get(path) {
   return (await answer(await asked(path))).json();
 }
 
-export async function post(path, body, signal) {
+export async function post(path, body) {
   const headers = { "Content-Type": "application/json" };
-  return (await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body), signal }))).json();
+  return (await answer(await asked(path, { method: "POST", headers, body: JSON.stringify(body) }))).json();
 }
 
 export async function dismiss(path) {
@@ -56,3 +66,20 @@ export async function file(path, type) {
 }
 
 export const pause = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+
+const NOT_NOW = new Set([0, 502, 503, 504]);
+
+/** Ask until the service answers: it is away, or busy for a moment. `waits` is told why, null when it is over. */
+export async function patiently(action, waits = () => {}) {
+  for (;;) {
+    try {
+      const found = await action();
+      waits(null);
+      return found;
+    } catch (problem) {
+      if (!(problem instanceof Problem) || !NOT_NOW.has(problem.status)) throw problem;
+      waits(problem);
+      await pause(1000 * Math.max(problem.retryAfter, 2));
+    }
+  }
+}

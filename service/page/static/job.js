@@ -1,9 +1,10 @@
 /** A job: submitted, watched with its stage and the time that remains, cancelled on request. */
 
-import { Problem, dismiss, get, pause, post } from "./api.js";
+import { Problem, dismiss, get, patiently, pause, post } from "./api.js";
 import { duration, make } from "./elements.js";
+import { remember, words } from "./job_names.js";
 
-const ENDED = new Set(["successful", "failed", "dismissed"]);
+export const ENDED = new Set(["successful", "failed", "dismissed"]);
 const FIRST_LOOK = 150;
 const LONGEST_LOOK = 1000;
 
@@ -12,37 +13,42 @@ const LONGEST_LOOK = 1000;
  * @param {HTMLElement} target where progress is shown
  * @param {string} process
  * @param {object} inputs
- * @param {{expected?: number}} options seconds that the plan predicts
+ * @param {{expected?: number, label?: string}} options seconds that the plan predicts;
+ *   words by which the job is known in the list
  * @returns {Promise<{href: string, type: string, hash: string}>} reference to the result
  */
-export async function runJob(target, process, inputs, { expected } = {}) {
+export async function runJob(target, process, inputs, { expected, label } = {}) {
   const status = await post(`/v1/processes/${process}/execution`, { inputs });
+  remember(status.jobID, label ?? words(inputs));
   const card = new JobCard(target, process, status, expected);
-  const ended = await watched(status, (now) => card.show(now));
+  document.dispatchEvent(new Event("jobs-changed"));
+  const ended = await watched(status, card);
+  document.dispatchEvent(new Event("jobs-changed"));
   if (ended.status === "dismissed") throw new Problem({ title: "Cancelled", detail: "The job was cancelled.", status: 410 });
-  const results = await get(whereItsResultIs(status.jobID));
+  return patiently(() => referenceOf(status.jobID));
+}
+
+/** Where a job's result is, whatever form it was submitted with. */
+export async function referenceOf(job) {
+  const results = await get(`/v1/jobs/${job}/results?response=document&transmissionMode=reference`);
   return Object.values(results)[0];
 }
 
-/** The address that says where a job's result is, whatever form it was submitted with. */
-export function whereItsResultIs(job) {
-  return `/v1/jobs/${job}/results?response=document&transmissionMode=reference`;
-}
-
-async function watched(status, show) {
+/** Look at a job until it has ended; while the service is away, wait for it. */
+async function watched(status, card) {
   let now = status;
   let wait = FIRST_LOOK;
   while (!ENDED.has(now.status)) {
-    show(now);
+    card.show(now);
     await pause(wait);
     wait = Math.min(1.3 * wait, LONGEST_LOOK);
-    now = await get(`/v1/jobs/${status.jobID}`);
+    now = await patiently(() => get(`/v1/jobs/${status.jobID}`), (problem) => card.waits(problem));
   }
-  show(now);
+  card.show(now);
   return now;
 }
 
-const WORDS = { accepted: "waits for its turn", running: "runs", successful: "done", failed: "failed", dismissed: "cancelled" };
+export const WORDS = { accepted: "waits for its turn", running: "runs", successful: "done", failed: "failed", dismissed: "cancelled" };
 
 class JobCard {
   constructor(target, process, status, expected) {
@@ -53,7 +59,7 @@ class JobCard {
     this.line = make("p", {});
     this.spoken = make("p", { class: "hint", role: "status" });
     this.cancel = make("button", {
-      type: "button", class: "small", onclick: () => dismiss(`/v1/jobs/${status.jobID}`),
+      type: "button", class: "small", onclick: () => cancelled(status.jobID, this.spoken),
     }, `Cancel ${process}`);
     target.replaceChildren(make("div", { class: "job" }, this.line, this.bar, this.spoken, this.cancel));
   }
@@ -68,6 +74,12 @@ class JobCard {
     const text = ended ? "" : [now.stage ? `stage: ${now.stage}` : "", remaining].filter(Boolean).join("; ");
     if (text !== this.said) this.spoken.textContent = text; // a screen reader hears changes only
     this.said = text;
+  }
+
+  /** Say that the service is asked in vain; null: no longer. */
+  waits(problem) {
+    if (problem) this.spoken.textContent = `${problem.message} The job is asked for again until there is an answer.`;
+    else if (this.spoken.textContent !== this.said) this.spoken.textContent = this.said;
   }
 
   spent(now) {
@@ -86,11 +98,21 @@ class JobCard {
   }
 }
 
+/** Dismiss a job; what goes wrong is said in `line`. */
+export async function cancelled(id, line) {
+  try {
+    await dismiss(`/v1/jobs/${id}`);
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    line.textContent = problem.message;
+  }
+}
+
 /** Say why there is no result. */
 export function showFailure(target, problem) {
   const faults = problem.errors.map((fault) => make("li", {}, `${fault.field} must be ${fault.bound}. ${fault.suggestion || ""}`));
   target.replaceChildren(make(
-    "div", { role: "alert" }, make("strong", {}, problem.facts.title || "It failed"), make("p", {}, problem.message),
-    faults.length ? make("ul", {}, ...faults) : null,
+    "div", { role: "alert" }, make("strong", {}, problem.facts.title || "It failed"),
+    faults.length ? make("ul", {}, ...faults) : make("p", {}, problem.message),
   ));
 }

@@ -1,14 +1,18 @@
 /** The page: a case, its plan, its analysis, and what follows from it. */
 
 import { Problem, get, post } from "./api.js";
+import { watchService } from "./away.js";
 import { Drawing } from "./drawing.js";
+import { showDynamics } from "./dynamics.js";
 import { byId, make, save } from "./elements.js";
 import { CaseForm } from "./form.js";
-import { runJob, showFailure, whereItsResultIs } from "./job.js";
+import { runJob, showFailure } from "./job.js";
+import { Jobs } from "./jobs.js";
 import { Live } from "./live.js";
 import { noPlan, showPlan } from "./plan.js";
 import { showReport } from "./report.js";
-import { showDynamics, showStudies } from "./studies.js";
+import { SceneEditor } from "./scene_editor.js";
+import { showResult, showStudies } from "./studies.js";
 
 const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
 const PLANE = /plane/;
@@ -26,8 +30,12 @@ class Page {
     this.files();
     byId("analyze").addEventListener("click", () => this.analyze());
     const offered = new Set(processes.processes.map(({ id }) => id));
-    showStudies({ case: () => this.form.case, offered, take: (flanks) => this.take(flanks) });
-    await this.earlier();
+    this.studies = { case: () => this.form.case, offered, take: (flanks) => this.take(flanks) };
+    showStudies(this.studies);
+    this.scenes = new SceneEditor();
+    this.jobs = new Jobs((job, reference) => this.reopen(job, reference));
+    this.jobs.refresh();
+    watchService(() => this.back());
     const key = /^#database=([0-9a-f]{64})$/.exec(location.hash)?.[1];
     if (key) await this.open(key);
     else this.begun(examples[0]);
@@ -70,7 +78,8 @@ class Page {
       if (turn === this.turn) this.expected = showPlan(plan);
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
-      if (turn !== this.turn || problem.type.endsWith("superseded")) return;
+      const later = problem.type.endsWith("superseded") || problem.status === 0; // asked again when it is back
+      if (turn !== this.turn || later) return;
       this.form.refuse(problem);
       noPlan();
     }
@@ -83,7 +92,6 @@ class Page {
     try {
       const result = await runJob(byId("analyze-job"), "analyze", { case: content }, { expected: this.expected });
       await this.result(result);
-      await this.earlier();
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
       if (problem.status === 422) this.form.refuse(problem, { focus: true });
@@ -104,6 +112,7 @@ class Page {
     await showReport(byId("results-body"), reference, { making: true });
     await this.live.show(known);
     showDynamics(known);
+    this.scenes.show(known);
   }
 
   async open(key) {
@@ -120,18 +129,22 @@ class Page {
     }
   }
 
-  /** List the analyses that the service has done. */
-  async earlier() {
-    const { jobs } = await get("/v1/jobs?limit=100");
-    const done = jobs.filter(({ processID, status }) => processID === "analyze" && status === "successful").slice(0, 20);
-    const list = byId("earlier");
-    const named = ({ jobID, finished }) => make("option", { value: jobID }, new Date(finished).toLocaleString());
-    list.replaceChildren(make("option", { value: "" }, "none"), ...done.map(named));
-    list.onchange = async () => {
-      if (!list.value) return;
-      const { database } = await get(whereItsResultIs(list.value));
-      await this.open(database.hash);
-    };
+  /** Show what an earlier job has found: a table takes the page, any other result stands below the list. */
+  async reopen(job, reference) {
+    if (reference.href.includes("/databases/")) {
+      await this.open(reference.hash);
+      byId("results").focus();
+      return;
+    }
+    await showResult(byId("jobs-result"), reference, this.studies);
+    byId("jobs-result").focus();
+  }
+
+  /** The service answers again: ask anew for what hangs on it. */
+  back() {
+    this.look();
+    this.live.ask();
+    this.jobs.refresh();
   }
 
   take(flanks) {

@@ -5,6 +5,8 @@
 import { csv, dataTable, folded, make, save } from "./elements.js";
 
 const DARK = window.matchMedia("(prefers-color-scheme: dark)");
+const NARROW = window.matchMedia("(max-width: 40rem)"); // also a wide screen that is zoomed
+const NARROW_LINE = 36; // characters
 // without the bar of buttons: a plot is an image to a screen reader, and an image holds no controls
 const CONFIG = { responsive: true, displaylogo: false, displayModeBar: false };
 const shown = new Map();
@@ -57,16 +59,24 @@ function themed({ data, layout }) {
   return { data: data.map(darkened), layout: { ...dark, ...paper, ...ink } };
 }
 
-/** Let the legend and the labels fit a narrow screen. */
+/** A title in lines that a narrow screen has room for. */
+function wrapped(text) {
+  if (text.replace(/<.*?>/g, "").length <= NARROW_LINE) return text;
+  const at = text.lastIndexOf(" ", NARROW_LINE);
+  return at < 0 ? text : `${text.slice(0, at)}<br>${wrapped(text.slice(at + 1))}`;
+}
+
+/** Let the legend, the titles and the labels fit a narrow screen. */
 function fitted({ data, layout }, width) {
   if (width > 560) return { data, layout };
   const narrow = { ...layout, font: { ...layout.font, size: 11 }, margin: { ...layout.margin, l: 52, r: 8 } };
   for (const [name, axis] of Object.entries(narrow)) {
     if (/^[xy]axis/.test(name) && axis.title) {
-      const text = name.startsWith("x") ? axis.title.text.replace(/ \(.*\)$/, "") : axis.title.text;
+      const text = name.startsWith("x") ? axis.title.text.replace(/ \(.*/, "") : axis.title.text;
       narrow[name] = { ...axis, title: { ...axis.title, text, font: { size: 11 } } };
     }
   }
+  narrow.annotations = layout.annotations?.map((one) => ({ ...one, text: wrapped(one.text) }));
   if (narrow.scene) narrow.scene = { ...narrow.scene, camera: { ...narrow.scene.camera, eye: { x: -1.9, y: -2.2, z: 1.1 } } };
   return { data: data.map((trace) => (trace.type === "surface" ? { ...trace, showscale: false } : trace)), layout: narrow };
 }
@@ -78,24 +88,25 @@ function drawable(figure) {
 
 /** Draw or redraw a figure {data, layout} in a node. */
 export async function plot(node, figure) {
+  for (const old of shown.keys()) if (!old.isConnected) shown.delete(old);
+  shown.set(node, figure);
   if (!drawable(figure)) {
+    node.parentElement.querySelector("[data-tool=PNG]").hidden = true;
     node.replaceChildren(make("p", { class: "hint" }, "This browser draws no surfaces (WebGL); the file and the CSV have it."));
     node.dataset.drawn = "words";
     return;
   }
-  shown.set(node, figure);
   const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
   node.style.height = `${layout.height}px`; // a plot that is resized takes the height of its place
   await Plotly.react(node, data, layout, CONFIG);
   node.dataset.drawn = "yes";
 }
 
-DARK.addEventListener("change", () => {
-  for (const [node, figure] of shown) {
-    if (node.isConnected) plot(node, figure);
-    else shown.delete(node);
-  }
-});
+for (const query of [DARK, NARROW]) {
+  query.addEventListener("change", () => {
+    for (const [node, figure] of [...shown]) if (node.isConnected) plot(node, figure);
+  });
+}
 
 async function savePng(node, name) {
   const { data, layout } = node;
@@ -125,16 +136,16 @@ export function figureBlock(figure, level = "h4") {
   const label = `${figure.title}. ${figure.alternative}`;
   const node = make("div", { class: "plot", role: "img", "aria-label": label });
   const tool = (text, action) => make(
-    "button", { type: "button", class: "small", "aria-label": `${text} of: ${figure.title}`, onclick: action }, text,
+    "button", { type: "button", class: "small", "data-tool": text, "aria-label": `${text} of: ${figure.title}`, onclick: action }, text,
   );
   const tools = make(
     "div", { class: "plot-tools" },
     tool("PNG", () => savePng(node, figure.key)),
-    tool("CSV", () => save(csv(columnsOf(figure.plot)), `${figure.key}.csv`, "text/csv")),
-    tool("JSON", () => save(JSON.stringify(figure.plot), `${figure.key}.json`, "application/json")),
+    tool("CSV", () => save(csv(columnsOf(shown.get(node))), `${figure.key}.csv`, "text/csv")),
+    tool("JSON", () => save(JSON.stringify(shown.get(node)), `${figure.key}.json`, "application/json")),
   );
   const block = make(
-    "figure", { id: `figure-${figure.key}` }, make(level, {}, figure.title), node, tools,
+    "figure", { "data-figure": figure.key }, make(level, {}, figure.title), node, tools,
     make("figcaption", {}, `${figure.caption} ${figure.alternative}`),
     figure.table ? folded("Numbers", dataTable(figure.table)) : null,
   );

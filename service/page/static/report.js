@@ -1,6 +1,6 @@
 /** A stored result as the service's report describes it: main results, figures, tables, files. */
 
-import { file, get } from "./api.js";
+import { Problem, file, get } from "./api.js";
 import { dataTable, figures, folded, make, save } from "./elements.js";
 import { figureBlock, plot } from "./plots.js";
 
@@ -43,12 +43,25 @@ function sectionBlock(section, drawn) {
 /** Buttons for the files of a result. */
 function files(result) {
   const name = `lineofaction_${result.hash.slice(0, 12)}`;
-  const row = make("div", { class: "row" }, make("span", { class: "hint" }, "Save"));
-  const button = (text, action) => row.append(make("button", { type: "button", onclick: action }, text));
+  const line = make("span", { class: "fault", role: "status" });
+  const row = make("div", { class: "row files" }, make("span", { class: "hint" }, "Save"));
+  const button = (text, action) => row.append(make("button", { type: "button", onclick: () => said(action, line) }, text));
   if (result.type === "application/x-netcdf") {
     button("netCDF", async () => save(await file(result.href, result.type), `${name}.nc`));
   }
   button("JSON", async () => save(await file(result.href, "application/json"), `${name}.json`));
   button("Figures as JSON", async () => save(await file(`${result.href}/figures`, "application/json"), `${name}_figures.json`));
+  row.append(line);
   return row;
+}
+
+/** Fetch a file; what goes wrong is said in `line`. */
+async function said(action, line) {
+  line.textContent = "";
+  try {
+    await action();
+  } catch (problem) {
+    if (!(problem instanceof Problem)) throw problem;
+    line.textContent = problem.message;
+  }
 }

@@ -1,67 +1,75 @@
-/** Jobs beside the analysis: flank pressure, ladder, sensitivity, and the dynamics of the pair. */
+/** Jobs on the pair beside its analysis: flank pressure, effects, accuracy ladder, sensitivity, search of flanks, tolerances. */
 
-import { Problem } from "./api.js";
-import { byId, make } from "./elements.js";
-import { runJob, showFailure } from "./job.js";
+import { card } from "./card.js";
+import { byId } from "./elements.js";
+import { runJob } from "./job.js";
 import { optimisationOf, showOptimisation } from "./optimise.js";
 import { showReport } from "./report.js";
-import { sceneOf } from "./scene.js";
+
+const IN_THE_PLANE = ["iso6336", "thin_slices", "plane_strain", "corrected_draft", "corrected", "corrected_fine"];
+
+/** The case for a study across the face, which a model of the plane does not know. */
+function acrossTheFace(content) {
+  const plane = /^plane/.test(content.accuracy?.model ?? "");
+  return plane ? { ...content, accuracy: { ...content.accuracy, model: "3d" } } : content;
+}
 
 const STUDIES = [
   {
     process: "flank", title: "Flank pressure", action: "Compute flank pressure",
     text: "Contact pressure, line load and gap on the flanks over a mesh cycle, at one load and misalignment.",
-    fields: [["torque_n_m", "Torque on the pinion, N m", ""], ["misalignment_um", "Misalignment, µm", ""]],
+    fields: [
+      { name: "torque_n_m", label: "Torque on the pinion, N m" }, { name: "misalignment_um", label: "Misalignment, µm" },
+    ],
     inputs: (found, values) => ({ case: found, ...values }),
   },
   {
-    process: "frontier", title: "Accuracy frontier", action: "Climb the accuracy ladder",
-    text: "Error against time of every way to compute this case, from closed forms to the finest mesh. Takes minutes in three dimensions.",
-    fields: [],
+    process: "ablate", title: "Effects", action: "Switch every effect over",
+    text: "What each effect changes, switched over by itself, beside what the ledger estimated, and what it costs.",
     inputs: (found) => ({ case: found }),
+  },
+  {
+    process: "frontier", title: "Accuracy frontier", action: "Climb the accuracy ladder",
+    text: "Error against time of every way to compute this case, from closed forms to the finest mesh.",
+    fields: [{
+      name: "reach", label: "Up to",
+      choices: [["all", "fine 3-D finite elements (minutes)"], ["plane", "2-D finite elements"]],
+    }],
+    inputs: (found, { reach }) => ({ case: found, ...(reach === "plane" ? { rungs: IN_THE_PLANE } : {}) }),
   },
   {
     process: "sensitivity", title: "Sensitivity", action: "Study the sensitivity",
     text: "Peak to peak over misalignment and centre distance, without and with corner contact, in three dimensions.",
-    fields: [],
-    inputs: (found) => ({ case: found }),
+    fields: [
+      { name: "misalignment_um", label: "Misalignments, µm", value: "0, 15, 30, 45, 60", list: true },
+      { name: "center_distance_change_percent", label: "Changes of the centre distance, %", value: "-0.2, -0.1, 0, 0.1, 0.2", list: true },
+    ],
+    inputs: (found, values) => ({ case: acrossTheFace(found), ...values }),
   },
   {
     process: "optimise", title: "Optimise the flanks", action: "Search better flanks",
     text: "Tip relief of both gears (and crowning, in three dimensions) of least expected peak to peak over the torques of the case.",
-    fields: [["relief_um", "Most tip relief, µm", "40"], ["scatter_um", "Misalignment, standard deviation, µm", "10"]],
+    fields: [
+      { name: "relief_um", label: "Most tip relief, µm", value: "40" },
+      { name: "scatter_um", label: "Misalignment, standard deviation, µm", value: "10" },
+      { name: "evaluations", label: "Designs tried, at most", value: "1000" },
+    ],
     inputs: optimisationOf,
-    show: (result, reference, page) => showOptimisation(result, reference, page.take),
+  },
+  {
+    process: "scatter", title: "Tolerances", action: "Draw pairs within tolerances",
+    text: "Distribution of peak to peak over pairs drawn within the flank tolerances of a class of ISO 1328-1, and which deviation counts.",
+    fields: [
+      { name: "tolerance_class", label: "Class", value: "6" }, { name: "samples", label: "Pairs", value: "500" },
+    ],
+    inputs: (found, values) => ({ case: found, ...values }),
   },
 ];
 
-/** One study: its fields, a button, progress and what came out. */
-function card({ title, text, fields, action, level = "h3" }, start) {
-  const inputs = fields.map(([name, label, value]) => {
-    const input = make("input", { type: "text", inputmode: "decimal", id: `study-${title}-${name}`.replaceAll(" ", "-"), size: 8 });
-    input.value = value;
-    return { name, input, block: make("span", { class: "row" }, make("label", { for: input.id }, label), input) };
-  });
-  const progress = make("div");
-  const result = make("div");
-  const button = make("button", { type: "button" }, action);
-  button.addEventListener("click", async () => {
-    button.disabled = true;
-    result.replaceChildren();
-    try {
-      const values = Object.fromEntries(inputs.filter(({ input }) => input.value.trim() !== "").map(
-        ({ name, input }) => [name, Number(input.value.replace(",", "."))],
-      ));
-      await start(values, progress, result);
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      showFailure(progress, problem);
-    } finally {
-      button.disabled = false;
-    }
-  });
-  const row = make("div", { class: "row" }, ...inputs.map(({ block }) => block), button);
-  return make("div", {}, make(level, {}, title), make("p", { class: "hint" }, text), row, progress, result);
+/** Show a result of any kind but a table. */
+export async function showResult(target, reference, page) {
+  const shows = reference.href.includes("/optimisations/") ? showOptimisation : showReport;
+  await shows(target, reference, page);
 }
 
 /** @param {{case: () => object, offered: Set<string>, take: (flanks: object) => void}} page */
@@ -69,39 +77,6 @@ export function showStudies(page) {
   const offered = STUDIES.filter(({ process }) => page.offered.has(process));
   byId("study-list").replaceChildren(...offered.map((study) => card(study, async (values, progress, result) => {
     const reference = await runJob(progress, study.process, study.inputs(page.case(), values));
-    await (study.show ?? showReport)(result, reference, page);
+    await showResult(result, reference, page);
   })));
-}
-
-const MOTION = [
-  ["top_rpm", "Top speed, rpm", "3000"], ["duration_s", "Duration, s", "1"], ["torque_n_m", "Brake on the wheel, N m", ""],
-];
-
-/** Offer the dynamics of an analysed pair. */
-export function showDynamics(known) {
-  const external = known !== null && !known.case.pair.wheel.internal;
-  byId("dynamics-none").hidden = external;
-  byId("dynamics-body").hidden = !external;
-  if (!external) return;
-  const ratio = known.case.pair.wheel.teeth / known.case.pair.pinion.teeth;
-  const brake = String(Math.round(known.torques[Math.floor(known.torques.length / 2)] * ratio));
-  const fields = MOTION.map(([name, label, value]) => [name, label, value || brake]);
-  const wish = (values) => ({ top_rpm: 3000, duration_s: 1, torque_n_m: Number(brake), ...values });
-  const run = card({
-    title: "Run-up", action: "Simulate the run-up", fields,
-    text: "Time integration from standstill: dynamic transmission error, bearing forces, waterfall over speed, mesh orders.",
-  }, async (values, progress, result) => {
-    const reference = await runJob(progress, "simulate", { scene: sceneOf(known, wish(values)) });
-    await showReport(result, reference);
-  });
-  const modes = card({
-    title: "Modes", action: "Find the modes", fields: [fields[0]],
-    text: "Natural modes about the loaded equilibrium and where multiples of the mesh frequency meet them (Campbell diagram).",
-  }, async (values, progress, result) => {
-    const { top_rpm: top } = wish(values);
-    const speeds = Array.from({ length: 11 }, (_, k) => (k * top) / 10);
-    const reference = await runJob(progress, "modes", { scene: sceneOf(known, wish({})), speed_rpm: speeds });
-    await showReport(result, reference);
-  });
-  byId("dynamics-body").replaceChildren(run, modes);
 }

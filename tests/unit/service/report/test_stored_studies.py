@@ -16,10 +16,19 @@ from dynamics.ladder import RungResult as SceneRung
 from dynamics.ladder.vibration import Vibration
 from fe_contact.analysis import ablate
 from fe_contact.geometry import FlankModification, Gear, GearPair
-from fe_contact.microgeometry import DesignVariable, GaussHermite, Scatter, Search, optimise
+from fe_contact.microgeometry import (
+    DesignVariable,
+    GaussHermite,
+    Scatter,
+    Search,
+    iso1328_tolerances,
+    optimise,
+    scatter,
+)
 from fe_contact.ste import SteDatabase
 from service.convert.ablation import ablation_json
 from service.convert.optimisation import optimisation_json
+from service.convert.scatter import scatter_json
 from service.problems import BadInput
 from service.report.ablation_page import ablation_page
 from service.report.as_json import page_json, stored_figures
@@ -28,6 +37,7 @@ from service.report.inputs import read_inputs
 from service.report.optimisation import optimisation_page
 from service.report.page import Page
 from service.report.run_frontier import run_frontier_page
+from service.report.scatter import scatter_page
 from service.report.stored_study import LADDER_TITLE
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
@@ -47,18 +57,25 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
     only = ["tooth_coupling", "profile_modification", "misalignment"]
     of_case = ablate(PAIR, torques=[20.0, 100.0], positions=16, only=only, cache=compliance, **QUICK)
     of_scene = ablate_scene(gear_pair_scene(duration=0.03), only=["lateral"])
-    found = optimise(
-        PAIR,
-        [50.0, 100.0],
-        [
-            DesignVariable("pinion.tip_relief", 0.0, 40e-6),
-            DesignVariable("wheel.tip_relief_length", 5e-4, 3e-3),
-        ],
-        Scatter(modification={"wheel.profile_slope": 2e-6}, rule=GaussHermite(2)),
-        search=Search(evaluations=20, positions=16),
-        cache=compliance,
-        **QUICK,
+    variables = [
+        DesignVariable("pinion.tip_relief", 0.0, 40e-6),
+        DesignVariable("wheel.tip_relief_length", 5e-4, 3e-3),
+    ]
+    slopes = Scatter(modification={"wheel.profile_slope": 2e-6}, rule=GaussHermite(2))
+    found, exact = (
+        optimise(
+            PAIR,
+            [50.0, 100.0],
+            variables,
+            scatter,
+            search=Search(evaluations=20, positions=16),
+            cache=compliance,
+            **QUICK,
+        )
+        for scatter in (slopes, Scatter())
     )
+    tolerances = iso1328_tolerances(PAIR, 8, across_face=False)
+    drawn = scatter(PAIR, [50.0, 100.0], tolerances, samples=30, positions=16, cache=compliance, **QUICK)
     told = (("rigid", "model", 0.2, 0.1), ("coarse", "steps", 0.01, 1.0), ("fine", "steps", 1e-4, 9.0))
     rungs = tuple(
         SceneRung(name, name, family, error, 2.0 * error, float("nan"), seconds)
@@ -71,10 +88,19 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
         "ablation of a scene": ("ablation", ablation_json(of_scene), ablation_page(of_scene)),
         "ladder of a scene": ("frontier", ladder.to_json(), run_frontier_page(ladder, LADDER_TITLE)),
         "optimisation": ("optimisation", optimisation_json(found), optimisation_page(found)),
+        "optimisation without scatter": ("optimisation", optimisation_json(exact), optimisation_page(exact)),
+        "tolerances": ("scatter", scatter_json(drawn), scatter_page(drawn)),
     }
 
 
-ALL = ("ablation of a case", "ablation of a scene", "ladder of a scene", "optimisation")
+ALL = (
+    "ablation of a case",
+    "ablation of a scene",
+    "ladder of a scene",
+    "optimisation",
+    "optimisation without scatter",
+    "tolerances",
+)
 
 
 @pytest.mark.parametrize("name", ALL)

@@ -1,0 +1,106 @@
+/** One field of the form: its control by the schema, its words and unit, its fault. */
+
+import { make } from "./elements.js";
+import { kindOf, same } from "./schema.js";
+
+const UNITS = [
+  ["_n_per_um", "N/µm"], ["_n_per_mm3", "N/mm³"], ["_n_m", "N m"], ["_gpa", "GPa"], ["_deg", "°"], ["_mm", "mm"],
+  ["_um", "µm"], ["_rpm", "rpm"], ["_hz", "Hz"], ["_percent", "%"], ["_n", "N"], ["_s", "s"],
+];
+const SYMBOLS = [[/\bin um\b/g, "in µm"], [/\bN\/um\b/g, "N/µm"]];
+export function unitOf(name) {
+  return (UNITS.find(([suffix]) => name.endsWith(suffix)) || ["", ""])[1];
+}
+
+export function wordsOf(name) {
+  const suffix = (UNITS.find(([ending]) => name.endsWith(ending)) || [""])[0];
+  const bare = suffix ? name.slice(0, -suffix.length) : name;
+  const text = bare.replaceAll("_", " ").replace(/\bcenter\b/g, "centre");
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** A number as typed; text that is none passes as it is, for the service to refuse by name. */
+function typed(text) {
+  const value = Number(text.replace(",", "."));
+  return text !== "" && Number.isFinite(value) ? value : text;
+}
+
+export class Field {
+  constructor(leaf, label) {
+    Object.assign(this, leaf);
+    this.key = leaf.path.join(".");
+    this.id = `f-${this.key.replaceAll(".", "-")}`;
+    this.name = leaf.path.at(-1);
+    this.kind = kindOf(leaf.schema);
+    this.label = label;
+    this.input = this.control();
+    this.message = make("p", { class: "fault", id: `${this.id}-fault`, hidden: true });
+    const unit = unitOf(this.name);
+    this.wide = this.kind === "list" || this.kind === "json";
+    const shown = unit ? make("span", { class: "unit", "aria-hidden": "true" }, unit) : null;
+    this.entry = make("div", { class: "entry" }, this.input, shown);
+  }
+
+  get hint() {
+    const full = SYMBOLS.reduce((found, [from, to]) => found.replace(from, to), this.schema.description || "");
+    const text = full.replace(/ in (mm|µm|degrees|N m|GPa)\b/, "");
+    return text.toLowerCase() === this.label.toLowerCase() ? "" : text;
+  }
+
+  get spoken() {
+    const unit = unitOf(this.name);
+    return unit ? `${this.label}, ${unit}` : this.label;
+  }
+
+  get defaultText() {
+    const value = this.schema.default;
+    if (value === null || value === undefined) return "";
+    return Array.isArray(value) ? value.join(", ") : String(value);
+  }
+
+  control() {
+    const common = { id: this.id, "aria-describedby": `${this.id}-fault`, name: this.key };
+    if (this.kind === "choice" || this.kind === "switch") {
+      const options = this.kind === "switch" ? ["true", "false"] : this.schema.enum;
+      const said = (text) => ({ true: "yes", false: "no" })[text] ?? text.replaceAll("_", " ");
+      const none = this.defaultText ? said(this.defaultText) : "not chosen";
+      return make(
+        "select", common, make("option", { value: "" }, none),
+        ...options.filter((text) => text !== this.defaultText).map((text) => make("option", { value: text }, said(text))),
+      );
+    }
+    const placeholder = this.kind === "json" ? "none" : this.defaultText;
+    const keys = this.kind === "number" ? "decimal" : "text";
+    return make("input", { ...common, type: "text", inputmode: keys, autocomplete: "off", placeholder });
+  }
+
+  set value(value) {
+    const plain = value === undefined || value === null || same(value, this.schema.default);
+    if (plain) this.input.value = "";
+    else if (this.kind === "list") this.input.value = value.join(", ");
+    else if (this.kind === "json") this.input.value = JSON.stringify(value);
+    else this.input.value = String(value);
+  }
+
+  get value() {
+    const text = this.input.value.trim();
+    if (text === "") return undefined;
+    if (this.kind === "number") return typed(text);
+    if (this.kind === "switch") return text === "true";
+    if (this.kind === "list") return text.split(/[,;\s]+/).filter(Boolean).map(typed);
+    if (this.kind === "json") {
+      try {
+        return JSON.parse(text);
+      } catch {
+        return text;
+      }
+    }
+    return text;
+  }
+
+  fault(text) {
+    this.input.setAttribute("aria-invalid", text ? "true" : "false");
+    this.message.textContent = text || "";
+    this.message.hidden = !text;
+  }
+}

@@ -1,0 +1,94 @@
+/** The jobs of the service, newest first: how far they are, reopened or cancelled. */
+
+import { Problem, get, pause } from "./api.js";
+import { byId, duration, make } from "./elements.js";
+import { ENDED, WORDS, cancelled, referenceOf, showFailure } from "./job.js";
+import { nameOf } from "./job_names.js";
+
+const AT_ONCE = 10;
+const AGAIN = 3000; // milliseconds after which jobs that have not ended are looked at again
+
+export class Jobs {
+  /** @param {(job: object, reference: object) => Promise<void>} open shows a result */
+  constructor(open) {
+    this.open = open;
+    this.shown = AT_ONCE;
+    this.line = byId("jobs-line");
+    document.addEventListener("jobs-changed", () => this.refresh());
+    byId("jobs-more").addEventListener("click", () => {
+      this.shown += AT_ONCE;
+      this.refresh();
+    });
+  }
+
+  /** Look at the list, and go on looking while jobs are under way. */
+  async refresh() {
+    const turn = (this.turn = (this.turn ?? 0) + 1);
+    for (;;) {
+      try {
+        const { jobs } = await get(`/v1/jobs?limit=${this.shown + 1}`);
+        if (turn !== this.turn) return;
+        this.show(jobs);
+        if (jobs.every(({ status }) => ENDED.has(status))) return;
+      } catch (problem) {
+        if (!(problem instanceof Problem)) throw problem;
+        if (problem.status !== 0) return; // an away service is asked again
+      }
+      await pause(AGAIN);
+      if (turn !== this.turn) return;
+    }
+  }
+
+  show(jobs) {
+    byId("jobs-none").hidden = jobs.length > 0;
+    byId("jobs-table").hidden = !jobs.length;
+    byId("jobs-more").hidden = jobs.length <= this.shown;
+    const known = JSON.stringify(jobs);
+    if (known === this.known) return;
+    this.known = known;
+    const focus = document.activeElement?.dataset?.job;
+    byId("jobs-rows").replaceChildren(...jobs.slice(0, this.shown).map((job) => this.row(job)));
+    if (focus) document.querySelector(`[data-job="${focus}"]`)?.focus();
+  }
+
+  row(job) {
+    const when = new Date(job.created).toLocaleString([], { dateStyle: "medium", timeStyle: "short" });
+    const name = nameOf(job.jobID);
+    const about = `${job.processID}${name ? ` of ${name}` : ""}, ${when}`;
+    const button = (text, action) => make(
+      "button", { type: "button", class: "small", "data-job": job.jobID, "aria-label": `${text} ${about}`, onclick: action }, text,
+    );
+    const actions = {
+      successful: () => button("Open", () => this.reopen(job)),
+      failed: () => button("Why", () => this.reopen(job)),
+    };
+    const action = ENDED.has(job.status) ? actions[job.status]?.() : button("Cancel", () => this.cancel(job));
+    const cells = [name, state(job), when, spent(job)].map((text) => make("td", {}, text));
+    return make("tr", {}, make("th", { scope: "row" }, job.processID), make("td", {}, action ?? ""), ...cells);
+  }
+
+  async cancel(job) {
+    await cancelled(job.jobID, this.line);
+    await this.refresh();
+  }
+
+  async reopen(job) {
+    try {
+      const reference = await referenceOf(job.jobID);
+      byId("jobs-result").replaceChildren();
+      await this.open(job, reference);
+    } catch (problem) {
+      if (!(problem instanceof Problem)) throw problem;
+      showFailure(byId("jobs-result"), problem);
+    }
+  }
+}
+
+function state(job) {
+  return job.status === "running" ? `runs, ${Math.round(job.progress ?? 0)} %` : WORDS[job.status];
+}
+
+function spent(job) {
+  if (!job.started || !job.finished) return "";
+  return duration((new Date(job.finished) - new Date(job.started)) / 1000);
+}

@@ -1,0 +1,70 @@
+/** The plots of the live flanks: curves, harmonics and load sharing, several results on one pair of axes. */
+
+const FONT = { family: "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", size: 13 };
+const PAIRS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
+export const SHOWN_HARMONICS = 8;
+
+/**
+ * @typedef {{name: string, curve: object, color: string, width: number, dash: string}} Shown a curve as it is drawn
+ */
+
+/** Positions and values over two pitches (or the whole longer period), closed. */
+function over(curve, values) {
+  const turns = curve.period === 1 ? [0, 1] : [0];
+  const x = turns.flatMap((turn) => curve.position.map((place) => place + turn * curve.period));
+  const y = turns.flatMap(() => values);
+  return { x: [...x, curve.position[0] + turns.length * curve.period], y: [...y, values[0]] };
+}
+
+function layout(height, x, y, more = {}) {
+  const axis = (text) => ({
+    title: { text, standoff: 8, font: { size: 13 } }, gridcolor: "#DDE1E6", linecolor: "#59636E", zeroline: false, ticks: "outside",
+    tickcolor: "#59636E", automargin: true,
+  });
+  return {
+    height, font: { ...FONT, color: "#1B1F24" }, margin: { l: 60, r: 12, t: 34, b: 48 }, xaxis: axis(x), yaxis: axis(y),
+    legend: { orientation: "h", x: 0, y: 1, yref: "container", yanchor: "top" }, hovermode: "x unified", ...more,
+  };
+}
+
+/** @param {Shown[]} shown */
+export function steFigure(shown) {
+  const data = shown.map(({ name, curve, color, width, dash }) => ({
+    ...over(curve, curve.ste_um), type: "scatter", mode: "lines", name, line: { color, width, dash },
+  }));
+  return { data, layout: layout(360, "position, base pitches", "transmission error, µm") };
+}
+
+/** @param {Shown[]} shown */
+export function harmonicsFigure(shown) {
+  const order = Array.from({ length: SHOWN_HARMONICS }, (_, k) => k + 1);
+  const data = shown.map(({ name, curve, color }) => ({
+    type: "bar", name, x: order, y: curve.harmonics_um.slice(0, SHOWN_HARMONICS), marker: { color },
+  }));
+  const made = layout(360, "harmonic of the mesh", "amplitude, µm", { bargap: 0.25 });
+  made.xaxis.dtick = 1;
+  return { data, layout: made };
+}
+
+/** The share of one pair of teeth as it moves on: with every base pitch it is one pair further ahead. */
+function shareOf(curve, pair) {
+  const column = (turn) => curve.pair.indexOf(pair + turn);
+  const at = (row, turn) => (column(turn) < 0 ? 0 : row[column(turn)]);
+  const turns = [0, 1];
+  const x = turns.flatMap((turn) => curve.position.map((place) => place + turn));
+  const y = turns.flatMap((turn) => curve.load_share.map((row) => at(row, turn)));
+  return { x: [...x, 2], y: [...y, at(curve.load_share[0], 2)] };
+}
+
+export function sharingFigure(now) {
+  const wanted = now.period === 1 ? [now.pair[0] - 1, ...now.pair] : now.pair;
+  const lines = wanted.map((pair) => [pair, now.period === 1
+    ? shareOf(now, pair) : over(now, now.load_share.map((row) => row[now.pair.indexOf(pair)]))]);
+  const data = lines.filter(([, line]) => Math.max(...line.y) > 1e-6).map(([pair, line], k) => ({
+    ...line, y: line.y.map((share) => (share > 1e-9 ? share : null)), type: "scatter", mode: "lines", name: `pair ${pair > 0 ? "+" : ""}${pair}`,
+    line: { color: PAIRS[k % PAIRS.length], width: 2 },
+  }));
+  const made = layout(280, "position, base pitches", "load share");
+  made.yaxis.range = [-0.02, 1.05];
+  return { data, layout: made };
+}

@@ -1,0 +1,92 @@
+/** A scene of one's own: opened or written as TOML, run over time or studied over speed. */
+
+import { Problem, post } from "./api.js";
+import { card } from "./card.js";
+import { evenly, usualScene } from "./dynamics.js";
+import { byId, make, save } from "./elements.js";
+import { runJob, showFailure } from "./job.js";
+import { showReport } from "./report.js";
+
+const WHAT = [
+  ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
+  ["steady", "Steady states over speed"],
+];
+const FIELDS = [
+  { name: "process", label: "Compute", choices: WHAT },
+  { name: "from", label: "Speeds from, rpm", value: "300" },
+  { name: "to", label: "to, rpm", value: "3000" },
+  { name: "count", label: "number", value: "10" },
+];
+
+export class SceneEditor {
+  constructor() {
+    this.text = make("textarea", {
+      id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off",
+    });
+    this.refusal = make("div");
+    this.fromPair = make("button", { type: "button", disabled: true, onclick: () => this.write() }, "Write the scene of the pair above");
+    byId("scene-body").replaceChildren(card(
+      { title: "A scene of your own", action: "Compute the scene", text: HELP, fields: FIELDS, more: this.parts() },
+      (values, progress, result) => this.compute(values, progress, result),
+    ));
+  }
+
+  /** @param {object} known the analysed pair, which a scene may be written for */
+  show(known) {
+    this.known = known;
+    this.fromPair.disabled = known.case.pair.wheel.internal;
+  }
+
+  parts() {
+    const chosen = make("input", {
+      class: "hidden-file", id: "scene-file", type: "file", accept: ".toml", "aria-label": "Open a scene file, TOML",
+      onchange: () => this.opened(chosen),
+    });
+    const row = make(
+      "div", { class: "buttons" },
+      chosen, make("label", { class: "button", for: "scene-file" }, "Open scene file…"), this.fromPair,
+      make("button", { type: "button", onclick: () => save(this.text.value, "scene.toml", "application/toml") }, "Save scene"),
+    );
+    return [row, make("label", { for: "scene-text", class: "above" }, "Scene, TOML"), this.text, this.refusal];
+  }
+
+  async opened(chosen) {
+    const [given] = chosen.files;
+    if (!given) return;
+    this.text.value = await given.text();
+    chosen.value = "";
+    await this.careful(() => this.read());
+  }
+
+  async write() {
+    await this.careful(async () => {
+      this.text.value = (await post("/v1/scenes/to-toml", { inputs: { scene: usualScene(this.known) } })).toml;
+    });
+  }
+
+  async read() {
+    return (await post("/v1/scenes/from-toml", { toml: this.text.value })).scene;
+  }
+
+  /** Do something that the service may refuse; say so under the text. */
+  async careful(action) {
+    this.refusal.replaceChildren();
+    try {
+      await action();
+    } catch (problem) {
+      if (!(problem instanceof Problem)) throw problem;
+      showFailure(this.refusal, problem);
+    }
+  }
+
+  async compute({ process, from, to, count }, progress, result) {
+    this.refusal.replaceChildren();
+    const scene = await this.read();
+    const speeds = process === "simulate" ? {} : { speed_rpm: evenly(from, to, count) };
+    await showReport(result, await runJob(progress, process, { scene, ...speeds }));
+  }
+}
+
+const HELP = "Shafts, gears, bearings, meshes, drives and loads as in a scene file. A mesh carries its pair written out "
+  + "([meshes.case]) or names a result of this service (database_hash); files that it names are not read here. "
+  + "Speeds are those of the first driven shaft.";

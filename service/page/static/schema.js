@@ -1,0 +1,47 @@
+/** What a JSON schema says of the fields below it, and the values that they have in a case. */
+
+/** The schema behind references and "or nothing". */
+export function resolved(schema, root) {
+  let found = schema;
+  let nullable = false;
+  for (;;) {
+    if (found.$ref) {
+      const { $ref, ...rest } = found;
+      found = { ...root.$defs[$ref.split("/").pop()], ...rest };
+    } else if (found.anyOf) {
+      nullable = found.anyOf.some((one) => one.type === "null");
+      const { anyOf, ...rest } = found;
+      found = { ...anyOf.find((one) => one.type !== "null"), ...rest };
+    } else {
+      return { schema: found, nullable };
+    }
+  }
+}
+
+/** All fields below a schema, in its order, as {path, schema, nullable}. */
+export function leaves(given, root, path = []) {
+  const { schema, nullable } = resolved(given, root);
+  if (schema.type === "object" && schema.properties) {
+    return Object.entries(schema.properties).flatMap(([name, inner]) => leaves(inner, root, [...path, name]));
+  }
+  return [{ path, schema, nullable }];
+}
+
+export function kindOf(schema) {
+  if (schema.enum) return "choice";
+  if (schema.type === "boolean") return "switch";
+  if (schema.type === "integer" || schema.type === "number") return "number";
+  if (schema.type === "array" && ["number", "integer"].includes(schema.items?.type)) return "list";
+  return "json";
+}
+
+export function at(content, path) {
+  return path.reduce((inner, name) => (inner === null || inner === undefined ? undefined : inner[name]), content);
+}
+
+export function put(content, path, value) {
+  const last = path.length - 1;
+  path.slice(0, last).reduce((inner, name) => (inner[name] ??= {}), content)[path[last]] = value;
+}
+
+export const same = (one, other) => JSON.stringify(one) === JSON.stringify(other);

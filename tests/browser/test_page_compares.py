@@ -1,0 +1,122 @@
+"""Two results on one pair of axes: one kept as reference while flanks or the whole pair change."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import pytest
+from page_visit import CASE, GEAR, Visit, answers, computed, found_inaccessible, opened, shown, unfold
+from playwright.sync_api import Browser, Page, expect
+from running_service import until
+
+OTHER = CASE | {
+    "pair": CASE["pair"] | {"center_distance_mm": 22.0, "wheel": GEAR | {"teeth": 24}},
+    "accuracy": CASE["accuracy"] | {"model": "3d", "positions": 8},
+}
+
+
+@pytest.fixture(scope="module")
+def other(address: str) -> str:
+    """Hash of another pair's table, in three dimensions."""
+    return computed(address, case=OTHER)
+
+
+@pytest.fixture
+def visit(browser: Browser, address: str, analysed: str) -> Visit:
+    return shown(browser, address, analysed)
+
+
+def moved(page: Page, slider: str, key: str) -> None:
+    """Move a slider by a key and wait for the answer."""
+    count = answers(page)
+    page.locator(slider).press(key)
+    until(lambda: answers(page) > count)
+
+
+def curves(page: Page, folder: Path) -> dict[str, list[float]]:
+    """Return what the plot of the transmission error holds, from its CSV."""
+    with page.expect_download() as given:
+        page.locator("[data-figure=live_ste] [data-tool=CSV]").press("Enter")
+    given.value.save_as(folder / "live.csv")
+    head, *rows = csv.reader((folder / "live.csv").read_text(encoding="utf-8").splitlines())
+    return {name: [float(row[k]) for row in rows] for k, name in enumerate(head) if name.endswith(", y")}
+
+
+def change(page: Page) -> str:
+    """Return the change of peak-to-peak that is shown."""
+    return page.locator("#live-figures dd small").first.text_content() or ""
+
+
+def test_flanks_are_compared_with_those_that_were_kept(visit: Visit, tmp_path: Path) -> None:
+    page = visit.page
+    assert set(curves(page, tmp_path)) == {"as analysed, y", "now, y"}
+    moved(page, "#live-pinion-tip_relief_um", "End")
+    relieved = curves(page, tmp_path)["now, y"]
+    count = answers(page)
+    page.get_by_role("button", name="Keep as reference").press("Enter")
+    until(lambda: answers(page) > count)
+    expect(page.locator("#kept-words")).to_contain_text("20/20, pinion relief 20 µm")
+    assert re.search(r"\+0 %$", change(page)), "itself is the reference"
+    moved(page, "#live-pinion-tip_relief_um", "Home")
+    found = curves(page, tmp_path)
+    assert found["reference, y"] == relieved
+    assert found["now, y"] == found["as analysed, y"] != relieved
+    bars = page.locator("[data-figure=live_harmonics] .barlayer .trace")
+    assert bars.count() == 3
+    count = answers(page)
+    page.get_by_role("button", name="Forget the reference").press("Enter")
+    until(lambda: answers(page) > count)
+    assert page.evaluate("document.activeElement.id") == "keep", "the button that had the focus is gone"
+    assert "reference, y" not in curves(page, tmp_path)
+
+
+def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
+    visit: Visit, other: str, tmp_path: Path
+) -> None:
+    page = visit.page
+    page.get_by_role("button", name="Keep as reference").press("Enter")
+    row = page.get_by_role("row").filter(has=page.get_by_role("button", name=re.compile("Open analyze")))
+    count = answers(page)
+    row.first.get_by_role("button").press("Enter")  # the newest: the other pair
+    until(lambda: answers(page) > count)
+    assert other in page.url
+    assert "24" in (page.locator("#f-pair-wheel-teeth").input_value())
+    one = curves(page, tmp_path)["reference, y"]
+    moved(page, "#live-torque_n_m", "End")
+    two = curves(page, tmp_path)["reference, y"]
+    assert min(two) > 1.5 * max(one[:1]), "twice the torque: the reference follows"
+    unfold(page)
+    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    assert visit.complaints == []
+
+
+def test_in_three_dimensions_misalignment_and_crowning_act(
+    browser: Browser, address: str, other: str
+) -> None:
+    visit = shown(browser, address, other)
+    page = visit.page
+    before = page.locator("#live-figures dd").first.text_content()
+    moved(page, "#live-misalignment_um", "End")
+    expect(page.locator("#live-figures dd").first).not_to_have_text(before or "")
+    moved(page, "#live-pinion-helix_crowning_um", "End")
+    assert page.locator("#live-pinion-helix_crowning_um").get_attribute("aria-valuetext") == "30 µm"
+    page.get_by_role("button", name="Compute flank pressure").press("Enter")
+    pattern = page.locator("[data-figure=contact_pattern] .plot")
+    expect(pattern).to_have_attribute("data-drawn", "yes")
+    assert pattern.locator(".heatmaplayer image").count() == 2, (
+        "a map over roll length and face for each gear"
+    )
+    assert visit.complaints == []
+
+
+def test_one_button_computes_in_three_dimensions(browser: Browser, address: str, analysed: str) -> None:
+    visit = opened(browser, f"{address}/#database={analysed}")
+    page = visit.page
+    page.get_by_role("button", name="Analyse in three dimensions").press("Enter")
+    expect(page.locator("#live-misalignment_um")).to_be_enabled()
+    expect(page.locator("#f-accuracy-model")).to_have_value("3d")
+    assert analysed not in page.url
+    assert visit.complaints == []

@@ -1,0 +1,75 @@
+"""Jobs on the page: listed, reopened, cancelled; and a service that goes away and comes back."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, opened, shown
+from playwright.sync_api import Browser, expect
+from running_service import until
+
+from service.client import LineOfActionClient
+
+LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
+
+
+@pytest.fixture
+def visit(browser: Browser, address: str, analysed: str) -> Iterator[Visit]:
+    seen = shown(browser, address, analysed)
+    yield seen
+    seen.page.close()
+
+
+def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
+    page = visit.page
+    with LineOfActionClient(address) as client:
+        job = client.submit("frontier", {"case": LONG})
+        page.reload()
+        row = page.get_by_role("row").filter(
+            has=page.get_by_role("button", name=re.compile("Cancel frontier"))
+        )
+        row.get_by_role("button").press("Enter")
+        until(lambda: client.status(job.id).status == "dismissed")
+    first = page.locator("#jobs-rows tr").first
+    expect(first).to_contain_text("cancelled")
+    assert first.get_by_role("button").count() == 0
+
+
+def test_a_result_opens_again_and_a_failure_says_why(visit: Visit, browser: Browser, address: str) -> None:
+    page = visit.page
+    page.get_by_role("button", name="Find the modes").press("Enter")
+    expect(page.locator("[data-figure=modal_campbell] .plot")).to_have_attribute("data-drawn", "yes")
+    expect(page.locator("#jobs-rows tr").first).to_contain_text("scene of 1 mesh")
+    later = opened(browser, address).page
+    later.get_by_role("button", name=re.compile("^Open modes")).first.press("Enter")
+    again = later.locator("#jobs-result [data-figure=modal_campbell] .plot")
+    expect(again).to_have_attribute("data-drawn", "yes")
+    assert later.evaluate("document.activeElement.id") == "jobs-result"
+    assert not (told := found_inaccessible(later)), json.dumps(told, indent=1)
+    later.close()
+
+
+def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, tmp_path: Path) -> None:
+    page = visit.page
+    choose_case(page, tmp_path)
+    page.locator("#f-load-torque_n_m").fill("0.7, 1.3")
+    page.wait_for_selector("#plan dl")
+    page.locator("#analyze").press("Enter")
+    page.wait_for_selector("#analyze-job .job")
+    page.context.set_offline(True)
+    expect(page.locator("#away")).to_contain_text("does not answer")
+    expect(page.locator("#analyze-job [role=status]")).to_contain_text("asked for again")
+    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    count = answers(page)
+    page.locator("#live-pinion-tip_relief_um").press("End")
+    page.context.set_offline(False)
+    expect(page.locator("#away")).to_be_empty()
+    expect(page.locator("#analyze-job")).to_contain_text("analyze done")
+    until(lambda: answers(page) > count)
+    expect(page.locator("#live-torque_n_m")).to_have_attribute("max", "2.6")
+    assert page.locator("[role=alert]:visible").count() == 0
+    assert visit.complaints == []

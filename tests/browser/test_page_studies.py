@@ -1,0 +1,138 @@
+"""Every study of the page in a real browser: run by its button, drawn, saved, accessible."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from page_visit import PATIENCE, Visit, found_inaccessible, shown, unfold
+from playwright.sync_api import Browser, Locator, Page, expect
+
+# title, button, what is typed or chosen by label, figures, whether the result is netCDF
+STUDIES = {
+    "flank": ("Flank pressure", "Compute flank pressure", {}, ["contact_pattern"], True),
+    "ablate": ("Effects", "Switch every effect over", {}, ["ablation"], False),
+    "frontier": (
+        "Accuracy frontier", "Climb the accuracy ladder",
+        {"Up to": "2-D finite elements"}, ["frontier"], False,
+    ),
+    "sensitivity": (
+        "Sensitivity", "Study the sensitivity",
+        {"Misalignments": "0, 20", "Changes of the centre distance": "0, 0.5"}, ["sensitivity"], True,
+    ),
+    "optimise": (
+        "Optimise the flanks", "Search better flanks",
+        {"Most tip relief": "10", "Designs tried": "30"}, ["harris_map"], False,
+    ),
+    "scatter": (
+        "Tolerances", "Draw pairs within tolerances", {"Class": "8", "Pairs": "50"}, ["scatter"], False,
+    ),
+    "modes": ("Modes", "Find the modes", {"Top speed": "2000"}, ["modal_campbell", "modal_energy"], True),
+    "simulate": (
+        "Run-up", "Simulate the run-up", {"Duration": "0.05"},
+        ["dynamic_error", "bearing_force", "bearing_spectrum"], True,
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def visit(browser: Browser, address: str, analysed: str) -> Visit:
+    return shown(browser, address, analysed)
+
+
+def card(page: Page, title: str) -> Locator:
+    """Return the part of the page with a study."""
+    heading = page.get_by_role("heading", name=title, exact=True)
+    return page.locator(".study").filter(has=heading)
+
+
+def ran(visit: Visit, name: str) -> Locator:
+    """Run a study by keyboard, once; returns its part of the page."""
+    title, button, wishes, *_ = STUDIES[name]
+    part = card(visit.page, title)
+    if part.locator(".plot").count():
+        return part
+    for label, wish in wishes.items():
+        control = part.get_by_label(label)
+        if control.evaluate("node => node.tagName") == "SELECT":
+            control.select_option(label=wish)
+        else:
+            control.fill(wish)
+    part.get_by_role("button", name=button).press("Enter")
+    part.locator(".plot, [role=alert]").first.wait_for(timeout=PATIENCE)
+    return part
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_every_plot_of_a_study_is_drawn_and_has_words(visit: Visit, name: str) -> None:
+    part = ran(visit, name)
+    assert part.get_by_role("alert").all_text_contents() == []
+    for key in STUDIES[name][3]:
+        node = part.locator(f"[data-figure='{key}'] .plot")
+        expect(node).to_have_attribute("data-drawn", "yes", timeout=PATIENCE)
+        assert node.locator(".scatterlayer .trace path, .heatmaplayer image").count() >= 1
+        assert len(node.get_attribute("aria-label") or "") > 40
+    assert part.locator(".plot").count() == part.locator(".plot[data-drawn=yes]").count()
+
+
+def saved(page: Page, button: Locator) -> bytes:
+    """Press a button that saves a file."""
+    with page.expect_download() as given:
+        button.press("Enter")
+    return Path(given.value.path()).read_bytes()
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_every_figure_and_every_result_is_saved(visit: Visit, name: str) -> None:
+    part = ran(visit, name)
+    for key in STUDIES[name][3]:
+        figure = part.locator(f"[data-figure='{key}']")
+        assert saved(visit.page, figure.locator("[data-tool=PNG]")).startswith(b"\x89PNG")
+        content = json.loads(saved(visit.page, figure.locator("[data-tool=JSON]")))
+        table = saved(visit.page, figure.locator("[data-tool=CSV]")).decode()
+        longest = max(len(trace["x"]) for trace in content["data"])
+        assert len(table.splitlines()) == longest + 1, key
+    files = part.locator(".files")
+    whole = json.loads(saved(visit.page, files.get_by_role("button", name="JSON", exact=True)))
+    assert whole
+    if STUDIES[name][4]:
+        assert saved(visit.page, files.get_by_role("button", name="netCDF"))[1:4] == b"HDF"
+    figures = json.loads(saved(visit.page, files.get_by_role("button", name="Figures as JSON")))
+    assert [f["key"] for s in figures["sections"] for f in s["figures"]] == STUDIES[name][3]
+
+
+def test_the_optimum_goes_into_the_case(visit: Visit) -> None:
+    part = ran(visit, "optimise")
+    rows = part.get_by_role("row", name=re.compile("pinion.tip_relief_um"))
+    optimum = float(rows.first.get_by_role("cell").nth(1).text_content() or "nan")
+    part.get_by_role("button", name="Take the optimum").press("Enter")
+    taken = float(visit.page.locator("#f-pair-pinion-tip_relief_um").input_value())
+    assert taken == pytest.approx(optimum, rel=1e-3) and 0.0 < taken <= 10.0
+
+
+def test_a_refused_study_names_the_field_and_only_once(visit: Visit) -> None:
+    part = card(visit.page, "Flank pressure")
+    part.get_by_label("Torque").fill("plenty")
+    part.get_by_role("button", name="Compute flank pressure").press("Enter")
+    told = part.get_by_role("alert")
+    expect(told).to_contain_text("torque_n_m must be")
+    assert (told.text_content() or "").count("torque_n_m must be") == 1
+    assert not (found := found_inaccessible(visit.page)), json.dumps(found, indent=1)
+
+
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1400), ("dark", 400)])
+def test_the_page_with_all_studies_is_accessible(visit: Visit, scheme: str, width: int) -> None:
+    page = visit.page
+    for name in STUDIES:
+        ran(visit, name)
+    page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
+    page.set_viewport_size({"width": width, "height": 900})
+    unfold(page)
+    assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_nothing_is_complained_about(visit: Visit) -> None:
+    assert visit.complaints == []

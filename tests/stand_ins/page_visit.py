@@ -1,0 +1,112 @@
+"""What the tests of the page share: a service, its small case, and a page that is watched."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Browser, Page, expect
+
+from service.client import LineOfActionClient
+
+GEAR: dict[str, Any] = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
+CASE: dict[str, Any] = {
+    "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": GEAR, "wheel": GEAR},
+    "load": {"torque_n_m": [0.5, 1.0]},
+    "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16, "receipt": "minimal"},
+}
+PATIENCE = 120_000.0  # milliseconds; what never comes fails, what is slow does not
+
+
+@dataclass
+class Visit:
+    """An opened page and what it did."""
+
+    page: Page
+    console: list[str] = field(default_factory=list)
+    requests: list[str] = field(default_factory=list)
+
+    @property
+    def complaints(self) -> list[str]:
+        """What was complained about; not that a request was refused, or a connection cut."""
+        return [
+            line
+            for line in self.console
+            if line.startswith("error") and "Failed to load resource" not in line
+        ]
+
+
+@contextmanager
+def served(home: Path, **further: str) -> Iterator[str]:
+    """Serve on a free port and an empty directory; gives the address."""
+    root = str(Path(__file__).parents[2])
+    path = os.pathsep.join(part for part in (root, os.environ.get("PYTHONPATH", "")) if part)
+    environment = {**os.environ, "PYTHONPATH": path, "XDG_DATA_HOME": str(home), **further}
+    command = [sys.executable, "-m", "service.cli", "serve", "--port", "0"]
+    with (
+        (home / "log").open("wb") as log,
+        subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=log, text=True) as service,
+    ):
+        assert service.stdout is not None
+        yield service.stdout.readline().split()[-1]
+        service.terminate()
+
+
+def opened(browser: Browser, address: str, scheme: str = "light", width: int = 1400) -> Visit:
+    """Open the page and note what it does."""
+    page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)  # type: ignore[arg-type]
+    page.set_default_timeout(PATIENCE)
+    seen = Visit(page)
+    page.on("console", lambda message: seen.console.append(f"{message.type}: {message.text}"))
+    page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
+    page.on("request", lambda request: seen.requests.append(request.url))
+    page.goto(address)
+    page.wait_for_selector("html[data-ready=yes]")
+    return seen
+
+
+def choose_case(page: Page, folder: Path) -> None:
+    """Open the small case as a file."""
+    file = folder / "case.json"
+    file.write_text(json.dumps(CASE), encoding="utf-8")
+    page.locator("#import-file").set_input_files(file)
+    expect(page.locator("#example-note")).to_have_text("case.json")
+    expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
+    expect(page.locator("#f-pair-normal_module_mm")).to_have_value("1")
+
+
+def computed(address: str, process: str = "analyze", **inputs: Any) -> str:
+    """Compute something at the service, of the small case by itself; returns the hash of the result."""
+    with LineOfActionClient(address) as client:
+        return client.wait(client.submit(process, inputs or {"case": CASE}).id, interval=0.05).key
+
+
+def shown(browser: Browser, address: str, key: str) -> Visit:
+    """Open the page on a stored table."""
+    seen = opened(browser, f"{address}/#database={key}")
+    seen.page.wait_for_selector("#live-body[data-answers]")
+    return seen
+
+
+def answers(page: Page) -> int:
+    """Count the live answers so far."""
+    return int(page.locator("#live-body").get_attribute("data-answers") or 0)
+
+
+def unfold(page: Page) -> None:
+    """Open everything that is folded."""
+    page.evaluate("() => { for (const folded of document.querySelectorAll('details')) folded.open = true; }")
+
+
+def found_inaccessible(page: Page) -> dict[str, list[str]]:
+    """Return what axe-core finds to complain about, by rule."""
+    found = Axe().run(page).response["violations"]
+    return {rule["id"]: [node["html"][:160] for node in rule["nodes"]] for rule in found}
