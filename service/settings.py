@@ -125,5 +125,5 @@ def _fault(item: dict[str, object]) -> Fault:
     """One wrong setting."""
     location = item["loc"]
     name = str(location[0]) if isinstance(location, tuple) and location else "settings"
-    bound = str(item["msg"]).removeprefix("Input should be ")
+    bound = str(item["msg"]).removeprefix("Input should be ").removeprefix("Value error, ")
     return Fault(name, item.get("input"), bound, f"It is set by LOA_{name.upper()}, or by its option.")

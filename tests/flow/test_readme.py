@@ -13,7 +13,9 @@ from pathlib import Path
 import pytest
 
 from fe_contact.ste import SteDatabase
+from service.app import create_app
 from service.schemas import Case
+from service.settings import Settings
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -25,7 +27,7 @@ def blocks(language: str) -> list[str]:
 
 
 def test_the_python_example_runs_and_writes_a_database(tmp_path: Path) -> None:
-    (code,) = blocks("python")
+    code, _ = blocks("python")
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", code],
         cwd=tmp_path,
@@ -42,11 +44,24 @@ def test_the_python_example_runs_and_writes_a_database(tmp_path: Path) -> None:
 
 
 def test_the_http_example_is_a_case() -> None:
-    (shell,) = [block for block in blocks("sh") if "curl" in block]
+    shell, _ = [block for block in blocks("sh") if "curl" in block]
     body = json.loads(re.search(r"-d '(.*)'", shell, re.DOTALL).group(1))  # type: ignore[union-attr]
     case = Case.model_validate_json(json.dumps(body["inputs"]["case"]))
     example = tomllib.loads((ROOT / "examples" / "palermo_spur_20_20.toml").read_text(encoding="utf-8"))
     assert case.pair == Case.model_validate_json(json.dumps(example)).pair
+
+
+def test_the_client_example_is_the_one_of_its_page_which_runs() -> None:
+    _, code = blocks("python")
+    assert f"```python\n{code}```" in (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
+
+
+def test_the_paths_of_the_http_example_are_those_of_the_service(tmp_path: Path) -> None:
+    _, shell = [block for block in blocks("sh") if "curl" in block]
+    shown = re.findall(r"127\.0\.0\.1:8321(/\S+)", shell)
+    known = create_app(Settings(data_directory=tmp_path)).openapi()["paths"]
+    generic = [path.replace("{id}", "{job_id}").replace("{hash}", "{key}") for path in shown]
+    assert len(generic) == 3 and [path for path in generic if path not in known] == []
 
 
 def test_links_and_pictures_lead_somewhere() -> None:
