@@ -10,6 +10,7 @@ from types import FrameType
 from typing import NoReturn
 
 import uvicorn
+from fastapi import FastAPI
 
 from service.access import open_keyring
 from service.app import create_app
@@ -20,6 +21,9 @@ from service.problems import BadInput
 from service.settings import Settings, load_settings
 
 _STOPPING_S = 2
+_KEPT_S = 75
+"""How long an idle connection is kept: longer than by clients (5 s) and proxies (60 s). If the server closed
+first, a request that is on its way just then would be answered with a reset."""
 
 
 def run_serve(*, works: bool = True, **given: object) -> None:
@@ -32,17 +36,23 @@ def run_serve(*, works: bool = True, **given: object) -> None:
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, _stopped)
         _announce(listener)
-        config = uvicorn.Config(
-            app,
-            http=BoundedHttp,
-            ws="none",
-            log_config=None,
-            access_log=False,
-            limit_concurrency=MOST_CONNECTIONS,
-            timeout_graceful_shutdown=_STOPPING_S,
-            lifespan="on",
-        )
-        _Server(config, app.state.context.live).run(sockets=[listener])
+        http_server(app).run(sockets=[listener])
+
+
+def http_server(app: FastAPI) -> uvicorn.Server:
+    """Return the server of an app."""
+    config = uvicorn.Config(
+        app,
+        http=BoundedHttp,
+        ws="none",
+        log_config=None,
+        access_log=False,
+        limit_concurrency=MOST_CONNECTIONS,
+        timeout_graceful_shutdown=_STOPPING_S,
+        timeout_keep_alive=_KEPT_S,
+        lifespan="on",
+    )
+    return _Server(config, app.state.context.live)
 
 
 class _Server(uvicorn.Server):

@@ -12,10 +12,10 @@ import sys
 import threading
 
 import structlog
-import uvicorn
 from service_stand_ins import REGISTRY
 
 from service.app import create_app
+from service.cli.serve import http_server
 from service.jobs.machinery import job_machinery
 from service.problems import DatabaseUnavailable
 from service.settings import load_settings
@@ -26,11 +26,8 @@ def serve(works: bool, descriptor: int) -> None:
     """Answer on the socket until stopped."""
     app = create_app(load_settings(), REGISTRY, works=works)
     signal.signal(signal.SIGTERM, lambda _number, _frame: sys.exit(0))  # raised again when all is shut down
-    config = uvicorn.Config(
-        app, log_config=None, access_log=False, timeout_graceful_shutdown=2, lifespan="on"
-    )
     with socket.socket(fileno=descriptor) as listener:
-        uvicorn.Server(config).run(sockets=[listener])
+        http_server(app).run(sockets=[listener])
 
 
 def work() -> None:
