@@ -132,4 +132,6 @@ def switched_over(checked: Checked, name: str, choice: str) -> Checked:
     model = "plane_stress" if request.accuracy.model == "plane_stress" else "auto"
     accuracy = replace(request.accuracy, model=model if asked["face_load_distribution"] == "off" else "auto")
     spared = {one: reason for one, reason in request.spared.items() if one != name}
-    return check_asked(replace(request, effects=asked, accuracy=accuracy, spared=spared, turned_on={}))
+    return check_asked(
+        replace(request, effects=asked, accuracy=accuracy, spared=spared, turned_on={}), spare=False
+    )

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.solved_places import deflected_places
+from fe_contact.analysis.solved_places import Solved, deflected_places
 from fe_contact.analysis.table_places import Place, Places, table_places
+from fe_contact.contact import Start
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
 from fe_contact.sampled import LOADS, WIDE_INTERVALS, WIDE_PROBES, sample_of, some_positions, spread
@@ -55,7 +56,7 @@ class AxisError:
 
 
 def held_out_axes(
-    table: SteDatabase, places: Places, scene: ContactScene, choices: Mapping[str, str]
+    table: SteDatabase, places: Places, scene: ContactScene, choices: Mapping[str, str], solved: Solved
 ) -> dict[str, AxisError]:
     """Solve one held-out point in every interval of every axis that has one.
 
@@ -74,6 +75,8 @@ def held_out_axes(
         With the axes of the table.
     choices : mapping
         Effect name to "on" or "off", as decided for the whole table.
+    solved : list of (ContactProblem, ContactSolution)
+        Of every place, in all base pitches: held-out loads and misalignments start from the nearest ones.
 
     Returns
     -------
@@ -84,19 +87,19 @@ def held_out_axes(
     if table.n_failed:
         return {}
     table = _first_pitch(table)
+    judged = _Judged(table, some_positions(table.position.size), places, scene, choices, solved)
+    axes = {
+        "force": (table.force, judged.force),
+        "misalignment": (table.misalignment, judged.misalignment),
+        "center_distance_change": (table.center_distance_change, judged.center_distance_change),
+    }
+    several = {name: judge for name, (nodes, judge) in axes.items() if nodes.size > 1}
     try:
-        table.force_table()
+        if several:
+            table.ste(table.position[0], table.force[0])
     except DatabaseError:
         return {}
-    judged = _Judged(table, some_positions(table.position.size), places, scene, choices)
-    found = {}
-    if table.force.size > 1:
-        found["force"] = judged.force()
-    if table.misalignment.size > 1:
-        found["misalignment"] = judged.misalignment()
-    if table.center_distance_change.size > 1:
-        found["center_distance_change"] = judged.center_distance_change()
-    return found
+    return {name: judge() for name, judge in several.items()}
 
 
 def _first_pitch(table: SteDatabase) -> SteDatabase:
@@ -121,6 +124,7 @@ class _Judged:
     places: Places
     scene: ContactScene
     choices: Mapping[str, str]
+    solved: Solved
 
     def force(self) -> AxisError:
         """Judge the loads."""
@@ -161,7 +165,18 @@ class _Judged:
     def _curves(self, place: Place, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
         """Interpolant and solutions (positions, L), m; NaN where one did not converge."""
         position = self.table.position[rows]
-        return self._tabulated(position, load, *alignment), place.solve(position, load)[1].deflection
+        solution = place.solve(position, load, start=self._start(rows, load, *alignment))[1]
+        return self._tabulated(position, load, *alignment), solution.deflection
+
+    def _start(self, rows: IntArray, load: FloatArray, *alignment: float) -> Start:
+        """Start from the nearest place, at the loads below."""
+        axes = self.table.misalignment, self.table.center_distance_change
+        m, d = (int(np.argmin(np.abs(nodes - x))) for nodes, x in zip(axes, alignment, strict=True))
+        problem, solution = self.solved[m * axes[1].size + d]
+        force = self.table.force
+        below = np.maximum(np.searchsorted(force, load, side="right") - 1, 0)
+        ratio = (load / force[below])[:, None]
+        return Start(problem.candidates, ratio * solution.force[np.ix_(rows, below)])
 
     def _tabulated(self, position: FloatArray, load: FloatArray, *alignment: float) -> FloatArray:
         """Interpolant (positions, L), m."""

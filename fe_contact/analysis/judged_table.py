@@ -14,8 +14,8 @@ from fe_contact.analysis.position_errors import position_errors
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_again import TableSample
+from fe_contact.analysis.solved_places import Solved
 from fe_contact.analysis.table_places import Places
-from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.planning import Plan
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
@@ -50,7 +50,7 @@ def judged_table(
     table: SteDatabase,
     fine: Places,
     coarse: Places,
-    solved: list[tuple[ContactProblem, ContactSolution]],
+    solved: Solved,
     nodes: PositionNodes,
     checked: Checked,
     plan: Plan,
@@ -79,7 +79,7 @@ def judged_table(
     positions = position_errors(nodes, fine, found, plan)
     measured = fine, found, nested, positions, plan, plane_strain_error(checked)
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
-    between = held_out_axes(table, fine, checked.request.scene, checked.decided)
+    between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
     held_out = {name: error.to_json() for name, error in between.items()}
     return JudgedTable(sources.total, with_axes(errors, between), sources.to_json(), held_out)
 

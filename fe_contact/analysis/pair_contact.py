@@ -23,6 +23,7 @@ from fe_contact.contact import (
     ContactProblem,
     ContactSolution,
     Slices,
+    Start,
     contact_candidates,
     contact_problem,
     face_contact_problem,
@@ -82,15 +83,20 @@ class PairContact:
         return found
 
     def solve(
-        self, model: ContactModel, position: FloatArray, load: FloatArray, pitch: IntArray | None = None
+        self,
+        model: ContactModel,
+        position: FloatArray,
+        load: FloatArray,
+        pitch: IntArray | None = None,
+        start: Start | None = None,
     ) -> tuple[ContactProblem, ContactSolution]:
         """Solve positions (P,) in [0, 1) at normal forces (L,) in N, each in the first base pitch.
 
         With `pitch` (R,), R a multiple of P, there are R rows: position r modulo P in whole pitch `pitch[r]`.
-        Rows of one position share its compliance.
+        Rows of one position share its compliance. `start` has forces near the solution in every row.
         """
         problem = self.problem(model, position, pitch)
-        return problem, solve_contact(problem, load)
+        return problem, solve_contact(problem, load, start)
 
     def problem(
         self,

@@ -118,12 +118,16 @@ def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
     """Compose the model; the ledger says what was asked for, and of what is spared what the scene held."""
     composed, ledger = compose(request.scene, request.choices, EFFECTS)
     asked, overrides = request.asked_choices, {**request.spared, **request.turned_on}
-    whole = {effect.name: effect.called_for(request.whole_scene) for effect in EFFECTS}
+    whole = {
+        effect.name: effect.called_for(request.whole_scene)
+        for effect in EFFECTS
+        if effect.name in request.spared
+    }
     return composed, tuple(
         replace(
             entry,
             choice=asked.get(entry.name, "auto"),
-            verdict=whole[entry.name] if entry.name in request.spared else entry.verdict,
+            verdict=whole.get(entry.name, entry.verdict),
             override=overrides.get(entry.name, ""),
         )
         for entry in ledger

@@ -23,6 +23,7 @@ from fe_contact.contact import (
     ContactProblem,
     ContactSolution,
     Slices,
+    Start,
     contact_candidates,
     in_pitches,
     with_gaps,
@@ -59,9 +60,17 @@ class SpringContact(PairContact):
     law: SliceLaw = field(kw_only=True)
 
     def solve(
-        self, model: ContactModel, position: FloatArray, load: FloatArray, pitch: IntArray | None = None
+        self,
+        model: ContactModel,
+        position: FloatArray,
+        load: FloatArray,
+        pitch: IntArray | None = None,
+        start: Start | None = None,
     ) -> tuple[ContactProblem, ContactSolution]:
-        """Solve positions (P,) at normal forces (L,) in N; parameters as of `PairContact.solve`."""
+        """Solve positions (P,) at normal forces (L,) in N; parameters as of `PairContact.solve`.
+
+        Uncoupled slices need no start.
+        """
         seen = model if self.law.with_gaps else ContactModel()
         slices = Slices.of_pair(self.pair, SLICES)
         plain = contact_candidates(self.pair, seen, position, self.plan.patch, slices)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.analysis.pair_contact import PairContact
-from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
+from fe_contact.contact import ContactModel, ContactProblem, ContactSolution, Start
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import InProcess, Workers
@@ -24,10 +24,14 @@ class Place:
     model: ContactModel
 
     def solve(
-        self, position: FloatArray, load: FloatArray, pitch: IntArray | None = None
+        self,
+        position: FloatArray,
+        load: FloatArray,
+        pitch: IntArray | None = None,
+        start: Start | None = None,
     ) -> tuple[ContactProblem, ContactSolution]:
-        """Solve positions (P,) at normal forces (L,) in N; `pitch` as in `PairContact.solve`."""
-        return self.contact.solve(self.model, position, load, pitch)
+        """Solve positions (P,) at normal forces (L,) in N; `pitch` and `start` as in `PairContact.solve`."""
+        return self.contact.solve(self.model, position, load, pitch, start)
 
     def solve_pitches(
         self, position: FloatArray, load: FloatArray, pitches: IntArray

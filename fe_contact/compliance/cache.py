@@ -23,6 +23,8 @@ from fe_contact.types import Json
 
 ENVIRONMENT = "LINEOFACTION_CACHE"
 OFF = ("", "0", "off", "none")
+KEPT_KEYS = 64
+"""Hashes of what was asked for last, kept in memory."""
 NOT_ARRAYS = ("facts", "checksum")
 Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, UnitRootStress)
 

@@ -4,12 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from fe_contact.checks import integer
-from fe_contact.compliance.cache import content_hash, mesher_version, read_compliance, write_compliance
+from fe_contact.compliance.cache import (
+    KEPT_KEYS,
+    content_hash,
+    mesher_version,
+    read_compliance,
+    write_compliance,
+)
 from fe_contact.compliance.flank import refuse_broken_laws
 from fe_contact.compliance.flank_3d import FlankCompliance3D
 from fe_contact.geometry import Toothing, tooth_profile
@@ -103,14 +110,20 @@ def usual_reach(gear: Toothing) -> int:
 
 def compliance_key_3d(gear: Toothing, recipe: SectorRecipe, reach: int, support: BoreSupport) -> str:
     """Return the hash of all that decides a compliance but for the hand of the helix."""
+    return _key(gear, recipe, reach, support.name, MODEL_VERSION)
+
+
+@lru_cache(maxsize=KEPT_KEYS)
+def _key(gear: Toothing, recipe: SectorRecipe, reach: int, support: str, version: int) -> str:
+    """Hash them once: predictions ask for the same few keys again and again."""
     content: Json = {
-        "model": ["cyclic sector", MODEL_VERSION],
+        "model": ["cyclic sector", version],
         "gmsh": mesher_version(),
         "geometry": gear.right_handed().macro_geometry(),
         "material": [gear.material.youngs_modulus, gear.material.poissons_ratio],
         "recipe": recipe.content(),
         "reach": reach,
-        "support": support.name,
+        "support": support,
         "solver": SOLVER,
     }
     return content_hash(content)

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
 from fe_contact.checks import integer
-from fe_contact.compliance.cache import content_hash, mesher_version, read_compliance, write_compliance
+from fe_contact.compliance.cache import (
+    KEPT_KEYS,
+    content_hash,
+    mesher_version,
+    read_compliance,
+    write_compliance,
+)
 from fe_contact.compliance.checks_2d import ring_checks, uniform_pressure
 from fe_contact.compliance.flank import FlankCompliance, refuse_broken_laws
 from fe_contact.compliance.plane import PlaneHypothesis
@@ -117,18 +124,26 @@ def compliance_key(
     gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: Solver
 ) -> str:
     """Return the hash of all that decides a compliance of the transverse section."""
+    return _key(gear, recipe, hypothesis, teeth, solver.name, MODEL_VERSION)
+
+
+@lru_cache(maxsize=KEPT_KEYS)
+def _key(
+    gear: Toothing, recipe: MeshRecipe, hypothesis: PlaneHypothesis, teeth: int, solver: str, version: int
+) -> str:
+    """Hash them once: predictions ask for the same few keys again and again."""
     section = gear.macro_geometry()
     if gear.web is None:
         section.pop("face_width")
     content: Json = {
-        "model": ["transverse section", MODEL_VERSION],
+        "model": ["transverse section", version],
         "gmsh": mesher_version(),
         "section": section,
         "material": [gear.material.youngs_modulus, gear.material.poissons_ratio],
         "recipe": recipe.content(),
         "hypothesis": hypothesis.value,
         "teeth": teeth,
-        "solver": solver.name,
+        "solver": solver,
     }
     return content_hash(content)
 

@@ -16,6 +16,7 @@ from fe_contact.contact.pitches import in_pitches
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution import ContactSolution
+from fe_contact.contact.start import Start
 from fe_contact.contact.sweep import solve_contact
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "GapTerm",
     "PatchRule",
     "Slices",
+    "Start",
     "ToothGap",
     "contact_candidates",
     "contact_problem",

@@ -12,9 +12,12 @@ def condition_numbers(compliance: FloatArray) -> FloatArray:
 
     Candidates that do not exist at a position have no compliance there and are left out.
     """
-    diagonal = np.einsum("qii->qi", compliance)
-    real = diagonal != 0.0
-    filler = np.where(real, 0.0, np.abs(diagonal).max(axis=1)[:, None])
-    eigenvalues = np.linalg.eigvalsh(compliance + filler[:, :, None] * np.eye(diagonal.shape[1]))
-    least, largest = eigenvalues[:, 0], eigenvalues[:, -1]
-    return np.asarray(np.divide(largest, least, out=np.full(least.size, np.inf), where=least > 0.0))
+    real = np.einsum("qii->qi", compliance) != 0.0
+    number = np.full(len(compliance), np.inf)
+    for members in {mask.tobytes(): mask for mask in real}.values():
+        alike = np.flatnonzero((real == members).all(axis=1))
+        columns = np.flatnonzero(members)
+        eigenvalues = np.linalg.eigvalsh(compliance[np.ix_(alike, columns, columns)])
+        least, largest = eigenvalues[:, 0], eigenvalues[:, -1]
+        number[alike] = np.divide(largest, least, out=number[alike], where=least > 0.0)
+    return number

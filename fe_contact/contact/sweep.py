@@ -9,10 +9,11 @@ from fe_contact.contact.local_law import local_law
 from fe_contact.contact.newton import CONVERGED, PointProblem, solve_point
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.solution import ContactSolution
+from fe_contact.contact.start import Start
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 
-def solve_contact(problem: ContactProblem, loads: FloatArray) -> ContactSolution:
+def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | None = None) -> ContactSolution:
     """Solve every position at every load.
 
     Parameters
@@ -21,6 +22,8 @@ def solve_contact(problem: ContactProblem, loads: FloatArray) -> ContactSolution
         P positions, n candidates.
     loads : ndarray, shape (L,)
         T_1/(r_b1 cos beta_b) in N, increasing and > 0.
+    start : Start, optional
+        Forces near the solution at every position and load; default: each load starts from the one below it.
 
     Returns
     -------
@@ -35,10 +38,11 @@ def solve_contact(problem: ContactProblem, loads: FloatArray) -> ContactSolution
     residuals = np.zeros((p, levels, 4))
     beyond = np.zeros((p, levels), dtype=np.bool_)
     normal_gap = c.gap * c.motion_arm
+    first = np.zeros((0, 0, n)) if start is None else np.ascontiguousarray(start.on(c))
     _sweep(
         problem.compliance, normal_gap, c.motion_arm, c.torque_share,
         c.radius, c.edge_slope, np.full(n, c.width), c.patch_1.law_width, c.patch_2.law_width,
-        problem.modulus, problem.half_plane_1, problem.half_plane_2, loads,
+        problem.modulus, problem.half_plane_1, problem.half_plane_2, loads, first,
         deflection, tangent, force, status, iterations, residuals, beyond,
     )  # fmt: skip
     return ContactSolution(
@@ -61,6 +65,7 @@ def _sweep(
     k1: float,
     k2: float,
     loads: FloatArray,
+    first: FloatArray,
     deflection: FloatArray,
     tangent: FloatArray,
     force: FloatArray,
@@ -69,13 +74,15 @@ def _sweep(
     residuals: FloatArray,
     beyond: BoolArray,
 ) -> None:
-    """Fill the result arrays, each load started from the one below it."""
+    """Fill the result arrays, started from the `first` forces, or each load from the one below it."""
     for p in range(gap.shape[0]):
         law = local_law(radius[p], edge_slope[p], width, patch_1[p], patch_2[p], modulus, k1, k2)
         point = PointProblem(compliance[p % compliance.shape[0]], gap[p], motion_arm[p], torque_arm[p], law)
         start = np.zeros(gap.shape[1])
         for k in range(loads.size):
-            if k > 0:
+            if first.shape[0] > 0:
+                start = first[p, k].copy()
+            elif k > 0:
                 start *= loads[k] / loads[k - 1]
             d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
             status[p, k], iterations[p, k], beyond[p, k] = code, count, over

@@ -30,6 +30,8 @@ from fe_contact.types import BoolArray, FloatArray
 
 Side = Literal["approach", "exit"]
 _ITERATIONS = 50
+_ROUNDING = 4.0 * float(np.finfo(float).eps)
+"""Of a gap, in parts of the centre distance: it is a difference of lengths of that order."""
 
 
 @dataclass(frozen=True)
@@ -138,15 +140,16 @@ def _touch_by_tip_gear(pair: ParallelAxes, tip: Toothing, flank: Toothing, roll_
 
     A lag e brings the tip gear to roll_length + e (a ring gear to roll_length - e), and it touches if the
     flank gear, turned instead, would need just that: e = gap(roll_length + e). The gap is convex, so Newton's
-    iteration from e = 0 ascends to the root.
+    iteration from e = 0 ascends to the root. What has reached it stays, whatever else is asked beside it.
     """
     lag = np.zeros_like(roll_length)
     for _ in range(_ITERATIONS):
         touch = _touch(pair, tip, flank, roll_length + tip.sign * lag)
         reachable = touch.lever_arm_ratio > 0.0
         step = np.where(reachable, touch.gap - lag, np.nan) / np.where(reachable, touch.lever_arm_ratio, 1.0)
-        lag = lag + step
-        if not np.any(np.abs(step) > 1e-16 * pair.center_distance):
+        settled = np.abs(step) <= _ROUNDING * pair.center_distance
+        lag = np.where(settled, lag, lag + step)
+        if np.all(settled | np.isnan(step)):
             break
     return touch._replace(gap=lag)
 

@@ -11,6 +11,7 @@ import json
 import math
 import statistics
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 
 FILE = "run-log.jsonl"
@@ -24,11 +25,25 @@ _LARGEST_FILE = 1_000_000
 
 def corrections(cache: Path | None) -> dict[str, float]:
     """Return the factor that earlier runs put on the predicted time, by stage that has been run."""
+    if cache is None:
+        return {}
+    try:
+        state = (cache / FILE).stat()
+    except OSError:
+        return {}
+    return dict(_corrections(cache / FILE, state.st_mtime_ns, state.st_size))
+
+
+@lru_cache(maxsize=8)
+def _corrections(file: Path, changed: int, size: int) -> tuple[tuple[str, float], ...]:
+    """Return the factors of a file as it was `changed`: a run is predicted once for every effect."""
     ratios: dict[str, list[float]] = {}
-    for stage, ratio in _lines(cache):
+    for stage, ratio in _lines(file):
         ratios.setdefault(stage, []).append(math.log(ratio))
     made_up = [0.0] * _MADE_UP
-    return {stage: math.exp(statistics.median([*found[-LAST:], *made_up])) for stage, found in ratios.items()}
+    return tuple(
+        (stage, math.exp(statistics.median([*found[-LAST:], *made_up]))) for stage, found in ratios.items()
+    )
 
 
 def record(cache: Path | None, predicted: Mapping[str, float], measured: Mapping[str, float]) -> None:
@@ -60,12 +75,10 @@ def record(cache: Path | None, predicted: Mapping[str, float], measured: Mapping
         return
 
 
-def _lines(cache: Path | None) -> list[tuple[str, float]]:
+def _lines(file: Path) -> list[tuple[str, float]]:
     """Return stage and measured over predicted time of every line that can be read."""
-    if cache is None:
-        return []
     try:
-        text = (cache / FILE).read_text(encoding="utf-8", errors="replace")
+        text = file.read_text(encoding="utf-8", errors="replace")
     except OSError:
         return []
     found = []

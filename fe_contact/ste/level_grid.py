@@ -110,13 +110,26 @@ def monotone_stiffness(stiffness: LevelGrid, deflection: LevelGrid, level: Float
     dims = len(stiffness.axes)
     net, gaps = stiffness.control_net(), np.diff(deflection.control_net(), axis=-1)
     room = 3.0 * np.diff(level)
-    # a cell's coefficients mix its knots' numbers; rounding of the bound itself is given away here
-    allowed = (1.0 - 1e-12) * room / np.maximum(_largest_product(net[..., :-1], gaps, dims), 1e-300)
-    below = _knot_minimum(stiffness.axes, np.minimum(allowed, 1.0))
-    allowed = (1.0 - 1e-12) * room / np.maximum(_largest_product(net[..., 1:], gaps, dims), 1e-300)
-    above = _knot_minimum(stiffness.axes, np.minimum(allowed, 1.0))
+    below = _knot_minimum(stiffness.axes, _share_allowed(net[..., :-1], gaps, room, dims))
+    above = _knot_minimum(stiffness.axes, _share_allowed(net[..., 1:], gaps, room, dims))
     free = np.ones_like(below[..., :1])
     return stiffness.scaled(np.minimum(np.concatenate([below, free], -1), np.concatenate([free, above], -1)))
+
+
+def _share_allowed(net: FloatArray, gaps: FloatArray, room: FloatArray, dims: int) -> FloatArray:
+    """Share (cells ..., L - 1), at most 1, of the stiffness whose product with the gaps keeps to `room`.
+
+    Coefficients of a product are means of products of the factors', so that those of a cell need not be
+    formed where the largest of both factors keep to the room.
+    """
+    largest = (np.abs(factor).max(axis=tuple(range(dims))) for factor in (net, gaps))
+    crowded = prod(largest) > (1.0 - 2e-12) * room
+    room = np.broadcast_to(room, crowded.shape)[crowded]
+    product = _largest_product(net[..., crowded], gaps[..., crowded], dims)
+    share = np.ones(crowded.shape)
+    # a cell's coefficients mix its knots' numbers; rounding of the bound itself is given away here
+    share[crowded] = np.minimum((1.0 - 1e-12) * room / np.maximum(product, 1e-300), 1.0)
+    return share
 
 
 def _orders(axes: tuple[Axis, ...]) -> list[Order]:

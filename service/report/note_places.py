@@ -11,10 +11,11 @@ import numpy as np
 from service.report.figure import Axis, FloatArray, Note
 
 # of an 8 point text in a panel of the usual size, in parts of its width and height
-_CHARACTER, _HEIGHT, _GAP, _RISE = 0.0085, 0.07, 0.008, 0.05
+_CHARACTER, _HEIGHT, _GAP, _RISE = 0.0072, 0.07, 0.008, 0.05
 _POINT_WIDTH, _POINT_HEIGHT = 0.012, 0.05
 _MARGIN = 0.05
-"""Of the panel above and below its curves: what goes beyond it runs into the title or the axis."""
+"""Of the panel above its curves, and below them where the axis has no limits: what goes beyond it runs into
+the title or the axis."""
 _PLACES = [(row, left) for row in (0, -1, 1, -2, 2, -3, 3) for left in (False, True)]
 """Rows above (> 0) or below a note's usual place, and whether the text ends at the point."""
 
@@ -40,7 +41,7 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     ----------
     notes : sequence of Note
     x, y : Axis
-        Of the panel; `x` with limits.
+        Of the panel; `x` with limits, and `y`, too, where the panel ends with `y_range`.
     y_range : (float, float)
         Values between which the panel's curves lie.
     """
@@ -50,10 +51,10 @@ def placed(notes: Sequence[Note], x: Axis, y: Axis, y_range: tuple[float, float]
     taken = [
         _Box(a - size[0], a + size[0], b - size[1], b + size[1]) for a, b in zip(across, along, strict=True)
     ]
-    found = list(notes)
+    found, lowest = list(notes), -_MARGIN if y.limits is None else 0.0
     for k in np.argsort(across, kind="stable"):
         boxes = {place: _text(notes[k].text, across[k], along[k], *place) for place in _PLACES}
-        place = next((at for at, box in boxes.items() if _is_free(box, taken)), _PLACES[0])
+        place = next((at for at, box in boxes.items() if _is_free(box, taken, lowest)), _PLACES[0])
         taken.append(boxes[place])
         found[k] = replace(notes[k], row=place[0], left=place[1])
     return tuple(found)
@@ -66,10 +67,10 @@ def _text(text: str, x: float, y: float, row: int, left: bool) -> _Box:
     return _Box(start, start + width, low, low + _HEIGHT)
 
 
-def _is_free(box: _Box, taken: Sequence[_Box]) -> bool:
+def _is_free(box: _Box, taken: Sequence[_Box], lowest: float) -> bool:
     """Whether a text lies in the panel and covers nothing."""
     across = box.left >= 0.0 and box.right <= 1.0
-    along = box.low >= -_MARGIN and box.high <= 1.0 + _MARGIN
+    along = box.low >= lowest and box.high <= 1.0 + _MARGIN
     return across and along and not any(box.covers(other) for other in taken)
 
 

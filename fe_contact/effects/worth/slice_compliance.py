@@ -52,10 +52,13 @@ def slice_compliance(pair: ParallelAxes, candidates: Candidates, model: ContactM
     total = np.zeros((*touch.gap.shape, candidates.pair.size))
     for gear, s, lever, patch in sides:
         # off the line of action the gear with the edge moves less, as in `contact_problem`
-        total += lever[:, :, None] * lever[:, None, :] * _of_gear(gear, candidates, model, s, patch)
+        share = lever[:, :, None] * lever[:, None, :]
+        share *= _of_gear(gear, candidates, model, s, patch)
+        total += share
     if model.finite_width or model.across_face:
-        total = total * (1.0 + finite_width_excess(pair))
-    return np.asarray(total * math.cos(pair.base_helix_angle) ** 2)
+        total *= 1.0 + finite_width_excess(pair)
+    total *= math.cos(pair.base_helix_angle) ** 2
+    return total
 
 
 def _of_gear(
@@ -69,14 +72,16 @@ def _of_gear(
     face = candidates.face_position
     decay = TOOTH_DECAY * gear.normal_module
     own = (apart == 0) * _along_face(face, decay, candidates.slice_width)
-    found = root[:, :, None] * root[:, None, :] * own
+    found = root[:, :, None] * root[:, None, :]
+    found *= own
     depth = 2.0 * bending.at(bending.depth, s) / patch
     ratio = gear.material.poissons_ratio
     local = np.maximum(np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25, 0.0)
     diagonal = np.arange(face.size)
     found[:, diagonal, diagonal] += half_plane(gear) * local / candidates.slice_width
     coupled = 1.0 if model.couple_teeth else apart == 0
-    return np.asarray(found + coupled * _body(gear, apart, face, candidates.slice_width, model))
+    found += coupled * _body(gear, apart, face, candidates.slice_width, model)
+    return np.asarray(found)
 
 
 def _body(

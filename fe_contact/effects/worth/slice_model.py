@@ -13,6 +13,7 @@ from fe_contact.contact import (
     ContactProblem,
     PatchRule,
     Slices,
+    Start,
     contact_candidates,
     in_pitches,
     solve_contact,
@@ -57,6 +58,7 @@ class Springs:
     most_loads: int = sys.maxsize
     _known: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
     _plain: dict[tuple[bool, bool], Candidates] = field(default_factory=dict, repr=False)
+    _last: dict[tuple[object, ...], Start] = field(default_factory=dict, repr=False)
 
     def curve(self, model: ContactModel, load: FloatArray) -> EstimatedCurve:
         """Solve the contact of springs at normal forces (L,) in N, increasing.
@@ -71,9 +73,16 @@ class Springs:
         if model.tooth_gaps:
             pitches = np.arange(min(model.period, MOST_PITCHES))
             problem = in_pitches(problem, model, np.repeat(pitches, count))
-        found = solve_contact(problem, load[some]).deflection
+        found = self._solved(problem, model, load[some])
         figures = np.nanmean(found, axis=0), np.nanmax(found, axis=0) - np.nanmin(found, axis=0)
         return EstimatedCurve(*(spread(load, some, values, 0) for values in figures))
+
+    def _solved(self, problem: ContactProblem, model: ContactModel, load: FloatArray) -> FloatArray:
+        """Solve a problem (P, L) in m, started from the last one with the same gaps."""
+        key = repr(model.gaps), problem.candidates.position.size, load.size
+        solution = solve_contact(problem, load, self._last.get(key))
+        self._last[key] = Start(problem.candidates, solution.force)
+        return solution.deflection
 
     def _springs(self, model: ContactModel) -> ContactProblem:
         """Return the springs of a model in one base pitch, flanks as plain involutes."""

@@ -15,6 +15,10 @@ def test_condition_numbers_leave_out_what_is_no_candidate() -> None:
     wider = np.zeros((3, 7, 7))
     wider[:, 1:6, 1:6] = real
     assert condition_numbers(wider) == pytest.approx(np.linalg.cond(real), rel=1e-9)
+    wider[1], wider[1, :5, :5] = 0.0, real[1]
+    wider[2], wider[2, 1:5, 1:5] = 0.0, real[2, 1:, 1:]
+    expected = [*np.linalg.cond(real[:2]), np.linalg.cond(real[2, 1:, 1:])]
+    assert condition_numbers(wider) == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_matrix_that_is_not_definite_has_no_condition_number() -> None:

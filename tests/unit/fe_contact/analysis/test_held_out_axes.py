@@ -117,7 +117,7 @@ def test_a_table_that_cannot_be_interpolated_has_no_estimate(coarse):
         coarse, static_transmission_error=coarse.static_transmission_error[:, ::-1], support_force=np.empty(0)
     )
     scene = ContactScene(None, np.array(TORQUES))  # type: ignore[arg-type]  # never looked at
-    assert held_out_axes(failed, None, scene, {}) == {}  # type: ignore[arg-type]
-    assert held_out_axes(falling, None, scene, {}) == {}  # type: ignore[arg-type]
+    assert held_out_axes(failed, None, scene, {}, ()) == {}  # type: ignore[arg-type]
+    assert held_out_axes(falling, None, scene, {}, ()) == {}  # type: ignore[arg-type]
     with pytest.raises(AttributeError):  # a good table asks its places
-        held_out_axes(coarse, None, scene, {})  # type: ignore[arg-type]
+        held_out_axes(coarse, None, scene, {}, ())  # type: ignore[arg-type]

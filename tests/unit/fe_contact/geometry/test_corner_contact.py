@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import importlib
 from collections.abc import Callable
 from typing import Any
 
@@ -113,3 +114,19 @@ def test_bad_arguments_are_refused(pair: GearPair) -> None:
             corner_gap(pair, "exit", overshoot)
     with pytest.raises(InputError, match="side"):
         corner_gap(pair, "middle", 0.0)  # type: ignore[arg-type]
+
+
+def test_newton_ends_where_rounding_begins(pair: GearPair, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Asked for less than the rounding of a gap it would go to and fro in the last bits to its limit."""
+    module = importlib.import_module("fe_contact.geometry.corner_contact")
+    calls, touch = [], module._touch
+    monkeypatch.setattr(module, "_touch", lambda *given: calls.append(0) or touch(*given))
+    over = np.linspace(0.0, 0.3, 200) * pair.base_pitch
+    gap = corner_gap(pair, "approach", over)
+    assert len(calls) <= 8
+    alone = [corner_gap(pair, "approach", one) for one in over]
+    assert np.array_equal(gap, alone)  # no bit depends on what is asked beside it
+    calls.clear()
+    monkeypatch.setattr(module, "_ROUNDING", 0.0)
+    assert gap == pytest.approx(corner_gap(pair, "approach", over), rel=1e-12, abs=1e-16)
+    assert len(calls) == 50

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fe_contact.ste import level_grid
 from fe_contact.ste.interpolation import Axis, monotone_slopes, ordered_slopes
 from fe_contact.ste.level_grid import deflection_grid, monotone_stiffness, stiffness_grid
 
@@ -119,3 +120,24 @@ def test_the_slope_is_that_of_the_value(seed):
 
     slope = deflections.slope((deflections.axes[0].stencil(x), *rest), columns)
     assert np.abs((value(1e-7) - value(-1e-7)) / 2e-7 - slope).max() < 1e-3 * np.abs(slope).max()
+
+
+def test_the_bound_by_largest_factors_spares_work_and_changes_no_bit(monkeypatch):
+    """Cells that it passes are those whose share would be 1."""
+    formed = []
+
+    def counting(net, gaps, dims):
+        formed.append(net[(0,) * dims].size)
+        return largest(net, gaps, dims)
+
+    largest = level_grid._largest_product
+    monkeypatch.setattr(level_grid, "_largest_product", counting)
+    for seed in SEEDS:
+        deflections, stiffnesses, rng = wild(seed)
+        net, gaps = stiffnesses.control_net()[..., 1:], np.diff(deflections.control_net(), axis=-1)
+        product = largest(net, gaps, 3)
+        room = 10.0 ** rng.uniform(-1.0, 1.0, product.shape[-1]) * np.median(product)
+        every = np.minimum((1.0 - 1e-12) * room / np.maximum(product, 1e-300), 1.0)
+        assert np.array_equal(level_grid._share_allowed(net, gaps, room, 3), every)
+        assert 0 < formed[-1] < product.size
+        assert 0 < np.count_nonzero(every < 1.0) <= formed[-1]
