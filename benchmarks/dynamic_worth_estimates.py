@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -13,47 +13,31 @@ import numpy as np
 
 from benchmarks.dynamic_worth_cases import example_scenes, worth_scenes
 from benchmarks.figures import Figure
+from benchmarks.judged_worth import FACTOR, FLOOR, SHARE, JudgedWorth, WorthStudy, by_effect, per_cent_right
 from benchmarks.marked_section import replace_section
-from benchmarks.worth_estimates import FACTOR, FLOOR, PAGE, SHARE, within_factor
+from benchmarks.worth_estimates import PAGE
 from dynamics.ablation import RunFigures, ablate
 from dynamics.ablation.ablate import EffectAblation
 from dynamics.system import Scene
 from dynamics.types import FloatArray
 from dynamics.worth import decide_effects
 
-SUBJECT = "worth estimates of dynamic effects against ablation"
 SECTION = "dynamic worth estimates"
-QUANTITIES = ("mean DTE", "peak-to-peak DTE", "bearing forces")
 TOLERANCES = (0.01, 0.05, 0.2)
-"""At which the decisions of "auto" are judged."""
-
-
-@dataclass(frozen=True)
-class JudgedWorth:
-    """One effect of one scene: relative changes by leaving it out, estimated and measured, per quantity.
-
-    Means and peak-to-peak values are those of the mesh, and bearing forces (mesh orders 1 to 5 together, over
-    the largest in the scene) those of the bearing, of the largest measured change. `on` says whether the
-    scene has it, `off_at` are the tolerances at which "auto" leaves it off.
-    """
-
-    scene: str
-    effect: str
-    on: bool
-    estimated: tuple[float, ...]
-    measured: tuple[float, ...]
-    off_at: tuple[float, ...] = ()
-
-    @property
-    def right(self) -> tuple[bool, ...]:
-        """Whether each quantity is within a factor two."""
-        pairs = zip(self.estimated, self.measured, strict=True)
-        return tuple(within_factor(estimated, measured) for estimated, measured in pairs)
+STUDY = WorthStudy(
+    "worth estimates of dynamic effects against ablation",
+    "scene and effect",
+    "any quantity",
+    ("mean DTE", "peak-to-peak DTE", "bearing forces"),
+    TOLERANCES,
+)
+"""Means and peak-to-peak values are those of the mesh, and bearing forces (mesh orders 1 to 5 together, over
+the largest in the scene) those of the bearing, of the largest measured change."""
 
 
 def figures() -> list[Figure]:
     """Return how often the estimates are right."""
-    return counts(judged())
+    return STUDY.counts(judged())
 
 
 @cache
@@ -93,9 +77,7 @@ def judge(name: str, entry: EffectAblation, off_at: tuple[float, ...] = ()) -> J
         ]
     place = [int(np.argmax(np.abs(values))) for values in measured]
     pairs = [(float(e[k]), float(m[k])) for e, m, k in zip(estimated, measured, place, strict=True)]
-    return JudgedWorth(
-        name, entry.name, entry.on, tuple(e for e, _ in pairs), tuple(m for _, m in pairs), off_at
-    )
+    return JudgedWorth(name, entry.name, tuple(e for e, _ in pairs), tuple(m for _, m in pairs), off_at)
 
 
 def _bearings(run: RunFigures) -> FloatArray:
@@ -103,53 +85,27 @@ def _bearings(run: RunFigures) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(run.bearing_orders**2, axis=1)))
 
 
-def counts(found: Sequence[JudgedWorth]) -> list[Figure]:
-    """Return how often the estimates are right."""
-    wrong = 100.0 * float(np.mean([not all(one.right) for one in found]))
-    rows = [
-        Figure(SUBJECT, "ablations (scene and effect)", float(len(found)), "-"),
-        Figure(SUBJECT, "any quantity beyond a factor 2", wrong, "%", 100.0 - SHARE),
-    ]
-    for k, name in enumerate(QUANTITIES):
-        seen = [one for one in found if max(abs(one.estimated[k]), abs(one.measured[k])) >= FLOOR]
-        wrong = 100.0 * float(np.mean([not one.right[k] for one in seen])) if seen else 0.0
-        what = f"{name}: beyond a factor 2, of the {len(seen)} changes above {100 * FLOOR:g} %"
-        rows.append(Figure(SUBJECT, what, wrong, "%", 100.0 - SHARE))
-    return rows + [_left_off(found, tolerance) for tolerance in TOLERANCES]
-
-
-def _left_off(found: Sequence[JudgedWorth], tolerance: float) -> Figure:
-    """Return the largest change of any quantity by an effect that "auto" leaves off."""
-    off = [one for one in found if tolerance in one.off_at]
-    worst = max((abs(change) for one in off for change in one.measured), default=0.0)
-    what = f"largest change by what auto leaves off at {100 * tolerance:g} % ({len(off)} ablations)"
-    return Figure(SUBJECT, what, 100.0 * worst, "%", 100.0 * tolerance)
-
-
 def markdown(found: Sequence[JudgedWorth]) -> str:
     """Return the section of docs/effects/worth.md."""
-    scenes = list(dict.fromkeys(one.scene for one in found))
-    right = 100.0 * float(np.mean([all(one.right) for one in found]))
+    scenes = list(dict.fromkeys(one.where for one in found))
     head = (
         f"{len(found)} ablations in time: {len(scenes)} scenes, every effect that can be switched in them. "
-        f"**{right:.0f} %** have mean, peak-to-peak and bearing forces right\nwithin a factor {FACTOR:g} and "
-        f"in sign (target {SHARE:g} %); changes below {100 * FLOOR:g} % count as nothing.\n\n"
+        f"**{per_cent_right(found):.0f} %** have mean, peak-to-peak and bearing forces right\n"
+        f"within a factor {FACTOR:g} and in sign (target {SHARE:g} %); "
+        f"changes below {100 * FLOOR:g} % count as nothing.\n\n"
     )
-    seen = [one for one in counts(found) if "beyond a factor 2, of" in one.what]
-    seen += [_left_off(found, tolerance) for tolerance in TOLERANCES]
-    head += "\n".join(f"- {figure.what}: {figure.value:.2g} %" for figure in seen)
+    head += "\n".join(f"- {figure.what}: {figure.value:.2g} %" for figure in STUDY.by_quantity(found))
     return f"{head}\n\n{_table_of_effects(found)}\n{_table_of_scenes(found)}"
 
 
 def _table_of_effects(found: Sequence[JudgedWorth]) -> str:
     """How often the estimates of every effect are right."""
     lines = [
-        "| effect | ablations | " + " | ".join(f"{name}: right" for name in QUANTITIES) + " |",
-        "|---|---:|" + "---:|" * len(QUANTITIES),
+        "| effect | ablations | " + " | ".join(f"{name}: right" for name in STUDY.quantities) + " |",
+        "|---|---:|" + "---:|" * len(STUDY.quantities),
     ]
-    for effect in dict.fromkeys(one.effect for one in found):
-        group = [one for one in found if one.effect == effect]
-        cells = [f"{100.0 * float(np.mean([one.right[k] for one in group])):.0f} %" for k in range(3)]
+    for effect, group in by_effect(found).items():
+        cells = [f"{per_cent_right(group, k):.0f} %" for k in range(len(STUDY.quantities))]
         lines.append(f"| {effect} | {len(group)} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
@@ -160,17 +116,12 @@ def _table_of_scenes(found: Sequence[JudgedWorth]) -> str:
         "What leaving an effect out changes, estimated / measured in % of the value with it (bearing forces: "
         "of the largest).\n**Bold** is beyond a factor 2; ablations that change nothing by 1 % are left out.",
         "",
-        "| scene | effect | " + " | ".join(QUANTITIES) + " |",
-        "|---|---|" + "---:|" * len(QUANTITIES),
+        "| scene | effect | " + " | ".join(STUDY.quantities) + " |",
+        "|---|---|" + "---:|" * len(STUDY.quantities),
     ]
     for one in found:
-        if max(map(abs, (*one.estimated, *one.measured))) < FLOOR:
-            continue
-        cells = []
-        for estimated, measured, right in zip(one.estimated, one.measured, one.right, strict=True):
-            text = f"{100.0 * estimated:+.2g} / {100.0 * measured:+.2g}"
-            cells.append(text if right else f"**{text}**")
-        lines.append(f"| {one.scene} | {one.effect} | " + " | ".join(cells) + " |")
+        if max(map(abs, (*one.estimated, *one.measured))) >= FLOOR:
+            lines.append(f"| {one.where} | {one.effect} | {one.cells} |")
     return "\n".join(lines) + "\n"
 
 

@@ -8,7 +8,8 @@ import pytest
 from geared_scenes import gear_pair_scene
 
 from benchmarks import dynamic_worth_cases
-from benchmarks.dynamic_worth_estimates import JudgedWorth, counts, judge, markdown
+from benchmarks.dynamic_worth_estimates import STUDY, judge, markdown
+from benchmarks.judged_worth import JudgedWorth
 from dynamics.ablation import ablate
 from dynamics.forces import straight_table
 from dynamics.system.assemble import assemble
@@ -16,10 +17,10 @@ from dynamics.system.effects import EFFECTS, MESH_EFFECTS
 
 
 def test_counts_and_tables_are_those_of_the_ablations() -> None:
-    right = JudgedWorth("one", "tilt", True, (0.1, 0.2, 0.3), (0.11, 0.19, 0.5))
-    wrong = JudgedWorth("two", "tilt", True, (0.1, 0.2, 0.3), (0.11, -0.19, 0.3))
-    off = JudgedWorth("two", "axial", True, (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,))
-    rows = {figure.what: figure for figure in counts([right, right, wrong, off])}
+    right = JudgedWorth("one", "tilt", (0.1, 0.2, 0.3), (0.11, 0.19, 0.5))
+    wrong = JudgedWorth("two", "tilt", (0.1, 0.2, 0.3), (0.11, -0.19, 0.3))
+    off = JudgedWorth("two", "axial", (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,))
+    rows = {figure.what: figure for figure in STUDY.counts([right, right, wrong, off])}
     assert rows["any quantity beyond a factor 2"].value == pytest.approx(50.0)
     assert rows["bearing forces: beyond a factor 2, of the 4 changes above 1 %"].value == pytest.approx(25.0)
     left = [

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from benchmarks.judged_worth import within_factor
 from benchmarks.worth_cases import worth_cases
-from benchmarks.worth_estimates import JudgedWorth, counts, markdown, within_factor
+from benchmarks.worth_estimates import STUDY, LoadedWorth, markdown
 from fe_contact.analysis import check_request
 from fe_contact.effects import EFFECTS
 
@@ -16,7 +17,7 @@ from fe_contact.effects import EFFECTS
 )
 def test_a_factor_of_two_is_asked_of_what_can_be_seen(estimated: float, measured: float, right: bool) -> None:
     assert within_factor(estimated, measured) is right
-    assert JudgedWorth("", "", 1.0, (estimated, 0.0), (measured, 0.0)).right == (right, True)
+    assert LoadedWorth("", "", (estimated, 0.0), (measured, 0.0)).right == (right, True)
 
 
 def test_every_effect_has_something_to_do_twice() -> None:
@@ -30,10 +31,10 @@ def test_every_effect_has_something_to_do_twice() -> None:
 
 
 def test_counts_and_tables_are_those_of_the_ablations() -> None:
-    right = JudgedWorth("one", "misalignment", 1.0, (0.1, 0.2), (0.11, 0.19))
-    wrong = JudgedWorth("two", "misalignment", 1.0, (0.1, 0.2), (0.11, -0.19))
-    off = JudgedWorth("two", "corner_contact", 1.0, (0.001, 0.0), (0.002, 0.03), (0.05,))
-    rows = {figure.what: figure for figure in counts([right, right, wrong, off])}
+    right = LoadedWorth("one", "misalignment", (0.1, 0.2), (0.11, 0.19))
+    wrong = LoadedWorth("two", "misalignment", (0.1, 0.2), (0.11, -0.19))
+    off = LoadedWorth("two", "corner_contact", (0.001, 0.0), (0.002, 0.03), (0.05,))
+    rows = {figure.what: figure for figure in STUDY.counts([right, right, wrong, off])}
     assert rows["mean or peak-to-peak beyond a factor 2"].value == pytest.approx(50.0)
     assert rows["mean: beyond a factor 2, of the 3 changes above 1 %"].value == 0.0
     left = [

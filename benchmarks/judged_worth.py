@@ -1,0 +1,108 @@
+"""Estimated and measured changes side by side: when an estimate is right, how often it is, how it is told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.figures import Figure
+
+FLOOR = 0.01
+"""Relative change below which both count as nothing: the usual tolerance, and the error of a draft."""
+FACTOR, SHARE = 2.0, 80.0
+
+
+def within_factor(estimated: float, measured: float, floor: float = FLOOR) -> bool:
+    """Whether two changes agree in sign and within a factor two, or are both nothing."""
+    if max(abs(estimated), abs(measured)) < floor:
+        return True
+    return estimated * measured > 0.0 and 1.0 / FACTOR <= abs(estimated / measured) <= FACTOR
+
+
+@dataclass(frozen=True)
+class JudgedWorth:
+    """One effect of one case or scene: relative changes by leaving it out, per quantity of the study.
+
+    `off_at` are the tolerances at which "auto" leaves it off.
+    """
+
+    where: str
+    effect: str
+    estimated: tuple[float, ...]
+    measured: tuple[float, ...]
+    off_at: tuple[float, ...] = ()
+
+    @property
+    def right(self) -> tuple[bool, ...]:
+        """Whether each quantity is within a factor two."""
+        pairs = zip(self.estimated, self.measured, strict=True)
+        return tuple(within_factor(estimated, measured) for estimated, measured in pairs)
+
+    @property
+    def cells(self) -> str:
+        """Columns of a row: estimated / measured change in %, bold where the estimate is not right."""
+        cells = []
+        for estimated, measured, right in zip(self.estimated, self.measured, self.right, strict=True):
+            text = f"{100.0 * estimated:+.2g} / {100.0 * measured:+.2g}"
+            cells.append(text if right else f"**{text}**")
+        return " | ".join(cells)
+
+
+def per_cent_right(found: Sequence[JudgedWorth], quantity: int | None = None) -> float:
+    """Return how many per cent are right, in one quantity or in all of them at once."""
+    right = [all(one.right) if quantity is None else one.right[quantity] for one in found]
+    return 100.0 * float(np.mean(right)) if right else 100.0
+
+
+@dataclass(frozen=True)
+class WorthStudy:
+    """What a study counts, and in which words.
+
+    Attributes
+    ----------
+    subject, one, anywhere : str
+        Of its figures; what an ablation is of; where an estimate may be wrong.
+    quantities : tuple of str
+    tolerances : tuple of float
+        At which the decisions of "auto" are judged.
+    """
+
+    subject: str
+    one: str
+    anywhere: str
+    quantities: tuple[str, ...]
+    tolerances: tuple[float, ...]
+
+    def counts(self, found: Sequence[JudgedWorth]) -> list[Figure]:
+        """Return how often the estimates are right."""
+        wrong = 100.0 - per_cent_right(found)
+        return [
+            Figure(self.subject, f"ablations ({self.one})", float(len(found)), "-"),
+            Figure(self.subject, f"{self.anywhere} beyond a factor {FACTOR:g}", wrong, "%", 100.0 - SHARE),
+            *self.by_quantity(found),
+        ]
+
+    def by_quantity(self, found: Sequence[JudgedWorth]) -> list[Figure]:
+        """Return how often each quantity is wrong where it can be seen, and what "auto" leaves off."""
+        rows = []
+        for k, name in enumerate(self.quantities):
+            seen = [one for one in found if max(abs(one.estimated[k]), abs(one.measured[k])) >= FLOOR]
+            changes = f"{len(seen)} changes above {100 * FLOOR:g} %"
+            what = f"{name}: beyond a factor {FACTOR:g}, of the {changes}"
+            rows.append(Figure(self.subject, what, 100.0 - per_cent_right(seen, k), "%", 100.0 - SHARE))
+        return rows + [self._left_off(found, tolerance) for tolerance in self.tolerances]
+
+    def _left_off(self, found: Sequence[JudgedWorth], tolerance: float) -> Figure:
+        """Return the largest change of any quantity by an effect that "auto" leaves off."""
+        off = [one for one in found if tolerance in one.off_at]
+        worst = max((abs(change) for one in off for change in one.measured), default=0.0)
+        what = f"largest change by what auto leaves off at {100 * tolerance:g} % ({len(off)} ablations)"
+        return Figure(self.subject, what, 100.0 * worst, "%", 100.0 * tolerance)
+
+
+def by_effect(found: Sequence[JudgedWorth]) -> dict[str, list[JudgedWorth]]:
+    """Return the ablations of every effect, in the order they were found."""
+    names = dict.fromkeys(one.effect for one in found)
+    return {name: [one for one in found if one.effect == name] for name in names}
