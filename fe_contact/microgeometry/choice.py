@@ -9,6 +9,7 @@ import numpy as np
 
 from fe_contact.errors import SolveError
 from fe_contact.microgeometry.confirmation import ConfirmedDesign, confirm
+from fe_contact.microgeometry.design_memory import DesignMemory
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
 from fe_contact.microgeometry.optimisation import StepAside
@@ -53,8 +54,10 @@ class Choice:
         return self.runs[self.best]
 
 
-def posed(study: DesignStudy, asked: OptimisationRequest) -> DesignProblem:
+def posed(study: DesignStudy, asked: OptimisationRequest, memory: Path | None) -> DesignProblem:
     """Return the problem of the search, its scale the start inside the bounds.
+
+    `memory` is a directory of designs that were judged before.
 
     Raises
     ------
@@ -62,6 +65,8 @@ def posed(study: DesignStudy, asked: OptimisationRequest) -> DesignProblem:
         Its contact cannot be solved.
     """
     problem = DesignProblem(study.evaluator, asked.variables, asked.objective, asked.limits, 1.0)
+    if memory is not None:
+        problem = replace(problem, memory=DesignMemory.of(memory, asked, study.evaluator))
     judged = problem.judge(problem.place(asked.own))
     if not np.isfinite(judged.objective) or judged.objective <= 0.0:
         raise SolveError(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -30,6 +31,18 @@ class Judged:
         return self.violation, self.objective
 
 
+class Memory(Protocol):
+    """Objective in m and violation of designs (d,) at positions (P,)."""
+
+    def find(self, values: FloatArray, position: FloatArray) -> tuple[float, float] | None:
+        """Return what is known."""
+        ...
+
+    def add(self, values: FloatArray, position: FloatArray, found: tuple[float, float]) -> None:
+        """Keep what was found."""
+        ...
+
+
 @dataclass(frozen=True)
 class DesignProblem:
     """What is varied, how it is judged, and the scale of the merit.
@@ -42,6 +55,8 @@ class DesignProblem:
     limits : Limits
     scale : float
         m; merits are in parts of it.
+    memory : Memory, optional
+        Of designs that were judged before.
     """
 
     evaluator: Evaluator
@@ -49,6 +64,7 @@ class DesignProblem:
     objective: Objective
     limits: Limits
     scale: float
+    memory: Memory | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -74,9 +90,21 @@ class DesignProblem:
 
     def judge(self, place: FloatArray) -> Judged:
         """Evaluate the design at a place; one whose contact cannot be solved has an infinite merit."""
-        found = self.evaluator.evaluate(self.values(place))
-        objective = self.objective.of(self.evaluator.expected(found))
+        values = self.values(place)
+        objective, violation = self._figures(values)
         if not math.isfinite(objective):
             return Judged(math.inf, math.inf, math.inf)
-        violation = found.violation(self.limits)
         return Judged(objective, violation, objective / self.scale + PENALTY * violation)
+
+    def _figures(self, values: dict[str, float]) -> tuple[float, float]:
+        """Return objective in m and violation of a design, from the memory if it is there."""
+        key, position = np.array(list(values.values())), self.evaluator.position
+        known = None if self.memory is None else self.memory.find(key, position)
+        if known is not None:
+            return known
+        evaluated = self.evaluator.evaluate(values)
+        objective = self.objective.of(self.evaluator.expected(evaluated))
+        violation = evaluated.violation(self.limits) if math.isfinite(objective) else math.inf
+        if self.memory is not None:
+            self.memory.add(key, position, (objective, violation))
+        return objective, violation

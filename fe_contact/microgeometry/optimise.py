@@ -42,6 +42,7 @@ def optimise(
     cancel: Cancel | None = None,
     progress: Progress | None = None,
     cache: Path | None = None,
+    memory: Path | None = None,
 ) -> Optimisation:
     """Minimise the expected peak-to-peak transmission error over torques under scatter.
 
@@ -76,6 +77,10 @@ def optimise(
     cancel : callable, optional
         Asked before every design whether to end the search: the best so far is then analysed in full, and
         the reason says so. Workers elsewhere end their starts first.
+    memory : Path, optional
+        Directory of designs that were judged before: a search that was killed, or is repeated with more
+        evaluations, goes on where it was, and finds what it would have found without. Only of searches in
+        this process.
 
     Returns
     -------
@@ -96,7 +101,7 @@ def optimise(
     wanted = asked.acting, scatter, misalignment, search.positions, accuracy
     study = design_study(pair, torques, asked.further_torques, *wanted, clock, report, cache)
     with clock.stage("search"):
-        problem = posed(study, asked)
+        problem = posed(study, asked, memory)
         runs = search_all(problem, search, asked.own, workers, report, cancelled)
     choice = choose(problem, runs, asked, study, clock, cache, cancelled)
     report("confirmation", 1.0)

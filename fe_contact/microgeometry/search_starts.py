@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from scipy.stats import qmc
 
 from fe_contact.analysis.solved_table import Progress
@@ -67,7 +69,8 @@ def _elsewhere(
     """Let workers search; cancelled, keep what is there: a Ctrl-C may have ended some of them."""
     runs: list[SearchRun] = []
     try:
-        for one in workers.run(search_one, (problem, search), begins):
+        bare = replace(problem, memory=None)  # a file of this machine, for one writer
+        for one in workers.run(search_one, (bare, search), begins):
             runs.append(one)
             report("search", len(runs) / search.starts)
             if cancel():

@@ -29,7 +29,9 @@ def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, 
     given, wanted = read_model(Case, case), read_model(OptimisationInput, study)
     targets = [] if output is None else output_files(output, "optimum", tuple(_WRITERS))
     with working_hands(hands) as workers, progress_bar() as report, until_interrupted() as cancel:
-        found = optimisation_of(given, wanted, cache_home() / "compliance", report, workers, cancel)
+        home = cache_home()
+        kept = home / "compliance", report, workers, cancel, home / "searches"
+        found = optimisation_of(given, wanted, *kept)
         interrupted = cancel()
     for target in targets:
         target.parent.mkdir(exist_ok=True)

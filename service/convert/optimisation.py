@@ -50,6 +50,7 @@ def optimisation_of(
     report: Report,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
     cancel: Callable[[], bool] | None = None,
+    memory: Path | None = None,
 ) -> Optimisation:
     """Optimise the modifications of a case; when `cancel` says so, end with the best so far.
 
@@ -67,6 +68,7 @@ def optimisation_of(
             **{name: analysis_arguments(case)[name] for name in _ACCURACY},
             workers=workers,
             cancel=cancel,
+            memory=memory,
             progress=report,
             cache=cache,
         )

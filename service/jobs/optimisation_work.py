@@ -17,7 +17,8 @@ def optimise_flanks(order: WorkOrder, progress: Progress) -> tuple[Product, ...]
     case = Case.model_validate_json(json.dumps(inputs.pop("case")))
     study = OptimisationInput.model_validate_json(json.dumps(inputs))
     with cluster_of(order) as workers:
-        found = optimisation_of(case, study, order.data_directory / "compliance", progress, workers)
+        kept = order.data_directory  # designs too: another attempt, or another deadline, goes on from them
+        found = optimisation_of(case, study, kept / "compliance", progress, workers, memory=kept / "searches")
     file = order.workspace / "optimisation.json"
     file.write_text(f"{json.dumps(optimisation_json(found), allow_nan=False)}\n", encoding="utf-8")
     return (Product(order.key, "optimisation", file),)

@@ -29,6 +29,7 @@ class Bowl:
     seen: list[FloatArray] = field(default_factory=list)
     roughened: Bowl | None = None
     interrupt_at: int = 0
+    memory: None = None
 
     def judge(self, place: FloatArray) -> Judged:
         self.seen.append(place)

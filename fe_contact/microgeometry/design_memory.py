@@ -1,0 +1,119 @@
+"""Judged designs on disk: a search that was killed, or is asked for more, goes on where it was.
+
+A search is repeatable, so it asks for the same designs again; those that are known cost nothing. What a file
+holds depends on all that decides how a design is judged, down to the bits of the compliance, and on nothing
+of the search.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import os
+import struct
+import zlib
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from fe_contact.analysis.compute_database import SOLVER_VERSION
+from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.request import OptimisationRequest
+from fe_contact.ste.content_hash import content_hash
+from fe_contact.ste.facts import SCHEMA_VERSION
+from fe_contact.types import FloatArray
+
+KEPT_FILES = 200
+"""Newest files that a directory keeps: about 0.1 MB for a thousand designs each."""
+_FOUND = struct.Struct("<ddQ")  # objective, violation, checksum
+_POSITIONS = 8  # bytes of their digest
+
+Figures = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class DesignMemory:
+    """Objective in m and violation of designs of one problem, by their values and the positions.
+
+    Attributes
+    ----------
+    file : Path
+    known : dict
+        What is in it.
+    """
+
+    file: Path
+    known: dict[bytes, Figures] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, directory: Path, asked: OptimisationRequest, evaluator: Evaluator) -> DesignMemory:
+        """Open the file of a problem; one that is damaged counts up to the damage."""
+        content = {
+            "pair": asdict(asked.pair),
+            "variables": [one.name for one in asked.variables],
+            "bodies": _digest_of_bodies(evaluator),
+            "effects": dict(evaluator.choices),
+            "load": evaluator.load.tolist(),
+            "misalignment": evaluator.misalignment,
+            "scatter": asked.scatter.to_json(),
+            "objective": asked.objective.to_json(),
+            "limits": asked.limits.to_json(),
+        }
+        key = content_hash(content, SOLVER_VERSION, SCHEMA_VERSION)
+        memory = cls(directory / f"designs-{key}.bin")
+        with contextlib.suppress(OSError):
+            directory.mkdir(parents=True, exist_ok=True)
+            _prune(directory)
+            memory._read(_POSITIONS + 8 * len(asked.variables))
+        return memory
+
+    def find(self, values: FloatArray, position: FloatArray) -> Figures | None:
+        """Return what is known of a design (d,) in m at some positions."""
+        return self.known.get(_name(values, position))
+
+    def add(self, values: FloatArray, position: FloatArray, found: Figures) -> None:
+        """Keep a design; where the file cannot be written it is kept in this process."""
+        name = _name(values, position)
+        self.known[name] = found
+        text = name + struct.pack("<dd", *found)
+        record = text + struct.pack("<Q", zlib.crc32(text))
+        with contextlib.suppress(OSError), self.file.open("ab", buffering=0) as stream:
+            stream.write(record)  # one write: whole, or the last of the file
+
+    def _read(self, name_size: int) -> None:
+        """Read whole records, and cut off what a killed writer left of one."""
+        size, text = name_size + _FOUND.size, self.file.read_bytes() if self.file.exists() else b""
+        whole = 0
+        for begin in range(0, len(text) - size + 1, size):
+            record = text[begin : begin + size]
+            objective, violation, checksum = _FOUND.unpack(record[name_size:])
+            if zlib.crc32(record[: name_size + 16]) != checksum:
+                break
+            self.known[record[:name_size]] = objective, violation
+            whole = begin + size
+        if whole < len(text):
+            os.truncate(self.file, whole)
+
+
+def _name(values: FloatArray, position: FloatArray) -> bytes:
+    """Return what a record is found by."""
+    return hashlib.sha256(position.tobytes()).digest()[:_POSITIONS] + np.asarray(values, "<f8").tobytes()
+
+
+def _digest_of_bodies(evaluator: Evaluator) -> str:
+    """Digest of the compliance of both gears: its bits decide those of the objective."""
+    digest = hashlib.sha256()
+    contact = evaluator.contact
+    for body in contact.plane or ():
+        digest.update(body.matrix.tobytes())
+    for solid in contact.face or ():
+        digest.update(solid.blocks.tobytes())
+    return digest.hexdigest()
+
+
+def _prune(directory: Path) -> None:
+    """Remove the oldest files."""
+    files = sorted(directory.glob("designs-*.bin"), key=lambda file: file.stat().st_mtime)
+    for file in files[:-KEPT_FILES]:
+        file.unlink(missing_ok=True)

@@ -1,0 +1,128 @@
+"""Designs kept on disk: a search that was stopped finds the same, and pays only for the rest."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fe_contact import GearPair
+from fe_contact.microgeometry import (
+    DesignVariable,
+    Limits,
+    Optimisation,
+    Search,
+    WeightedMean,
+    Worst,
+    optimise,
+)
+from fe_contact.microgeometry.evaluator import Evaluator
+
+FREE = (
+    DesignVariable("pinion.profile_crowning", 0.0, 2e-5),
+    DesignVariable("wheel.profile_slope", -1e-5, 1e-5),
+)
+SEARCH = Search(evaluations=60, positions=24, exploration=8)
+
+
+@pytest.fixture
+def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Contact solves of designs, counted."""
+    count, evaluate = [0], Evaluator.evaluate
+
+    def counted(self: Evaluator, values: Any) -> Any:
+        count[0] += 1
+        return evaluate(self, values)
+
+    monkeypatch.setattr(Evaluator, "evaluate", counted)
+    return count
+
+
+def run(pair: GearPair, compliances: Path, memory: Path | None, **further: Any) -> Optimisation:
+    asked: dict[str, Any] = {"torques": [200.0], "variables": FREE, "search": SEARCH, **further}
+    return optimise(
+        pair, asked.pop("torques"), asked.pop("variables"), map_torques=[200.0], level="draft",
+        model="plane_strain", cache=compliances, memory=memory, **asked,
+    )  # fmt: skip
+
+
+def test_a_stopped_search_goes_on_where_it_was(
+    pair: GearPair, compliances: Path, tmp_path: Path, solved: list[int]
+) -> None:
+    plain = run(pair, compliances, None)
+    whole, solved[0] = solved[0], 0
+    asked = [0]
+
+    def cancel() -> bool:
+        asked[0] += 1
+        return asked[0] > 40
+
+    cut = run(pair, compliances, tmp_path, cancel=cancel)
+    assert cut.evaluations < plain.evaluations
+    solved[0] = 0
+    again = run(pair, compliances, tmp_path)
+    assert again.optimum.values == plain.optimum.values
+    assert again.optimum.objective == plain.optimum.objective
+    assert [one.judged for one in again.runs] == [one.judged for one in plain.runs]
+    assert whole - 44 <= solved[0] <= whole - 39  # those before the stop, and its best in full, were known
+
+
+def test_more_evaluations_go_on_from_fewer(
+    pair: GearPair, compliances: Path, tmp_path: Path, solved: list[int]
+) -> None:
+    run(pair, compliances, tmp_path)
+    solved[0] = 0
+    run(pair, compliances, tmp_path)
+    confirming, solved[0] = solved[0], 0
+    assert confirming < 20  # of 60: both designs in full, and steps aside
+    run(pair, compliances, tmp_path, search=replace(SEARCH, evaluations=90))
+    assert confirming < solved[0] < confirming + 60
+
+
+def test_what_is_judged_otherwise_is_not_taken(
+    pair: GearPair, compliances: Path, tmp_path: Path, solved: list[int]
+) -> None:
+    run(pair, compliances, tmp_path)
+    for further in (
+        {"torques": [201.0]}, {"limits": Limits(max_pressure=1e9)}, {"objective": WeightedMean((2.0,))},
+        {"objective": Worst()}, {"search": replace(SEARCH, positions=25, exploration=9)},
+    ):  # fmt: skip
+        solved[0] = 0
+        run(pair, compliances, tmp_path, **further)
+        assert solved[0] >= 60, further
+
+
+def test_half_a_record_and_a_spoiled_one_are_left_out(
+    pair: GearPair, compliances: Path, tmp_path: Path, solved: list[int]
+) -> None:
+    whole = run(pair, compliances, tmp_path)
+    (file,) = tmp_path.glob("designs-*.bin")
+    text = file.read_bytes()
+    record = 8 + 8 * len(FREE) + 24
+    assert len(text) % record == 0
+    known = len(text) // record
+    solved[0] = 0
+    run(pair, compliances, tmp_path)
+    confirming = solved[0]
+    file.write_bytes(text[:-5])  # killed while it wrote
+    solved[0] = 0
+    run(pair, compliances, tmp_path)
+    assert solved[0] == confirming + 1
+    assert file.read_bytes() == text
+    spoiled = bytearray(text)
+    spoiled[10 * record + 12] ^= 1
+    file.write_bytes(spoiled)
+    solved[0] = 0
+    again = run(pair, compliances, tmp_path)
+    assert solved[0] == confirming + known - 10
+    assert again.optimum.values == whole.optimum.values
+
+
+def test_a_directory_that_cannot_be_written_costs_nothing(
+    pair: GearPair, compliances: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "file").write_text("in the way", encoding="utf-8")
+    found = run(pair, compliances, tmp_path / "file" / "searches", search=replace(SEARCH, evaluations=5))
+    assert found.evaluations == 5
