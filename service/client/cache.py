@@ -40,15 +40,15 @@ class ResultCache:
 
     def keep(self, kind: str, key: str, stream: BinaryIO, digest: str) -> Path:
         """Keep what was written into the file of `incoming`; `digest` is its SHA-256, hexadecimal."""
-        file = self._directory / kind / f"{_plain(key)}.{digest}{suffix_of(kind)}"
+        file = self._folder(kind, key) / f"{digest}{suffix_of(kind)}"
+        file.parent.mkdir(exist_ok=True)
         _settle(stream, file)
         return file
 
     def get(self, kind: str, key: str) -> Path | None:
         """Return the file of a result if it is here and undamaged; a damaged one is set aside."""
-        suffix = suffix_of(kind)
-        for file in sorted((self._directory / kind).glob(f"{_plain(key)}.*{suffix}")):
-            if _holds(file, file.name.removesuffix(suffix).rpartition(".")[2]):
+        for file in sorted(self._folder(kind, key).glob(f"*{suffix_of(kind)}")):
+            if _holds(file, file.stem):
                 return file
         return None
 
@@ -67,6 +67,10 @@ class ResultCache:
         except (OSError, ValueError, KeyError, TypeError):
             return None
         return found if self.get(found.kind, found.key) is not None else None
+
+    def _folder(self, kind: str, key: str) -> Path:
+        """Return the folder of a key, whose files differ where services gave different bytes for it."""
+        return self._directory / kind / _plain(key)
 
     def _note(self, service: str, process: str, inputs: dict[str, Any]) -> Path:
         """Return the file of the note of a request."""
@@ -91,7 +95,7 @@ class ResultCache:
 
 
 def _plain(key: str) -> str:
-    """Return a key as part of a file name; it is hashed again unless it is a plain hash."""
+    """Return a key as the name of a folder; it is hashed again unless it is a plain hash."""
     plain = len(key) == 64 and set(key) <= set("0123456789abcdef")
     return key if plain else hashlib.sha256(key.encode("utf-8", "replace")).hexdigest()
 
