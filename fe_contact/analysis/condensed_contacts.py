@@ -80,10 +80,12 @@ class CondensedContacts:
 
     def assemble(self, model: ContactModel, sample: TableSample) -> None:
         """Assemble what is not kept yet: all positions of a table, and those that are solved again."""
-        candidates = self.own.candidates(model, sample.position).rows(sample.rows)
+        everywhere = self.own.candidates(model, sample.position)
+        self.own.assemble(model, everywhere)
+        candidates = everywhere.rows(sample.rows)
         for rougher in (self.plane, self.coarse):
             if rougher is not None:
                 rougher.assemble(model, candidates)
         for other in (self.sliced, self.patched):
             if other is not None:
-                other.candidates(model, candidates.position)
+                other.assemble(model, other.candidates(model, candidates.position))

@@ -103,7 +103,12 @@ class TableSample:
         return self.shaped(deflected_places(asked, where, load, pitches, places.workers, candidates))
 
     def _candidates(self, place: Place, known: Sequence[Place]) -> list[Candidates] | None:
-        """Return those of the table's places, which do not depend on the bodies; None in other slices."""
-        if place.contact.plan.discretisation.slices != known[0].contact.plan.discretisation.slices:
+        """Return those of the table's places, which do not depend on the bodies.
+
+        None in other slices and under other load patches, which have candidates of their own.
+        """
+        plans = place.contact.plan, known[0].contact.plan
+        one, other = ((plan.discretisation.slices, plan.patch) for plan in plans)
+        if one != other:
             return None
         return [one.contact.candidates(one.model, self.position).rows(self.rows) for one in known]

@@ -10,6 +10,7 @@ import pytest
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.analysis.pair_contact import PairContact
 from fe_contact.analysis.wider_patches import left_by_patches
 from fe_contact.geometry import FlankModification
 from fe_contact.geometry.finite_width import finite_width_excess
@@ -157,10 +158,10 @@ def test_nothing_is_assembled_for_a_second_question(pair: CondensedPair) -> None
     kept = [dict(each._problems) for each in _contacts(pair)]
     pair.table(with_flank(LONG), np.array([0.7]))
     assert [each._problems for each in _contacts(pair)] == kept
-    assert [len(each) for each in kept] == [1, 1, 1]
+    assert [len(each) for each in kept] == [1, 1, 1, 1]
 
 
-def _contacts(pair: CondensedPair) -> list:  # type: ignore[type-arg]
-    return [
-        each for each in (pair.contacts.own, pair.contacts.plane, pair.contacts.coarse) if each is not None
-    ]
+def _contacts(pair: CondensedPair) -> list[PairContact]:
+    """Return the contacts of the corrected plane on all its discretisations."""
+    every = pair.contacts
+    return [each for each in (every.own, every.plane, every.coarse, every.patched) if each is not None]

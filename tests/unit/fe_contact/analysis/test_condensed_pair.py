@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -76,6 +77,29 @@ def test_what_is_assembled_once_serves_all_flanks(cache: Path) -> None:
     kept = dict(pair.contact._problems)
     pair.table(with_flank(PAIR, RELIEF), np.array([0.7]))
     assert pair.contact._problems == kept and len(kept) == 1
+
+
+def test_another_centre_distance_has_the_curve_of_its_own_analysis(cache: Path) -> None:
+    pair = condensed(PAIR, cache)
+    for change in (1e-5, 3e-5, 2e-5):
+        quick = pair.table(with_flank(PAIR, RELIEF), TORQUES, center_distance_change=change)
+    assert list(pair._apart) == [3e-5, 2e-5]  # those asked for last
+    whole = table_of(with_flank(PAIR, RELIEF), cache, center_distance_changes=[2e-5])
+    assert np.array_equal(quick.center_distance_change, whole.center_distance_change)
+    assert np.array_equal(quick.static_transmission_error, whole.static_transmission_error)
+    nominal = pair.table(with_flank(PAIR, RELIEF), TORQUES)
+    assert np.abs(nominal.static_transmission_error / quick.static_transmission_error - 1.0).max() > 1e-3
+
+
+def test_a_centre_distance_at_which_more_teeth_touch_is_refused(
+    cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pair = condensed(PAIR, cache)
+    module = sys.modules[CondensedPair.__module__]  # its name in the package is the function's
+    monkeypatch.setattr(module, "condensed_teeth", lambda _: 7)
+    with pytest.raises(InputError, match=r"center_distance_changes\[0\].*at most \d teeth .* 7 can"):
+        pair.table(PAIR, TORQUES, center_distance_change=1e-5)
+    assert not pair._apart
 
 
 def test_a_plane_holds_nothing_across_the_face(cache: Path) -> None:
