@@ -76,7 +76,8 @@ def compute_database(
         coarse = laid_out(run.checked, run.plan, clock, report, cache, coarse=True, workers=workers)
         with clock.stage("error estimate"):
             judged = judged_table(run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan)
-    if not repeated and isinstance(workers, InProcess):
+    elsewhere = workers.spent.since(before)
+    if not repeated and not elsewhere.tasks:
         spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
         record(cache, run.prediction.logged, spent)
     with clock.stage("effect ledger"):
@@ -84,8 +85,8 @@ def compute_database(
     metadata = _metadata(case, run, clock, judged.to_json() | contact, ledger)
     metadata.receipt["assumptions"] = [one.to_json() for one in found]
     metadata.receipt["repeated"] = repeated
-    if not isinstance(workers, InProcess):
-        metadata.receipt["elsewhere"] = asdict(workers.spent.since(before))
+    if elsewhere.tasks or elsewhere.lost:
+        metadata.receipt["elsewhere"] = asdict(elsewhere)
     return replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
 
 

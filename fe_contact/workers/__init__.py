@@ -8,6 +8,7 @@ from fe_contact.workers.dask_cluster import ByDask, dask_workers
 from fe_contact.workers.executor import ByExecutor
 from fe_contact.workers.in_process import InProcess, Workers
 from fe_contact.workers.or_here import OrHere
+from fe_contact.workers.remembering import Remembering
 from fe_contact.workers.spent import Spent
 
-__all__ = ["ByDask", "ByExecutor", "InProcess", "OrHere", "Spent", "Workers", "dask_workers"]
+__all__ = ["ByDask", "ByExecutor", "InProcess", "OrHere", "Remembering", "Spent", "Workers", "dask_workers"]

@@ -8,15 +8,29 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
+from fe_contact.analysis.compute_database import SOLVER_VERSION
+from fe_contact.compliance.condensed_elsewhere import condense
 from fe_contact.errors import InputError, WorkersLost
-from fe_contact.workers import ByDask, InProcess, OrHere, Spent, Workers, dask_workers
+from fe_contact.workers import ByDask, InProcess, OrHere, Remembering, Spent, Workers, dask_workers
 from service.jobs.order import WorkOrder
+from service.version import solver_version
 
 logger = logging.getLogger(__name__)
 
 S = TypeVar("S")
 T = TypeVar("T")
 R = TypeVar("R")
+
+
+@contextmanager
+def table_workers(order: WorkOrder) -> Iterator[Workers]:
+    """Provide the workers of tables: as `cluster_of`, and what they did is kept until the job ends.
+
+    An attempt after one that died finds it in the workspace. Gears are kept in the cache of the service.
+    """
+    with cluster_of(order) as workers:
+        version = f"{solver_version()} {SOLVER_VERSION}"
+        yield Remembering(workers, order.workspace / "tasks", version, passed_on=(condense,))
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from service.convert.flanks import flanks_of
 from service.convert.sensitivity import Deviations, study_case
 from service.convert.sensitivity_file import write_studies
 from service.jobs.catalogue import ANALYZE
-from service.jobs.cluster import cluster_of
+from service.jobs.cluster import table_workers
 from service.jobs.order import Product, Progress, WorkOrder
 from service.schemas import Case
 
@@ -32,7 +32,7 @@ def study_sensitivity_of(order: WorkOrder, progress: Progress) -> tuple[Product,
     name = f"{case.pair.pinion.teeth}/{case.pair.wheel.teeth}"
     cache = order.data_directory / "compliance"
     file = order.workspace / "sensitivity.nc"
-    with cluster_of(order) as workers:
+    with table_workers(order) as workers:
         studies = [study_case(name, case, deviations, cache, table_by_table(progress), workers)]
     write_studies(studies, file)
     return (Product(order.key, "sensitivity", file),)

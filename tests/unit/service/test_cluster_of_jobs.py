@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable, Iterator, Sequence
 from importlib import import_module
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,7 @@ DEVIATIONS = {"misalignment_um": [0.0], "center_distance_change_percent": [0.0, 
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
     for module in (contact_lines, solved_places):
-        monkeypatch.setattr(module, "TASK_SECONDS", 1e-4)
+        monkeypatch.setattr(module, "TASK_SECONDS", 1e-3)
 
 
 @pytest.fixture(scope="module")
@@ -51,12 +52,13 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("service")
 
 
-def done(process: Process, inputs: dict[str, Any], data: Path, scheduler: str | None) -> Path:
+def done(
+    process: Process, inputs: dict[str, Any], data: Path, scheduler: str | None, workspace: Path | None = None
+) -> Path:
     """Do the work of a process as its worker would; return the file it made."""
     given = process.inputs.model_validate_json(json.dumps(inputs))
     prepared = process.prepare(given, None)  # type: ignore[arg-type]  # needs no store
-    workspace = data / f"{process.id} {scheduler is None}"
-    workspace.mkdir(exist_ok=True)
+    workspace = workspace or Path(mkdtemp(dir=data))
     order = WorkOrder(process.entry, prepared, "0" * 64, workspace, data, dask_scheduler=scheduler)
     module, _, name = process.entry.partition(":")
     (product,) = getattr(import_module(module), name)(order, lambda *_: None)
@@ -129,6 +131,38 @@ def test_a_job_without_tasks_does_not_look_for_the_cluster(
     monkeypatch.setattr(solved_places, "TASK_SECONDS", 1e3)
     monkeypatch.setattr(cluster, "_connected", None)  # were it called, it would be a TypeError
     assert done(ANALYZE, {"case": CASE}, data, ADDRESS).exists()
+
+
+class Dying(Recording):
+    """This process, which ends after so many tasks of a table."""
+
+    def __init__(self, most: int) -> None:
+        super().__init__()
+        self.most, self.done, self.spent = most, 0, Spent()
+
+    def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
+        for item in items:
+            if self.done == self.most:
+                raise RuntimeError("killed")
+            self.done += 1
+            yield function(shared, item)
+
+
+def test_a_second_attempt_takes_up_the_table_of_the_first(
+    tmp_path: Path, data: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inputs = {"case": {**CASE, "errors": {"center_distance_change_mm": [0.0, 0.08]}}}
+    first, second, alone = Dying(6), Dying(1000), Dying(1000)
+    monkeypatch.setattr(cluster, "InProcess", lambda: first)
+    with pytest.raises(RuntimeError, match="killed"):
+        done(ANALYZE, inputs, data, None, tmp_path)
+    monkeypatch.setattr(cluster, "InProcess", lambda: second)
+    again = SteDatabase.from_netcdf(done(ANALYZE, inputs, data, None, tmp_path))
+    monkeypatch.setattr(cluster, "InProcess", lambda: alone)
+    whole = SteDatabase.from_netcdf(done(ANALYZE, inputs, data, None))
+    assert second.done == alone.done - 6 > 6
+    for name in ("static_transmission_error", "error_estimate", "residuals"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(whole, name), err_msg=name)
 
 
 def test_what_a_worker_warns_of_is_in_the_log_of_the_service(tmp_path: Path) -> None:

@@ -1,0 +1,110 @@
+"""Tasks whose results are kept until all is done: an interrupted study goes on where it was."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import pickle
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, TypeVar
+
+from fe_contact.workers.content import content_digest
+from fe_contact.workers.in_process import Workers
+from fe_contact.workers.spent import Spent
+
+S = TypeVar("S")
+T = TypeVar("T")
+R = TypeVar("R")
+
+_CHECKSUM = 32
+
+
+@dataclass(frozen=True)
+class Remembering:
+    """Workers with a folder for what they did.
+
+    Attributes
+    ----------
+    others : Workers
+    folder : Path
+        Of this study alone, and of nobody else: its files are unpickled. It is the caller's to remove.
+    version : str
+        Of what computes: other versions' results are not taken.
+    passed_on : tuple of callable
+        Functions whose results are not kept here, because they are elsewhere.
+    """
+
+    others: Workers
+    folder: Path
+    version: str
+    passed_on: tuple[Callable[..., Any], ...] = ()
+    _digests: dict[int, tuple[object, str]] = field(default_factory=dict, compare=False, repr=False)
+
+    @property
+    def spent(self) -> Spent:
+        """What the others did this time."""
+        return self.others.spent
+
+    def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
+        """Yield what is kept, and what the others find; that is kept."""
+        files = self._files(function, shared, items)
+        if files is None:
+            yield from self.others.run(function, shared, items)
+            return
+        kept = [_read(file) for file in files]
+        missing = [item for item, known in zip(items, kept, strict=True) if known is None]
+        found = self.others.run(function, shared, missing)
+        for file, known in zip(files, kept, strict=True):
+            if known is not None:
+                yield known[0]
+                continue
+            result = next(found)
+            _write(file, result)
+            yield result
+
+    def _files(
+        self, function: Callable[..., Any], shared: object, items: Sequence[object]
+    ) -> list[Path] | None:
+        """Return where the results of tasks are kept; None if nobody knows what tells the tasks apart."""
+        if function in self.passed_on:
+            return None
+        try:
+            context = f"{self.version} {function.__module__}.{function.__qualname__} {self._digest(shared)}"
+            names = [f"{context} {content_digest(item)}" for item in items]
+        except TypeError:
+            return None
+        return [self.folder / hashlib.sha256(name.encode()).hexdigest() for name in names]
+
+    def _digest(self, shared: object) -> str:
+        """Hash what is shared, once."""
+        known = self._digests.get(id(shared))
+        if known is None:
+            known = self._digests[id(shared)] = shared, content_digest(shared)
+        return known[1]
+
+
+def _write(file: Path, result: Any) -> None:
+    """Keep a result; a reader sees all of it or nothing, and no room for it is no reason to fail."""
+    content = pickle.dumps(result, protocol=pickle.HIGHEST_PROTOCOL)
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=file.parent, suffix=".partial")
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(hashlib.sha256(content).digest() + content)
+        Path(name).replace(file)
+    except OSError:
+        return
+
+
+def _read(file: Path) -> tuple[Any] | None:
+    """Return what is kept, None if it is damaged."""
+    try:
+        content = file.read_bytes()
+    except OSError:
+        return None
+    if hashlib.sha256(content[_CHECKSUM:]).digest() != content[:_CHECKSUM]:
+        return None
+    return (pickle.loads(content[_CHECKSUM:]),)
