@@ -48,7 +48,7 @@ def figures() -> list[Figure]:
         return [*made, *asked, _growth(directory / "table.sqlite3")]
 
 
-def _orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
+def orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
     """Yield what is run: a title, the process and its inputs."""
     spur = case_of(_EXAMPLES / "palermo_spur_20_20.toml").model_dump(mode="json")
     helical = case_of(_EXAMPLES / "wind_turbine_high_speed.toml").model_dump(mode="json")
@@ -82,7 +82,7 @@ def _orders() -> Iterator[tuple[str, str, dict[str, Any]]]:
 
 def _jobs(client: LineOfActionClient, log: Path) -> Iterator[Figure]:
     """Run one after the other; the log tells what each worker took."""
-    for title, process, inputs in _orders():
+    for title, process, inputs in orders():
         result = client.obtain(process, inputs)
         ended = [json.loads(line) for line in log.read_text("utf-8").splitlines() if "worker ended" in line]
         took = ended[-1]

@@ -1,0 +1,21 @@
+"""The jobs whose cost is measured are such as the service takes, one of every process."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+
+from benchmarks.worker_cost import orders
+from service.jobs.catalogue import default_registry
+from service.jobs.machinery import job_machinery
+from service.settings import Settings
+
+
+def test_every_process_has_an_order_that_its_checks_pass(tmp_path: Path) -> None:
+    offered, ordered = default_registry(), [*orders()]
+    with closing(job_machinery(Settings(data_directory=tmp_path), offered, works=False)) as parts:
+        for _, name, inputs in ordered:
+            process = offered[name]
+            assert process.prepare(process.inputs.model_validate(inputs), parts.store)
+    assert {name for _, name, _ in ordered} == set(offered)
+    assert len({title for title, _, _ in ordered}) == len(ordered)
