@@ -13,12 +13,10 @@ from typing import Any
 import numpy as np
 
 from dynamics.errors import ResultError, SolveError
-from dynamics.integrators import Cancel, Progress, StaticSolution, static_equilibrium
-from dynamics.integrators.checkpoint import fingerprint, restore
-from dynamics.integrators.march import Ending, March, ending, march_on, start_march
+from dynamics.integrators import Cancel, Progress, static_equilibrium
+from dynamics.integrators.march import Ending
 from dynamics.integrators.state_sink import States, blocks
-from dynamics.integrators.state_spool import StateSpool
-from dynamics.integrators.taking_over import Taken, Trail, take_over
+from dynamics.integrators.taking_over import Trail
 from dynamics.results.netcdf import attributes
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_file import RunFile
@@ -32,8 +30,9 @@ from dynamics.simulate.documents import (
 )
 from dynamics.simulate.error_by_source import error_by_source
 from dynamics.simulate.in_memory import require_equilibrium
-from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said, taken_over
-from dynamics.system import Integration, Scene
+from dynamics.simulate.leg import Leg, MadeRun
+from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said
+from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
 from dynamics.system.static_reference import with_static_reference
 from dynamics.types import Json, RunStatus
@@ -112,23 +111,13 @@ def simulate_to_file(
     return run.status
 
 
-def _needed(scene: Scene, path: Path, run: _Run) -> dict[str, str]:
+def _needed(scene: Scene, path: Path, run: MadeRun) -> dict[str, str]:
     """Return the effects that a run is to be repeated with; raises where the scene asked for that."""
     wrong = said(run.ledger) if run.status.usable else ""
     if wrong and scene.on_violation == "fail":
         _remove(interrupted_run(path))
         raise SolveError(f"assumptions of the run that do not hold: {wrong}. It is in {path}")
     return needed_effects(run.ledger) if wrong and scene.on_violation == "repeat" else {}
-
-
-@dataclass(frozen=True)
-class _Run:
-    """A run as made: its status, effect ledger and wall time (s), and where it stood on its way."""
-
-    status: RunStatus
-    ledger: Json
-    seconds: float
-    trail: Trail
 
 
 @dataclass(frozen=True)
@@ -141,7 +130,9 @@ class _How:
     checkpoint_every: float
 
 
-def _run_to_file(decided: Decided, path: Path, before: EarlierRun, how: _How, earlier: _Run | None) -> _Run:
+def _run_to_file(
+    decided: Decided, path: Path, before: EarlierRun, how: _How, earlier: MadeRun | None
+) -> MadeRun:
     """Run once; `before` says what of the run `earlier` it repeats."""
     began, scene = clock.perf_counter(), decided.scene
     system = assemble(scene)
@@ -153,20 +144,20 @@ def _run_to_file(decided: Decided, path: Path, before: EarlierRun, how: _How, ea
     folder.mkdir(exist_ok=True)
     going = (how.progress, how.cancel, how.checkpoint_every)
     with ExitStack() as stack:
-        leg = _Leg(stack, folder / "run", system, start, scene.integration, how.resume, earlier)
+        leg = Leg(stack, folder / "run", system, start, scene.integration, how.resume, earlier)
         before = replace(before, since=leg.since)
         end = leg.go(*going, trail)
         error = asked_error(scene.integration)
         if end.status.usable:
             error = error_by_source(system, leg.spool.states, end.samples)
         if scene.integration.estimate_error and end.status.usable:
-            check = _Leg(stack, folder / "check", system, start, finer(scene.integration), how.resume)
+            check = Leg(stack, folder / "check", system, start, finer(scene.integration), how.resume)
             other = check.go(*going)
             end = replace(end, status=other.status)
             error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         seconds["integration"] = end.seconds
         ledger = _write(path, system, leg, end, seconds, error, decided, before)
-    return _Run(end.status, ledger, sum(seconds.values()), trail)
+    return MadeRun(end.status, ledger, sum(seconds.values()), trail)
 
 
 def _read_earlier(folder: Path) -> EarlierRun:
@@ -180,85 +171,7 @@ def _read_earlier(folder: Path) -> EarlierRun:
         raise ResultError(f"{folder / REPEATED}: not readable: {error}. Start the run anew.") from error
 
 
-class _Leg:
-    """One integration with its states on disk, taken up where its checkpoint stands."""
-
-    def __init__(
-        self,
-        stack: ExitStack,
-        place: Path,
-        system: System,
-        start: StaticSolution,
-        integration: Integration,
-        resume: bool,
-        earlier: _Run | None = None,
-    ) -> None:
-        self.march: March = start_march(system, start, integration)
-        work, control, outputs = self.march.work, self.march.control, system.scene.outputs
-        rates = (system.scene.duration, outputs.sample_rate)
-        self._mark = fingerprint(system.arrays, control, work.ladder, start.displacement, rates)
-        self.spool = stack.enter_context(StateSpool(place, work.q.size, work.moved.size))
-        self._seconds = 0.0
-        self._status: RunStatus | None = None
-        self.since = 0.0
-        found = self.spool.checkpoint() if resume else None
-        taken = earlier and taken_over(earlier.ledger, earlier.trail, self.spool.states, system)
-        if found is not None:
-            self._take_up(place, *found)
-        elif taken:
-            self._go_on_for(taken)
-        else:
-            self.spool.begin()
-
-    def _take_up(self, place: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
-        """Stand where the checkpoint was written."""
-        if str(facts.get("mark")) != self._mark:
-            raise ResultError(f"{place}: of another scene or version. Start the run anew.")
-        restore(self.march.work, arrays, place)
-        self.spool.resume(int(facts["samples"]))
-        self._seconds, self.since = float(facts["seconds"]), float(facts["since"])
-        status = RunStatus(int(facts["status"]))
-        self._status = None if status is RunStatus.CANCELLED else status
-
-    def _go_on_for(self, taken: Taken) -> None:
-        """Stand where an earlier run stood, whose samples the spool holds; kept at once: its own are gone."""
-        take_over(self.march, taken.at, taken.place)
-        self.spool.resume(taken.at.samples)
-        self.since = taken.at.time
-        self._save(RunStatus.CANCELLED)
-
-    def go(
-        self, progress: Progress | None, cancel: Cancel | None, every: float, trail: Trail | None = None
-    ) -> Ending:
-        """March on to the end, with checkpoints; one that had ended stays as it is."""
-        began = saved = clock.perf_counter()
-        before = self._seconds
-        remember = None if trail is None else trail.watch(self.march)
-
-        def after_block() -> None:
-            nonlocal saved
-            if remember is not None:
-                remember()
-            if clock.perf_counter() - saved >= every:
-                self._save(RunStatus.CANCELLED)
-                saved = clock.perf_counter()
-            self._seconds = before + clock.perf_counter() - began
-
-        if self._status is None:
-            status = march_on(self.march, self.spool, progress, cancel, after_block)
-            self._seconds = before + clock.perf_counter() - began
-            self._save(status)
-            self._status = status
-        return ending(self.march, self._status, self._seconds)
-
-    def _save(self, status: RunStatus) -> None:
-        """Write a checkpoint."""
-        samples = int(ending(self.march, status, 0.0).samples)
-        facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "since": self.since}
-        self.spool.save(self.march.work, **facts, status=int(status))
-
-
-def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
+def _difference(system: System, leg: Leg, check: Leg, end: Ending) -> Json:
     """Measure the step error against the finer run."""
     total = 0.0
     for first, stop in blocks(end.samples):
@@ -271,7 +184,7 @@ def _difference(system: System, leg: _Leg, check: _Leg, end: Ending) -> Json:
 def _write(
     path: Path,
     system: System,
-    leg: _Leg,
+    leg: Leg,
     end: Ending,
     seconds: dict[str, float],
     error: Json,
@@ -291,7 +204,7 @@ def _write(
     return dict(about["effect_ledger"])
 
 
-def _series(system: System, leg: _Leg, samples: int) -> Iterator[tuple[dict[str, Any], States]]:
+def _series(system: System, leg: Leg, samples: int) -> Iterator[tuple[dict[str, Any], States]]:
     """Yield the series of all blocks, and the states that they are of."""
     rate = system.scene.outputs.sample_rate
     for first, stop in blocks(samples):

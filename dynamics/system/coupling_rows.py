@@ -10,8 +10,9 @@ import numpy as np
 from dynamics.joints import Coupling
 from dynamics.joints.matrix import Matrix
 from dynamics.system.columns import column_count, section_rows
+from dynamics.system.frame_check import crosses_frames
 from dynamics.system.rotor import Rotor
-from dynamics.system.scene import Scene, crosses_frames
+from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
 
 ROTATION = 5

@@ -15,10 +15,11 @@ from dynamics.system.arrays import SystemArrays
 from dynamics.system.columns import section_rows
 from dynamics.system.coupling_rows import ACROSS, full_matrix
 from dynamics.system.elements import Element
+from dynamics.system.frame_check import crosses_frames
 from dynamics.system.kinematics import Kinematics
 from dynamics.system.observation import local_state
 from dynamics.system.rotor import Rotor
-from dynamics.system.scene import Scene, crosses_frames
+from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
 
 

@@ -13,8 +13,9 @@ from dynamics.checks import integer, one_of
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, RollingContact, SpringCurve
 from dynamics.joints import PlanetBearing
+from dynamics.system.frame_check import on_axis
 from dynamics.system.kinematics import Kinematics, solve_kinematics
-from dynamics.system.scene import Scene, on_axis
+from dynamics.system.scene import Scene
 
 TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit all central gears
 

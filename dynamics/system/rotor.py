@@ -9,7 +9,8 @@ import numpy as np
 
 from dynamics.bodies import ElasticShaft, Inertia, Shaft
 from dynamics.joints import Bushing, PlanetBearing
-from dynamics.system.scene import Scene, on_axis
+from dynamics.system.frame_check import on_axis
+from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
 
 Support = TypeVar("Support", Bushing, PlanetBearing)

@@ -9,8 +9,8 @@ import numpy as np
 from fe_contact.compliance.hanging_nodes import face_functions
 from fe_contact.geometry import Toothing
 from fe_contact.geometry.bore_seat import BoreSeat
+from fe_contact.mesh.hexahedra import LOWER_FACE
 from fe_contact.mesh.sector_grid import SectorGrid
-from fe_contact.mesh.swept_sector import LOWER_FACE
 from fe_contact.types import FloatArray
 
 

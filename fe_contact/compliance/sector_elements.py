@@ -17,9 +17,10 @@ from fe_contact.compliance.hexahedron import (
 )
 from fe_contact.compliance.sector_stiffness import flank_frames, lame_parameters, twist
 from fe_contact.geometry import Toothing
+from fe_contact.mesh.hexahedra import LOWER_FACE, Batch
 from fe_contact.mesh.quad_quality import quad_quality
 from fe_contact.mesh.quad_sector import QuadSector
-from fe_contact.mesh.swept_sector import LOWER_FACE, Batch, SweptSector
+from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray, IntArray
 
 # Points where the stress of a 20-node hexahedron is most exact: two Gauss points each way, in -1 .. 1.

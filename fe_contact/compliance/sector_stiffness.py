@@ -18,8 +18,9 @@ from fe_contact.compliance.hexahedron import (
 )
 from fe_contact.geometry import Toothing
 from fe_contact.material import Material
+from fe_contact.mesh.hexahedra import Batch
 from fe_contact.mesh.quad_sector import QuadSector
-from fe_contact.mesh.swept_sector import Batch, SweptSector
+from fe_contact.mesh.swept_sector import SweptSector
 from fe_contact.types import FloatArray, IntArray
 
 

@@ -18,38 +18,11 @@ from fe_contact.errors import InputError
 from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
 from fe_contact.geometry.gear_blank import ROUNDING, Web
 from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
+from fe_contact.mesh.hexahedra import Batch, stacked, with_seat
 from fe_contact.mesh.layers import Layers, layers_across, layers_to_mid_face
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.mesh.sector_recipe import SectorRecipe
 from fe_contact.types import BoolArray, FloatArray, IntArray
-
-# Nodes of an element that lie above the side 0-1 of its quadrilateral, towards the bore.
-LOWER_FACE = [0, 1, 4, 5, 8, 12, 16, 17]
-
-
-@dataclass(frozen=True)
-class Batch:
-    """Elements above some quadrilaterals that share their matrices layer by layer.
-
-    Attributes
-    ----------
-    quads : (m,) int array
-        Quadrilaterals of the section.
-    thickness : float
-        Of the layer, m.
-    half : int
-        0: conforming. -1, +1: the lower face is the lower or upper half of a face of the next coarser layer.
-    elements : (c, m) int array
-        Rows of `SweptSector.elements`, one line for each of the c layers.
-    seat : bool
-        An elastic seat below the bodies' elements on the bore instead of bodies.
-    """
-
-    quads: IntArray
-    thickness: float
-    half: int
-    elements: IntArray
-    seat: bool = False
 
 
 @dataclass(frozen=True)
@@ -182,8 +155,8 @@ def swept_sector(
     extent = _extents(grid, layers, web)
     exists = _existing(grid, node_level, extent, planes)
     nodes = np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
-    batches, elements, place = _elements(grid, layers, nodes, level, node_level, extent)
-    batches, elements, place = _with_seat(
+    batches, elements, place = stacked(grid, layers, nodes, level, node_level, extent)
+    batches, elements, place = with_seat(
         grid, layers, (batches, elements, place), support.seat.ends(face_width), support.seat.elastic
     )
     held = support.held(grid, between_ends(layers.ends))
@@ -240,75 +213,3 @@ def _existing(grid: SectorGrid, node_level: IntArray, extent: IntArray, planes: 
     np.maximum.at(high, grid.quads.ravel(), np.repeat(2 * extent[:, 1], 8))
     plane = np.arange(planes)[:, None]
     return np.asarray((plane % step == 0) & (plane >= low) & (plane <= high))
-
-
-def _elements(
-    grid: SectorGrid,
-    layers: Layers,
-    nodes: IntArray,
-    level: IntArray,
-    node_level: IntArray,
-    extent: IntArray,
-) -> tuple[tuple[Batch, ...], IntArray, FloatArray]:
-    """Stack the elements layer by layer."""
-    alike = np.column_stack([level, node_level[grid.quads[:, 0]] > level, extent])
-    elements: list[IntArray] = []
-    place: list[FloatArray] = []
-    batches: list[Batch] = []
-    count = 0
-    for lv, hangs, first_layer, last_layer in np.unique(alike, axis=0):
-        quads = np.flatnonzero((alike == [lv, hangs, first_layer, last_layer]).all(axis=1))
-        sharing: dict[tuple[int, int], list[IntArray]] = {}
-        for first in range(first_layer, last_layer, 1 << lv):
-            half = (-1, 1)[(first >> lv) % 2] if hangs else 0
-            elements.append(_layer(nodes, grid.quads[quads], 2 * first, 2 << lv, half))
-            place.append(np.column_stack([grid.cells[quads], np.full(len(quads), first + 0.5 * 2**lv)]))
-            numbers = count + np.arange(len(quads))
-            sharing.setdefault((int(layers.kind[first]), half), []).append(numbers)
-            count += len(quads)
-        for (kind, half), rows in sharing.items():
-            batches.append(Batch(quads, 2.0**lv * layers.thickness[kind], half, np.array(rows)))
-    return tuple(batches), np.concatenate(elements), np.concatenate(place)
-
-
-Stack = tuple[tuple[Batch, ...], IntArray, FloatArray]
-
-
-def _with_seat(
-    grid: SectorGrid, layers: Layers, bodies: Stack, ends: tuple[float, float], elastic: bool
-) -> Stack:
-    """Add the elements of an elastic seat: the nodes of the bodies above them."""
-    batches, elements, place = bodies
-    if not elastic:
-        return bodies
-    low, high = (np.abs(layers.ends - z).argmin() for z in ends)
-    on_bore = grid.cells[:, 1] == -grid.body_rows
-    added: list[IntArray] = []
-    count, more = len(elements), []
-    for batch in batches:
-        columns = on_bore[batch.quads]
-        lines = (place[batch.elements[:, 0], 2] > low) & (place[batch.elements[:, 0], 2] < high)
-        chosen = batch.elements[lines][:, columns]
-        if chosen.size:
-            numbers = count + np.arange(chosen.size).reshape(chosen.shape)
-            more.append(Batch(batch.quads[columns], batch.thickness, 0, numbers, seat=True))
-            added.append(chosen.ravel())
-            count += chosen.size
-    rows = np.concatenate(added)
-    return (
-        (*batches, *more),
-        np.concatenate([elements, elements[rows]]),
-        np.concatenate([place, place[rows]]),
-    )
-
-
-def _layer(nodes: IntArray, quads: IntArray, low: int, height: int, half: int) -> IntArray:
-    """Return the nodes of the elements from plane `low` to `low + height`."""
-    corners, middles = quads[:, :4], quads[:, 4:]
-    middle, high = low + height // 2, low + height
-    parts = [(low, corners), (high, corners), (low, middles), (high, middles), (middle, corners)]
-    elements = np.concatenate([nodes[plane][on] for plane, on in parts], axis=1)
-    if half:
-        coarse = _layer(nodes, quads, low if half < 0 else low - height, 2 * height, 0)
-        elements[:, LOWER_FACE] = coarse[:, LOWER_FACE]
-    return elements
