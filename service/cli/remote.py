@@ -46,6 +46,11 @@ def run_submit(
             shutil.copyfile(client.fetch_file(result.key, result.kind), output)
             facts["file"] = str(output)
     _show(facts, as_json)
+    if "hash" not in facts and not as_json:
+        console().print(
+            f"Its result, once it has ended: loa fetch {state.id} --service {service} -o FILE",
+            highlight=False,
+        )
 
 
 def _further(wish: Wish) -> dict[str, Any]:

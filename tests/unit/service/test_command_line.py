@@ -26,7 +26,7 @@ from typer.testing import CliRunner, Result
 
 from service.cli import commands
 from service.cli.commands import app
-from service.client import OfflineWarning
+from service.client import JobState, LineOfActionClient, OfflineWarning
 
 ROOT = Path(__file__).parents[3]
 VERBS = (
@@ -218,6 +218,16 @@ def test_a_number_where_a_list_is_due_is_told_the_bound_of_each(tmp_path: Path) 
     (tmp_path / "case.toml").write_text(re.sub(r"torque_n_m = .*", "torque_n_m = 100", text))
     result = loa("analyze", tmp_path / "case.toml", "-o", tmp_path / "x.nc")
     assert "load.torque_n_m = 100: must be a list in brackets, each above 0" in result.stderr
+
+
+def test_a_job_submitted_names_the_command_that_fetches_its_result(monkeypatch: pytest.MonkeyPatch) -> None:
+    job = JobState("1-2", "analyze", "accepted", "", "", 0, 0)
+    monkeypatch.setattr(LineOfActionClient, "submit", lambda *_: job)
+    address = "http://127.0.0.1:9"
+    plain = loa("submit", ROOT / "examples" / CASE, "--service", address)
+    assert plain.stdout.endswith(f"loa fetch 1-2 --service {address} -o FILE\n")
+    machine = loa("submit", ROOT / "examples" / CASE, "--service", address, "--json")
+    assert json.loads(machine.stdout) == {"job": "1-2", "process": "analyze", "status": "accepted"}
 
 
 def test_a_setting_out_of_bounds_names_bound_and_variable() -> None:
