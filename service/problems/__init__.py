@@ -1,0 +1,92 @@
+"""What can go wrong at the boundary, in one tree and one shape.
+
+::
+
+    ServiceError
+    |- BadInput          the caller's: a list of faults (field, value, bound, suggestion)
+    |- Unauthorised      no key, or an unknown one
+    |- NotFound          no such process, job, result
+    |- ResultNotReady    the job has not ended
+    |- StillRunning      the job did not end in the time it was waited for; it goes on
+    |- JobFailed         the job ended without a result; says at what
+    |- JobDismissed      the job was cancelled
+    |- TooLarge          the request body is beyond the limit
+    |- TooSlow           the request body does not come
+    |- NotForUs          the request names another machine
+    |- UnsupportedMediaType, NotAcceptable   a body, or an answer, of a type that is not known here
+    |- QueueFull         the queue is at its limit; try again later
+    |- RateExceeded      the caller's key asks more often than it may; try again later
+    |- Superseded        a later question of the same caller took its place
+    |- NotAnalysed       nothing is kept to answer from; submit a job first
+    |- LiveUnavailable   the live worker ended or took too long; try again
+    |- DatabaseUnavailable  the database does not answer; try again later
+    |- StoreUnavailable  the store of results does not answer; try again later
+    |- DamagedFile       a file does not hold what its digest says
+    |- Unreachable       no service at the address
+    `- Unexpected        a defect; carries a reference number, never the text of the exception
+
+Each carries the HTTP status, the problem type (RFC 9457) and the exit code of the command line.
+"""
+
+from __future__ import annotations
+
+from service.problems.busy import LiveUnavailable, NotAnalysed, QueueFull, RateExceeded, Superseded, TryLater
+from service.problems.error import (
+    EXIT_BAD_INPUT,
+    EXIT_FAILED,
+    EXIT_INTERRUPTED,
+    EXIT_UNEXPECTED,
+    EXIT_UNREACHABLE,
+    BadInput,
+    ServiceError,
+    Unexpected,
+)
+from service.problems.fault import Fault
+from service.problems.no_result import JobDismissed, JobFailed, ResultNotReady, StillRunning
+from service.problems.outages import DamagedFile, DatabaseUnavailable, StoreUnavailable, Unreachable
+from service.problems.refused import (
+    NoSuchJob,
+    NoSuchProcess,
+    NotAcceptable,
+    NotForUs,
+    NotFound,
+    TooLarge,
+    TooSlow,
+    Unauthorised,
+    UnsupportedMediaType,
+)
+
+__all__ = [
+    "EXIT_BAD_INPUT",
+    "EXIT_FAILED",
+    "EXIT_INTERRUPTED",
+    "EXIT_UNEXPECTED",
+    "EXIT_UNREACHABLE",
+    "BadInput",
+    "DamagedFile",
+    "DatabaseUnavailable",
+    "Fault",
+    "JobDismissed",
+    "JobFailed",
+    "LiveUnavailable",
+    "NoSuchJob",
+    "NoSuchProcess",
+    "NotAcceptable",
+    "NotAnalysed",
+    "NotForUs",
+    "NotFound",
+    "QueueFull",
+    "RateExceeded",
+    "ResultNotReady",
+    "ServiceError",
+    "StillRunning",
+    "StoreUnavailable",
+    "Superseded",
+    "TooLarge",
+    "TooSlow",
+    "TryLater",
+    "Unauthorised",
+    "Unexpected",
+    "Unreachable",
+    "UnsupportedMediaType",
+]

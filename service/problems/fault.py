@@ -1,0 +1,63 @@
+"""One thing wrong with an input."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+_LONGEST_VALUE = 200
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One thing wrong with the input.
+
+    Attributes
+    ----------
+    field : str
+        Dotted name as the user wrote it, e.g. ``"pair.pinion.teeth"``.
+    value : object
+        What was given; None if nothing was.
+    bound : str
+        What would be accepted, to be read after "must be".
+    suggestion : str
+        What to try.
+    """
+
+    field: str
+    value: object
+    bound: str
+    suggestion: str = ""
+
+    def __str__(self) -> str:
+        text = f"{self.field} = {_shown(self.value)}: must be {self.bound}"
+        return f"{text}. {self.suggestion}" if self.suggestion else text
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the four facts as plain JSON; a value that JSON cannot hold is shown as text."""
+        return {
+            "field": self.field,
+            "value": _plain(self.value),
+            "bound": self.bound,
+            "suggestion": self.suggestion,
+        }
+
+
+def _shown(value: object) -> str:
+    """Value as a short text."""
+    text = "nothing" if value is None else repr(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}..."
+
+
+def _plain(value: object) -> object:
+    """Value as JSON can hold it: short, finite, printable."""
+    if value is None or isinstance(value, bool):
+        return value
+    if isinstance(value, int) and abs(value) < 2**53:
+        return value
+    if isinstance(value, float) and math.isfinite(value):
+        return value
+    if isinstance(value, str):
+        return value[:_LONGEST_VALUE].encode("utf-8", "replace").decode()
+    return _shown(value).encode("utf-8", "replace").decode()

@@ -1,0 +1,43 @@
+"""What does not answer, or not as it should."""
+
+from __future__ import annotations
+
+from service.problems.error import EXIT_FAILED, EXIT_UNREACHABLE, ServiceError
+
+
+class DatabaseUnavailable(ServiceError):
+    """The database of the service does not answer."""
+
+    status = 503
+    type = "urn:lineofaction:problem:database-unavailable"
+    title = "The database cannot be reached"
+    exit_code = EXIT_UNREACHABLE
+    retry_after_s = 5
+
+
+class StoreUnavailable(ServiceError):
+    """The store of results does not answer."""
+
+    status = 503
+    type = "urn:lineofaction:problem:store-unavailable"
+    title = "The store of results cannot be reached"
+    exit_code = EXIT_UNREACHABLE
+    retry_after_s = 5
+
+
+class DamagedFile(ServiceError):
+    """A stored file does not hold what its digest says."""
+
+    status = 500
+    type = "urn:lineofaction:problem:damaged-file"
+    title = "A stored file is damaged"
+    exit_code = EXIT_FAILED
+
+
+class Unreachable(ServiceError):
+    """No service answers at the address."""
+
+    status = 503
+    type = "urn:lineofaction:problem:unreachable"
+    title = "The service cannot be reached"
+    exit_code = EXIT_UNREACHABLE

@@ -1,0 +1,83 @@
+"""Requests that are refused as they are."""
+
+from __future__ import annotations
+
+from service.problems.error import EXIT_BAD_INPUT, EXIT_UNREACHABLE, OGC, ServiceError
+
+
+class Unauthorised(ServiceError):
+    """The request carries no key, or one that is not known."""
+
+    status = 401
+    type = "urn:lineofaction:problem:unauthorised"
+    title = "A key is needed"
+    exit_code = EXIT_BAD_INPUT
+    challenge = "Bearer"
+
+
+class NotFound(ServiceError):
+    """No such process, job or result."""
+
+    status = 404
+    type = "urn:lineofaction:problem:not-found"
+    title = "Not found"
+    exit_code = EXIT_BAD_INPUT
+
+
+class NoSuchProcess(NotFound):
+    """No process of this name."""
+
+    type = f"{OGC}no-such-process"
+    title = "No such process"
+
+
+class NoSuchJob(NotFound):
+    """No job of this identifier."""
+
+    type = f"{OGC}no-such-job"
+    title = "No such job"
+
+
+class TooLarge(ServiceError):
+    """The request body is beyond the limit."""
+
+    status = 413
+    type = "urn:lineofaction:problem:too-large"
+    title = "The request is too large"
+    exit_code = EXIT_BAD_INPUT
+
+
+class TooSlow(ServiceError):
+    """The request body does not come, or drips."""
+
+    status = 408
+    type = "urn:lineofaction:problem:too-slow"
+    title = "The request is too slow"
+    exit_code = EXIT_UNREACHABLE
+
+
+class NotForUs(ServiceError):
+    """The request names another machine in its header Host."""
+
+    status = 421
+    type = "urn:lineofaction:problem:not-for-us"
+    title = "The request is meant for another machine"
+    exit_code = EXIT_BAD_INPUT
+
+
+class UnsupportedMediaType(ServiceError):
+    """The request body is of a type that is not read here."""
+
+    status = 415
+    type = "urn:lineofaction:problem:unsupported-media-type"
+    title = "The type of the body is not known here"
+    exit_code = EXIT_BAD_INPUT
+
+
+class NotAcceptable(ServiceError):
+    """The caller takes none of the types an answer can have."""
+
+    status = 406
+    type = "urn:lineofaction:problem:not-acceptable"
+    title = "No acceptable type of answer"
+    exit_code = EXIT_BAD_INPUT
