@@ -205,4 +205,4 @@ class ToothingInput(BoundaryModel):
 class GearInput(ToothingInput):
     """One external gear."""
 
-    bore_diameter_mm: float = Field(gt=0.0, le=20_000.0, description="Bore diameter in mm", examples=[40.0])
+    bore_diameter_mm: float = Field(ge=1e-3, le=20_000.0, description="Bore diameter in mm", examples=[40.0])

@@ -28,7 +28,7 @@ class GearShaftInput(BoundaryModel):
     length_mm: float = Field(
         gt=0.0, le=50_000.0, description="Distance between the bearings in mm", examples=[200.0]
     )
-    diameter_mm: float = Field(gt=0.0, le=10_000.0, description="Diameter in mm", examples=[40.0])
+    diameter_mm: float = Field(ge=1e-3, le=10_000.0, description="Diameter in mm", examples=[40.0])
     position_mm: float = Field(
         ge=-50_000.0,
         le=100_000.0,
@@ -61,7 +61,7 @@ class GearBlankInput(BoundaryModel):
     )
     hub_diameter_mm: float | None = Field(
         default=None,
-        gt=0.0,
+        ge=1e-3,
         le=20_000.0,
         description="Outside of the hub in mm; left out: the web reaches down to the bore",
         examples=[60.0],

@@ -79,6 +79,22 @@ def test_a_body_of_many_unknown_fields_gets_some_faults(http: TestClient) -> Non
     assert len(problem["errors"]) == 50
 
 
+@pytest.mark.parametrize("process", ["analyze", "sensitivity"])
+def test_a_bore_without_width_is_refused_and_the_thinnest_is_not(http: TestClient, process: str) -> None:
+    """Its compliance would be infinite (found by spoiling bodies)."""
+
+    def answer(bore: float) -> Response:
+        pair = CASE["pair"] | {
+            name: CASE["pair"][name] | {"bore_diameter_mm": bore} for name in ("pinion", "wheel")
+        }
+        body = {"inputs": {"case": CASE | {"pair": pair}}}
+        return http.post(f"/v1/processes/{process}/execution", json=body)
+
+    problem = refused(answer(1e-300), 422)
+    assert "pair.pinion.bore_diameter_mm" in [fault["field"] for fault in problem["errors"]]
+    assert answer(1e-3).status_code == 201
+
+
 @pytest.mark.parametrize(
     "body", [b'{"inputs":' + b"[" * 3_900_000, b"[" * 100_000 + b"]" * 100_000, b"9" * 1_000_000]
 )
@@ -165,9 +181,10 @@ def test_no_other_origin_is_allowed_anything(http: TestClient) -> None:
 )
 def test_what_a_form_of_another_site_can_send_starts_nothing(http: TestClient, kind: str) -> None:
     body = json.dumps({"inputs": {"case": CASE}})
+    before = http.get("/v1/jobs").json()["jobs"]
     answer = http.post("/v1/processes/analyze/execution", content=body, headers={"Content-Type": kind})
     refused(answer, 422)
-    assert http.get("/v1/jobs").json()["jobs"] == []
+    assert http.get("/v1/jobs").json()["jobs"] == before
 
 
 def test_no_file_of_the_service_is_read_for_a_caller(http: TestClient) -> None:
