@@ -22,6 +22,7 @@ from service.schemas.query import LIMITS, QueryInput, QueryOutput
 KEY_PATTERN = "^[0-9a-f]{64}$"
 _KEY = re.compile(KEY_PATTERN[:-1] + r"\Z")
 _COLUMNS = "position,deflection_um"
+_LONGEST_COLUMNS = 100
 _INLINE_BYTES = (
     32_768  # beyond it a body is read and answered in a thread, so that others are not kept waiting
 )
@@ -54,7 +55,10 @@ async def _answer(request: Request) -> Response:
     wanted = negotiated(request.headers.get("accept", "*/*"), offered)
     if wanted is None:
         raise NotAcceptable(f"An answer can be {', '.join(READ)}. Accept one of them.")
-    columns = request.query_params.get("columns", _COLUMNS).split(",")
+    named = request.query_params.get("columns", _COLUMNS)
+    if len(named) > _LONGEST_COLUMNS:  # also of bodies that do not need it
+        raise BadInput.of("columns", named, f"a text of at most {_LONGEST_COLUMNS} characters")
+    columns = named.split(",")
     body, context = await request.body(), context_of(request)
     opened = context.databases.at_hand(key)
 
@@ -78,7 +82,7 @@ async def _answer(request: Request) -> Response:
 def query(
     key: Annotated[str, Path(pattern=KEY_PATTERN, description="Content hash of the input")],
     columns: Annotated[
-        str, Query(description=f"Columns of a raw body, of {', '.join(LIMITS)}", max_length=100)
+        str, Query(description=f"Columns of a raw body, of {', '.join(LIMITS)}", max_length=_LONGEST_COLUMNS)
     ] = _COLUMNS,
     accept: Annotated[str, Header(description=f"{JSON}, {CBOR} or {RAW}; default: that of the body")] = "*/*",
 ) -> None:

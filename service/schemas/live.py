@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Optional
 
 from pydantic import Field, Strict, create_model
 
-from service.schemas.case import Case, Load
+from service.schemas.case import Case
 from service.schemas.gear import ToothingInput
 from service.schemas.model import BoundaryModel
 
@@ -34,7 +34,8 @@ FlankChange = create_model(
     **{name: _left_out(name) for name in FLANK_FIELDS},
 )
 
-Torques = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=16)]
+Torque = Annotated[float, Field(ge=1e-9, le=1e9)]
+Torques = Annotated[tuple[Torque, ...], Strict(False), Field(min_length=1, max_length=16)]
 Caller = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
 
 
