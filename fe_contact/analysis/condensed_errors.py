@@ -94,10 +94,12 @@ def _changed(sample: TableSample, one: FloatArray, other: FloatArray, part: floa
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
     """Return what the level of the meshes is known to leave, (22, F, 1, 1), and its band (1, F, 1, 1), m.
 
-    A harmonic may be wrong by as much as peak-to-peak.
+    A harmonic may be wrong by as much as peak-to-peak. A pair that is askew leads at no load, and so may its
+    mean: what the meshes are wrong by then hangs on what the load adds.
     """
     ste = np.nan_to_num(table.static_transmission_error)
-    mean, ripple = ste.mean(axis=0), np.ptp(ste, axis=0)
+    added = (ste - np.nan_to_num(table.no_load_transmission_error)[:, None]).mean(axis=0)
+    mean, ripple = np.maximum(ste.mean(axis=0), added), np.ptp(ste, axis=0)
     errors = np.empty((QUANTITIES, *mean.shape))
     for k, (level, height) in enumerate(zip(mean[:, 0, 0], ripple[:, 0, 0], strict=True)):
         part = max(height / level, 1e-6) if level > 0.0 else 1.0

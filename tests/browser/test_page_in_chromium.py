@@ -8,9 +8,8 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from page_visit import PATIENCE, Visit, answers, choose_case, found_inaccessible, opened, unfold
+from page_visit import PATIENCE, Visit, answers, choose_case, found_inaccessible, opened, unfold, until
 from playwright.sync_api import Browser, Page, expect
-from running_service import until
 
 FIGURES = (
     "ste",

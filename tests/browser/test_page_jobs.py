@@ -8,9 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, opened, shown
+from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, opened, shown, until
 from playwright.sync_api import Browser, expect
-from running_service import until
 
 from service.client import LineOfActionClient
 
@@ -39,7 +38,7 @@ def test_a_job_is_cancelled_from_the_list(visit: Visit, address: str) -> None:
     assert first.get_by_role("button").count() == 0
 
 
-def test_a_result_opens_again_and_a_failure_says_why(visit: Visit, browser: Browser, address: str) -> None:
+def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, address: str) -> None:
     page = visit.page
     page.get_by_role("button", name="Find the modes").press("Enter")
     expect(page.locator("[data-figure=modal_campbell] .plot")).to_have_attribute("data-drawn", "yes")

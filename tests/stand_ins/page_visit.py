@@ -6,12 +6,13 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import running_service
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
 
@@ -64,6 +65,7 @@ def opened(browser: Browser, address: str, scheme: str = "light", width: int = 1
     """Open the page and note what it does."""
     page = browser.new_page(viewport={"width": width, "height": 900}, color_scheme=scheme)  # type: ignore[arg-type]
     page.set_default_timeout(PATIENCE)
+    expect.set_options(timeout=PATIENCE)
     seen = Visit(page)
     page.on("console", lambda message: seen.console.append(f"{message.type}: {message.text}"))
     page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
@@ -94,6 +96,11 @@ def shown(browser: Browser, address: str, key: str) -> Visit:
     seen = opened(browser, f"{address}/#database={key}")
     seen.page.wait_for_selector("#live-body[data-answers]")
     return seen
+
+
+def until(condition: Callable[[], bool]) -> None:
+    """Wait as long as for anything else here."""
+    running_service.until(condition, PATIENCE / 1e3)
 
 
 def answers(page: Page) -> int:

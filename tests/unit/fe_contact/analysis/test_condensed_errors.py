@@ -129,6 +129,14 @@ def test_without_coarse_meshes_errors_are_those_usual_of_the_level(
     assert np.all((ratio > 1.0) & (ratio < 6.0))
 
 
+def test_a_pair_so_askew_that_it_leads_is_wrong_by_more_than_nothing(tmp_path: Path) -> None:
+    asked = {"level": "draft", "model": "3d", "positions": 8, "receipt": "minimal"}
+    alone = condensed(analyze(PAIR, torques=TORQUES, cache=tmp_path, **asked), tmp_path)
+    askew = alone.table(PAIR, TORQUES, 50e-6)
+    assert np.all(askew.static_transmission_error.mean(axis=0) < 0.0)
+    assert np.all(figures(askew)[1] > 0.0)
+
+
 def test_plane_strain_that_stands_in_for_a_finite_width_is_an_error(cache: Path) -> None:
     """A tolerance may leave the finite width out; live answers then lack it too, and say how much that is."""
     wide = replace(PAIR, pinion=replace(GEAR, face_width=60e-3), wheel=replace(GEAR, face_width=60e-3))
