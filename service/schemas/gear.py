@@ -50,7 +50,7 @@ class ToothingInput(BoundaryModel):
     """What all gears have. Modifications: > 0 is material removed, normal to the involute, transverse."""
 
     teeth: int = Field(ge=5, le=1000, description="Number of teeth", examples=[20])
-    face_width_mm: float = Field(gt=0.0, le=5000.0, description="Face width in mm", examples=[25.0])
+    face_width_mm: float = Field(ge=1e-3, le=5000.0, description="Face width in mm", examples=[25.0])
     profile_shift_coefficient: float = Field(
         default=0.0, ge=-5.0, le=5.0, description="Profile shift in normal modules", examples=[0.2]
     )

@@ -80,18 +80,14 @@ def test_a_body_of_many_unknown_fields_gets_some_faults(http: TestClient) -> Non
 
 
 @pytest.mark.parametrize("process", ["analyze", "sensitivity"])
-def test_a_bore_without_width_is_refused(http: TestClient, process: str) -> None:
+@pytest.mark.parametrize("field", ["bore_diameter_mm", "face_width_mm"])
+def test_a_gear_without_width_is_refused(http: TestClient, process: str, field: str) -> None:
     """Its compliance would be infinite (found by spoiling bodies)."""
 
-    def answer(bore: float) -> Response:
-        pair = CASE["pair"] | {
-            name: CASE["pair"][name] | {"bore_diameter_mm": bore} for name in ("pinion", "wheel")
-        }
-        body = {"inputs": {"case": CASE | {"pair": pair}}}
-        return http.post(f"/v1/processes/{process}/execution", json=body)
-
-    problem = refused(answer(1e-300), 422)
-    assert "pair.pinion.bore_diameter_mm" in [fault["field"] for fault in problem["errors"]]
+    pair = CASE["pair"] | {name: CASE["pair"][name] | {field: 1e-300} for name in ("pinion", "wheel")}
+    body = {"inputs": {"case": CASE | {"pair": pair}}}
+    problem = refused(http.post(f"/v1/processes/{process}/execution", json=body), 422)
+    assert f"pair.pinion.{field}" in [fault["field"] for fault in problem["errors"]]
 
 
 @pytest.mark.parametrize(
