@@ -24,6 +24,8 @@ SLACK = 0.005
 """Limits exceeded by less, in parts of them, are kept: the full analysis has more positions than a search."""
 REFINED = 4
 """Where they are exceeded by more, a simplex goes on at those positions, with a quarter of the designs."""
+ROUNDS = 3
+"""How often: the full analysis of another design has positions of its own, which join those of all before."""
 STEP = 0.05
 """Step aside from the optimum in parts of a variable's range, where it does not scatter."""
 
@@ -101,9 +103,11 @@ def choose(
         start = confirm(problem, dict(zip(problem.names, asked.own, strict=True)), study, cache)
         optimum = confirm(problem, problem.values(runs[best].place), study, cache)
     found = Choice(problem, start, optimum, runs, best)
-    if optimum.violation <= SLACK or runs[best].judged.violation > SLACK or cancel():
-        return found
-    return _refined(found, asked.search, study, clock, cache, cancel)
+    for _ in range(ROUNDS):
+        if found.optimum.violation <= SLACK or found.run.judged.violation > SLACK or cancel():
+            break
+        found = _refined(found, asked.search, study, clock, cache, cancel)
+    return found
 
 
 def _refined(
@@ -111,7 +115,8 @@ def _refined(
 ) -> Choice:
     """Search on from a design that exceeds the limits between the positions of the search."""
     shorter = replace(search, method=NelderMead(), evaluations=max(1, search.evaluations // REFINED))
-    evaluator = found.problem.evaluator.at(found.optimum.harris_map.position)
+    seen = found.problem.evaluator.position, found.optimum.harris_map.position
+    evaluator = found.problem.evaluator.at(np.union1d(*seen))
     problem = replace(found.problem, evaluator=evaluator)
     with clock.stage("search"):
         run = search_from(problem, shorter, found.run.place, search.starts, cancel=cancel)

@@ -70,7 +70,7 @@ class Optimisation:
     nodes : ScatterNodes
     start, optimum : ConfirmedDesign
     runs : tuple of SearchRun
-        One for each start, and one more where the best design had to be brought back within the limits;
+        One for each start, and one more each time the best design had to be brought back within the limits;
         `best_run` is the index of the one that counts.
     best_run : int
     sensitivity : tuple of StepAside
