@@ -54,6 +54,37 @@ _CURVE: Json = {
     "peak_to_peak_um": 2.8,
     "harmonics_um": [1.1, 0.4],
 }
+_SOURCE = {"mean": 0.01, "peak_to_peak": 0.02, "first_harmonic": 0.01}
+_ASSUMED = {
+    "effect": "coast_flank",
+    "assumption": "coast flanks stay apart",
+    "holds": True,
+    "reason": "the least room is 12 um",
+}
+_LIVE: Json = {
+    "curves": [
+        _CURVE
+        | {
+            "mean_error_um": 0.02,
+            "peak_to_peak_error_um": 0.03,
+            "harmonics_error_um": [0.02, 0.01],
+            "error_by_source_um": {"discretisation": _SOURCE},
+        }
+    ],
+    "effects": {"corner_contact": True},
+    "beyond_load_patches": 0,
+    "discretisation_error": "measured",
+    "not_estimated": [],
+    "residuals_max": 1e-12,
+    "assumptions": [_ASSUMED],
+    "not_checked": [],
+    "cost": {
+        "compliance_cpu_seconds": 0.001,
+        "contact_cpu_seconds": 0.02,
+        "error_estimate_cpu_seconds": 0.02,
+    },
+    "cpu_seconds": 0.04,
+}
 _REPORT: Json = {
     "title": "STE database",
     "lead": "20/20 teeth, module 4 mm",
@@ -63,7 +94,12 @@ _REPORT: Json = {
 }
 
 ANSWERS: dict[str, Any] = {
-    "/v1/": {"title": "lineofaction", "description": "STE databases of gear pairs.", "links": [_LINK]},
+    "/v1/": {
+        "title": "lineofaction",
+        "description": "STE databases of gear pairs.",
+        "version": "0.1.0",
+        "links": [_LINK],
+    },
     "/v1/conformance": {"conformsTo": ["http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/core"]},
     "/v1/processes": {"processes": [_SUMMARY], "links": [_LINK]},
     "/v1/processes/{process_id}": _SUMMARY
@@ -94,12 +130,7 @@ ANSWERS: dict[str, Any] = {
         "stiffness_n_per_um": [371.5, 402.3],
         "validity": ["inside", "inside"],
     },
-    "/v1/databases/{key}/ste": {
-        "curves": [_CURVE],
-        "effects": {"corner_contact": True},
-        "beyond_load_patches": 0,
-        "cpu_seconds": 0.01,
-    },
+    "/v1/databases/{key}/ste": _LIVE,
     "/v1/plans": {"model": "plane_strain", "expected_seconds": 4.2, "memory_mb": 310.0},
     "/v1/examples": [{"name": "spur", "title": "Spur 20/20", "note": "Seconds.", "case": CASE}],
     "/v1/cases/outline": {"pinion": {"teeth": 20}, "wheel": {"teeth": 20}},
