@@ -26,7 +26,7 @@ from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 from fe_contact.workers import InProcess, Workers
 
-SOLVER_VERSION = "7"
+SOLVER_VERSION = "8"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 

@@ -9,7 +9,7 @@ from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
 from service.cli.effects import assumption_lines, ledger_lines
-from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
+from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar, table
 from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
@@ -25,7 +25,7 @@ _SHOWN_HARMONICS = 3
 def run_analyze(file: Path, output: Path, hands: Hands, *, as_json: bool) -> None:
     """Compute, write, print."""
     case = read_model(Case, file)
-    check_writable(output)
+    check_netcdf_output(output)
     with working_hands(hands) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)
     database.to_netcdf(output)

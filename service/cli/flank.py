@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from service.cli.effects import assumption_lines
-from service.cli.output import check_writable, console, print_json, progress_bar
+from service.cli.output import check_netcdf_output, console, print_json, progress_bar
 from service.convert.checks import check_case
 from service.convert.flanks import case_at, flank_json, flanks_of
 from service.directories import cache_home
@@ -18,7 +18,7 @@ def run_flank(file: Path, output: Path, point: dict[str, float | None], *, as_js
     """Compute, write, print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
     case = case_at(read_model(Case, file), chosen)
-    check_writable(output)
+    check_netcdf_output(output)
     check_case(case, whole_table=False)
     with progress_bar() as report:
         found = flanks_of(case, cache_home() / "compliance", report)

@@ -77,6 +77,20 @@ def check_writable(output: Path) -> None:
         raise BadInput.of("output", str(output), "a file", "Add a file name.")
 
 
+def check_netcdf_output(output: Path) -> None:
+    """Refuse an output that cannot be written, or whose name promises something else than netCDF.
+
+    Raises
+    ------
+    BadInput
+        Not writable, or another ending than those of netCDF.
+    """
+    check_writable(output)
+    if output.suffix not in ("", ".nc", ".nc4"):
+        advice = "Write the netCDF file; `loa report FILE.nc -o PAGE.html` draws it."
+        raise BadInput.of("output", str(output), "a file ending in .nc", advice)
+
+
 def output_files(output: Path, stem: str, endings: Sequence[str]) -> list[Path]:
     """Return the files to write: one by its ending, or `stem` with all endings in a folder, made if missing.
 

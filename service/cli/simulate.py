@@ -9,7 +9,7 @@ from dynamics.system import Scene
 from dynamics.types import RunStatus
 from service.cli.effects import run_lines
 from service.cli.interrupt import until_interrupted
-from service.cli.output import Report, check_writable, console, print_json, progress_bar
+from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar
 from service.cli.run_effects import effect_lines
 from service.cli.scene_tables import scene_with_tables
 from service.client.portable import scene_of
@@ -20,7 +20,7 @@ from service.problems import BadInput, JobFailed
 def run_simulate(file: Path, output: Path, service: str | None, *, resume: bool, as_json: bool) -> None:
     """Gather the tables, integrate here into the file, print."""
     scene, folder = scene_of(file)
-    check_writable(output)
+    check_netcdf_output(output)
     if resume and not interrupted_run(output).is_dir():
         advice = "There is none there. Leave --resume out to start a run."
         raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)

@@ -174,6 +174,15 @@ def test_an_output_that_cannot_be_written_is_said_before_the_work(tmp_path: Path
     assert "output = " in result.stderr
 
 
+@pytest.mark.parametrize("verb", ["analyze", "flank", "simulate"])
+def test_an_output_whose_name_promises_a_picture_is_refused(tmp_path: Path, verb: str) -> None:
+    given = ROOT / "examples" / ("palermo_scene.toml" if verb == "simulate" else "palermo_spur_20_20.toml")
+    result = loa(verb, given, "-o", tmp_path / "x.png")
+    assert result.exit_code == 2
+    assert "a file ending in .nc" in result.stderr
+    assert "loa report" in result.stderr
+
+
 def test_no_service_is_exit_code_4(tmp_path: Path) -> None:
     result = loa("fetch", "ab" * 32, "-o", tmp_path / "x.nc", "--service", "http://127.0.0.1:9")
     assert result.exit_code == 4
