@@ -78,7 +78,8 @@ def test_every_plot_of_a_study_is_drawn_and_has_words(visit: Visit, name: str) -
 
 
 def saved(page: Page, button: Locator) -> bytes:
-    """Press a button that saves a file."""
+    """Press a button that saves a file, no faster than the browser lets a page save (10 files a second)."""
+    page.wait_for_timeout(150)
     with page.expect_download() as given:
         button.press("Enter")
     return Path(given.value.path()).read_bytes()

@@ -10,7 +10,7 @@ import pytest
 
 import fe_contact.analysis.pair_contact as room
 from fe_contact import Gear, GearPair, SteDatabase, analyze, flank_results
-from fe_contact.contact import ContactProblem, ContactSolution, solve_contact
+from fe_contact.contact import ContactProblem, ContactSolution, Start, solve_contact
 from fe_contact.errors import SolveError
 from fe_contact.types import FloatArray, Status
 
@@ -20,12 +20,12 @@ TORQUES = [10.0, 50.0, 100.0]
 DAMAGED = 0.25
 
 
-def damaging(problem: ContactProblem, load: FloatArray) -> ContactSolution:
+def damaging(problem: ContactProblem, load: FloatArray, start: Start | None = None) -> ContactSolution:
     """Solve with a compliance that is no longer definite at one position."""
     compliance = problem.compliance.copy()
     hit = np.flatnonzero(problem.candidates.position == DAMAGED)
     compliance[hit] *= -1.0
-    return solve_contact(replace(problem, compliance=compliance), load)
+    return solve_contact(replace(problem, compliance=compliance), load, start)
 
 
 def table(**how: object) -> SteDatabase:
