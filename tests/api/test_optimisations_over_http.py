@@ -10,15 +10,14 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from running_service import REFERENCES
+from study_service import empty_service
 
-from service.app import create_app
 from service.client import JobState, LineOfActionClient
 from service.convert.optimisation import optimisation_json, optimisation_of
 from service.jobs.catalogue import OPTIMISE
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.optimisation import OptimisationInput
-from service.settings import Settings
 
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
 CASE: dict[str, Any] = {
@@ -46,14 +45,9 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def served(data: Path) -> Iterator[Served]:
-    """A client of a running service, and the bare HTTP one."""
-    with (
-        TestClient(create_app(Settings(data_directory=data))) as service,
-        LineOfActionClient(
-            "http://testserver", cache_dir=data.parent / "results", transport=service._transport
-        ) as found,
-    ):
-        yield found, service
+    """A client of a running service with its real processes, and the bare HTTP one."""
+    with empty_service(data) as found:
+        yield found
 
 
 def untimed(value: Any) -> Any:

@@ -9,15 +9,14 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from study_service import empty_service
 
 from fe_contact.workers import InProcess
-from service.app import create_app
 from service.client import JobState, LineOfActionClient
 from service.convert.scatter import Sampling, scatter_json, scatter_of_case
 from service.jobs.catalogue import SCATTER
 from service.problems import BadInput
 from service.schemas import Case, validated
-from service.settings import Settings
 
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
 CASE: dict[str, Any] = {
@@ -37,12 +36,8 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def served(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]:
     """A client of a running service with its real processes, and the bare HTTP one."""
-    app, results = create_app(Settings(data_directory=data)), data.parent / "results"
-    with (
-        TestClient(app) as service,
-        LineOfActionClient("http://testserver", cache_dir=results, transport=service._transport) as found,
-    ):
-        yield found, service
+    with empty_service(data) as found:
+        yield found
 
 
 def test_the_pairs_are_those_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:

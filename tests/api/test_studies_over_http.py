@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
+from study_service import empty_service
 
 from fe_contact import LoadDistribution
-from service.app import create_app
 from service.client import JobState, LineOfActionClient
 from service.convert.flanks import case_at, flank_json, flanks_of
 from service.convert.sensitivity_file import read_studies
@@ -21,7 +21,6 @@ from service.jobs.catalogue import FLANK
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.flank import FlankPoint
-from service.settings import Settings
 
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0, "thickness_allowance_um": 90.0}
 CASE: dict[str, Any] = {
@@ -41,12 +40,8 @@ def data(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def served(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]:
     """A client of a running service with its real processes, and the bare HTTP one."""
-    app, results = create_app(Settings(data_directory=data)), data.parent / "results"
-    with (
-        TestClient(app) as service,
-        LineOfActionClient("http://testserver", cache_dir=results, transport=service._transport) as found,
-    ):
-        yield found, service
+    with empty_service(data) as found:
+        yield found
 
 
 def test_flank_results_are_those_of_python(served: tuple[LineOfActionClient, TestClient], data: Path) -> None:

@@ -69,18 +69,25 @@ class Served:
 
 
 @contextmanager
-def study_service(directory: Path) -> Iterator[Served]:
-    """Run a service in a directory."""
-    scene_file(directory)
-    data = directory / "data"
+def empty_service(data: Path) -> Iterator[tuple[LineOfActionClient, TestClient]]:
+    """Run a service with its real processes on its data; yield its client and the bare HTTP one."""
     with (
         TestClient(create_app(Settings(data_directory=data))) as service,
         LineOfActionClient(
-            "http://testserver", cache_dir=directory / "results", transport=service._transport
+            "http://testserver", cache_dir=data.parent / "results", transport=service._transport
         ) as found,
     ):
+        yield found, service
+
+
+@contextmanager
+def study_service(directory: Path) -> Iterator[Served]:
+    """Run a service that holds a table in a directory."""
+    scene_file(directory)
+    data = directory / "data"
+    with empty_service(data) as (client, http):
         stored_results(data).put(KEY, "database", directory / "ste.nc")
-        yield Served(found, service, data)
+        yield Served(client, http, data)
 
 
 def scene_by_hash(directory: Path, duration: float) -> SceneInput:
