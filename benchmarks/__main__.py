@@ -21,6 +21,7 @@ from benchmarks import (
     page_redraw,
     predicted_memory,
     predictions,
+    quiet_helical,
     receipt_cost,
     reference_errors,
     run_up,
@@ -54,6 +55,7 @@ SUBJECTS = (
     live_honesty,
     tolerance_promise,
     worth_estimates,
+    quiet_helical,
     dynamic_worth_estimates,
     effects_off,
     page_redraw,
@@ -86,6 +88,8 @@ def main(arguments: Sequence[str]) -> int:
             tolerance_promise.publish(tolerance_promise.study())
         if "worth_estimates" in record:
             worth_estimates.publish(worth_estimates.judged(), machine)
+        if "quiet_helical" in record:
+            quiet_helical.publish(quiet_helical.judged(), machine)
         if "dynamic_worth_estimates" in record:
             dynamic_worth_estimates.publish(dynamic_worth_estimates.judged(), machine)
     measured = [figure for part in record.values() for figure in part.figures]

@@ -19,7 +19,8 @@ from benchmarks.worth_cases import worth_cases
 from fe_contact.analysis import check_request
 from fe_contact.analysis.ablation import EffectAblation, ablate
 from fe_contact.analysis.model_choice import decide
-from fe_contact.effects import FaceLoadDistribution, FiniteWidth
+from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
+from fe_contact.effects.worth import Worth, estimate_worths
 
 PAGE = Path(__file__).parents[1] / "docs" / "effects" / "worth.md"
 SECTION = "worth estimates"
@@ -59,11 +60,14 @@ def study(cases: Sequence[HonestyCase], folder: Path) -> list[LoadedWorth]:
         sys.stderr.write(f"  {case.name}\n")
         made = ablate(case.pair, normal_forces=case.forces, level="draft", cache=folder, **case.options)
         asked = {"normal_forces": case.forces, **case.options}
+        checked = check_request(case.pair, level="draft", **asked)
+        names = [entry.name for entry in made.effects]
+        estimates = estimate_worths(checked.request.scene, checked.decided, names, EFFECTS)
         wishes = {tol: check_request(case.pair, tolerance=tol, **asked) for tol in TOLERANCES}
         decided = {tol: decide(wish, folder).checked.decided for tol, wish in wishes.items()}
         for entry in made.effects:
             off_at = tuple(tol for tol in TOLERANCES if left_off(decided[tol], entry.name))
-            found += _judged(case, entry, off_at)
+            found += _judged(case, entry, estimates[entry.name], off_at)
     return found
 
 
@@ -73,13 +77,15 @@ def left_off(decided: Mapping[str, str], name: str) -> bool:
     return decided[name] == "off" and not held
 
 
-def _judged(case: HonestyCase, entry: EffectAblation, off_at: tuple[float, ...]) -> list[LoadedWorth]:
+def _judged(
+    case: HonestyCase, entry: EffectAblation, estimate: Worth | None, off_at: tuple[float, ...]
+) -> list[LoadedWorth]:
     """One effect at every load."""
-    if entry.estimate is None:
+    if estimate is None:
         return []
     whole = entry.with_effect
     measured = (entry.mean_change / whole.mean, entry.peak_to_peak_change / whole.peak_to_peak)
-    estimated = (entry.estimate.mean / whole.mean, entry.estimate.peak_to_peak / whole.peak_to_peak)
+    estimated = (estimate.mean / whole.mean, estimate.peak_to_peak / whole.peak_to_peak)
     return [
         LoadedWorth(
             case.name,

@@ -4,11 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 
 import numpy as np
 
 from fe_contact.errors import InputError
 from fe_contact.types import FloatArray
+
+LIMIT_SLACK = 1e-12
+"""Relative rounding of a computed limit, which its printed form does not show."""
+
+
+def rounded_up(limit: float) -> str:
+    """Return a lower limit as text of seven digits that is accepted when it is typed."""
+    return _rounded(limit, ROUND_CEILING)
+
+
+def rounded_down(limit: float) -> str:
+    """Return an upper limit as text of seven digits that is accepted when it is typed."""
+    return _rounded(limit, ROUND_FLOOR)
 
 
 def finite(field: str, value: float, suggestion: str = "") -> float:
@@ -21,8 +35,8 @@ def finite(field: str, value: float, suggestion: str = "") -> float:
 def within(field: str, value: float, low: float, high: float, suggestion: str = "") -> float:
     """Return `value` if low <= value <= high."""
     number = finite(field, value, suggestion)
-    if not low <= number <= high:
-        raise InputError(field, value, f"from {low:g} to {high:g}", suggestion)
+    if not low - LIMIT_SLACK * abs(low) <= number <= high + LIMIT_SLACK * abs(high):
+        raise InputError(field, value, f"from {rounded_up(low)} to {rounded_down(high)}", suggestion)
     return number
 
 
@@ -51,3 +65,12 @@ def increasing(field: str, values: Sequence[float] | FloatArray, suggestion: str
             field, values, "strictly increasing", suggestion or "Sort the list and drop repeats."
         )
     return array
+
+
+def _rounded(limit: float, direction: str) -> str:
+    """Return seven digits of a limit, rounding of its own computation (`LIMIT_SLACK`) left aside."""
+    if not math.isfinite(limit):
+        return f"{limit:g}"
+    exact = Decimal(f"{limit:.13g}")
+    last_digit = Decimal(1).scaleb(exact.adjusted() - 6)
+    return f"{float(exact.quantize(last_digit, rounding=direction)):.7g}"

@@ -10,12 +10,13 @@ import numpy as np
 
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.effect_ledger import switched_over
+from fe_contact.analysis.influences import estimated_influences
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked, check_request
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import EFFECTS, LedgerEntry
-from fe_contact.effects.worth import Worth, estimate_worth
+from fe_contact.effects.worth import Influence
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import planned, predict_run
@@ -70,8 +71,8 @@ class EffectAblation:
         Why, from the ledger.
     with_effect, without_effect : Figures
         One of them is the case itself.
-    estimate : Worth or None
-        What the ledger estimated that leaving it out changes; None where it has no estimate.
+    estimate : Influence or None
+        What leaving it out changes at the nominal load, as the ledger says; None where it has no estimate.
     """
 
     name: str
@@ -79,7 +80,7 @@ class EffectAblation:
     reason: str
     with_effect: Figures
     without_effect: Figures
-    estimate: Worth | None
+    estimate: Influence | None
 
     @property
     def mean_change(self) -> FloatArray:
@@ -144,6 +145,14 @@ class Ablation:
     nominal: Figures
     effects: tuple[EffectAblation, ...]
     left_out: dict[str, str]
+
+    def measured(self, entry: EffectAblation) -> Influence:
+        """Return what leaving an effect out changes at the nominal load, as the two tables have it."""
+        whole = entry.with_effect
+        changes = (entry.mean_change, entry.peak_to_peak_change, whole.mean, whole.peak_to_peak)
+        return Influence(
+            float(self.torque[-1]), self.misalignment, *(float(values[-1]) for values in changes)
+        )
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units."""
@@ -221,6 +230,7 @@ def ablate_checked(
     """Switch the named effects of a checked request over; parameters of `ablate`."""
     checked = _on_one_mesh(checked, cache)
     nominal = _figures(checked, cache)
+    estimates = estimated_influences(checked, names)
     found, left_out = [], {}
     for count, entry in enumerate(ledger := [one for one in checked.ledger if one.name in names]):
         progress("ablation", count / len(ledger))
@@ -228,14 +238,13 @@ def ablate_checked(
             left_out[entry.name] = entry.verdict.reason
             continue
         try:
-            found.append(_switched(checked, entry, nominal, cache))
+            found.append(_switched(checked, entry, nominal, estimates[entry.name], cache))
         except (InputError, MeshError, SolveError) as error:
             left_out[entry.name] = str(error)
     progress("ablation", 1.0)
     request = checked.request
-    return Ablation(
-        request.torque, request.load, _judged_misalignment(checked), nominal, tuple(found), left_out
-    )
+    skew = request.whole_scene.largest_misalignment
+    return Ablation(request.torque, request.load, skew, nominal, tuple(found), left_out)
 
 
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
@@ -255,12 +264,13 @@ def _selected(only: Sequence[str] | None) -> tuple[str, ...]:
     return known if only is None else tuple(only)
 
 
-def _switched(checked: Checked, entry: LedgerEntry, nominal: Figures, cache: Path | None) -> EffectAblation:
+def _switched(
+    checked: Checked, entry: LedgerEntry, nominal: Figures, estimate: Influence | None, cache: Path | None
+) -> EffectAblation:
     """Compute the case with one effect switched over."""
     other = _figures(switched_over(checked, entry.name, "off" if entry.on else "on"), cache)
-    pair_of = (nominal, other) if entry.on else (other, nominal)
-    worth = estimate_worth(*checked.judging(entry.name), entry.name, EFFECTS)
-    return EffectAblation(entry.name, entry.on, entry.verdict.reason, *pair_of, worth)
+    whole, without = (nominal, other) if entry.on else (other, nominal)
+    return EffectAblation(entry.name, entry.on, entry.verdict.reason, whole, without, estimate)
 
 
 def _figures(checked: Checked, cache: Path | None) -> Figures:
@@ -268,7 +278,7 @@ def _figures(checked: Checked, cache: Path | None) -> Figures:
     request = checked.request
     table = compute_database(checked, request.to_json(), _silent, cache)
     table.require_complete()
-    skew = _judged_misalignment(checked)
+    skew = checked.request.whole_scene.largest_misalignment
     curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
     plan = planned(request.pair, request.load, request.accuracy, checked.model, request.alignments, cache)
     predicted = predict_run(request.pair, plan, checked.model, request.alignments, None)
@@ -279,11 +289,6 @@ def _figures(checked: Checked, cache: Path | None) -> Figures:
         float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
         predicted.cpu_seconds,
     )
-
-
-def _judged_misalignment(checked: Checked) -> float:
-    """Return the largest misalignment in size."""
-    return float(max(checked.request.misalignment, key=abs))
 
 
 def _silent(stage: str, fraction: float) -> None:

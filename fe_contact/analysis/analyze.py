@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from fe_contact.analysis.compute_database import compute_database
+from fe_contact.analysis.compute_database import compute_database, solved_findings
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
+from fe_contact.plausibility import unexpected, warn_of
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 from fe_contact.workers import InProcess, Workers
@@ -90,6 +91,12 @@ def analyze(
         `on_violation` is "fail".
     WorkersLost
         Nobody is left to do the tasks.
+
+    Warns
+    -----
+    PlausibilityWarning
+        Once for each thing that is far from practice, of the request before the run and of its results
+        after it; all are in `SteDatabase.warnings`.
     """
     checked = check_request(
         pair,
@@ -108,7 +115,10 @@ def analyze(
         on_violation=on_violation,
     )
     phrased = case or checked.request.to_json()
-    return compute_database(checked, phrased, progress or _silent, cache, workers=workers)
+    database = compute_database(checked, phrased, progress or _silent, cache, workers=workers)
+    request = checked.request
+    warn_of(unexpected(request.findings, solved_findings(request, database)))
+    return database
 
 
 def _silent(stage: str, fraction: float) -> None:

@@ -19,6 +19,7 @@ from fe_contact.effects.across_face import across_face
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.worth import Worth, estimate_worth
+from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.planning import Plan
 from fe_contact.types import FloatArray, Json
 
@@ -91,6 +92,7 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
         *_spared(run),
         *_plane(run),
         *_coast_flanks(run),
+        *_printed_data(run),
         _load_patches(run),
         _support_loads(run),
     )
@@ -103,7 +105,7 @@ def check_one_place(run: SolvedRun) -> tuple[Assumption, ...]:
 
 def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
     """Check what needs nothing but the solution."""
-    return (*_plane(run), *_coast_flanks(run), _load_patches(run))
+    return (*_plane(run), *_coast_flanks(run), *_printed_data(run), _load_patches(run))
 
 
 def allowed_change(run: SolvedRun) -> float:
@@ -181,6 +183,17 @@ def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
     least = 1e6 * min(room)
     reason = f"the least room is {least:.3g} um" if least > 0 else f"the teeth jam by {-least:.3g} um"
     yield Assumption("", "coast flanks stay apart", least > 0, float("nan"), reason)
+
+
+def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
+    """Nominal teeth that jam by no more than rounding of printed data have no backlash."""
+    pair = run.places.places[0].contact.pair
+    if pair.rounding_jam > LEAST_BACKLASH:
+        reason = (
+            f"jam of {1e6 * pair.rounding_jam:.2g} um is rounding of the printed data, which makes up to "
+            f"{1e6 * backlash_rounding(pair):.2g} um; computed as zero backlash"
+        )
+        yield Assumption("", "nominal teeth do not jam", True, float("nan"), reason)
 
 
 def _closing(place: Place) -> float:

@@ -14,11 +14,12 @@ from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
 from fe_contact.analysis.model_choice import Decided
 from fe_contact.analysis.repetition import settled, with_effects
-from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, solve_table
 from fe_contact.planning import expected_error
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
+from fe_contact.plausibility import Finding, merged, table_findings
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
@@ -26,7 +27,7 @@ from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 from fe_contact.workers import InProcess, Workers
 
-SOLVER_VERSION = "8"
+SOLVER_VERSION = "9"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 
@@ -61,8 +62,9 @@ def compute_database(
     """
     clock, before = StageClock(workers.spent), replace(workers.spent)
     full = checked.request.accuracy.receipt == "full"
+    planned = solve_table(checked, clock, report, cache, decided=decided, workers=workers)
     run, found, repeated = settled(
-        solve_table(checked, clock, report, cache, decided=decided, workers=workers),
+        planned,
         check_assumptions,
         lambda run, needed: solve_table(
             with_effects(run.checked, needed), clock, report, cache, run, workers=workers
@@ -81,13 +83,24 @@ def compute_database(
         spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
         record(cache, run.prediction.logged, spent)
     with clock.stage("effect ledger"):
-        ledger = effect_ledger(run.checked, cache, found, plan=run.plan, estimates=full)
+        ledger = effect_ledger(
+            run.checked, cache, found, plan=run.plan, planned_request=planned.checked, estimates=full
+        )
     metadata = _metadata(case, run, clock, judged.to_json() | contact, ledger)
     metadata.receipt["assumptions"] = [one.to_json() for one in found]
     metadata.receipt["repeated"] = repeated
+    request = run.checked.request
+    findings = merged(request.findings, solved_findings(request, run.table))
+    metadata.warnings.extend(finding.to_json() for finding in findings)
     if elsewhere.tasks or elsewhere.lost:
         metadata.receipt["elsewhere"] = asdict(elsewhere)
     return replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+
+
+def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:
+    """Return what is implausible about the results."""
+    module = request.pair.pinion.normal_module
+    return table_findings(table.static_transmission_error, table.max_pressure, module)
 
 
 def _predicted(run: SolvedTable) -> Json:

@@ -1,4 +1,4 @@
-"""The effect ledger of a run: what is on, why, what it is worth, what it costs, and what was checked."""
+"""The effect ledger of a run: what is on, why, its influence, what it costs, and what was checked."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from fe_contact.analysis.assumptions import Assumption
+from fe_contact.analysis.influences import estimated_influences
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked
-from fe_contact.effects import EFFECTS, LedgerEntry
+from fe_contact.effects import LedgerEntry
 from fe_contact.effects.flipping import flipped
-from fe_contact.effects.worth import Worth, estimate_worth, estimate_worths
+from fe_contact.effects.worth import Influence
 from fe_contact.errors import InputError
 from fe_contact.planning import Plan, make_plan, planned, predict_run
-from fe_contact.sampled import LOADS
 from fe_contact.types import Json
 
 NOT_CHECKED = "no; switching it over measures it (ablation)"
@@ -26,6 +26,7 @@ def effect_ledger(
     assumptions: Sequence[Assumption] = (),
     *,
     plan: Plan | None = None,
+    planned_request: Checked | None = None,
     estimates: bool = True,
 ) -> list[Json]:
     """Return one entry per effect as plain JSON.
@@ -39,32 +40,29 @@ def effect_ledger(
         What was checked after the run.
     plan : Plan, optional
         Of the run: costs are those of its mesh and slices; default: those that the accuracy asks for.
+    planned_request : Checked, optional
+        The request before the run was repeated with further effects, if it was: influences are those of the
+        plan, whatever the run found; default: `checked`.
     estimates : bool
-        Whether worth and cost are estimated, in milliseconds; without it they are None.
+        Whether influence and cost are estimated, in milliseconds; without it they are None.
     """
-    request = checked.request
-    worths: dict[str, Worth | None] = {}
-    costs: dict[str, float | None] = {}
-    if estimates:
-        costs = _costs(checked, cache, plan)
-        own = [effect.name for effect in EFFECTS if effect.name not in request.spared]
-        worths = estimate_worths(request.scene, checked.decided, own, EFFECTS, most_loads=LOADS)
-        for name in request.spared:
-            worths[name] = estimate_worth(*checked.judging(name), name, EFFECTS)
+    influences = estimated_influences(planned_request or checked) if estimates else {}
+    costs = _costs(checked, cache, plan) if estimates else {}
     return [
-        _entry(entry, worths.get(entry.name), costs.get(entry.name), assumptions) for entry in checked.ledger
+        _entry(entry, influences.get(entry.name), costs.get(entry.name), assumptions)
+        for entry in checked.ledger
     ]
 
 
 def _entry(
-    entry: LedgerEntry, worth: Worth | None, seconds: float | None, assumptions: Sequence[Assumption]
+    entry: LedgerEntry, influence: Influence | None, seconds: float | None, assumptions: Sequence[Assumption]
 ) -> Json:
     """One effect."""
     found = [one for one in assumptions if one.effect == entry.name]
     return entry.to_json() | {
-        "worth_estimate": None if worth is None else worth.to_json(),
+        "influence": None if influence is None else influence.to_json(),
         "cost_cpu_seconds": seconds,
-        "price": _price(entry, worth, seconds),
+        "price": _price(entry, influence, seconds),
         "checked": "; ".join(f"{one.what}: {one.reason}" for one in found) or NOT_CHECKED,
         "holds": all(one.holds is not False for one in found) if found else None,
     }
@@ -104,18 +102,13 @@ def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
     return predict_run(request.pair, plan, checked.model, request.alignments, cache).cpu_seconds
 
 
-def _price(entry: LedgerEntry, worth: Worth | None, seconds: float | None) -> str:
+def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | None) -> str:
     """Say what a choice against the scene costs; empty where it does not."""
     if entry.on == entry.verdict.on:
         return ""
     if entry.on:
         return f"about {seconds:.2g} CPU s" if seconds is not None else "time"
-    if worth is None:
-        return entry.verdict.worth
-    return (
-        f"{100 * worth.relative_mean:+.2g} % of mean, "
-        f"{100 * worth.relative_peak_to_peak:+.2g} % of peak-to-peak STE"
-    )
+    return "not estimated" if influence is None else influence.words
 
 
 def switched_over(checked: Checked, name: str, choice: str) -> Checked:

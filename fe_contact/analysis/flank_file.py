@@ -133,6 +133,7 @@ def _attributes(found: LoadDistribution, arrays: dict[str, Any]) -> Json:
         "mean_face_load_factor": found.mean_face_load_factor,
         "scene": json.dumps(found.scene.to_json()),
         "metadata": json.dumps(asdict(found.metadata)),
+        "warnings": json.dumps(found.metadata.warnings),
         **{name: getattr(found, name) for name in _SCALARS},
         "data_sha256": digest(arrays),
     }

@@ -17,6 +17,7 @@ from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.solved_place import checked_positions, settled_place
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
+from fe_contact.plausibility import Finding, flank_findings, merged, unexpected, warn_of
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata
 from fe_contact.ste.content_hash import content_hash
@@ -85,7 +86,9 @@ def flank_results(
     )
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
     checked, found = _solved(checked, position, progress or _silent, cache)
-    return replace(found, metadata=_metadata(checked, found, case))
+    found = replace(found, metadata=_metadata(checked, found, case))
+    warn_of(unexpected(checked.request.findings, _findings(found)))
+    return found
 
 
 def _solved(
@@ -108,6 +111,11 @@ def _solved(
     )
 
 
+def _findings(found: LoadDistribution) -> tuple[Finding, ...]:
+    """Return what is implausible about the pressures."""
+    return flank_findings(float(np.max(found.pressure, initial=0.0)))
+
+
 def _metadata(checked: Checked, found: LoadDistribution, case: Json | None) -> Metadata:
     """Everything about the making; the hash is of all that decides the result."""
     scene = found.scene
@@ -124,6 +132,7 @@ def _metadata(checked: Checked, found: LoadDistribution, case: Json | None) -> M
         effect_ledger=[entry.to_json() for entry in checked.ledger],
         content_hash=content_hash({"flank_results": asked}, SOLVER_VERSION, SCHEMA_VERSION),
         software_versions=software_versions(),
+        warnings=[finding.to_json() for finding in merged(checked.request.findings, _findings(found))],
     )
 
 

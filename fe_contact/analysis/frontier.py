@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.analysis.ladder import RUNGS, Rung
-from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
+from fe_contact.analysis.ladder.full_contact import ORIGIN, FullContactLevel, known_full_contact
 from fe_contact.analysis.measured_full_contact import (
     NAME,
     MeasuredFullContact,
@@ -50,6 +50,8 @@ class Frontier:
         The rung that the case's accuracy asks for.
     full_contact : MeasuredFullContact, optional
         Full finite-element contact of the same case, if it was asked for and could be run.
+    known_full_contact : tuple of FullContactLevel
+        What full finite-element contact is known to cost on this very pair; empty on any other.
     """
 
     results: tuple[RungResult, ...]
@@ -58,6 +60,7 @@ class Frontier:
     knee: str | None
     chosen: str | None
     full_contact: MeasuredFullContact | None = None
+    known_full_contact: tuple[FullContactLevel, ...] = ()
 
     @property
     def reference(self) -> RungResult:
@@ -79,7 +82,7 @@ class Frontier:
                     "cpu_seconds": level.seconds(self.solves),
                     "mean_error": level.relative_error,
                 }
-                for level in FULL_CONTACT
+                for level in self.known_full_contact
             ],
             "full_finite_element_contact_origin": ORIGIN,
         } | ({} if self.full_contact is None else {NAME: self.full_contact.to_json(self.solves)})
@@ -187,7 +190,10 @@ def _climbed(
         raise SolveError(f"an error needs two rungs to compare; left out: {left_out}")
     results = rung_results([rung for rung in rungs if rung.name in tables], tables)
     solves = tables[results[-1].name].status.size
-    found = Frontier(results, left_out, solves, _knee(results), chosen_rung(checked))
+    known = known_full_contact(checked.request.pair)
+    found = Frontier(
+        results, left_out, solves, _knee(results), chosen_rung(checked), known_full_contact=known
+    )
     return found if full_contact is None else _beside(found, checked, full_contact, tables, progress)
 
 

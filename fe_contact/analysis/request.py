@@ -11,6 +11,7 @@ from fe_contact.effects.sparing import WITHOUT
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import Accuracy, CycleCost
+from fe_contact.plausibility import Finding, pair_findings
 from fe_contact.types import FloatArray, Json
 
 ON_VIOLATION = ("repeat", "fail", "report")
@@ -37,6 +38,8 @@ class Request:
     spared, turned_on : mapping of str to str
         Automatic effects that are left off because the asked accuracy does not need them, or on because a run
         without them showed that it does, and why.
+    loads_as : str
+        How the caller gave the load: "torques" or "normal_forces".
     """
 
     pair: ParallelAxes
@@ -49,6 +52,7 @@ class Request:
     on_violation: str = "repeat"
     spared: Mapping[str, str] = field(default_factory=dict)
     turned_on: Mapping[str, str] = field(default_factory=dict)
+    loads_as: str = "torques"
 
     def __post_init__(self) -> None:
         if self.on_violation not in ON_VIOLATION:
@@ -58,6 +62,12 @@ class Request:
     def torque(self) -> FloatArray:
         """Torques on the driving gear in N m."""
         return self.pair.torque(self.load)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What is implausible about it."""
+        axes = self.misalignment, self.center_distance_change
+        return pair_findings(self.pair, self.load, *axes, loads_as=self.loads_as)
 
     @property
     def alignments(self) -> tuple[int, int]:

@@ -9,7 +9,7 @@ from fe_contact.analysis.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.spared_effects import spared_effects
 from fe_contact.analysis.table_axes import axis, load_levels
-from fe_contact.checks import integer
+from fe_contact.checks import integer, rounded_up
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, LedgerEntry, compose
@@ -17,6 +17,7 @@ from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh import SectorRecipe
 from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
+from fe_contact.plausibility import warn_of
 from fe_contact.types import FloatArray
 
 LARGEST_PERIOD = 1_000_000
@@ -46,6 +47,11 @@ def check_request(
     Parameters are its; `whole_table` = False leaves out the limit on the size of a table, `spare` = False the
     decision about effects that a tolerance does not need, which takes some milliseconds of solving.
 
+    Warns
+    -----
+    PlausibilityWarning
+        Once for each thing about the request that is far from practice.
+
     Raises
     ------
     InputError
@@ -60,8 +66,11 @@ def check_request(
         dict(effects or {}),
         None if pitches is None else integer("pitches", pitches, 1, LARGEST_PERIOD),
         on_violation,
+        loads_as="normal_forces" if torques is None else "torques",
     )
-    return check_asked(request, whole_table=whole_table, spare=spare)
+    checked = check_asked(request, whole_table=whole_table, spare=spare)
+    warn_of(request.findings, stacklevel=4)
+    return checked
 
 
 def check_one_load(
@@ -169,8 +178,8 @@ def _refuse_thin_discs(pair: ParallelAxes, level: str | None) -> None:
         if gear.face_width < least:
             bends = "bends as a plate under the axial force of its helix" if gear.helix_angle else "gives way"
             bound = (
-                f"at least {least:.6g} m: a thinner disc {bends}, and rounding of its stiffness changes that "
-                f"by more than {LARGEST_ROUNDING:g}"
+                f"at least {rounded_up(least)} m: a thinner disc {bends}, and rounding of its stiffness "
+                f"changes that by more than {LARGEST_ROUNDING:g}"
             )
             advice = "Widen the face or the bore" + (", or take a spur gear." if gear.helix_angle else ".")
             raise InputError(f"{name}.face_width", gear.face_width, bound, advice)

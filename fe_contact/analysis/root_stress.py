@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +20,7 @@ from fe_contact.contact.patch import Patches
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.geometry.root_tangent import critical_section
 from fe_contact.planning import FaceRootMeshes, PlaneRootMeshes, root_meshes
+from fe_contact.plausibility import Finding, root_findings, unexpected, warn_of
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import BoolArray, FloatArray, IntArray, Json
 
@@ -39,6 +40,8 @@ class RootStress:
         m.
     receipt : dict
         CPU seconds by stage, memory, the plan, assumptions and what was repeated: plain JSON.
+    warnings : list of dict
+        What is implausible about the case or the stresses.
     """
 
     pinion: RootStressHistory
@@ -48,6 +51,7 @@ class RootStress:
     misalignment: float
     center_distance_change: float
     receipt: Json
+    warnings: list[Json] = field(default_factory=list)
 
 
 def root_stress(
@@ -113,6 +117,13 @@ def root_stress(
         meshes = root_meshes(found.contact.plan.discretisation)
         pinion, wheel = _histories(found, meshes, cache)
     report("root stress", 1.0)
+    requested = checked.request.findings
+    solved = tuple(
+        finding
+        for name, history in (("pinion", pinion), ("wheel", wheel))
+        for finding in root_findings(name, history.peak("tension").stress.value)
+    )
+    warn_of(unexpected(requested, solved))
     return RootStress(
         pinion=pinion,
         wheel=wheel,
@@ -121,7 +132,13 @@ def root_stress(
         misalignment=misalignment,
         center_distance_change=center_distance_change,
         receipt=clock.to_json() | {"plan": found.plan.to_json()} | receipt,
+        warnings=[finding.to_json() for finding in (*_not_root(requested), *solved)],
     )
+
+
+def _not_root(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return findings without the estimated root stress, which is solved here."""
+    return tuple(finding for finding in findings if finding.check != "root_stress")
 
 
 def _silent(_stage: str, _fraction: float) -> None:

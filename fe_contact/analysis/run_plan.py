@@ -87,6 +87,7 @@ class RunPlan:
             "levels": [entry.to_json() for entry in self.levels],
             "conflict": self.conflict,
             "plan": self.plan.to_json(),
+            "warnings": [finding.to_json() for finding in self.checked.request.findings],
             "effect_ledger": effect_ledger(self.checked, self.cache, plan=self.plan),
         }
 

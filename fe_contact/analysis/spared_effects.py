@@ -49,5 +49,5 @@ def spared_effects(
 
 def _reason(worth: Worth, tolerance: float) -> str:
     """Say why an effect is left off."""
-    parts = f"{100 * worth.relative_mean:+.2g} % of the mean, {100 * worth.relative_peak_to_peak:+.2g} %"
-    return f"left off: worth {parts} of peak-to-peak, and {100 * tolerance:.3g} % are asked for"
+    change = f"at most {100 * worth.largest:.2g} % of mean or peak-to-peak at any load"
+    return f"left off: {change}, and {100 * tolerance:.3g} % are asked for"

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
-from fe_contact.geometry import CLAMPED, seat_compliance
+from fe_contact.geometry import CLAMPED
 
 
 @dataclass(frozen=True)
@@ -26,13 +26,8 @@ class BoreSeatElasticity:
         gears = {"pinion": scene.pair.pinion, "wheel": scene.pair.wheel}
         seated = [name for name, gear in gears.items() if gear.seat != CLAMPED]
         if not seated:
-            return Verdict(False, "both bores are fixed all over", "nothing")
-        force = float(scene.torque.max()) / scene.pair.pinion.base_radius
-        missing = 1e6 * force * sum(seat_compliance(gear) for gear in gears.values())
-        worth = "no cheap estimate: a rigid seat over part of the face"
-        if missing:
-            worth = f"mean STE at least {-missing:.2g} um at the largest load (rotation on the seats)"
-        return Verdict(True, f"{' and '.join(seated)} on a seat of the bore", worth)
+            return Verdict(False, "both bores are fixed all over", neutral=True)
+        return Verdict(True, f"{' and '.join(seated)} on a seat of the bore")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for the seats."""

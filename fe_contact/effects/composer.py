@@ -25,7 +25,7 @@ class LedgerEntry:
     choice : str
         "on", "off" or "auto", as asked.
     verdict : Verdict
-        What the scene calls for; its reason and worth stand even when the caller decided otherwise.
+        What the scene calls for; its reason stands even when the caller decided otherwise.
     cost : str
     override : str
         Why it is not as the verdict has it, though the choice is "auto"; empty if it is.
@@ -59,7 +59,6 @@ class LedgerEntry:
             "cost": self.cost,
             "called_for": self.verdict.on,
             "reason": self.verdict.reason,
-            "worth": self.verdict.worth,
             "decision": self.decision,
         }
 

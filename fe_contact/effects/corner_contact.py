@@ -38,8 +38,7 @@ class CornerContact:
             if clear
             else f"deflections up to {1e6 * deflection:.1f} um close the gap at the tip edges"
         )
-        worth = "nothing while the edges stay clear" if clear else "mean and peak-to-peak STE about 2 %"
-        return Verdict(not clear, reason, worth)
+        return Verdict(not clear, reason)
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Let tip edges touch."""

@@ -6,7 +6,7 @@ order. Neutral settings (nothing to contribute) leave the results bit-identical.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, Protocol
 
 import numpy as np
@@ -40,6 +40,16 @@ class ContactScene:
     center_distance_change: FloatArray = field(default_factory=lambda: np.zeros(1))
     pitches: int | None = None
 
+    @property
+    def largest_misalignment(self) -> float:
+        """The misalignment that is largest in size, m; of two of one size the positive one."""
+        return float(max(self.misalignment, key=lambda growth: (abs(growth), growth)))
+
+    @property
+    def at_nominal_load(self) -> ContactScene:
+        """The scene at the load at which effects are sized: the highest, up to which a table is made."""
+        return replace(self, torque=self.torque[-1:])
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -50,18 +60,13 @@ class Verdict:
     on : bool
     reason : str
         Why, in words an engineer would use.
-    worth : str
-        What leaving it out would change, as a value with its unit, or "nothing".
+    neutral : bool
+        Whether the scene holds nothing that the effect could add: on or off is the same.
     """
 
     on: bool
     reason: str
-    worth: str
-
-    @property
-    def neutral(self) -> bool:
-        """Whether the scene holds nothing that the effect could add: on or off is the same."""
-        return not self.on and self.worth == "nothing"
+    neutral: bool = False
 
 
 class Effect(Protocol):
@@ -79,7 +84,7 @@ class Effect(Protocol):
     valid_for: ClassVar[str]
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """Judge whether `scene` needs this effect, why, and what it is worth."""
+        """Judge whether `scene` needs this effect, and why."""
         ...
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:

@@ -25,9 +25,8 @@ class FaceLoadDistribution:
         """On where anything acts across the face."""
         reasons = across_face(scene)
         if reasons:
-            return Verdict(True, "; ".join(reasons), "the plane model cannot hold it")
-        worth = "nothing beside the finite width, for which the plane is corrected"
-        return Verdict(False, "a spur pair with nothing acting across the face", worth)
+            return Verdict(True, "; ".join(reasons))
+        return Verdict(False, "a spur pair with nothing acting across the face")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for three dimensions."""

@@ -8,7 +8,6 @@ from typing import ClassVar
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.across_face import across_face
 from fe_contact.effects.effect import ContactScene, Verdict
-from fe_contact.geometry.finite_width import finite_width_excess
 
 
 @dataclass(frozen=True)
@@ -26,10 +25,9 @@ class FiniteWidth:
         """On where the plane can stand in for three dimensions."""
         reasons = across_face(scene)
         if reasons:
-            return Verdict(False, "three dimensions hold it: " + "; ".join(reasons), "nothing")
+            return Verdict(False, "three dimensions hold it: " + "; ".join(reasons), neutral=True)
         modules = scene.pair.face_width / scene.pair.pinion.normal_module
-        worth = f"mean STE about {100 * finite_width_excess(scene.pair):+.2g} %"
-        return Verdict(True, f"face of {modules:.3g} modules with free ends, evenly loaded", worth)
+        return Verdict(True, f"face of {modules:.3g} modules with free ends, evenly loaded")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for the correction."""

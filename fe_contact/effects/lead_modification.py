@@ -26,8 +26,8 @@ class LeadModification:
         gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
         modified = [name for name, gear in gears if gear.modification.varies_along_face]
         if not modified:
-            return Verdict(False, "both leads are plain", "nothing")
-        return Verdict(True, f"modified lead on {' and '.join(modified)}", "up to the modification itself")
+            return Verdict(False, "both leads are plain", neutral=True)
+        return Verdict(True, f"modified lead on {' and '.join(modified)}")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of both flanks."""

@@ -42,9 +42,8 @@ class Misalignment:
         """On where any value of the axis is not zero."""
         largest = float(np.abs(scene.misalignment).max())
         if largest == 0.0:
-            return Verdict(False, "the gears are aligned", "nothing")
-        worth = "peak-to-peak up to several times the aligned one for helical pairs"
-        return Verdict(True, f"misalignment up to {1e6 * largest:.4g} um over the face", worth)
+            return Verdict(False, "the gears are aligned", neutral=True)
+        return Verdict(True, f"misalignment up to {1e6 * largest:.4g} um over the face")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of the scene's one value."""

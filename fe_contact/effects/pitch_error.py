@@ -52,13 +52,12 @@ class PitchError:
         gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
         erring = [(name, gear.pitch_deviation) for name, gear in gears if not gear.pitch_deviation.neutral]
         if not erring:
-            return Verdict(False, "all teeth are in their places", "nothing")
+            return Verdict(False, "all teeth are in their places", neutral=True)
         figures = ", ".join(
             f"{name} f_p {1e6 * error.single:.3g} um, F_p {1e6 * error.total:.3g} um"
             for name, error in erring
         )
-        worth = f"STE up to the deviations themselves, over {_period(scene)} base pitches"
-        return Verdict(True, figures, worth)
+        return Verdict(True, f"{figures}, over {_period(scene)} base pitches")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of both gears' teeth."""

@@ -26,8 +26,8 @@ class ProfileModification:
         gears = (("pinion", scene.pair.pinion), ("wheel", scene.pair.wheel))
         modified = [name for name, gear in gears if not gear.modification.along_profile.neutral]
         if not modified:
-            return Verdict(False, "both profiles are plain involutes", "nothing")
-        return Verdict(True, f"modified profile on {' and '.join(modified)}", "up to the modification itself")
+            return Verdict(False, "both profiles are plain involutes", neutral=True)
+        return Verdict(True, f"modified profile on {' and '.join(modified)}")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the gap of both flanks."""

@@ -28,10 +28,9 @@ class ShaftDeflection:
         """On where either gear has a shaft."""
         carried = [name for name, shaft in zip(("pinion", "wheel"), scene.pair.shafts, strict=True) if shaft]
         if not carried:
-            return Verdict(False, "the gears sit on rigid shafts", "nothing")
-        shift, skew = _deflection(scene)
-        worth = f"{1e6 * shift:.3g} um of STE and {1e6 * skew:.3g} um of misalignment at the largest load"
-        return Verdict(True, f"{' and '.join(carried)} on a shaft that bends", worth)
+            return Verdict(False, "the gears sit on rigid shafts", neutral=True)
+        skew = f"{1e6 * _skew(scene):.3g} um of misalignment at the largest load"
+        return Verdict(True, f"{' and '.join(carried)} on a shaft that bends: {skew}")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Add the compliance of both seats."""
@@ -46,12 +45,12 @@ def _term(scene: ContactScene) -> ShaftCompliance:
     return ShaftCompliance(*seats)
 
 
-def _deflection(scene: ContactScene) -> tuple[float, float]:
-    """STE in m and growth of the gap over the face in m, for an even load at the pitch point."""
+def _skew(scene: ContactScene) -> float:
+    """Growth of the gap over the face in m, for an even load at the pitch point."""
     pair = scene.pair
     half = 0.5 * pair.face_width
     face = pair.common_face_center + np.array([-half, 0.0, half])
     roll_1, roll_2 = (np.full((1, 3), float(roll)) for roll in pair.roll_lengths(0.0))
     force = float(pair.normal_force(scene.torque.max())) / math.cos(pair.base_helix_angle)
     moved = force * _term(scene)(pair, roll_1, roll_2, face)[0, :, 1]
-    return float(moved[1]), float(moved[2] - moved[0])
+    return float(moved[2] - moved[0])

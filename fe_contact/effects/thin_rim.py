@@ -7,7 +7,6 @@ from typing import ClassVar
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
-from fe_contact.geometry import blank_factor, web_compliance
 
 
 @dataclass(frozen=True)
@@ -26,16 +25,8 @@ class ThinRim:
         webs = {"pinion": scene.pair.pinion.web, "wheel": scene.pair.wheel.web}
         with_web = [name for name, web in webs.items() if web is not None]
         if not with_web:
-            return Verdict(False, "both bodies are solid", "nothing")
-        gears = (scene.pair.pinion, scene.pair.wheel)
-        force = float(scene.torque.max()) / scene.pair.pinion.base_radius
-        missing = 1e6 * force * sum(web_compliance(gear) for gear in gears)
-        change = 50.0 * sum(blank_factor(gear) - 1.0 for gear in gears)
-        worth = (
-            f"mean STE at least {-missing:.2g} um at the largest load (the web alone), "
-            f"peak-to-peak about {change:.0f} % (gear blank factor)"
-        )
-        return Verdict(True, f"{' and '.join(with_web)} with rim and web", worth)
+            return Verdict(False, "both bodies are solid", neutral=True)
+        return Verdict(True, f"{' and '.join(with_web)} with rim and web")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Ask for the bodies as drawn."""

@@ -23,9 +23,7 @@ class ToothCoupling:
     def called_for(self, scene: ContactScene) -> Verdict:
         """On wherever two pairs can share load."""
         ratio = scene.pair.transverse_contact_ratio
-        shared = min(1.0, ratio - 1.0)
-        worth = f"mean STE about {-10.0 * shared:.0f} %, peak-to-peak about {35.0 * shared:+.0f} %"
-        return Verdict(True, f"contact ratio {ratio:.3f}: neighbouring pairs share the load", worth)
+        return Verdict(True, f"contact ratio {ratio:.3f}: neighbouring pairs share the load")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Couple the teeth."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fe_contact.checks import positive, within
+from fe_contact.checks import positive, rounded_down, within
 from fe_contact.errors import InfeasibleGeometry
 
 
@@ -49,7 +49,7 @@ class BasicRack:
         """Refuse a rounding larger than the full fillet."""
         limit = self.full_fillet_coefficient
         if self.root_radius_coefficient > limit + 1e-12:
-            bound = f"at most {limit:.6g}, the full fillet"
+            bound = f"at most {rounded_down(limit)}, the full fillet"
             advice = "Lower the root radius, the dedendum or the pressure angle."
             raise InfeasibleGeometry(
                 "root radius", "root_radius_coefficient", self.root_radius_coefficient, bound, advice

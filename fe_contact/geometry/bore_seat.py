@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import finite, positive, within
+from fe_contact.checks import LIMIT_SLACK, finite, positive, rounded_down, rounded_up, within
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.types import Json
 
@@ -139,16 +139,17 @@ def refuse_misfit_seat(gear: Gear) -> None:
     """Raise `InfeasibleGeometry` if the seat of a gear leaves its face."""
     seat, face = gear.seat, gear.face_width
     width = face if seat.width is None else seat.width
-    if not NARROWEST * face <= width <= (1.0 + 1e-9) * face:
-        bound = f"from {NARROWEST * face:.6g} to the face width {face:.6g} m"
+    if not NARROWEST * face * (1.0 - LIMIT_SLACK) <= width <= (1.0 + 1e-9) * face:
+        bound = f"from {rounded_up(NARROWEST * face)} m to the face width {rounded_down(face)} m"
         raise InfeasibleGeometry("seat", "seat.width", seat.width, bound, "Leave it out for the face width.")
     room = 0.5 * (face - width)
     if abs(seat.offset) > room + 1e-9 * face:
-        bound = f"from {-room:.6g} to {room:.6g} m, so that the seat stays within the face"
+        low, high = rounded_up(-room), rounded_down(room)
+        bound = f"from {low} m to {high} m, so that the seat stays within the face"
         raise InfeasibleGeometry("seat", "seat.offset", seat.offset, bound, "Lower the offset or the width.")
     around = 2.0 * math.pi * gear.held_radius
     if seat.key is not None and seat.key.width > (1.0 + 1e-9) * around:
-        bound = f"at most the circumference of the bore {around:.6g} m"
+        bound = f"at most the circumference of the bore {rounded_down(around)} m"
         raise InfeasibleGeometry("key", "seat.key.width", seat.key.width, bound, "Lower the width.")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import finite, positive
+from fe_contact.checks import LIMIT_SLACK, finite, positive, rounded_down, rounded_up
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.types import Json
 
@@ -106,16 +106,20 @@ def _refuse_rim(gear: Gear, blank: GearBlank) -> None:
     """Refuse a hub inside the bore, a rim that leaves no web, and one that carries no teeth."""
     hub = gear.bore_diameter if blank.hub_diameter is None else blank.hub_diameter
     if hub < gear.bore_diameter:
-        bound = f"at least the bore diameter {gear.bore_diameter:.6g} m"
+        bound = f"at least the bore diameter {rounded_up(gear.bore_diameter)} m"
         raise InfeasibleGeometry("hub", "blank.hub_diameter", hub, bound, "Raise it or leave it out.")
-    deepest = gear.root_radius - 0.5 * hub
+    least, deepest = THINNEST_RIM * gear.normal_module, gear.root_radius - 0.5 * hub
+    if deepest <= least:
+        field = "bore_diameter" if blank.hub_diameter is None else "blank.hub_diameter"
+        widest = rounded_down(2.0 * (gear.root_radius - least))
+        bound = f"below {widest} m, which leaves a rim of {THINNEST_RIM:g} normal modules"
+        raise InfeasibleGeometry("rim", field, hub, bound, "Leave the blank out for a solid gear.")
     if not blank.rim_thickness < deepest:
-        bound = f"below {deepest:.6g} m, what lies between root circle and hub (or bore)"
+        bound = f"below {rounded_down(deepest)} m, what lies between root circle and hub (or bore)"
         advice = "Lower the rim thickness or the hub diameter; leave the blank out for a solid gear."
         raise InfeasibleGeometry("rim", "blank.rim_thickness", blank.rim_thickness, bound, advice)
-    least = THINNEST_RIM * gear.normal_module
-    if blank.rim_thickness < least:
-        bound = f"at least {least:.6g} m, {THINNEST_RIM:g} normal modules"
+    if blank.rim_thickness < least * (1.0 - LIMIT_SLACK):
+        bound = f"at least {rounded_up(least)} m, {THINNEST_RIM:g} normal modules"
         raise InfeasibleGeometry(
             "rim", "blank.rim_thickness", blank.rim_thickness, bound, "Raise the rim thickness."
         )
@@ -124,12 +128,12 @@ def _refuse_rim(gear: Gear, blank: GearBlank) -> None:
 def _refuse_web(gear: Gear, blank: GearBlank) -> None:
     """Refuse a web that is a foil, or that leaves the face."""
     least = THINNEST_WEB * gear.face_width
-    if not least <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
-        bound = f"from {least:.6g} to the face width {gear.face_width:.6g} m"
+    if not least * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
+        bound = f"from {rounded_up(least)} m to the face width {rounded_down(gear.face_width)} m"
         advice = "A web as thick as the face is wide is a solid gear."
         raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, advice)
     room = 0.5 * (gear.face_width - blank.web_thickness)
     if abs(blank.web_offset) > room + 1e-9 * gear.face_width:
-        bound = f"from {-room:.6g} to {room:.6g} m, so that the web stays within the face"
+        bound = f"from {rounded_up(-room)} m to {rounded_down(room)} m, so that the web stays within the face"
         advice = "Lower the offset or the web thickness."
         raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, advice)

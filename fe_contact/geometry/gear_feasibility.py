@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fe_contact.checks import rounded_down, rounded_up
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.bore_seat import refuse_misfit_seat
 from fe_contact.geometry.gear_blank import refuse_misfit
@@ -20,7 +21,6 @@ def refuse_infeasible_gear(gear: Gear) -> None:
     _refuse_bore(gear)
     refuse_misfit(gear)
     refuse_misfit_seat(gear)
-    _refuse_tip_diameter(gear)
     _refuse_undercut(gear)
     _refuse_pointed_tooth(gear)
 
@@ -28,26 +28,17 @@ def refuse_infeasible_gear(gear: Gear) -> None:
 def _refuse_bore(gear: Gear) -> None:
     """Refuse a bore that leaves no rim under the teeth."""
     if gear.bore_diameter >= 2.0 * gear.root_radius:
-        bound = f"below the root diameter {2.0 * gear.root_radius:.6g} m"
+        bound = f"below the root diameter {rounded_down(2.0 * gear.root_radius)} m"
         advice = "Lower the bore or add teeth."
         raise InfeasibleGeometry("bore", "bore_diameter", gear.bore_diameter, bound, advice)
 
 
-def _refuse_tip_diameter(gear: Gear) -> None:
-    """Refuse a tip circle that leaves no tooth, or no involute, above the root."""
-    lowest = max(gear.root_radius, gear.base_radius)
-    if gear.tip_radius <= lowest:
-        bound = f"above {2.0 * lowest:.6g} m, the larger of root and base diameter"
-        advice = "Raise the tip diameter, the addendum or the profile shift."
-        raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
-
-
 def _refuse_undercut(gear: Gear) -> None:
-    """Refuse a fillet that leaves no involute below the tip, or no material in the tooth's root."""
-    advice = "Raise the profile shift or the number of teeth, or lower the dedendum."
+    """Refuse a tip circle or a fillet that leaves no involute, or no material in the tooth's root."""
+    advice = "Raise the tip diameter, the profile shift or the number of teeth, or lower the dedendum."
     if gear.form_radius >= gear.tip_radius:
         name = "undercut" if gear.form_point.undercut else "tip diameter"
-        bound = f"above the form diameter {2.0 * gear.form_radius:.6g} m, where the fillet ends"
+        bound = f"above the form diameter {rounded_up(2.0 * gear.form_radius)} m, where the fillet ends"
         raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
     angles = np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, 65)
     if gear.form_point.undercut and np.min(gear.trochoid.point(angles)[:, 0]) <= 0.0:

@@ -5,16 +5,11 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import positive
+from fe_contact.checks import LIMIT_SLACK, positive, rounded_down, rounded_up
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry.backlash import (
-    base_radius_sum,
-    shift_sum,
-    tight_center_distance,
-    tight_shift_sum,
-)
+from fe_contact.geometry.backlash import base_radius_sum, tight_center_distance
 from fe_contact.geometry.internal_interference import tip_interference, trochoidal_interference
-from fe_contact.geometry.pair_feasibility import BACKLASH_SLACK, FILLET_SLACK, refuse_face_overlap
+from fe_contact.geometry.pair_feasibility import FILLET_SLACK, refuse_face_overlap, refuse_jamming
 
 if TYPE_CHECKING:
     from fe_contact.geometry.gear import Gear
@@ -37,7 +32,7 @@ def refuse_infeasible_internal_pair(pair: InternalGearPair) -> None:
     positive("center_distance", pair.center_distance, "In m, positive: 80 mm is 0.08.")
     refuse_face_overlap(pair)
     _refuse_short_distance(pair)
-    _refuse_jamming(pair)
+    refuse_jamming(pair)
     _refuse_tip_clearance(pair)
     _refuse_contact_ratio(pair)
     _refuse_interference(pair)
@@ -50,24 +45,9 @@ def _refuse_short_distance(pair: InternalGearPair) -> None:
     """Refuse base circles without a common tangent."""
     shortest = abs(base_radius_sum(pair.pinion, pair.wheel))
     if pair.center_distance <= shortest:
-        bound = f"above {shortest:.9g} m, the difference of the base radii"
-        advice = f"Without backlash it is {tight_center_distance(pair.pinion, pair.wheel):.9g} m."
+        bound = f"above {rounded_up(shortest)} m, the difference of the base radii"
+        advice = f"Without backlash it is {rounded_down(tight_center_distance(pair.pinion, pair.wheel))} m."
         raise InfeasibleGeometry("center distance", "center_distance", pair.center_distance, bound, advice)
-
-
-def _refuse_jamming(pair: InternalGearPair) -> None:
-    """Refuse negative backlash."""
-    pinion, ring = pair.pinion, pair.wheel
-    if pair.transverse_base_backlash >= -BACKLASH_SLACK * pinion.normal_module:
-        return
-    distance = tight_center_distance(pinion, ring)
-    tight_sum = tight_shift_sum(pinion, ring, pair.working_pressure_angle)
-    advice = (
-        f"Without backlash: center_distance = {distance:.9g} m, "
-        f"or x_1 + x_2 = {tight_sum:.7g} instead of {shift_sum(pinion, ring):.7g}."
-    )
-    bound = f"at most {distance:.9g} m, where the teeth jam"
-    raise InfeasibleGeometry("profile shift sum", "center_distance", pair.center_distance, bound, advice)
 
 
 def _refuse_contact_ratio(pair: InternalGearPair) -> None:
@@ -83,13 +63,13 @@ def _refuse_tip_clearance(pair: InternalGearPair) -> None:
     at_pinion_tip, at_ring_tip = pair.tip_clearances
     if at_pinion_tip <= 0.0:
         largest = 2.0 * (pair.pinion.tip_radius + at_pinion_tip)
-        bound = f"below {largest:.9g} m, where the tip reaches the ring's root circle"
+        bound = f"below {rounded_down(largest)} m, where the tip reaches the ring's root circle"
         advice = "Lower the pinion's tip diameter, or raise the ring's dedendum."
         value = 2.0 * pair.pinion.tip_radius
         raise InfeasibleGeometry("tip clearance", "pinion.tip_diameter", value, bound, advice)
     if at_ring_tip <= 0.0:
         smallest = 2.0 * (pair.wheel.tip_radius - at_ring_tip)
-        bound = f"above {smallest:.9g} m, where the tip reaches the pinion's root circle"
+        bound = f"above {rounded_up(smallest)} m, where the tip reaches the pinion's root circle"
         advice = "Raise the ring's tip diameter, or the pinion's dedendum."
         value = 2.0 * pair.wheel.tip_radius
         raise InfeasibleGeometry("tip clearance", "wheel.tip_diameter", value, bound, advice)
@@ -98,16 +78,16 @@ def _refuse_tip_clearance(pair: InternalGearPair) -> None:
 def _refuse_interference(pair: InternalGearPair) -> None:
     """Refuse a tip that meets the mating flank on the line of action where it is no involute."""
     pinion, ring, path = pair.pinion, pair.wheel, pair.path_of_contact
-    if path.start < pinion.form_roll_length * (1.0 - 1e-12):
+    if path.start < pinion.form_roll_length * (1.0 - LIMIT_SLACK):
         smallest = 2.0 * math.hypot(ring.base_radius, pair.common_tangent + pinion.form_roll_length)
-        bound = f"at least {smallest:.9g} m, where the tip meets the pinion's form circle"
+        bound = f"at least {rounded_up(smallest)} m, where the tip meets the pinion's form circle"
         advice = "Raise the ring's tip diameter, or the pinion's profile shift or number of teeth."
         value = 2.0 * ring.tip_radius
         raise InfeasibleGeometry("interference", "wheel.tip_diameter", value, bound, advice)
-    if pair.common_tangent + path.end > ring.form_roll_length * (1.0 + 1e-12):
+    if pair.common_tangent + path.end > ring.form_roll_length * (1.0 + LIMIT_SLACK):
         reach = ring.form_roll_length - pair.common_tangent
         largest = 2.0 * math.hypot(pinion.base_radius, max(reach, 0.0))
-        bound = f"at most {largest:.9g} m, where the tip meets the ring's form circle"
+        bound = f"at most {rounded_down(largest)} m, where the tip meets the ring's form circle"
         advice = "Lower the pinion's tip diameter, or raise the ring's dedendum or lower its root radius."
         value = 2.0 * pinion.tip_radius
         raise InfeasibleGeometry("interference", "pinion.tip_diameter", value, bound, advice)

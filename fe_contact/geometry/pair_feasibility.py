@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NoReturn
 
-from fe_contact.checks import finite, positive
+from fe_contact.checks import LIMIT_SLACK, finite, positive, rounded_down, rounded_up
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry.backlash import shift_sum, tight_center_distance, tight_shift_sum
+from fe_contact.geometry.backlash import (
+    base_radius_sum,
+    shift_sum,
+    tight_center_distance,
+    tight_shift_sum,
+)
 from fe_contact.geometry.fillet_interference import fillet_penetration
+from fe_contact.geometry.printed_data import backlash_rounding
 
 if TYPE_CHECKING:
+    from fe_contact.geometry.gear import Gear
     from fe_contact.geometry.gear_pair import GearPair
     from fe_contact.geometry.parallel_axes import ParallelAxes
     from fe_contact.geometry.toothing import Toothing
 
 FILLET_SLACK = 1e-6  # of the normal module: the resolution of the sampled tip path
-BACKLASH_SLACK = 1e-6  # of the normal module: what rounding a centre distance to seven digits may cost
+_HALVINGS = 40  # of the range in which the largest clear tip radius is searched
 _EXTERNAL = "External gears mesh with equal module and pressure angle and opposite helix angle."
 _INTERNAL = "A ring gear and its pinion mesh with equal module, pressure angle and helix angle."
 
@@ -45,7 +53,7 @@ def refuse_infeasible_pair(pair: GearPair) -> None:
     """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
     positive("center_distance", pair.center_distance, "In m: 80 mm is 0.08.")
     refuse_face_overlap(pair)
-    _refuse_jamming(pair)
+    refuse_jamming(pair)
     _refuse_contact_ratio(pair)
     _refuse_tip_clearance(pair)
     _refuse_interference(pair)
@@ -59,25 +67,33 @@ def refuse_face_overlap(pair: ParallelAxes) -> None:
     if high <= low:
         limit = 0.5 * (pair.pinion.face_width + pair.wheel.face_width)
         raise InfeasibleGeometry(
-            "face overlap", "axial_offset", pair.axial_offset, f"less than {limit:.9g} m in size"
+            "face overlap", "axial_offset", pair.axial_offset, f"less than {rounded_down(limit)} m in size"
         )
 
 
-def _refuse_jamming(pair: GearPair) -> None:
-    """Refuse negative backlash."""
+def refuse_jamming(pair: ParallelAxes) -> None:
+    """Refuse teeth that jam by more than rounding of printed data makes."""
     pinion, wheel = pair.pinion, pair.wheel
-    touching = pair.center_distance <= pinion.base_radius + wheel.base_radius
-    if not touching and pair.transverse_base_backlash >= -BACKLASH_SLACK * pinion.normal_module:
+    touching = pair.center_distance <= abs(base_radius_sum(pinion, wheel))
+    if not touching and pair.transverse_base_backlash >= 0.0:
         return
-    distance = tight_center_distance(pinion, wheel)
-    advice = f"Without backlash: center_distance = {distance:.9g} m"
+    tight = tight_center_distance(pinion, wheel)
+    side, distance = ("at most", rounded_down(tight)) if pair.internal else ("at least", rounded_up(tight))
+    advice = f"Without backlash: center_distance = {distance} m"
     if not touching:
         tight_sum = tight_shift_sum(pinion, wheel, pair.working_pressure_angle)
-        advice += f", or x_1 + x_2 = {tight_sum:.7g} instead of {shift_sum(pinion, wheel):.7g}"
-    bound = f"at least {distance:.9g} m, where the teeth jam"
+        advice += f", or x_1 + x_2 = {rounded_down(tight_sum)} instead of {shift_sum(pinion, wheel):.7g}"
+        advice += f". {_beyond_rounding(pair)}"
+    bound = f"{side} {distance} m, where the teeth jam"
     raise InfeasibleGeometry(
         "profile shift sum", "center_distance", pair.center_distance, bound, f"{advice}."
     )
+
+
+def _beyond_rounding(pair: ParallelAxes) -> str:
+    """Say how large a jam is beside what rounding of printed data makes."""
+    jam, rounding = -pair.transverse_base_backlash, backlash_rounding(pair)
+    return f"Jam {jam:.3g} m; rounding of the printed values makes {rounding:.2g} m at most"
 
 
 def _refuse_contact_ratio(pair: GearPair) -> None:
@@ -97,7 +113,7 @@ def _refuse_tip_clearance(pair: GearPair) -> None:
     for name, gear, mate in gears:
         largest = pair.center_distance - mate.root_radius
         if gear.tip_radius >= largest:
-            bound = f"below {2.0 * largest:.9g} m, where the tip reaches the mating root circle"
+            bound = f"below {rounded_down(2.0 * largest)} m, where the tip reaches the mating root circle"
             advice = "Lower the tip diameter or the addendum, or raise the mate's dedendum."
             raise InfeasibleGeometry(
                 "tip clearance", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice
@@ -109,14 +125,10 @@ def _refuse_interference(pair: GearPair) -> None:
     gears = (("pinion", pair.pinion, pair.wheel), ("wheel", pair.wheel, pair.pinion))
     for name, gear, mate in gears:
         lowest = pair.common_tangent - gear.tip_roll_length  # on the mate
-        if lowest < mate.form_roll_length * (1.0 - 1e-12):
-            reach = pair.common_tangent - mate.form_roll_length
-            largest = 2.0 * math.hypot(gear.base_radius, max(reach, 0.0))
-            bound = f"at most {largest:.9g} m, where the tip meets the mating form circle"
+        if lowest < mate.form_roll_length * (1.0 - LIMIT_SLACK):
+            reason = "where the tip meets the mating form circle"
             advice = "Lower the tip diameter or the addendum, or raise the mate's profile shift or dedendum."
-            raise InfeasibleGeometry(
-                "interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice
-            )
+            _refuse_long_tip(pair, name, gear, reason, advice)
 
 
 def _refuse_fillet_interference(pair: GearPair) -> None:
@@ -125,8 +137,37 @@ def _refuse_fillet_interference(pair: GearPair) -> None:
     for name, gear, mate in gears:
         depth = fillet_penetration(pair, gear, mate)
         if depth > FILLET_SLACK * gear.normal_module:
-            bound = f"smaller: the tip cuts the mating fillet by {depth:.3g} m off the line of action"
+            reason = f"the tip cuts the mating fillet by {depth:.3g} m off the line of action"
             advice = "Lower the tip diameter or the addendum, or the mate's root radius."
-            raise InfeasibleGeometry(
-                "interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice
-            )
+            _refuse_long_tip(pair, name, gear, reason, advice)
+
+
+def _refuse_long_tip(pair: GearPair, name: str, gear: Gear, reason: str, advice: str) -> NoReturn:
+    """Refuse a tip diameter, and say which one is clear of the mating flank and fillet."""
+    mate = pair.wheel if gear is pair.pinion else pair.pinion
+    largest = _largest_clear_tip(pair, gear, mate)
+    bound = "smaller" if largest is None else f"at most {rounded_down(largest)} m"
+    separator = ":" if largest is None else ","
+    raise InfeasibleGeometry(
+        "interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, f"{bound}{separator} {reason}", advice
+    )
+
+
+def _largest_clear_tip(pair: GearPair, gear: Gear, mate: Gear) -> float | None:
+    """Return the largest tip diameter in m that interferes nowhere, None if even the form diameter does."""
+    reach = max(pair.common_tangent - mate.form_roll_length, 0.0)
+    low, high = gear.form_radius, min(gear.tip_radius, math.hypot(gear.base_radius, reach))
+
+    def cuts(radius: float) -> bool:
+        shorter = replace(gear, tip_diameter=2.0 * radius)
+        return fillet_penetration(pair, shorter, mate) > FILLET_SLACK * gear.normal_module
+
+    low += 1e-6 * gear.normal_module
+    if high <= low or cuts(low):
+        return None
+    if not cuts(high):
+        return 2.0 * high
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if cuts(middle) else (middle, high)
+    return 2.0 * low

@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.geometry.backlash import base_circle_backlash, base_radius_sum
+from fe_contact.checks import LIMIT_SLACK
+from fe_contact.geometry.backlash import allowance_backlash, base_circle_backlash, base_radius_sum
 from fe_contact.geometry.path_of_contact import PathOfContact
+from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
@@ -183,8 +185,24 @@ class ParallelAxes:
 
     @property
     def transverse_base_backlash(self) -> float:
-        """Backlash along the transverse line of action j_bt, m: r_b1 times gear 1's free turn."""
-        return base_circle_backlash(self.pinion, self.wheel, self.working_pressure_angle)
+        """Backlash along the transverse line of action j_bt, m: r_b1 times gear 1's free turn.
+
+        Gears that jam by no more than rounding of printed data makes have none, or what allowances make.
+        """
+        computed = base_circle_backlash(self.pinion, self.wheel, self.working_pressure_angle)
+        return computed + self.rounding_jam
+
+    @cached_property
+    def rounding_jam(self) -> float:
+        """Jam along the line of action that rounding of printed data makes, m, >= 0 (`backlash_rounding`).
+
+        It is that of the gears without their thickness allowances, which are no part of nominal geometry; or
+        else that of the gears as they are. 0 where teeth do not jam, or by more than rounding makes.
+        """
+        computed = base_circle_backlash(self.pinion, self.wheel, self.working_pressure_angle)
+        largest = backlash_rounding(self) + LIMIT_SLACK * self.center_distance
+        jams = (allowance_backlash(self.pinion, self.wheel) - computed, -computed)
+        return next((jam for jam in jams if 0.0 < jam <= largest), 0.0)
 
     @property
     def normal_backlash(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from fe_contact.checks import LIMIT_SLACK, rounded_down, rounded_up
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.trimming import radial_clearance
 
@@ -17,9 +18,8 @@ _OTHER_CUTTER = "Choose another number of teeth or profile shift of the cutter."
 def refuse_infeasible_ring(gear: RingGear) -> None:
     """Raise `InfeasibleGeometry` if no such ring gear can be generated."""
     _refuse_rim(gear)
-    _refuse_tip_diameter(gear)
     _refuse_rounding(gear)
-    _refuse_form_circle(gear)
+    _refuse_tip_diameter(gear)
     _refuse_cut_tips(gear)
     _refuse_pointed_tooth(gear)
 
@@ -29,11 +29,12 @@ def refuse_shift_sum_of_cutter(gear: RingGear, involute: float) -> None:
     if involute <= 0.0:
         angle = math.tan(gear.transverse_pressure_angle) - gear.transverse_pressure_angle
         largest = angle * (gear.teeth - gear.cutter_teeth) / (2.0 * math.tan(gear.normal_pressure_angle))
+        limit = rounded_down(largest - gear.profile_shift_coefficient)
         raise InfeasibleGeometry(
             "profile shift sum",
             "cutter_profile_shift_coefficient",
             gear.cutter_profile_shift_coefficient,
-            f"below {largest - gear.profile_shift_coefficient:.6g}, where the cutter fills the tooth space",
+            f"below {limit}, where the cutter fills the tooth space",
             _OTHER_CUTTER,
         )
 
@@ -41,25 +42,22 @@ def refuse_shift_sum_of_cutter(gear: RingGear, involute: float) -> None:
 def _refuse_rim(gear: RingGear) -> None:
     """Refuse a rim that leaves nothing behind the teeth."""
     if gear.rim_diameter <= 2.0 * gear.root_radius:
-        bound = f"above the root diameter {2.0 * gear.root_radius:.6g} m"
+        bound = f"above the root diameter {rounded_up(2.0 * gear.root_radius)} m"
         raise InfeasibleGeometry("rim", "rim_diameter", gear.rim_diameter, bound, "Raise the rim diameter.")
 
 
 def _refuse_tip_diameter(gear: RingGear) -> None:
-    """Refuse a tip circle inside the base circle, or inside what the cutter's involute reaches."""
-    if gear.tip_radius >= gear.root_radius:
-        bound = f"below the root diameter {2.0 * gear.root_radius:.6g} m"
+    """Refuse a tip circle beyond the involute at the fillet, or inside what the cutter's involute reaches."""
+    if gear.tip_radius >= gear.form_radius:
+        bound = f"below the form diameter {rounded_down(2.0 * gear.form_radius)} m, where the fillet begins"
         raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound)
-    advice = "Raise the tip diameter, or lower the addendum or the profile shift."
-    if gear.tip_radius < gear.base_radius:
-        bound = f"at least the base diameter {2.0 * gear.base_radius:.6g} m"
-        raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
-    if gear.tip_roll_length < gear.cutter.common_tangent:
-        smallest = 2.0 * math.hypot(gear.base_radius, gear.cutter.common_tangent)
-        bound = f"at least {smallest:.9g} m, where the cutter's involute ends at its base circle"
-        raise InfeasibleGeometry(
-            "interference", "tip_diameter", 2.0 * gear.tip_radius, bound, f"{advice} {_OTHER_CUTTER}"
-        )
+    smallest = math.hypot(gear.base_radius, gear.cutter.common_tangent)
+    if gear.tip_radius < smallest * (1.0 - LIMIT_SLACK):
+        limit = rounded_up(2.0 * smallest)
+        bound = f"at least {limit} m, where the cutter's involute ends at its base circle"
+        advice = f"Raise the tip diameter, or lower the addendum or the profile shift. {_OTHER_CUTTER}"
+        name = "tip diameter" if gear.tip_radius < gear.base_radius else "interference"
+        raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
 
 
 def _refuse_rounding(gear: RingGear) -> None:
@@ -71,13 +69,6 @@ def _refuse_rounding(gear: RingGear) -> None:
         raise InfeasibleGeometry(
             "root radius", "root_radius_coefficient", gear.root_radius_coefficient, bound, advice
         )
-
-
-def _refuse_form_circle(gear: RingGear) -> None:
-    """Refuse teeth whose fillet begins at their tip."""
-    if gear.form_radius <= gear.tip_radius:
-        bound = f"below the form diameter {2.0 * gear.form_radius:.6g} m, where the fillet begins"
-        raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound)
 
 
 def _refuse_cut_tips(gear: RingGear) -> None:

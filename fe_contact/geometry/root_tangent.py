@@ -25,11 +25,11 @@ def tangent_angle(profile: FlankProfile, s: ArrayLike) -> FloatArray:
     return np.asarray(np.arctan2(profile.gear.sign * normal[..., 1], normal[..., 0]))
 
 
-def critical_section(profile: FlankProfile) -> float:
+def critical_section(profile: FlankProfile, samples: int = SAMPLES) -> float:
     """Flank coordinate in m where the fillet's tangent has `CRITICAL_ANGLE` with the tooth's centre line.
 
-    At an end of the fillet if it leans less or more everywhere.
+    At an end of the fillet if it leans less or more everywhere. Interpolated linearly between `samples`.
     """
     angle = CRITICAL_ANGLE[profile.gear.sign]
-    s = np.linspace(profile.s_form, profile.s_root, SAMPLES)
+    s = np.linspace(profile.s_form, profile.s_root, samples)
     return float(np.interp(angle, np.maximum.accumulate(tangent_angle(profile, s)), s))

@@ -17,7 +17,7 @@ def torsion_compliance(inner: float, outer: float, material: Material) -> float:
 
     Shear alone: (1/r_i^2 - 1/r_o^2) / (4 pi G); radii in m.
     """
-    return (inner**-2 - outer**-2) / (4.0 * math.pi * _shear_modulus(material))
+    return (inner**-2 - outer**-2) / (4.0 * math.pi * shear_modulus(material))
 
 
 def shift_compliance(inner: float, outer: float, material: Material) -> float:
@@ -29,7 +29,7 @@ def shift_compliance(inner: float, outer: float, material: Material) -> float:
     kappa = (3.0 - material.poissons_ratio) / (1.0 + material.poissons_ratio)
     ratio = (outer**2 - inner**2) / (outer**2 + inner**2)
     shape = kappa * math.log(outer / inner) - ratio / kappa
-    return shape / (2.0 * math.pi * _shear_modulus(material) * (1.0 + kappa))
+    return shape / (2.0 * math.pi * shear_modulus(material) * (1.0 + kappa))
 
 
 def web_compliance(gear: Toothing) -> float:
@@ -45,6 +45,6 @@ def web_compliance(gear: Toothing) -> float:
     return each * (1.0 / web.thickness - 1.0 / gear.face_width)
 
 
-def _shear_modulus(material: Material) -> float:
+def shear_modulus(material: Material) -> float:
     """G in Pa."""
     return 0.5 * material.youngs_modulus / (1.0 + material.poissons_ratio)

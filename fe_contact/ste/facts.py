@@ -105,6 +105,8 @@ class Metadata:
         Version by package name.
     schema_version : int
         Version of the file layout.
+    warnings : list of dict
+        What is implausible about the case or its results; empty where nothing is.
     """
 
     case: Json = field(default_factory=dict)
@@ -113,6 +115,7 @@ class Metadata:
     content_hash: str = ""
     software_versions: dict[str, str] = field(default_factory=dict)
     schema_version: int = SCHEMA_VERSION
+    warnings: list[Any] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         for entry in fields(self):

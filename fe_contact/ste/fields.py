@@ -153,6 +153,11 @@ class SteFields:
         return np.asarray(self.status != Status.CONVERGED)
 
     @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is implausible about the case or its results, in words; empty where nothing is."""
+        return tuple(finding["message"] for finding in self.metadata.warnings)
+
+    @property
     def n_failed(self) -> int:
         """Number of grid points without a usable solution."""
         return int(np.count_nonzero(self.failed))

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 FORMAT = "lineofaction STE database"
 _COORDINATES = ("position", "force", "misalignment", "center_distance_change", "pair", "support_force")
+WARNINGS = "warnings"
 _JSON_ATTRIBUTES = ("case", "effect_ledger", "receipt", "software_versions")
 
 # units and long names; "1" is CF's dimensionless
@@ -129,7 +130,7 @@ def _global_attributes(database: SteFields) -> Json:
         "content_hash": database.metadata.content_hash,
         "period": np.int64(database.period),
         "facts": json.dumps(database.facts.to_json()),
-        **{name: json.dumps(metadata[name]) for name in _JSON_ATTRIBUTES},
+        **{name: json.dumps(metadata[name]) for name in (*_JSON_ATTRIBUTES, WARNINGS)},
         "data_sha256": _digest(_stored(database), database.period),
     }
 
@@ -167,6 +168,7 @@ def _metadata(path: Path, attributes: Json) -> Metadata:
     return Metadata(
         content_hash=str(attributes.get("content_hash", "")),
         schema_version=int(attributes["schema_version"]),
+        warnings=_document(path, {WARNINGS: "[]", **attributes}, WARNINGS),  # older files hold none
         **documents,
     )
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -16,7 +15,7 @@ from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.flipping import flipped
 from fe_contact.effects.worth.slice_model import EstimatedCurve, Springs
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -27,29 +26,17 @@ class Worth:
     ----------
     mean, peak_to_peak : ndarray, shape (L,)
         Of the static transmission error, m, at each load and the largest misalignment in size.
-    relative_mean, relative_peak_to_peak : float
-        In parts of the estimated value with the effect; the largest in size over all loads and both ends of
-        the misalignments.
+    whole : EstimatedCurve
+        With the effect, at the same places.
+    largest : float
+        Largest change of either in parts of the value with the effect, over all loads and both ends of the
+        misalignments, >= 0.
     """
 
     mean: FloatArray
     peak_to_peak: FloatArray
-    relative_mean: float
-    relative_peak_to_peak: float
-
-    @property
-    def largest(self) -> float:
-        """Larger relative change of the two, >= 0."""
-        return max(abs(self.relative_mean), abs(self.relative_peak_to_peak))
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "mean_m": self.mean.tolist(),
-            "peak_to_peak_m": self.peak_to_peak.tolist(),
-            "relative_mean": self.relative_mean,
-            "relative_peak_to_peak": self.relative_peak_to_peak,
-        }
+    whole: EstimatedCurve
+    largest: float
 
 
 def estimate_worth(
@@ -79,12 +66,10 @@ def estimate_worths(
     decided: Mapping[str, str],
     names: Sequence[str],
     registry: Sequence[Effect],
-    *,
-    most_loads: int = sys.maxsize,
 ) -> dict[str, Worth | None]:
-    """Estimate several effects; parameters of `estimate_worth`, and of `Springs`."""
+    """Estimate several effects; parameters of `estimate_worth`."""
     known: dict[tuple[tuple[str, str], ...], list[EstimatedCurve]] = {}
-    springs = Springs(scene.pair, most_loads)
+    springs = Springs(scene.pair)
 
     def curves(choices: Mapping[str, str]) -> list[EstimatedCurve]:
         key = tuple(sorted(choices.items()))
@@ -99,7 +84,7 @@ def estimate_worths(
             return worth(next(one for one in registry if one.name == FiniteWidth.name))
         if effect.name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
             # with nothing across the face the corrected plane stands in for three dimensions
-            return Worth(np.zeros(scene.torque.size), np.zeros(scene.torque.size), 0.0, 0.0)
+            return _compared(curves(decided), curves(decided))
         with_it, without = (
             curves(decided if decided[effect.name] == choice else flipped(decided, effect.name, choice))
             for choice in ("on", "off")
@@ -126,7 +111,8 @@ def _curves(
     scene: ContactScene, choices: Mapping[str, str], registry: Sequence[Effect], springs: Springs
 ) -> list[EstimatedCurve]:
     """Estimate the curves at both ends of the misalignments, the larger one last."""
-    ends = sorted({float(scene.misalignment[0]), float(scene.misalignment[-1])}, key=abs)
+    other = scene.misalignment[0] if scene.largest_misalignment > 0.0 else scene.misalignment[-1]
+    ends = list(dict.fromkeys((float(other), scene.largest_misalignment)))
     load = scene.pair.normal_force(scene.torque)
     found: dict[str, EstimatedCurve] = {}
     models = []
@@ -140,18 +126,12 @@ def _curves(
 
 
 def _compared(with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve]) -> Worth:
-    """Take differences of the last curves, and the largest relative ones of all."""
-    means = [b.mean - a.mean for a, b in zip(with_it, without, strict=True)]
-    ripples = [b.peak_to_peak - a.peak_to_peak for a, b in zip(with_it, without, strict=True)]
-    return Worth(
-        means[-1],
-        ripples[-1],
-        _largest([change / curve.mean for change, curve in zip(means, with_it, strict=True)]),
-        _largest([change / curve.peak_to_peak for change, curve in zip(ripples, with_it, strict=True)]),
-    )
-
-
-def _largest(changes: Sequence[FloatArray]) -> float:
-    """Return the largest in size, with its sign."""
-    every = np.concatenate(changes)
-    return float(every[np.argmax(np.abs(every))])
+    """Take differences of the last curves, and the largest relative one of all."""
+    changes = [
+        (b.mean - a.mean, b.peak_to_peak - a.peak_to_peak) for a, b in zip(with_it, without, strict=True)
+    ]
+    relative = [
+        np.abs((mean / curve.mean, ripple / curve.peak_to_peak))
+        for (mean, ripple), curve in zip(changes, with_it, strict=True)
+    ]
+    return Worth(*changes[-1], with_it[-1], float(np.max(relative)))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -24,7 +23,6 @@ from fe_contact.effects.worth.slice_compliance import slice_compliance
 from fe_contact.effects.worth.tooth_bending import half_plane
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus
-from fe_contact.sampled import sample_of, spread
 from fe_contact.types import FloatArray
 
 PLANE_POSITIONS, FACE_POSITIONS = 64, 32
@@ -50,12 +48,9 @@ class Springs:
     Attributes
     ----------
     pair : GearPair or InternalGearPair
-    most_loads : int
-        Loads that are solved, at least two; between them the figures are interpolated.
     """
 
     pair: ParallelAxes
-    most_loads: int = sys.maxsize
     _known: dict[tuple[object, ...], ContactProblem] = field(default_factory=dict, repr=False)
     _plain: dict[tuple[bool, bool], Candidates] = field(default_factory=dict, repr=False)
     _last: dict[tuple[object, ...], Start] = field(default_factory=dict, repr=False)
@@ -66,16 +61,14 @@ class Springs:
         Everything but the compliance is that of the contact analysis: candidates, gaps, shafts, local
         approach.
         """
-        some = sample_of(load.size, self.most_loads)
         problem, count = self._springs(model), _positions(model)
         problem = with_compliances(self.pair, problem, model)
         problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
         if model.tooth_gaps:
             pitches = np.arange(min(model.period, MOST_PITCHES))
             problem = in_pitches(problem, model, np.repeat(pitches, count))
-        found = self._solved(problem, model, load[some])
-        figures = np.nanmean(found, axis=0), np.nanmax(found, axis=0) - np.nanmin(found, axis=0)
-        return EstimatedCurve(*(spread(load, some, values, 0) for values in figures))
+        found = self._solved(problem, model, load)
+        return EstimatedCurve(np.nanmean(found, axis=0), np.nanmax(found, axis=0) - np.nanmin(found, axis=0))
 
     def _solved(self, problem: ContactProblem, model: ContactModel, load: FloatArray) -> FloatArray:
         """Solve a problem (P, L) in m, started from the last one with the same gaps."""

@@ -46,17 +46,22 @@ class ToothBending:
 
 @lru_cache(maxsize=64)
 def tooth_bending(gear: Toothing) -> ToothBending:
-    """Integrate over the tooth of `gear`, plane strain."""
+    """Integrate over the tooth of `gear`, plane strain.
+
+    A helical tooth bends in its normal section: there it is thinner, and longer by the same factor.
+    """
     profile = tooth_profile(gear)
     s = np.linspace(profile.s_root, profile.s_tip, _SAMPLES)
     half, height = profile.flank(s).T
     height = np.abs(height - height[0])
     normal = profile.normal(s)
-    slope = gear.sign * normal[:, 1] / np.abs(normal[:, 0])
+    narrow = math.cos(gear.helix_angle)
+    half = narrow * half
+    slope = narrow * gear.sign * normal[:, 1] / np.abs(normal[:, 0])
     cosine = 1.0 / np.sqrt(1.0 + slope**2)
     # where the line of action crosses the centre line, above the root
     lever = np.maximum(height - half * slope, 0.0)
-    per_modulus = cosine**2 * (1.0 - gear.material.poissons_ratio**2) / gear.material.youngs_modulus
+    per_modulus = narrow * cosine**2 * (1.0 - gear.material.poissons_ratio**2) / gear.material.youngs_modulus
     root = 2.0 * half[0]
     foundation = 5.2 * (lever / root) ** 2 + lever / root + 1.4 * (1.0 + 0.294 * slope**2)
     tooth = _energy(height, 2.0 * half, lever, slope, gear.material.poissons_ratio)
@@ -67,14 +72,17 @@ def _energy(
     height: FloatArray, thickness: FloatArray, lever: FloatArray, slope: FloatArray, ratio: float
 ) -> FloatArray:
     """12 int (h - y)^2/t^3 dy + (2.4/(1 - nu) + tan^2) int dy/t up to the lever h of every load."""
-
-    def below(values: FloatArray) -> FloatArray:
-        steps = 0.5 * (values[1:] + values[:-1]) * np.diff(height)
-        return np.asarray(np.interp(lever, height, np.concatenate([[0.0], np.cumsum(steps)])))
-
-    zeroth, first, second = (below(height**k / thickness**3) for k in range(3))
+    zeroth, first, second = (_up_to(lever, height, height**k / thickness**3) for k in range(3))
     bending = lever**2 * zeroth - 2.0 * lever * first + second
-    return np.asarray(12.0 * bending + (2.4 / (1.0 - ratio) + slope**2) * below(1.0 / thickness))
+    return np.asarray(
+        12.0 * bending + (2.4 / (1.0 - ratio) + slope**2) * _up_to(lever, height, 1.0 / thickness)
+    )
+
+
+def _up_to(lever: FloatArray, height: FloatArray, values: FloatArray) -> FloatArray:
+    """Integrate values over the height from the root up to each lever."""
+    steps = 0.5 * (values[1:] + values[:-1]) * np.diff(height)
+    return np.asarray(np.interp(lever, height, np.concatenate([[0.0], np.cumsum(steps)])))
 
 
 def half_plane(gear: Toothing) -> float:

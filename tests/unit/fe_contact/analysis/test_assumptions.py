@@ -112,7 +112,7 @@ def test_an_effect_below_the_tolerance_is_spared_and_its_model_with_it(cache: Pa
     assert not entry["on"]
     assert entry["called_for"]
     assert entry["decision"].startswith("left off")
-    assert 0.0 < abs(entry["worth_estimate"]["relative_mean"]) < 0.1 * 0.02
+    assert 0.0 < abs(entry["influence"]["relative_mean"]) < 0.1 * 0.02
     assert assumption(spared, "misalignment")["holds"] is True
 
 

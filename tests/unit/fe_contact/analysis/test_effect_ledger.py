@@ -23,7 +23,7 @@ FULL = replace(
 SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06)
 PLAIN, EVERYTHING = GearPair(GEAR, GEAR), GearPair(FULL, GEAR, shafts=(SHAFT, None))
 FIELDS = {
-    "name", "on", "choice", "called_for", "reason", "decision", "worth", "worth_estimate", "cost",
+    "name", "on", "choice", "called_for", "reason", "decision", "influence", "cost",
     "cost_cpu_seconds", "price", "checked", "holds",
 }  # fmt: skip
 
@@ -48,9 +48,9 @@ def test_every_effect_has_every_field(pair: GearPair, asked: Json) -> None:
     assert list(found) == [effect.name for effect in EFFECTS]
     for entry in found.values():
         assert set(entry) == FIELDS
-        assert all(entry[name] for name in ("reason", "decision", "worth", "cost", "checked"))
+        assert all(entry[name] for name in ("reason", "decision", "cost", "checked"))
         if entry["on"] or entry["called_for"]:
-            assert entry["worth_estimate"] is not None or entry["name"] == "face_load_distribution"
+            assert entry["influence"] is not None or entry["name"] == "face_load_distribution"
             assert entry["cost_cpu_seconds"] is not None or entry["name"] == "face_load_distribution"
     json.dumps(found, allow_nan=False)
 
@@ -59,7 +59,8 @@ def test_a_choice_against_the_scene_is_obeyed_and_has_a_price() -> None:
     off = ledger(PLAIN, effects={"tooth_coupling": "off"})["tooth_coupling"]
     assert not off["on"]
     assert off["decision"] == "as asked, though the scene calls for it"
-    assert off["price"].startswith("-5.")  # of the mean: docs/effects/tooth_coupling.md
+    assert off["price"] == off["influence"]["words"]
+    assert -0.06 < off["influence"]["relative_mean"] < -0.05  # docs/effects/tooth_coupling.md
     on = ledger(PLAIN, effects={"face_load_distribution": "on"})["face_load_distribution"]
     assert on["on"]
     assert on["cost_cpu_seconds"] > 0.1
@@ -75,9 +76,9 @@ def test_three_dimensions_cost_what_the_plan_says(tmp_path: Path) -> None:
     assert found["face_load_distribution"]["cost_cpu_seconds"] == pytest.approx(extra, rel=1e-6)
 
 
-def test_a_minimal_receipt_estimates_neither_worth_nor_cost() -> None:
+def test_a_minimal_receipt_estimates_neither_influence_nor_cost() -> None:
     table = analyze(PLAIN, torques=[100.0], level="draft", positions=16, receipt="minimal")
     for entry in table.metadata.effect_ledger:
         assert set(entry) == FIELDS
-        assert entry["worth_estimate"] is None
+        assert entry["influence"] is None
         assert entry["cost_cpu_seconds"] is None

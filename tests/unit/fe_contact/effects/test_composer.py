@@ -36,7 +36,7 @@ class Lapping:
     valid_for = "this test"
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        return Verdict(True, "always", "3 um")
+        return Verdict(True, "always")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         return replace(model, gaps=(*model.gaps, lapped))
@@ -112,17 +112,16 @@ def test_unknown_choices_are_refused(choice):
 
 
 @pytest.mark.parametrize("choices", [{}, EVERYTHING_OFF])
-def test_the_ledger_says_why_and_what_it_is_worth(choices):
+def test_the_ledger_says_what_was_decided_and_why(choices):
     _, ledger = compose(scene(), choices, EFFECTS)
     for entry, effect in zip(ledger, EFFECTS, strict=True):
         page = entry.to_json()
         assert json.loads(json.dumps(page)) == page
-        assert set(page) == {"name", "on", "choice", "cost", "reason", "worth", "called_for", "decision"}
+        assert set(page) == {"name", "on", "choice", "cost", "reason", "called_for", "decision"}
         assert page["name"] == effect.name
         assert page["on"] == entry.on
         assert page["called_for"] == entry.verdict.on
         assert page["reason"]
-        assert page["worth"]
         assert page["decision"]
 
 

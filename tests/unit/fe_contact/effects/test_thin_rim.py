@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import fields, replace
 
 import numpy as np
@@ -14,7 +13,7 @@ from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene
 from fe_contact.effects.thin_rim import ThinRim
 from fe_contact.errors import InputError
-from fe_contact.geometry import blank_factor, web_compliance
+from fe_contact.geometry import web_compliance
 
 PINION = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 WHEEL = replace(PINION, teeth=30, blank=GearBlank(8e-3, 8e-3, 50e-3))
@@ -24,13 +23,9 @@ COARSE = {"torques": [100.0], "level": "draft", "positions": 8}
 
 def test_called_for_by_a_web_only() -> None:
     off, on = (ThinRim().called_for(ContactScene(p, np.array([50.0, 100.0]))) for p in (SOLID, WEBBED))
-    assert (off.on, off.worth) == (False, "nothing")
+    assert (off.on, off.neutral) == (False, True)
     assert on.on
     assert on.reason == "wheel with rim and web"
-    mean, ripple = (float(x) for x in re.findall(r"(-[\d.]+) (?:um|%)", on.worth))
-    force = 100.0 / PINION.base_radius
-    assert mean == pytest.approx(-1e6 * force * web_compliance(WHEEL), rel=0.05)
-    assert ripple == pytest.approx(50.0 * (blank_factor(WHEEL) - 1.0), abs=0.5)
 
 
 def test_contributes_nothing_else() -> None:

@@ -211,7 +211,9 @@ def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:
     with pytest.raises(InfeasibleGeometry) as caught:
         InternalGearPair(gear(), ring(), 0.1002)
     distance, total = (float(number) for number in re.findall(r"= ([\d.e-]+)", caught.value.suggestion))
-    assert InternalGearPair(gear(), ring(), distance).transverse_base_backlash == pytest.approx(0.0, abs=4e-9)
+    assert (
+        0.0 <= InternalGearPair(gear(), ring(), distance).transverse_base_backlash < 1e-7
+    )  # a seventh digit
     fitting = InternalGearPair(
         gear(), ring(profile_shift_coefficient=total, addendum_coefficient=0.9), 0.1002
     )

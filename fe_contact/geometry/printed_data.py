@@ -1,0 +1,99 @@
+"""The digits that data sheets print, and what their rounding does to backlash (docs/theory/geometry.md).
+
+Nominal gears have no backlash: their profile shifts follow from the centre distance, or it from them. A sheet
+prints both rounded, and the printed ones may jam. Each printed value is off by at most half its last digit,
+and backlash by at most the sum of what those halves do to it, to first order.
+
+A value tells its last digit: it is the first of the customary ones of which the value is a whole multiple.
+A value on the round grid of its kind was chosen, not rounded: a module of ISO 54, a shift of 0, a centre
+distance in half millimetres, a helix angle in tenths of a degree.
+Numbers of teeth, pressure angles and thickness allowances are exact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fe_contact.geometry.parallel_axes import ParallelAxes
+
+
+@dataclass(frozen=True)
+class PrintedDigits:
+    """How a quantity is printed.
+
+    Attributes
+    ----------
+    last : tuple of float
+        What one of the last digit may be: a sheet has the first one that fits all its values.
+    round_grid : float
+        Multiples of it are exact.
+    """
+
+    last: tuple[float, ...]
+    round_grid: float = 0.0
+
+    def rounding(self, *values: float) -> float:
+        """Return the most that printing moved each of the values, which stand on one sheet."""
+        if all(_is_multiple(value, self.round_grid) for value in values):
+            return 0.0
+        fits = (digit for digit in self.last if all(_is_multiple(value, digit) for value in values))
+        return 0.5 * next(fits, self.last[-1])
+
+
+PROFILE_SHIFT = PrintedDigits(last=(1e-3, 1e-4))
+CENTER_DISTANCE = PrintedDigits(last=(1e-5, 1e-6), round_grid=5e-4)
+NORMAL_MODULE = PrintedDigits(last=(1e-6, 1e-7), round_grid=5e-6)
+HELIX_ANGLE = PrintedDigits(
+    last=tuple(math.radians(degrees) for degrees in (0.01, 1.0 / 60.0, 1.0 / 3600.0)),
+    round_grid=math.radians(0.1),
+)
+
+
+def backlash_rounding(pair: ParallelAxes) -> float:
+    """Return the most in m that printing x_1, x_2, a, m_n and beta moves `transverse_base_backlash`.
+
+    With the base module m_b = m_t cos(alpha_t) and j = 0::
+
+        dj/dx = -2 m_b tan(alpha_n)                                   either gear
+        dj/da = 2 sin(alpha_wt)                                       internal: negative
+        dj/dm_n = -(a / m_n) dj/da                                    j has the degree 1 in lengths
+        dj/dbeta = -2 (r_b1 + r_b2) tan(beta) cos^2(alpha_t) [tan(alpha_wt) + tan^3(alpha_t)]
+    """
+    pinion, distance = pair.pinion, pair.center_distance
+    by_distance = 2.0 * math.sin(pair.working_pressure_angle)
+    by_module = by_distance * distance / pinion.normal_module
+    return (
+        _by_shift(pair)
+        + by_distance * CENTER_DISTANCE.rounding(distance)
+        + by_module * NORMAL_MODULE.rounding(pinion.normal_module)
+        + _by_helix(pair) * HELIX_ANGLE.rounding(pinion.helix_angle)
+    )
+
+
+def _by_shift(pair: ParallelAxes) -> float:
+    """Return what rounding of both profile shifts does, m; a shift of 0 is none."""
+    shifts = [gear.profile_shift_coefficient for gear in (pair.pinion, pair.wheel)]
+    shifts = [shift for shift in shifts if shift]
+    base_module = pair.base_pitch / math.pi
+    slope = 2.0 * base_module * math.tan(pair.pinion.normal_pressure_angle)
+    return slope * len(shifts) * PROFILE_SHIFT.rounding(*shifts)
+
+
+def _by_helix(pair: ParallelAxes) -> float:
+    """Return the size of dj/dbeta, m per rad."""
+    working, transverse = pair.working_pressure_angle, pair.pinion.transverse_pressure_angle
+    bracket = math.tan(working) + math.tan(transverse) ** 3
+    base_radii = pair.center_distance * math.cos(working)
+    helix = math.tan(abs(pair.pinion.helix_angle))
+    return 2.0 * base_radii * helix * math.cos(transverse) ** 2 * bracket
+
+
+def _is_multiple(value: float, unit: float) -> bool:
+    """Whether a value is a whole number of units, up to rounding of its conversion into SI."""
+    if value == 0.0:
+        return True
+    count = value / unit if unit else math.inf
+    return math.isfinite(count) and abs(count - round(count)) < 1e-6

@@ -1,0 +1,218 @@
+"""The plausibility checks of gear pairs and their results: quantity, limits, source."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Check:
+    """One check.
+
+    Attributes
+    ----------
+    name : str
+        What a finding is called.
+    quantity : str
+        What is compared, in words.
+    low, high : float or None
+        Bounds in `unit`; None: no such bound.
+    unit : str
+        Unit of the bounds; "1" for a ratio.
+    moment : str
+        "input": before anything is computed; "result": on what was; "both".
+    source : str
+        Where the limit comes from.
+    """
+
+    name: str
+    quantity: str
+    low: float | None
+    high: float | None
+    unit: str
+    moment: str
+    source: str
+
+
+_PARTS = (
+    Check("module", "normal module", 0.05e-3, 0.1, "m", "input", "DIN 780-1 and ISO 54: 0.05 to 60 mm"),
+    Check(
+        "face_width",
+        "face width over normal module",
+        1.0,
+        100.0,
+        "1",
+        "input",
+        "Niemann/Winter, Maschinenelemente 2: 6 to 40 in practice",
+    ),
+    Check(
+        "bore",
+        "bore over root diameter",
+        0.005,
+        None,
+        "1",
+        "input",
+        "a bore that a drill can make; beyond the root is refused",
+    ),
+    Check(
+        "pressure_angle",
+        "normal pressure angle",
+        0.2,
+        0.56,
+        "rad",
+        "input",
+        "ISO 53 and AGMA 1106: 14.5 to 30 deg",
+    ),
+    Check(
+        "helix_angle",
+        "helix angle where there is one",
+        0.017,
+        0.8,
+        "rad",
+        "input",
+        "Niemann/Winter: 5 to 45 deg in practice",
+    ),
+    Check(
+        "youngs_modulus",
+        "Young's modulus",
+        0.1e9,
+        700e9,
+        "Pa",
+        "input",
+        "from elastomers (0.1 GPa) to tungsten carbide (690 GPa)",
+    ),
+    Check(
+        "density",
+        "density",
+        500.0,
+        20e3,
+        "kg/m^3",
+        "input",
+        "from foamed plastics to tungsten",
+    ),
+)
+_DEVIATIONS = (
+    Check(
+        "relief_amount",
+        "amount of a modification, allowance or pitch deviation that is not 0",
+        0.1e-6,
+        None,
+        "m",
+        "input",
+        "ISO 1328-1: class 1 allows about 1 um",
+    ),
+    Check(
+        "relief_over_module",
+        "amount of a modification or pitch deviation over normal module",
+        None,
+        0.1,
+        "1",
+        "input",
+        "ISO 21771-1: reliefs are some hundredths of a module",
+    ),
+    Check(
+        "relief_length",
+        "length of a tip or root relief over normal module",
+        0.01,
+        None,
+        "1",
+        "input",
+        "ISO 21771-1: it reaches from the tip towards the pitch circle",
+    ),
+    Check(
+        "misalignment",
+        "largest misalignment that is not 0",
+        0.1e-6,
+        None,
+        "m",
+        "input",
+        "ISO 1328-1: class 1 allows about 1 um",
+    ),
+    Check(
+        "misalignment_over_face",
+        "misalignment over face width",
+        None,
+        0.02,
+        "1",
+        "input",
+        "ISO 6336-1: mesh misalignments are below 0.002",
+    ),
+    Check(
+        "center_distance_change",
+        "largest change of the centre distance that is not 0",
+        0.1e-6,
+        None,
+        "m",
+        "input",
+        "ISO 286-1: grades of centre distances begin at 1 um",
+    ),
+)
+_SHAFTS = (
+    Check(
+        "shaft_slenderness",
+        "distance between the bearings over diameter of the shaft",
+        0.1,
+        100.0,
+        "1",
+        "input",
+        "shafts of gearboxes: 1 to 20",
+    ),
+    Check(
+        "bearing_stiffness",
+        "radial stiffness of a bearing under a bending shaft",
+        1e6,
+        2e10,
+        "N/m",
+        "input",
+        "rolling bearings: 20 N/um (miniature) to 10 000 N/um (main bearings of wind turbines)",
+    ),
+)
+_LOADS = (
+    Check(
+        "light_load",
+        "largest load of the table over face width and module",
+        0.05e6,
+        None,
+        "Pa",
+        "input",
+        "ISO 6336-3: rated gears carry 30 to 150 N/mm^2",
+    ),
+    Check(
+        "line_load",
+        "load over face width and module",
+        None,
+        1000e6,
+        "Pa",
+        "input",
+        "ISO 6336-3: at 1000 N/mm^2 the nominal root stress is 2.5 GPa; practice is 30 to 300",
+    ),
+    Check(
+        "hertz_pressure",
+        "contact pressure (before a run: nominal at the pitch point)",
+        None,
+        4e9,
+        "Pa",
+        "both",
+        "ISO 76: 4 GPa is the static limit of hardened rollers; ISO 6336-5: gears carry 1.7 GPa",
+    ),
+    Check(
+        "root_stress",
+        "tooth-root stress (before a run: nominal, load at the highest point of single contact)",
+        None,
+        2e9,
+        "Pa",
+        "both",
+        "ISO 6336-5: case-hardened steel bears 1 GPa in pulsation; 2 GPa is its tensile strength",
+    ),
+    Check(
+        "transmission_error",
+        "mean transmission error over normal module (before a run: from 14 N/(mm um))",
+        None,
+        0.1,
+        "1",
+        "both",
+        "ISO 6336-1: steel teeth deflect by 0.001 to 0.01 modules; linear elasticity ends here",
+    ),
+)
+CHECKS: dict[str, Check] = {check.name: check for check in (*_PARTS, *_DEVIATIONS, *_SHAFTS, *_LOADS)}
+"""All checks by name."""

@@ -1,0 +1,207 @@
+"""Checks of what is asked for: gears, deviations, shafts, loads. Closed forms, in a millisecond."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from fe_contact.geometry import ParallelAxes, Shaft
+from fe_contact.geometry.toothing import Toothing
+from fe_contact.material import Material
+from fe_contact.plausibility.check import CHECKS
+from fe_contact.plausibility.finding import Finding
+from fe_contact.plausibility.nominal_load import (
+    nominal_deflection,
+    nominal_root_stress,
+    pitch_point_pressure,
+)
+from fe_contact.types import FloatArray
+
+_RATED = 20.0
+"""Rated loads over the lightest that is plausible."""
+_AMOUNTS = (
+    "tip_relief",
+    "root_relief",
+    "end_relief",
+    "profile_crowning",
+    "profile_slope",
+    "helix_crowning",
+    "helix_slope",
+    "flank_twist",
+)
+
+
+def pair_findings(
+    pair: ParallelAxes,
+    load: Sequence[float] | FloatArray = (),
+    misalignment: Sequence[float] | FloatArray = (),
+    center_distance_change: Sequence[float] | FloatArray = (),
+    *,
+    loads_as: str = "torques",
+) -> tuple[Finding, ...]:
+    """Return what is implausible about a pair and what is asked of it.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    load : sequence of float
+        Normal forces F_bn, N, increasing.
+    misalignment, center_distance_change : sequence of float
+        m.
+    loads_as : str
+        Field that the loads were given in: "torques" or "normal_forces".
+    """
+    sizes = tuple(_sizes(pair))
+    if any(finding.check == "module" for finding in sizes):  # all else is far from practice with it
+        return sizes
+    return (
+        *sizes,
+        *_gear("pinion", pair.pinion),
+        *_gear("wheel", pair.wheel),
+        *_shafts(pair),
+        *_deviations(pair, np.asarray(misalignment), np.asarray(center_distance_change)),
+        *_loads(pair, np.asarray(load, dtype=float), loads_as),
+    )
+
+
+def judged(
+    check: str,
+    field: str,
+    value: float,
+    unit: str,
+    *,
+    scale: float = 1.0,
+    reason: str | None = None,
+    whole: str = "",
+) -> Iterator[Finding]:
+    """Yield a finding if |value| is out of the bounds of a check, times `scale` in `unit`."""
+    rule = CHECKS[check]
+    low = 0.0 if rule.low is None else rule.low * scale
+    high = math.inf if rule.high is None else rule.high * scale
+    if not low <= abs(value) <= high:
+        words = reason or f"implausible {rule.quantity}"
+        yield Finding(check, field, float(value), low, high, unit, words, rule.source, whole)
+
+
+def _sizes(pair: ParallelAxes) -> Iterator[Finding]:
+    """Check module and angles, which both gears share."""
+    gear = pair.pinion
+    yield from judged(
+        "module", "normal_module", gear.normal_module, "m", whole=", here and in all other lengths"
+    )
+    yield from judged("pressure_angle", "normal_pressure_angle", gear.normal_pressure_angle, "rad")
+    if gear.helix_angle:
+        yield from judged("helix_angle", "helix_angle", gear.helix_angle, "rad")
+
+
+def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
+    """Check face, bore and deviations of one gear."""
+    yield from _material(name, gear.material)
+    module = gear.normal_module
+    ratio = f"{gear.face_width / module:.3g} modules are no common face width"
+    yield from judged("face_width", f"{name}.face_width", gear.face_width, "m", scale=module, reason=ratio)
+    bore = getattr(gear, "bore_diameter", None)
+    if bore is not None:
+        root = 2.0 * gear.root_radius
+        reason = f"{bore / root:.2g} of the root diameter is no common bore"
+        for finding in judged("bore", f"{name}.bore_diameter", bore, "m", scale=root, reason=reason):
+            yield replace(finding, high=root)
+    shape = gear.modification
+    amounts = {field: float(getattr(shape, field)) for field in _AMOUNTS}
+    amounts["thickness_allowance"] = gear.thickness_allowance
+    amounts["pitch_deviation"] = max((abs(value) for value in gear.pitch_deviation.cumulative), default=0.0)
+    if shape.flank_grid is not None:
+        removed = max(abs(value) for row in shape.flank_grid.removed for value in row)
+        amounts["flank_grid.removed"] = removed
+    for field, amount in amounts.items():
+        yield from _amount(f"{name}.{field}", amount, module)
+    for field in ("tip_relief", "root_relief"):
+        if getattr(shape, field):
+            length = float(getattr(shape, f"{field}_length"))
+            yield from judged("relief_length", f"{name}.{field}_length", length, "m", scale=module)
+
+
+def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
+    """Check a modification, allowance or pitch deviation that is not 0."""
+    if not amount:
+        return
+    low, high = CHECKS["relief_amount"].low or 0.0, CHECKS["relief_over_module"].high or math.inf
+    found = [*judged("relief_amount", field, amount, "m", reason="smaller than can be made or measured")]
+    if not field.endswith("thickness_allowance"):
+        reason = f"{abs(amount) / module:.2g} modules are no modification"
+        found += judged("relief_over_module", field, amount, "m", scale=module, reason=reason)
+    for finding in found:
+        yield replace(finding, low=low, high=high * module)
+
+
+def _material(name: str, material: Material) -> Iterator[Finding]:
+    """Check stiffness and density."""
+    yield from judged("youngs_modulus", f"{name}.material.youngs_modulus", material.youngs_modulus, "Pa")
+    yield from judged("density", f"{name}.material.density", material.density, "kg/m^3")
+
+
+def _shafts(pair: ParallelAxes) -> Iterator[Finding]:
+    """Check the shafts that bend."""
+    for name, shaft in zip(("pinion", "wheel"), pair.shafts, strict=True):
+        if shaft is not None:
+            yield from _shaft(f"{name}.shaft", shaft)
+
+
+def _shaft(name: str, shaft: Shaft) -> Iterator[Finding]:
+    """Check one shaft between its bearings."""
+    reason = f"{shaft.length / shaft.diameter:.2g} diameters between the bearings are no common shaft"
+    yield from judged(
+        "shaft_slenderness", f"{name}.length", shaft.length, "m", scale=shaft.diameter, reason=reason
+    )
+    if shaft.bearing_stiffness is not None:
+        yield from judged("bearing_stiffness", f"{name}.bearing_stiffness", shaft.bearing_stiffness, "N/m")
+
+
+def _deviations(pair: ParallelAxes, skew: FloatArray, change: FloatArray) -> Iterator[Finding]:
+    """Check the largest deviation of either axis, if it is not 0."""
+    for check, field, values in (
+        ("misalignment", "misalignments", skew),
+        ("center_distance_change", "center_distance_changes", change),
+    ):
+        index = int(np.argmax(np.abs(values))) if values.size else 0
+        value = float(values[index]) if values.size else 0.0
+        if not value:
+            continue
+        reason = "smaller than anybody aligns or measures"
+        name = f"{field}[{index}]"
+        usual = 0.002 * pair.face_width if check == "misalignment" else pair.pinion.normal_module
+        for finding in judged(check, name, value, "m", reason=reason):
+            yield replace(finding, high=usual)
+        if check == "misalignment":
+            reason = f"{1e3 * abs(value) / pair.face_width:.3g} mrad of misalignment"
+            for finding in judged(
+                "misalignment_over_face", name, value, "m", scale=pair.face_width, reason=reason
+            ):
+                yield replace(finding, low=CHECKS["misalignment"].low or 0.0)
+
+
+def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Finding]:
+    """Check the largest load by intensity, and by what it does to contact, root and teeth."""
+    if not load.size:
+        return
+    force, module = float(load[-1]), pair.pinion.normal_module
+    value, unit = (float(pair.torque(force)), "N m") if loads_as == "torques" else (force, "N")
+    intensity = float(pair.transverse_force(force)) / (pair.face_width * module)
+    pressure, stress = pitch_point_pressure(pair, force), nominal_root_stress(pair, force)
+    deflection = nominal_deflection(pair, force) / module
+    words = f"{intensity / 1e6:.3g} N/mm^2 of load over face width and module"
+    lightest, heaviest = CHECKS["light_load"].low or 0.0, CHECKS["line_load"].high or math.inf
+    field = f"{loads_as}[{load.size - 1}]"
+    low, high = _RATED * lightest * value / intensity, 0.5 * heaviest * value / intensity
+    for check, amount, reason in (
+        ("light_load", intensity, f"the largest load of the table is next to nothing, {words}"),
+        ("line_load", intensity, f"no gear carries {words}"),
+        ("hertz_pressure", pressure, f"a nominal contact pressure of {pressure / 1e9:.3g} GPa"),
+        ("root_stress", stress, f"a nominal root stress of {stress / 1e9:.3g} GPa"),
+        ("transmission_error", deflection, f"teeth that yield by {deflection:.2g} modules"),
+    ):
+        for finding in judged(check, "", amount, CHECKS[check].unit, reason=reason):
+            yield replace(finding, field=field, value=value, unit=unit, low=low, high=high)

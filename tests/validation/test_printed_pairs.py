@@ -1,0 +1,122 @@
+"""Gear pairs typed as they are printed are computed; what rounding makes is told from what jams."""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import replace
+
+import pytest
+from printed_pairs import Row, printed_case, printed_pairs
+
+from fe_contact.analysis import analyze
+from fe_contact.errors import InfeasibleGeometry
+from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.geometry.backlash import base_circle_backlash
+from fe_contact.geometry.involute import involute_function
+from fe_contact.geometry.printed_data import (
+    CENTER_DISTANCE,
+    HELIX_ANGLE,
+    NORMAL_MODULE,
+    PROFILE_SHIFT,
+    backlash_rounding,
+)
+from service.convert.case import analysis_arguments, gear_pair
+
+PAIRS = printed_pairs()
+TABLES = int(os.environ.get("LOA_PRINTED_TABLES", "1"))
+"""How many of the pairs get a table: those that jam most come first."""
+MODEL = "auto" if "LOA_PRINTED_TABLES" in os.environ else "plane_strain"  # what jams most is spur
+
+
+def names(row: Row) -> str:
+    return row["name"].replace(" ", "_").replace("/", "_").replace(",", "")
+
+
+def computed_backlash(pair: ParallelAxes) -> float:
+    """Return backlash of the numbers as they are, negative where rounding makes them jam."""
+    return base_circle_backlash(pair.pinion, pair.wheel, pair.working_pressure_angle)
+
+
+def jams_most(row: Row) -> float:
+    pair = gear_pair(printed_case(row))
+    return computed_backlash(pair) / pair.pinion.normal_module
+
+
+def test_forty_pairs_of_several_sources_are_there() -> None:
+    published = [row for row in PAIRS if row["kind"] == "published"]
+    assert len(PAIRS) >= 40
+    assert len(published) >= 25
+    assert len({row["source"].split(",")[0] for row in published}) >= 10
+    helical = [row for row in PAIRS if float(row["helix_angle_deg"])]
+    internal = [row for row in PAIRS if row["teeth_2"].startswith("-")]
+    assert len(helical) >= 12
+    assert len(internal) >= 6
+    assert sum(jams_most(row) < -1e-6 for row in PAIRS) >= 12
+
+
+@pytest.mark.parametrize("row", PAIRS, ids=names)
+def test_a_printed_pair_is_accepted_with_the_backlash_it_has(row: Row) -> None:
+    pair = gear_pair(printed_case(row))
+    computed, rounding = computed_backlash(pair), backlash_rounding(pair)
+    assert -rounding - 1e-12 * pair.center_distance <= computed <= rounding + 1e-12 * pair.center_distance
+    assert pair.transverse_base_backlash == max(computed, 0.0)
+    assert pair.normal_backlash >= 0.0
+
+
+@pytest.mark.parametrize("row", PAIRS, ids=names)
+def test_teeth_that_are_too_thick_are_accepted_up_to_the_rounding_and_refused_beyond(row: Row) -> None:
+    pair = gear_pair(printed_case(row))
+    shifts = [gear.profile_shift_coefficient for gear in (pair.pinion, pair.wheel)]
+    digit = 2.0 * PROFILE_SHIFT.rounding(*shifts) or 1e-4
+    kept_tip = replace(pair.wheel, tip_diameter=2.0 * pair.wheel.tip_radius)
+    for steps in range(1, 400):
+        wheel = replace(kept_tip, profile_shift_coefficient=round(shifts[1] + steps * digit, 6))
+        jam = -base_circle_backlash(pair.pinion, wheel, pair.working_pressure_angle)
+        if jam > largest_rounding(pair, wheel):
+            with pytest.raises(InfeasibleGeometry, match="where the teeth jam"):
+                replace(pair, wheel=wheel)
+            return
+        assert replace(pair, wheel=wheel).transverse_base_backlash == max(-jam, 0.0)
+    pytest.fail("no thickness is refused")
+
+
+def largest_rounding(pair: ParallelAxes, wheel: Toothing) -> float:
+    """Return the most that half of each last digit changes the backlash, by moving the printed values."""
+    pinion = pair.pinion
+    shifts = (pinion.profile_shift_coefficient, wheel.profile_shift_coefficient)
+    values = (pinion.normal_module, pinion.helix_angle, pair.center_distance, *shifts)
+    half_shift = PROFILE_SHIFT.rounding(*(shift for shift in shifts if shift))
+    halves = (
+        NORMAL_MODULE.rounding(values[0]),
+        HELIX_ANGLE.rounding(values[1]),
+        CENTER_DISTANCE.rounding(values[2]),
+        *(half_shift if shift else 0.0 for shift in shifts),
+    )
+
+    def moved(index: int, by: float) -> float:
+        return nominal_backlash(pair, *(value + by * (i == index) for i, value in enumerate(values)))
+
+    return sum(0.5 * abs(moved(i, half) - moved(i, -half)) for i, half in enumerate(halves))
+
+
+def nominal_backlash(pair: ParallelAxes, m_n: float, beta: float, a: float, x_1: float, x_2: float) -> float:
+    """Return the backlash along the transverse line of action of printed values, m."""
+    tangent, teeth = math.tan(pair.pinion.normal_pressure_angle), pair.wheel.sign * pair.wheel.teeth
+    transverse = math.atan(tangent / math.cos(beta))
+    base_module = m_n / math.cos(beta) * math.cos(transverse)
+    total = pair.pinion.teeth + teeth
+    working = math.acos(0.5 * base_module * abs(total) / a)
+    inv = involute_function
+    return base_module * (total * (inv(working) - inv(transverse)) - 2.0 * (x_1 + x_2) * tangent)
+
+
+@pytest.mark.parametrize("row", sorted(PAIRS, key=jams_most)[:TABLES], ids=names)
+def test_a_printed_pair_gets_its_table(row: Row) -> None:
+    case = printed_case(row, MODEL)
+    pair = gear_pair(case)
+    table = analyze(pair, **analysis_arguments(case))
+    assert (table.status == 0).all()
+    assert table.static_transmission_error.min() > 0.0
+    notes = [one["reason"] for one in table.metadata.receipt["assumptions"]]
+    assert any("rounding of the printed data" in note for note in notes) == (pair.rounding_jam > 1e-9)
