@@ -50,7 +50,7 @@ def constant_speed_scene(table: SteDatabase, rpm: float, seconds: float) -> Scen
     given, _ = scene_of(SCENE)
     scene = dynamic_scene(given, {mesh.name: table for mesh in given.meshes})
     drive = replace(scene.drives[0], speed=TimeLaw.constant(rpm * math.pi / 30.0))
-    outputs = Outputs(bearing_forces=False, energy_audit=False)
+    outputs = Outputs(20e3, bearing_forces=False, energy_audit=False, anti_alias=False)
     return replace(scene, drives=(drive,), duration=seconds, outputs=outputs)
 
 

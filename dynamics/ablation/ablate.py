@@ -15,6 +15,7 @@ from dynamics.integrators import Progress
 from dynamics.results import RunResult
 from dynamics.simulate import simulate
 from dynamics.system import Scene
+from dynamics.system.assemble import assemble
 from dynamics.system.effects import EFFECTS, MESH_EFFECTS
 from dynamics.types import FloatArray, Json
 from dynamics.worth import Worth, decide_effects, estimate_worths
@@ -155,7 +156,8 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
     for name in only or ():
         one_of("only", name, known)
     asked = known if only is None else [name for name in known if name in only]
-    scene = replace(decide_effects(scene).scene, on_violation="report", tolerance=None)
+    scene = assemble(decide_effects(scene).scene).resolved_scene  # one output grid for all runs
+    scene = replace(scene, on_violation="report", tolerance=None)
     result, seconds = _timed(scene)
     worths = estimate_worths(scene, SETTLED)
     nominal, found, left_out = run_figures(result, seconds), [], {}

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from dynamics.bodies.steel import STEEL_DENSITY
 from dynamics.checks import not_negative, positive
 from dynamics.errors import InputError
-
-STEEL_DENSITY = 7850.0
 
 
 @dataclass(frozen=True)

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
+from dynamics.bodies.places import SAME_PLACE
 from dynamics.bodies.timoshenko_beam import BeamSection
 from dynamics.checks import finite, not_negative, positive
 from dynamics.errors import InputError
 
 DEFAULT_DAMPING_RATIO = 0.005
-LENGTHS_AGREE = 1e-9  # relative
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Shaft:
     def _check_sections(self) -> None:
         """Sections make up the shaft, and its inertia."""
         together = math.fsum(section.length for section in self.sections)
-        if abs(together / self.length - 1.0) > LENGTHS_AGREE:
+        if abs(together / self.length - 1.0) > SAME_PLACE:
             bound = f"sections that are together as long as the shaft, {self.length:g} m"
             raise InputError("sections", f"{together:g} m", bound)
         if self.inertia != Inertia():

@@ -9,14 +9,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from dynamics.bodies.inertia import STEEL_DENSITY
-from dynamics.checks import not_negative, positive, within
+from dynamics.bodies.places import SAME_PLACE, nearest_on, on_length
+from dynamics.bodies.steel import STEEL_DENSITY, STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
+from dynamics.checks import finite, not_negative, positive, within
 from dynamics.errors import InputError
 from dynamics.types import FloatArray, IntArray
 
 PER_NODE = 6
 """Freedoms of a node: x, y, z, tilt_x, tilt_y, rotation about z."""
-SAME_PLACE = 1e-9  # of the length of the beam: stations nearer than this share a node
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,8 @@ class BeamSection:
     length: float
     outer_diameter: float
     bore_diameter: float = 0.0
-    youngs_modulus: float = 206e9
-    poisson_ratio: float = 0.3
+    youngs_modulus: float = STEEL_YOUNGS_MODULUS
+    poisson_ratio: float = STEEL_POISSON_RATIO
     density: float = STEEL_DENSITY
 
     def __post_init__(self) -> None:
@@ -123,9 +123,11 @@ def timoshenko_beam(
     if not longest > 0.0:
         raise InputError("longest", longest, "above 0")
     ends = np.cumsum([0.0, *(section.length for section in sections)])
+    length = float(ends[-1])
     for index, place in enumerate(stations):
-        within(f"stations[{index}]", place, 0.0, float(ends[-1]))
-    node = _nodes(ends, stations, longest)
+        if not on_length(finite(f"stations[{index}]", place), length):
+            raise InputError(f"stations[{index}]", place, f"on the beam, from 0 to {length:g} m")
+    node = _nodes(ends, [nearest_on(place, length) for place in stations], longest)
     size = PER_NODE * node.size
     mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
     for k, (left, right) in enumerate(pairwise(node)):

@@ -99,7 +99,7 @@ def run_in_exudyn(scene: Scene, *, solver: str = "GeneralizedAlpha", step: float
     mbs.Assemble()
     began = clock.process_time()
     solved = mbs.SolveDynamic(
-        _settings(package, scene, step), solverType=getattr(package.DynamicSolverType, solver)
+        _settings(package, system, step), solverType=getattr(package.DynamicSolverType, solver)
     )
     seconds = clock.process_time() - began
     if not solved:
@@ -202,15 +202,15 @@ def _add_bushings(mbs: Any, markers: list[Any], bushings: tuple[Bushing, ...]) -
         )
 
 
-def _settings(package: Any, scene: Scene, step: float) -> Any:
+def _settings(package: Any, system: System, step: float) -> Any:
     """Return the settings of a run of fixed steps that keeps the output grid in memory."""
     settings = package.SimulationSettings()
-    settings.timeIntegration.endTime = scene.duration
-    settings.timeIntegration.numberOfSteps = math.ceil(scene.duration / step * (1.0 - 1e-9))
+    settings.timeIntegration.endTime = system.scene.duration
+    settings.timeIntegration.numberOfSteps = math.ceil(system.scene.duration / step * (1.0 - 1e-9))
     settings.timeIntegration.automaticStepSize = False
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
-    settings.solution.sensors.writePeriod = 1.0 / scene.outputs.sample_rate
+    settings.solution.sensors.writePeriod = 1.0 / system.sampling.rate
     return settings
 
 

@@ -10,11 +10,11 @@ from dynamics.errors import InputError
 from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.mesh_table import MeshTable, check_table
 from dynamics.system.assemble import assemble
+from dynamics.system.base_pitches import EQUAL
 from dynamics.system.flanks import DAMPING_REACH
 from dynamics.system.scene import Scene
 
 MOST_TEETH = 100_000
-BASE_PITCH_AGREEMENT = 1e-9
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class MeshElement:
             integer(f"teeth[{index}]", self.teeth[index], 1, MOST_TEETH)
             positive(f"base_radius[{index}]", self.base_radius[index])
         driven = self.base_radius[1] / self.teeth[1]
-        if abs(driven * self.teeth[0] / self.base_radius[0] - 1.0) > BASE_PITCH_AGREEMENT:
+        if abs(driven * self.teeth[0] / self.base_radius[0] - 1.0) > EQUAL:
             bound = f"{self.base_radius[0] * self.teeth[1] / self.teeth[0]:.12g}, of the driver's base pitch"
             raise InputError("base_radius[1]", self.base_radius[1], bound, "Base pitches must agree to 1e-9.")
         within("base_helix_angle", self.base_helix_angle, -1.2, 1.2, "Angles are in radians.")
@@ -98,8 +98,9 @@ def mesh_element(scene: Scene, mesh: str) -> MeshElement:
     if mesh not in names:
         raise InputError("mesh", mesh, f"one of {', '.join(names)}")
     index = names.index(mesh)
-    flanks, given = assemble(scene).flanks, scene.meshes[index]
-    driver, driven = scene.gear(given.driver), scene.gear(given.driven)
+    system = assemble(scene)
+    flanks, given = system.flanks, scene.meshes[index]
+    driver, driven = system.scene.gear(given.driver), system.scene.gear(given.driven)
     return MeshElement(
         given.table if given.technique == "variable_torque" else flanks.used[index],
         (driver.teeth, driven.teeth),

@@ -19,7 +19,7 @@ from dynamics.export.datasets import (
     nodes_dataset,
     units_dataset,
 )
-from dynamics.orders import order_waterfall, window_spectrum
+from dynamics.orders import highest_valid_order, order_waterfall, window_spectrum
 from dynamics.results import RunResult
 from dynamics.results.series import over_time
 from dynamics.types import FloatArray, Json
@@ -135,7 +135,7 @@ def _values(result: RunResult, series: str, function: str) -> tuple[float, float
     if function == "spectrum":
         lines = window_spectrum(result, series, float(result.time[0]), float(result.time[-1]))
         return 0.0, lines.resolution, lines.amplitude
-    orders = order_waterfall(result, series, highest=HIGHEST_ORDER)
+    orders = order_waterfall(result, series, highest=min(HIGHEST_ORDER, max(highest_valid_order(result), 1)))
     mean = np.sqrt(np.mean(orders.amplitude**2, axis=-2))
     return 0.0, float(orders.line[1]), np.asarray(mean)
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.checks import finite, positive
+from dynamics.checks import finite, not_negative
 from dynamics.forces.mesh_table import DERIVATIVES, LEVERS, MeshTable, check_table
 from dynamics.forces.technique import PlainTable
 from dynamics.types import FloatArray
@@ -26,7 +26,8 @@ class CoastFlank:
     Attributes
     ----------
     backlash : float
-        m, along the transverse line of action (an arc of the base circles), at the scene's centre distance.
+        m, >= 0, along the transverse line of action (an arc of the base circles), at the scene's centre
+        distance; 0 is that of nominal gears.
     thickness : float
         Thickness of the driver's teeth over the pitch, both on the operating pitch circle.
     table : MeshTable or None
@@ -40,7 +41,7 @@ class CoastFlank:
     table: MeshTable | None = None
 
     def __post_init__(self) -> None:
-        positive("backlash", self.backlash)
+        not_negative("backlash", self.backlash)
         finite("thickness", self.thickness)
         if self.table is not None:
             check_table("table", self.table)

@@ -11,6 +11,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from dynamics.forces.compiled import inner
 from dynamics.forces.grid_energy import grid_energy
 from dynamics.forces.grid_lookup import (
@@ -25,7 +27,8 @@ from dynamics.forces.grid_lookup import (
 from dynamics.forces.grid_tables import GridTables
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.routine import routine
-from dynamics.types import FloatArray, IntArray
+from dynamics.forces.sliding_friction import Lever, Sliding, scaled, sliding
+from dynamics.types import BoolArray, FloatArray, IntArray
 
 CENTROID, SLIDING_SHARE, SLIDING_LEVER = 2, 4, 6  # channels
 
@@ -56,6 +59,9 @@ class SpatialFlankLaws(NamedTuple):
         Friction force over the transverse force of a pair.
     radius : (k,) array
         Of the row of rolling, m.
+    running : (k,) bool array
+        Whether friction has the directions of running gears, at rest as well, instead of those of the sliding
+        velocity: for studies of small motions about gears that run.
     """
 
     grid: GridTables
@@ -68,15 +74,12 @@ class SpatialFlankLaws(NamedTuple):
     mid_face: FloatArray
     friction: FloatArray
     radius: FloatArray
+    running: BoolArray
 
 
-class Lever(NamedTuple):
-    """A quantity of the table with its derivatives in d, m and a."""
-
-    value: float
-    d: float
-    m: float
-    a: float
+def as_running(laws: SpatialFlankLaws) -> SpatialFlankLaws:
+    """Return `laws` with friction as of gears that run in the sense of the scene."""
+    return laws._replace(running=np.ones_like(laws.running))
 
 
 @inner
@@ -161,19 +164,35 @@ def spatial_flank(laws: SpatialFlankLaws, place: int, local: LocalState, row: in
         back = Lever(-arm.value, -arm.d, -arm.m, -arm.a)
         _in_proportion(force, tangent, viscous, row, row + to_m, rows, back, read_m, to_a)
     if to_s > 0:
-        share = _friction(laws, place, cell, found, SLIDING_SHARE, 1.0)
-        lever = _friction(laws, place, cell, found, SLIDING_LEVER, laws.radius[place])
-        _in_proportion(force, tangent, viscous, row, row + to_s, rows, share, read_m, to_a)
-        _in_proportion(force, tangent, viscous, row, row + to_s + 1, rows, lever, read_m, to_a)
+        slip, spin = (
+            rate[row + to_s] + local.drift[row + to_s],
+            rate[row + to_s + 1] + local.drift[row + to_s + 1],
+        )
+        slid = _sliding(laws, place, cell, found, slip, spin)
+        _in_proportion(force, tangent, viscous, row, row + to_s, rows, slid.along, read_m, to_a)
+        _in_proportion(force, tangent, viscous, row, row + to_s + 1, rows, slid.about, read_m, to_a)
+        viscous[row + to_s, to_s] += force[row] * slid.along_rate
+        viscous[row + to_s, to_s + 1] += force[row] * slid.mixed_rate
+        viscous[row + to_s + 1, to_s] += force[row] * slid.mixed_rate
+        viscous[row + to_s + 1, to_s + 1] += force[row] * slid.about_rate
 
 
 @inner
-def _friction(
-    laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce, channel: int, radius: float
-) -> Lever:
-    """Return the force along a row of friction over that along the line of action."""
-    found, factor = _lever(laws, place, cell, force, channel), laws.friction[place] / radius
-    return Lever(factor * found.value, factor * found.d, factor * found.m, factor * found.a)
+def _sliding(
+    laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce, slip: float, roll: float
+) -> Sliding:
+    """Return the forces along the rows of sliding and rolling, whose rates are `slip` and `roll`, m/s."""
+    share = _lever(laws, place, cell, force, SLIDING_SHARE)
+    lever = _lever(laws, place, cell, force, SLIDING_LEVER)
+    mu, per_radius = laws.friction[place], 1.0 / laws.radius[place]
+    found = sliding(share, lever, slip, roll * per_radius, laws.running[place])
+    return Sliding(
+        scaled(found.along, mu),
+        scaled(found.about, mu * per_radius),
+        mu * found.along_rate,
+        mu * per_radius * found.mixed_rate,
+        mu * per_radius * per_radius * found.about_rate,
+    )
 
 
 @inner

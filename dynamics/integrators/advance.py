@@ -1,4 +1,4 @@
-"""Compiled time stepping: steps, error control, output on a uniform grid."""
+"""Compiled time stepping: steps, error control, samples."""
 
 from __future__ import annotations
 
@@ -9,13 +9,15 @@ from dynamics.integrators.explicit_step import accelerate, explicit_step
 from dynamics.integrators.implicit_step import implicit_step, solve_stage
 from dynamics.integrators.law_knots import next_jump, step_to_jump
 from dynamics.integrators.powers import add_drive_work, write_powers
+from dynamics.integrators.sample_ring import Sampler, SampleRing
+from dynamics.integrators.sampler import move_sampled_trains, sample_start, sample_step
 from dynamics.integrators.step_control import Control, next_rung, slow_enough, step_error
 from dynamics.integrators.table_work import add_table_work, keep_motion
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
-from dynamics.integrators.workspace import Count, Workspace
+from dynamics.integrators.workspace import LOSSES, Count, Workspace
 from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import move_free_trains
-from dynamics.types import FloatArray, IntArray, RunStatus
+from dynamics.system.sampled_states import States
+from dynamics.types import RunStatus
 
 COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
 STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
@@ -30,24 +32,32 @@ def prepare_steps(system: SystemArrays, work: Workspace, implicit: bool, audit: 
         routine.prepare(system, work)
 
 
+def prepare_samples(
+    system: SystemArrays, work: Workspace, sampler: Sampler, ring: SampleRing, out: States
+) -> None:
+    """Compile what samples the steps."""
+    for routine in (sample_start, sample_step):
+        routine.prepare(system, work, sampler, ring, out)
+
+
 @compiled
 def advance(
     system: SystemArrays,
     work: Workspace,
     control: Control,
+    sampler: Sampler,
+    ring: SampleRing,
     stop: float,
-    sample_rate: float,
-    q_out: FloatArray,
-    v_out: FloatArray,
-    moved_out: IntArray,
+    out: States,
 ) -> int:
     """Step until the time passes `stop` and return a `RunStatus`.
 
-    The output samples at k / sample_rate go into the rows k - count[FIRST_ROW] of `q_out`, `v_out` and
-    `moved_out`. Steps never end at `stop` on purpose: cutting a run into chunks changes no bit of it.
+    The output sample k goes into the row k - count[FIRST_ROW] of `out`, half a filter after its time. Steps
+    never end at `stop` on purpose: cutting a run into chunks changes no bit of it.
     """
     if work.counts[Count.ACCEPTED] == 0:
-        _start(system, work, control, q_out, v_out, moved_out)
+        _enter(system, work, control)
+        sample_start(system, work, sampler, ring, out)
     while work.time[0] < stop:
         count = work.counts
         if count[Count.ACCEPTED] + count[Count.REJECTED] >= control.step_limit:
@@ -70,8 +80,9 @@ def advance(
             count[Count.RUNG] = next_rung(work, control, error, accepted)
         if accepted:
             end = jump if landing else work.time[0] + (work.ladder[rung] + work.time_rest[0])
-            _accept(system, work, control, rung, end, sample_rate, q_out, v_out, moved_out)
-            move_free_trains(system.reference, work.moved, work.q)
+            sample_step(system, work, sampler, ring, work.ladder[rung], end, out)
+            _accept(system, work, control, rung, end)
+            move_sampled_trains(system, work, ring)
             if landing:
                 _enter(system, work, control)
             else:
@@ -83,24 +94,6 @@ def advance(
         if below_the_ladder or not control.adaptive:
             return NOT_FINITE if diverged else STEP_FLOOR
     return COMPLETED
-
-
-@inner
-def _start(
-    system: SystemArrays,
-    work: Workspace,
-    control: Control,
-    q_out: FloatArray,
-    v_out: FloatArray,
-    moved_out: IntArray,
-) -> None:
-    """Evaluate the state at t = 0, and store sample 0."""
-    _enter(system, work, control)
-    for i in range(work.q.size):
-        q_out[0, i], v_out[0, i] = work.q[i], work.v[i]
-    for k in range(work.moved.size):
-        moved_out[0, k] = work.moved[k]
-    work.counts[Count.OUTPUT] = 1
 
 
 @inner
@@ -117,31 +110,14 @@ def _enter(system: SystemArrays, work: Workspace, control: Control) -> None:
 
 
 @inner
-def _accept(
-    system: SystemArrays,
-    work: Workspace,
-    control: Control,
-    rung: int,
-    end: float,
-    sample_rate: float,
-    q_out: FloatArray,
-    v_out: FloatArray,
-    moved_out: IntArray,
-) -> None:
-    """Store the samples inside the step, add its works, and make its end the new state."""
+def _accept(system: SystemArrays, work: Workspace, control: Control, rung: int, end: float) -> None:
+    """Add the step's works, and make its end the new state."""
     step = work.ladder[rung]
-    sample, first = work.counts[Count.OUTPUT], work.counts[Count.FIRST_ROW]
-    while sample - first < q_out.shape[0] and sample / sample_rate <= end:
-        row = sample - first
-        _interpolate(work, step, sample / sample_rate - work.time[0], q_out[row], v_out[row])
-        for k in range(work.moved.size):
-            moved_out[row, k] = work.moved[k]
-        sample += 1
-    work.counts[Count.OUTPUT] = sample
     if control.audit:
         _add_works(work, control.implicit, step)
         add_drive_work(system, work)
         add_table_work(system, work, step)
+        _watch_losses(work)
     _move_on(work, control.implicit, step, end)
     work.counts[Count.ACCEPTED] += 1
     if rung < work.ladder.size - 2:
@@ -169,14 +145,12 @@ def _move_on(work: Workspace, implicit: bool, step: float, end: float) -> None:
 
 
 @inner
-def _interpolate(work: Workspace, step: float, elapsed: float, q: FloatArray, v: FloatArray) -> None:
-    """Cubic Hermite interpolation of displacements (with rates) and of rates (with accelerations)."""
-    u = elapsed / step
-    end = u * u * (3.0 - 2.0 * u)
-    first, last = step * u * (1.0 - u) ** 2, -step * u * u * (1.0 - u)
-    for i in range(q.size):
-        q[i] = work.q[i] + end * (work.q_new[i] - work.q[i]) + first * work.v[i] + last * work.v_new[i]
-        v[i] = work.v[i] + end * (work.v_new[i] - work.v[i]) + first * work.a[i] + last * work.a_new[i]
+def _watch_losses(work: Workspace) -> None:
+    """Keep the highest value of each loss, and how far it fell below it."""
+    for k in range(work.highest.size):
+        value = work.work[LOSSES[k]]
+        work.highest[k] = max(work.highest[k], value)
+        work.fallen[k] = max(work.fallen[k], work.highest[k] - value)
 
 
 @inner

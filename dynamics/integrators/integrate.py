@@ -12,6 +12,7 @@ from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.taking_over import Taken, Trail
 from dynamics.system import Integration
 from dynamics.system.assemble import System
+from dynamics.system.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
 
@@ -23,16 +24,27 @@ class Trajectory(Ending):
     ----------
     time : (T,) array
         Output grid as far as the run came, s.
-    q, v : (T, n) arrays
-        Deviations from the kinematic motion and their rates.
-    moved : (T, k) int array
-        Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
+    states : States
+        The samples.
     """
 
     time: FloatArray
-    q: FloatArray
-    v: FloatArray
-    moved: IntArray
+    states: States
+
+    @property
+    def q(self) -> FloatArray:
+        """Deviations from the kinematic motion, (T, n): points of the motion, not filtered."""
+        return self.states.q
+
+    @property
+    def v(self) -> FloatArray:
+        """Their rates, (T, n)."""
+        return self.states.v
+
+    @property
+    def moved(self) -> IntArray:
+        """See `States`."""
+        return self.states.moved
 
 
 def integrate(
@@ -53,11 +65,10 @@ def integrate(
     """
     began = now()
     march = start_march(system, start, integration, velocity)
-    sink = MemorySink(march.samples, march.work.q.size, march.work.moved.size)
+    sink = MemorySink(march.samples, march.widths)
     if taken is not None:
         taken.into(march, sink)
     status = march_on(march, sink, progress, cancel, None if trail is None else trail.watch(march))
-    end = ending(march, status, now() - began)
-    states = sink.states(0, end.samples)
-    time = np.arange(end.samples) / system.scene.outputs.sample_rate
-    return Trajectory(**vars(end), time=time, q=states.q, v=states.v, moved=states.moved)
+    end = ending(march, sink, status, now() - began)
+    time = np.arange(end.samples) / system.sampling.rate
+    return Trajectory(**vars(end), time=time, states=sink.states(0, end.samples))

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable
+from copy import deepcopy
 from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.forces.by_address import by_address
-from dynamics.integrators.advance import advance, prepare_steps
+from dynamics.forces.by_address import by_address, by_value
+from dynamics.integrators.advance import advance, prepare_samples, prepare_steps
 from dynamics.integrators.energy import stored_energy
+from dynamics.integrators.sample_figures import SampleFigures, sample_figures
+from dynamics.integrators.sample_ring import Sampler, SampleRing, make_ring, make_sampler
+from dynamics.integrators.sampler import continue_past_the_end, sample_start
 from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.step_control import Control
@@ -19,6 +23,7 @@ from dynamics.integrators.workspace import Count, Workspace, make_workspace, ste
 from dynamics.system import Integration
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.assemble import System
+from dynamics.system.sampled_states import Widths
 from dynamics.types import FloatArray, IntArray, RunStatus
 
 Progress = Callable[[float, str], None]
@@ -44,7 +49,10 @@ class March:
     system : System
     work : Workspace
         The state, changed in place.
+    ring : SampleRing
+        The points that the anti-alias filter sees, likewise.
     control : Control
+    sampler : Sampler
     initial : (3,) array
         Kinetic, bushing and mesh energy at the start, J.
     samples : int
@@ -53,10 +61,23 @@ class March:
 
     system: System
     work: Workspace
+    ring: SampleRing
     control: Control
-    compiled: tuple[SystemArrays, Workspace, Control]
+    sampler: Sampler
+    compiled: tuple[SystemArrays, Workspace, Control, Sampler, SampleRing]
     initial: FloatArray
     samples: int
+
+    @property
+    def state(self) -> tuple[Workspace, SampleRing]:
+        """All that changes on the way."""
+        return self.work, self.ring
+
+    @property
+    def widths(self) -> Widths:
+        """Sizes of the sampled states."""
+        channels, rows = self.ring.point.shape[1], self.ring.local.force.size
+        return Widths(self.work.q.size, self.work.moved.size, channels, rows)
 
 
 @dataclass(frozen=True)
@@ -74,12 +95,16 @@ class Ending:
         Kinetic, bushing and mesh energy at the start and at the end, J.
     work : (7,) array
         Works over the run, J, in the order of `Power`.
+    fallen : float
+        How far a loss fell below its highest value at most, J.
     count : int array
         Statistics, in the order of `Count`.
     step_range : (2,) array
         Smallest and largest accepted step, s.
     seconds : float
         Wall time of the stepping, s; in a process's first run with reading or making the compiled code.
+    figures : SampleFigures
+        Peaks and rms over the run, and what the anti-alias filter took away.
     """
 
     status: RunStatus
@@ -87,9 +112,11 @@ class Ending:
     end: float
     stored: FloatArray
     work: FloatArray
+    fallen: float
     count: IntArray
     step_range: FloatArray
     seconds: float
+    figures: SampleFigures
 
 
 def start_march(
@@ -101,12 +128,24 @@ def start_march(
     if velocity is not None:
         work.v[:] = velocity
     scene = system.scene
-    samples = int(np.floor(scene.duration * scene.outputs.sample_rate * (1.0 + 1e-12))) + 1
+    samples = int(np.floor(scene.duration * system.sampling.rate * (1.0 + 1e-12))) + 1
     initial = stored_energy(system.arrays, 0.0, start.displacement, work.v, work.moved)
     control = _control(system, integration)
-    compiled = (by_address(system.arrays), by_address(work), by_address(control))
-    prepare_steps(*compiled[:2], control.implicit, control.audit)
-    return March(system, work, control, compiled, initial, samples)
+    sampler = make_sampler(system)
+    ring = make_ring(system.arrays, sampler)
+    run = by_address(system.arrays), by_address(work)
+    samples_of = by_address(sampler), by_address(ring)
+    compiled = (*run, by_address(control), *samples_of)
+    march = March(system, work, ring, control, sampler, compiled, initial, samples)
+    prepare_steps(*run, control.implicit, control.audit)
+    prepare_samples(*run, *samples_of, by_address(march.widths.states(0)))
+    return march
+
+
+def sample_rest(march: March, sink: StateSink) -> None:
+    """Sample the start of a march that goes nowhere."""
+    arrays, work, _, sampler, ring = march.compiled
+    sample_start(arrays, work, sampler, ring, by_address(sink.room(0, 1)))
 
 
 def march_on(
@@ -118,7 +157,7 @@ def march_on(
 ) -> RunStatus:
     """Go on to the end of the run, block by block; asked by `cancel` after each block whether to stop."""
     duration = march.system.scene.duration
-    block = min(duration / CHUNKS, BLOCK / march.system.scene.outputs.sample_rate)
+    block = min(duration / CHUNKS, BLOCK / march.system.sampling.rate)
     while True:
         stop = min(float(march.work.time[0]) + block, duration)
         status = _advance_to(march, stop, sink)
@@ -134,30 +173,44 @@ def march_on(
 
 def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
     """Step until the time passes `stop`; the last step may pass it by the largest one."""
-    rate, counts = march.system.scene.outputs.sample_rate, march.work.counts
+    rate, counts = march.system.sampling.rate, march.work.counts
     first = int(counts[Count.OUTPUT])
     last = int(np.floor((stop + float(march.work.ladder[0])) * rate)) + 2
     room = sink.room(first, max(min(last, march.samples) - first, 1 if first == 0 else 0))
     counts[Count.FIRST_ROW] = first
-    status = RunStatus(advance(*march.compiled, stop, rate, room.q, room.v, room.moved))
+    status = RunStatus(advance(*march.compiled, stop, by_address(room)))
     sink.keep(first, int(counts[Count.OUTPUT]) - first)
     return status
 
 
-def ending(march: March, status: RunStatus, seconds: float) -> Ending:
-    """Return how the march stands."""
-    work = march.work
-    end = float(work.time[0])
+def ending(march: March, sink: StateSink, status: RunStatus, seconds: float) -> Ending:
+    """Return how the march stands; the samples that the filter still holds go into `sink`.
+
+    They are filtered as if the motion went on turned about its last point. The march itself stays as it
+    is, and can go on.
+    """
+    work, ring = march.work, deepcopy(by_value(march.ring))
+    end, before = float(work.time[0]), int(work.counts[Count.OUTPUT])
+    counted = work._replace(counts=work.counts.copy())
+    due = int(counted.counts[Count.POINT] - 1) // march.sampler.factor + 1
+    samples = min(due, march.samples)
+    room = sink.room(before, samples - before)
+    counted.counts[Count.FIRST_ROW] = before
+    held = by_address(counted), march.compiled[3], by_address(ring)
+    continue_past_the_end(*held, march.sampler.taps.size // 2, by_address(room))
+    sink.keep(before, samples - before)
     final = stored_energy(march.system.arrays, end, work.q, work.v, work.moved)
     return Ending(
         status,
-        int(work.counts[Count.OUTPUT]),
+        samples,
         end,
         np.array([march.initial, final]),
         work.work,
+        float(np.max(work.fallen)),
         work.counts,
         _step_range(work),
         seconds,
+        sample_figures(march.system, ring, int(work.counts[Count.POINT]), samples),
     )
 
 

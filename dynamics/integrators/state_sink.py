@@ -3,35 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
-import numpy as np
-
-from dynamics.types import FloatArray, IntArray
+from dynamics.system.sampled_states import States, Widths
 
 BLOCK = 8192
 """Samples that are in memory at once where a run is streamed, and that series are made of at once always, so
 that both ways give the same bits."""
-
-
-class States(NamedTuple):
-    """Sampled states: n freedoms, k laws.
-
-    Attributes
-    ----------
-    q, v : (T, n) arrays
-        Deviations from the kinematic motion and their rates.
-    moved : (T, k) int array
-        Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
-    """
-
-    q: FloatArray
-    v: FloatArray
-    moved: IntArray
-
-    def rows(self, first: int, stop: int) -> States:
-        """Return a view of the samples `first` to `stop` - 1."""
-        return States(self.q[first:stop], self.v[first:stop], self.moved[first:stop])
 
 
 class StateSink(Protocol):
@@ -50,9 +28,8 @@ class StateSink(Protocol):
 class MemorySink:
     """All samples in arrays made once."""
 
-    def __init__(self, samples: int, freedoms: int, laws: int) -> None:
-        moved = np.zeros((samples, laws), dtype=np.int64)
-        self.all = States(np.zeros((samples, freedoms)), np.zeros((samples, freedoms)), moved)
+    def __init__(self, samples: int, widths: Widths) -> None:
+        self.all = widths.states(samples)
 
     def room(self, first: int, count: int) -> States:
         """Return a view of the rows."""

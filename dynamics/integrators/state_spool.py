@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import fcntl
 import os
+from collections.abc import Callable
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO
@@ -17,20 +18,20 @@ import numpy as np
 
 from dynamics.errors import InputError, ResultError
 from dynamics.integrators.checkpoint import Arrays, read_checkpoint, write_checkpoint
-from dynamics.integrators.state_sink import States
+from dynamics.integrators.state_sink import blocks
+from dynamics.system.sampled_states import States, Widths
 from dynamics.types import FloatArray
 
 
 class StateSpool:
     """A `StateSink` in two files: `path`.states and `path`.checkpoint.
 
-    A record is q, v and `moved` of one sample, 8 bytes each.
+    A record is one sample of all parts of `States`, 8 bytes each.
     """
 
-    def __init__(self, path: Path, freedoms: int, laws: int) -> None:
+    def __init__(self, path: Path, widths: Widths) -> None:
         self._checkpoint = path.with_name(f"{path.name}.checkpoint")
-        self._freedoms, self._laws = freedoms, laws
-        self._room = self._rows(0)
+        self.widths, self._room = widths, widths.states(0)
         states = path.with_name(f"{path.name}.states")
         states.touch()
         self._file: BinaryIO = states.open("r+b")
@@ -51,33 +52,47 @@ class StateSpool:
     @property
     def _record(self) -> int:
         """Columns of a record."""
-        return 2 * self._freedoms + self._laws
+        return sum(part.shape[1] for part in self._room)
 
     def room(self, first: int, count: int) -> States:
         """Return rows that are used again for the next room."""
         if self._room.q.shape[0] < count:
-            self._room = self._rows(count)
+            self._room = self.widths.states(count)
         return self._room.rows(0, count)
-
-    def _rows(self, count: int) -> States:
-        """Allocate."""
-        shape = (count, self._freedoms)
-        return States(np.zeros(shape), np.zeros(shape), np.zeros((count, self._laws), dtype=np.int64))
 
     def keep(self, first: int, count: int) -> None:
         """Append."""
         kept = self._room.rows(0, count)
         self._file.seek(8 * self._record * first)
-        self._file.write(np.hstack([kept.q, kept.v, kept.moved.view(np.float64)]).tobytes())
+        self._file.write(np.hstack([part.view(np.float64) for part in kept]).tobytes())
 
     def states(self, first: int, stop: int) -> States:
         """Read the records back."""
-        self._file.seek(8 * self._record * first)
-        content = self._file.read(8 * self._record * (stop - first))
-        table: FloatArray = np.frombuffer(content).reshape(stop - first, self._record)
-        n = self._freedoms
-        q, v, moved = (np.ascontiguousarray(part) for part in np.split(table, (n, 2 * n), axis=1))
-        return States(q, v, moved.view(np.int64))
+        return self._read(self.widths, first, stop)
+
+    def _read(self, widths: Widths, first: int, stop: int) -> States:
+        """Read records of these widths."""
+        parts = widths.states(0)
+        columns = [part.shape[1] for part in parts]
+        record = sum(columns)
+        self._file.seek(8 * record * first)
+        content = self._file.read(8 * record * (stop - first))
+        table: FloatArray = np.frombuffer(content).reshape(stop - first, record)
+        q, v, moved, *rest = (
+            np.ascontiguousarray(part) for part in np.split(table, np.cumsum(columns)[:-1], axis=1)
+        )
+        return States(q, v, moved.view(np.int64), *rest)
+
+    def rewrite(self, before: Widths, samples: int, convert: Callable[[States], States]) -> None:
+        """Replace `samples` records of the narrower widths `before` by what `convert` makes of them.
+
+        From the last block to the first: a wider record never reaches a narrower one that is still to come.
+        """
+        for first, stop in reversed(list(blocks(samples))):
+            converted = convert(self._read(before, first, stop))
+            for target, values in zip(self.room(first, stop - first), converted, strict=True):
+                target[...] = values
+            self.keep(first, stop - first)
 
     def save(self, state: Any, **facts: Any) -> None:
         """Make all that was kept durable, then write a checkpoint that counts on it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -67,7 +67,7 @@ def _newton(
 ) -> StaticSolution:
     """Search from `q`, with meshes that may part on the way or not."""
     arrays = system.arrays
-    found = force_balance(arrays, time, q, np.zeros(q.size), external)
+    found = _balance(arrays, time, q, external)
     scale = max(
         float(np.max(np.abs(external / arrays.scale), initial=0.0)),
         float(np.max(np.abs(found.local.force), initial=0.0)),
@@ -85,18 +85,32 @@ def _newton(
 
 
 def _external(system: System, time: float) -> FloatArray:
-    """Return loads and inertial forces, (n,): of the laws, and of free trains that the loads accelerate."""
+    """Return loads and inertial forces of the laws, (n,)."""
     arrays = system.arrays
     acceleration = observe_laws(arrays, np.array([time]))[3, :, 0]
     torque = np.array([float(load.torque(time)) for load in system.scene.loads])
     force = torque @ arrays.load.direction + acceleration @ arrays.inertial + arrays.constant
-    free = arrays.reference.freedom >= 0
-    if np.any(free):
-        vector = arrays.reference.vector[free]
-        unbalanced = force + _by_speed(arrays, time)
-        taken = np.linalg.solve(vector @ arrays.mass @ vector.T, vector @ unbalanced)
-        force = force - arrays.mass @ vector.T @ taken
     return np.asarray(force)
+
+
+def _accelerating(arrays: SystemArrays, values: FloatArray) -> FloatArray:
+    """Return `values`, forces (n,) or their derivatives (n, n), less what they accelerate free trains with.
+
+    Torques and friction that do not balance turn a free train faster or slower as a whole.
+    """
+    free = arrays.reference.freedom >= 0
+    if not np.any(free):
+        return values
+    vector = arrays.reference.vector[free]
+    taken = np.linalg.solve(vector @ arrays.mass @ vector.T, vector @ values)
+    return np.asarray(values - arrays.mass @ vector.T @ taken)
+
+
+def _balance(arrays: SystemArrays, time: float, q: FloatArray, external: FloatArray) -> ForceBalance:
+    """Return the balance at rest in `q`, with free trains accelerating."""
+    found = force_balance(arrays, time, q, np.zeros(q.size), external)
+    force, stiffness = (_accelerating(arrays, values) for values in (found.force, found.stiffness))
+    return replace(found, force=force, stiffness=stiffness)
 
 
 def _by_speed(arrays: SystemArrays, time: float) -> FloatArray:
@@ -111,7 +125,7 @@ def _first_guess(system: System, time: float, external: FloatArray) -> FloatArra
     """Displacements if every mesh were a spring, on the coast flank where the driving one would pull."""
     flanks = system.flanks
     carrying = np.arange(flanks.nominal_force.size)
-    loads = external + _by_speed(system.arrays, time)
+    loads = _accelerating(system.arrays, external + _by_speed(system.arrays, time))
     q, force = _on_springs(system, time, loads, carrying)
     for place, mesh in enumerate(flanks.coast, start=carrying.size):
         if force[mesh] < 0.0:
@@ -186,7 +200,7 @@ def _line_search(
     """Halve the update until it lowers the residual (or is tiny), all meshes in contact unless parting."""
     for halving in range(30):
         trial = q + update * 0.5**halving
-        found = force_balance(arrays, time, trial, np.zeros(q.size), external)
+        found = _balance(arrays, time, trial, external)
         # beyond lift-off there is no stiffness to come back by, however small the residual is there
         touching = parting or np.all(_per_mesh(arrays, found.local.tangent[:, 0]) > 0.0)
         if _size(arrays, found) < size and (touching or np.max(np.abs(found.force)) == 0.0):

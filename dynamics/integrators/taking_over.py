@@ -8,15 +8,22 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.integrators.march import March
-from dynamics.integrators.state_sink import States, StateSink, blocks
-from dynamics.integrators.workspace import Count, Workspace
+from dynamics.integrators.sample_ring import SampleRing
+from dynamics.integrators.state_sink import StateSink, blocks
+from dynamics.integrators.workspace import Count
 from dynamics.system.assemble import System
 from dynamics.system.observation import local_state
+from dynamics.system.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
-STATE = ("time", "time_rest", "error", "q", "v", "v_rest", "a", "moved", "power", "work", "counts")
+STATE = (
+    *("time", "time_rest", "error", "q", "v", "v_rest", "a", "moved"),
+    *("power", "work", "highest", "fallen", "counts"),
+)
 """What a workspace carries from step to step beside what is per row of the force elements."""
 MOTION = ("position", "pace", "speed")
+MOST_STANDS = 128
+"""In memory at once: when there are more, every second one is forgotten."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +38,10 @@ class Stand:
         `position`, `pace` and `speed` at the last step's end.
     force, coordinate, rate : (R,) arrays
         Local forces, coordinates and rates there.
+    point : (L, C) array
+        Of its ring.
+    figures : tuple of arrays
+        Running figures of its ring: the two last values, peaks and squares (..., P), sums (C,).
     """
 
     state: dict[str, FloatArray]
@@ -38,6 +49,8 @@ class Stand:
     force: FloatArray
     coordinate: FloatArray
     rate: FloatArray
+    point: FloatArray
+    figures: tuple[FloatArray, ...]
 
     @property
     def time(self) -> float:
@@ -50,12 +63,20 @@ class Stand:
         return int(self.state["counts"][Count.OUTPUT])
 
 
-def stand(work: Workspace) -> Stand:
-    """Return where `work` stands, copied."""
+def stand(march: March) -> Stand:
+    """Return where `march` stands, copied."""
+    work, ring = march.state
     state = {name: np.array(getattr(work, name)) for name in STATE}
     motion = {name: np.array(getattr(work.before, name)) for name in MOTION}
     rows = (work.force, work.before.coordinate, work.before.rate)
-    return Stand(state, motion, *(np.array(part) for part in rows))
+    figures = tuple(part.copy() for part in _figures(ring))
+    force, coordinate, rate = (np.array(part) for part in rows)
+    return Stand(state, motion, force, coordinate, rate, ring.point.copy(), figures)
+
+
+def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
+    """Return what a ring adds up."""
+    return (ring.peaks.last, ring.peaks.largest, ring.peaks.square, ring.removed, ring.folded)
 
 
 class Trail:
@@ -67,7 +88,13 @@ class Trail:
 
     def watch(self, march: March) -> Callable[[], None]:
         """Return what remembers a stand of `march` when called."""
-        return lambda: self._stands.append(stand(march.work))
+
+        def remember() -> None:
+            if len(self._stands) == MOST_STANDS:
+                del self._stands[::2]
+            self._stands.append(stand(march))
+
+        return remember
 
     def before(self, time: float) -> Stand | None:
         """Return the last stand before `time` (s), if there is one."""
@@ -96,9 +123,33 @@ class Taken:
         take_over(march, self.at, self.place)
         for first, stop in blocks(self.at.samples):
             room = sink.room(first, stop - first)
-            for target, values in zip(room, self.states(first, stop), strict=True):
+            for target, values in zip(
+                room, widened(self.states(first, stop), self.place, march), strict=True
+            ):
                 target[...] = values
             sink.keep(first, stop - first)
+
+
+def widened(states: States, place: IntArray, march: March) -> States:
+    """Return the samples of a march of fewer force elements as those of `march`.
+
+    Their rows have the places `place` (R,); elements beside them carried no force.
+    """
+    rows = march.ring.local.force.size
+    to = _channels(march, place)
+    filtered = np.zeros((states.q.shape[0], march.ring.point.shape[1]))
+    filtered[:, to] = states.filtered
+    least, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
+    least[:, place], largest[:, place] = states.least, states.largest
+    return States(states.q, states.v, states.moved, filtered, least, largest)
+
+
+def _channels(march: March, place: IntArray) -> IntArray:
+    """Return the channels of `march` that those of a march with rows `place` (R,) are."""
+    rows, n = march.ring.local.force.size, march.work.q.size
+    meshes = march.sampler.nominal_force.size
+    state, static = np.arange(rows, rows + 2 * n), np.arange(meshes) + 2 * (rows + n)
+    return np.concatenate([place, state, rows + 2 * n + place, static])
 
 
 def added_rows(before: System, after: System) -> IntArray | None:
@@ -106,7 +157,7 @@ def added_rows(before: System, after: System) -> IntArray | None:
 
     Rows match if they are of one law and direction, in one order.
     """
-    if before.freedoms.name != after.freedoms.name:
+    if before.freedoms.name != after.freedoms.name or before.sampling != after.sampling:
         return None
     place, start = [], 0
     there = _rows(after)
@@ -145,3 +196,20 @@ def take_over(march: March, at: Stand, place: IntArray) -> None:
     ):
         target[...] = values
         target[place] = known
+    _take_over_ring(march, at, place, here.coordinate)
+
+
+def _take_over_ring(march: March, at: Stand, place: IntArray, coordinate: FloatArray) -> None:
+    """Fill the ring; rows beside those of the other march rest at the `coordinate` (R,)."""
+    ring, rows, to = march.ring, march.ring.local.force.size, _channels(march, place)
+    added = np.setdiff1d(np.arange(rows), place)
+    ring.point[...] = 0.0
+    ring.point[:, rows + 2 * march.work.q.size + added] = coordinate[added]
+    ring.point[:, to] = at.point
+    supports = np.arange(rows, ring.peaks.largest.size)
+    signals = np.concatenate([place, supports])
+    for target, known, columns in zip(
+        _figures(ring), at.figures, (signals, signals, signals, to, to), strict=True
+    ):
+        target[...] = 0.0
+        target[..., columns] = known

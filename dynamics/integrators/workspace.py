@@ -29,6 +29,10 @@ class Power(IntEnum):
     FRICTION = 6  # dissipated by sliding flanks
 
 
+LOSSES = (int(Power.BUSHING), int(Power.MESH), int(Power.FRICTION))
+"""Columns that only grow: what is dissipated does not come back."""
+
+
 class Count(IntEnum):
     """Entries of the step statistics."""
 
@@ -42,6 +46,7 @@ class Count(IntEnum):
     SMALLEST_RUNG = 7  # of an accepted step: the largest step
     LARGEST_RUNG = 8
     FIRST_ROW = 9  # output sample that the first row of the output arrays is for
+    POINT = 10  # next point of the inner grid
 
 
 class StepEnd(NamedTuple):
@@ -102,6 +107,8 @@ class Workspace(NamedTuple):
         Per stage; columns `Power`.
     work : (7,) array
         Integrated, J.
+    highest, fallen : (3,) arrays
+        Highest value of each of `LOSSES` so far, J, and how far it fell below it at most.
     counts : int array
         See `Count`.
     ladder : (r,) array
@@ -149,6 +156,8 @@ class Workspace(NamedTuple):
     jacobian: FloatArray
     power: FloatArray
     work: FloatArray
+    highest: FloatArray
+    fallen: FloatArray
     counts: IntArray
     ladder: FloatArray
     matrix: FloatArray
@@ -194,6 +203,8 @@ def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, firs
         jacobian=np.zeros((rows, rows + 1)),
         power=np.zeros((STAGES, len(Power))),
         work=np.zeros(len(Power)),
+        highest=np.zeros(len(LOSSES)),
+        fallen=np.zeros(len(LOSSES)),
         counts=counts,
         ladder=ladder,
         matrix=np.zeros((n, n)),

@@ -15,7 +15,7 @@ from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 PER_SEAT = (3, SEAT, SEAT + 1)
-SYMMETRY = 1e-6  # relative; a finite element programme writes its matrices with that many digits
+PRECISION = 1e-6  # relative; a finite-element program writes its matrices with that many digits
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,9 @@ class Housing:
             raise InputError("bushings", self.bushings, "at least one bushing")
         distinct("bushings", self.bushings)
         sizes = tuple(per * len(self.bushings) for per in PER_SEAT)
-        rows = check_matrix("stiffness", np.asarray(self.stiffness, dtype=float), sizes, SYMMETRY).shape[0]
+        rows = check_matrix("stiffness", np.asarray(self.stiffness, dtype=float), sizes, PRECISION).shape[0]
         if self.damping is not None:
-            check_matrix("damping", np.asarray(self.damping, dtype=float), (rows,), SYMMETRY)
+            check_matrix("damping", np.asarray(self.damping, dtype=float), (rows,), PRECISION)
 
     @property
     def places(self) -> tuple[int, ...]:

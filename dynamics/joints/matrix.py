@@ -9,12 +9,14 @@ from dynamics.types import FloatArray
 
 Matrix = tuple[tuple[float, ...], ...]
 
-SYMMETRY = 1e-9  # relative
-LEAST_EIGENVALUE = -1e-9  # over the largest, in units in which the diagonal is 1
+PRECISION = 1e-9
+"""Relative precision to which entries count."""
+OPERATIONS = 10.0
+"""Roundings per term of a row: turning, adding and condensing each leave some."""
 
 
 def check_matrix(
-    field: str, matrix: FloatArray, sizes: tuple[int, ...], symmetry: float = SYMMETRY
+    field: str, matrix: FloatArray, sizes: tuple[int, ...], precision: float = PRECISION
 ) -> FloatArray:
     """Return `matrix` if it is square of one of `sizes`, symmetric and positive semidefinite.
 
@@ -25,8 +27,9 @@ def check_matrix(
     matrix : array
     sizes : tuple of int
         Allowed numbers of rows.
-    symmetry : float
-        Largest difference from the transpose over the largest entry.
+    precision : float
+        Relative precision of the entries. In units in which every diagonal entry is 1 that many times the
+        number of rows is how far below zero an eigenvalue of n such rows may be (Weyl).
 
     Raises
     ------
@@ -39,10 +42,40 @@ def check_matrix(
     if not np.all(np.isfinite(matrix)):
         raise InputError(field, "with entries that are no numbers", f"{allowed} finite numbers")
     largest = float(np.max(np.abs(matrix)))
-    if np.any(np.abs(matrix - matrix.T) > symmetry * largest):
+    if np.any(np.abs(matrix - matrix.T) > precision * largest):
         raise InputError(field, "not symmetric", "symmetric", "Use half the sum with its transpose.")
-    per = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    eigenvalue = np.linalg.eigvalsh(matrix / np.outer(per, per))
-    if eigenvalue[0] < LEAST_EIGENVALUE * max(1.0, float(eigenvalue[-1])):
+    if _least_eigenvalue(matrix, precision) < -len(matrix) * precision:
         raise InputError(field, "with a negative eigenvalue", "positive semidefinite")
     return matrix
+
+
+def _least_eigenvalue(matrix: FloatArray, precision: float) -> float:
+    """Return the least eigenvalue in units in which the diagonal is 1.
+
+    What computed the entries left n eps of the largest of them, the lever between forces and moments taken as
+    a meter. A diagonal entry so small that this is more than `precision` of it is measured by that instead.
+    """
+    rounding = OPERATIONS * len(matrix) * float(np.finfo(float).eps) * float(np.max(np.abs(matrix)))
+    if rounding == 0.0:
+        return 0.0
+    unit = np.sqrt(np.maximum(np.diag(matrix), rounding / precision))
+    return float(np.linalg.eigvalsh(matrix / np.outer(unit, unit))[0])
+
+
+def congruent(matrix: FloatArray, motion: FloatArray) -> FloatArray:
+    """Return `motion`^T `matrix` `motion` as the square of a factor, positive semidefinite however it rounds.
+
+    Parameters
+    ----------
+    matrix : (p, p) array
+        Positive semidefinite to rounding; what is not is projected away.
+    motion : (p, n) array
+
+    Returns
+    -------
+    (n, n) array
+        Entries are good to eps of the root of the product of their diagonal entries.
+    """
+    eigenvalue, vector = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    factor = np.sqrt(np.maximum(eigenvalue, 0.0))[:, None] * (vector.T @ motion)
+    return np.asarray(factor.T @ factor)

@@ -6,7 +6,7 @@ import numpy as np
 
 from dynamics.checks import finite, not_negative
 from dynamics.errors import InputError
-from dynamics.joints.matrix import Matrix, check_matrix
+from dynamics.joints.matrix import PRECISION, Matrix, check_matrix
 from dynamics.types import FloatArray
 
 DEFAULT_DAMPING_RATIO = 0.05
@@ -85,6 +85,6 @@ def _isotropic(radial: float, axial: float) -> FloatArray:
 def _check_matrix(field: str, matrix: FloatArray) -> None:
     """Refuse what is no matrix of a bearing."""
     check_matrix(field, matrix, (SEAT, SEAT + 1))
-    if np.any(matrix[SEAT:] != 0.0):
+    if np.any(np.abs(matrix[SEAT:]) > PRECISION * np.max(np.abs(matrix))):
         bound = "zero in the row and column of the rotation about the axis"
         raise InputError(field, matrix[SEAT:].tolist(), bound, "A bearing lets its shaft turn.")

@@ -136,7 +136,8 @@ def frontier(
     SolveError
         Fewer than two rungs came to their end.
     """
-    blocks = blocks_of(assemble(scene))
+    system = assemble(scene)
+    blocks, scene = blocks_of(system), system.resolved_scene
     asked = _selected(rungs)
     left_out = {rung.name: reason for rung in asked if (reason := rung.refusal(scene)) is not None}
     asked = [rung for rung in asked if rung.name not in left_out]
@@ -162,7 +163,7 @@ def frontier(
         blocks.orders,
         len(blocks.bounds),
         found[-1][1],
-        _knee(results),
+        knee_of_rungs(results),
         chosen_rung(scene, [rung for rung, _, _ in found]),
     )
 
@@ -243,7 +244,7 @@ def _left(coarse: Sequence[float], fine: Sequence[float]) -> tuple[float, float,
     return left[0], left[1], left[2]
 
 
-def _knee(results: Sequence[RungResult]) -> str | None:
+def knee_of_rungs(results: Sequence[RungResult]) -> str | None:
     """Return the knee; differences below what steps and tables of the reference leave say nothing."""
     own = [results[-1].error, *(TABLE_REST * r.error for r in results if r.name == HALF)]
     floor = max((error for error in own if np.isfinite(error)), default=0.0)

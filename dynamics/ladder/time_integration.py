@@ -9,7 +9,6 @@ import numpy as np
 from dynamics.errors import SolveError
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
 from dynamics.ladder.vibration import Blocks, Vibration, vibration_of
-from dynamics.results.histories import bearing_force
 from dynamics.system import Outputs, Scene
 from dynamics.system.assemble import System, assemble
 from dynamics.system.effects import EFFECTS, MESH_EFFECTS
@@ -60,7 +59,7 @@ class TimeIntegration:
         if self.effects is not None:
             names = [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
             effects |= {name: "off" for name in names if name not in self.effects}
-        outputs = Outputs(scene.outputs.sample_rate, energy_audit=False, receipt="minimal")
+        outputs = Outputs(scene.outputs.sample_rate, energy_audit=False, receipt="minimal", anti_alias=False)
         return replace(scene, integration=integration, effects=effects, outputs=outputs)
 
     def run(self, scene: Scene, blocks: Blocks) -> Vibration:
@@ -85,7 +84,7 @@ def _decided(scene: Scene) -> set[tuple[str, str]]:
 def _series(system: System, found: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Transmission errors (m, T) and bearing forces in their own frames (b, 3, T)."""
     seen = observe(system.arrays, found.time, found.q, found.v, found.moved)
-    force = bearing_force(system, seen.force, found.q, found.v)[:, :3]
+    force = system.bearing_force(seen.force, found.q, found.v)[:, :3]
     if system.freedoms.place.size and not np.any(system.bearing_stiffness) and not system.bearings:
         force = np.full_like(force, np.nan)  # bearings hold nothing here: no freedom moves them
     return seen.coordinate[system.driving_rows], force

@@ -72,9 +72,9 @@ def blocks_of(system: System) -> Blocks:
     InputError
         The run turns its first mesh by less than `LEAST_PITCHES`, or has too few samples a period.
     """
-    outputs, scene = system.scene.outputs, system.scene
-    samples = math.floor(scene.duration * outputs.sample_rate * (1.0 + 1e-12)) + 1
-    time = np.arange(samples) / outputs.sample_rate
+    rate, scene = system.sampling.rate, system.scene
+    samples = math.floor(scene.duration * rate * (1.0 + 1e-12)) + 1
+    time = np.arange(samples) / rate
     rest = np.zeros((samples, system.arrays.mass.shape[0]))
     position = unwrapped(observe(system.arrays, time, rest, rest).position[: len(scene.meshes)])
     ends = np.linspace(0, samples, MOST_BLOCKS + 1).astype(np.int64)
@@ -89,7 +89,7 @@ def blocks_of(system: System) -> Blocks:
     orders = min(orders_seen(line[bounds[0, 0] :], ORDERS) for line in position)
     if orders < 1:
         bound = "at least four samples a base pitch"
-        raise InputError("outputs.sample_rate", outputs.sample_rate, bound, "Raise it.")
+        raise InputError("outputs.sample_rate", rate, bound, "Raise it.")
     return Blocks(time, position, bounds, orders)
 
 

@@ -80,7 +80,7 @@ def whirl_branches(
 def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) -> FloatArray:
     """Modal assurance criterion of shapes (a, n) and (b, n), weighted with the mass, (a, b) in 0 to 1."""
     product = np.abs(np.conj(first) @ linear.mass @ second.T) ** 2
-    size = [np.real(np.einsum("ai,ij,aj->a", np.conj(s), linear.mass, s)) for s in (first, second)]
+    size = [np.real(np.sum(np.conj(s) * (s @ linear.mass), axis=1)) for s in (first, second)]
     return np.asarray(product / (size[0][:, None] * size[1]))
 
 
@@ -128,11 +128,12 @@ def _whirl(system: System, linear: LinearSystem, speed: float, modes: WhirlModes
     depend on the combination.
     """
     spin = system.kinematics.float_ratio @ law_speeds(system, speed)
-    found = np.empty(modes.frequency.size)
-    for cluster in _clusters(modes.frequency):
-        basis = _orthonormal(linear, modes.shape[cluster])
-        found[cluster] = _sense(system, spin, basis, kinetic_shares(linear, basis))
-    return found
+    clusters, basis = _clusters(modes.frequency), modes.shape.copy()
+    for cluster in clusters:
+        if cluster.size > 1:
+            basis[cluster] = _orthonormal(linear, basis[cluster])
+    sense = _senses(system, spin, basis, kinetic_shares(linear, basis), clusters)
+    return np.repeat(sense, [cluster.size for cluster in clusters])
 
 
 def _clusters(frequency: FloatArray) -> list[IntArray]:
@@ -143,26 +144,35 @@ def _clusters(frequency: FloatArray) -> list[IntArray]:
 
 def _orthonormal(linear: LinearSystem, shape: ComplexArray) -> ComplexArray:
     """Return shapes (c, n) of the same span that the mass makes orthonormal."""
-    if shape.shape[0] == 1:
-        return shape
     factor = np.linalg.cholesky(linear.mass)
     return np.asarray(np.linalg.solve(factor.T, np.linalg.qr(factor.T @ shape.T)[0]).T)
 
 
-def _sense(system: System, spin: FloatArray, shape: ComplexArray, kinetic: FloatArray) -> float:
-    """Return the sense in which the shaft that moves most across its axis goes round in modes (c, n).
+def _senses(
+    system: System, spin: FloatArray, shape: ComplexArray, kinetic: FloatArray, clusters: list[IntArray]
+) -> FloatArray:
+    """Return the sense in which the shaft that moves most across its axis goes round in each cluster.
 
-    Sums over all of them: traces, which are the same in every orthonormal basis.
+    Sums over its modes: traces, which are the same in every orthonormal basis.
     """
-    best, found = STILL * shape.shape[0], 0.0
-    for rotor in range(len(system.rotors)):
-        for kinds in ((0, 1), (3, 4)):
-            i, j = (system.freedoms.find(rotor, kind) for kind in kinds)
-            if i < 0 or j < 0:
-                continue
-            turned = float(np.sum(np.imag(shape[:, i] * np.conj(shape[:, j]))))
-            size = float(np.sum(np.abs(shape[:, [i, j]]) ** 2))
-            share = float(np.sum(kinetic[:, [i, j]]))
-            if share > best:
-                best, found = share, float(np.sign(spin[rotor])) * 2.0 * turned / size
-    return found
+    places = [
+        (rotor, *(system.freedoms.find(rotor, kind) for kind in kinds))
+        for rotor in range(len(system.rotors))
+        for kinds in ((0, 1), (3, 4))
+    ]
+    pairs = np.array([place for place in places if min(place[1:]) >= 0], dtype=np.int64).reshape(-1, 3)
+    if pairs.size == 0 or not clusters:
+        return np.zeros(len(clusters))
+    (rotor, i, j), first = pairs.T, [cluster[0] for cluster in clusters]
+    turned, size, share = (
+        np.add.reduceat(values, first, axis=0)
+        for values in (
+            np.imag(shape[:, i] * np.conj(shape[:, j])),
+            np.abs(shape[:, i]) ** 2 + np.abs(shape[:, j]) ** 2,
+            kinetic[:, i] + kinetic[:, j],
+        )
+    )
+    row, most = np.arange(len(clusters)), np.argmax(share, axis=1)
+    moves = share[row, most] > STILL * np.array([cluster.size for cluster in clusters])
+    circling = turned[row, most] / np.where(moves, size[row, most], 1.0)
+    return np.asarray(np.where(moves, np.sign(spin[rotor[most]]) * 2.0 * circling, 0.0))

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from dynamics.linearize.campbell import WhirlBranches, likeness, modes_at
 from dynamics.linearize.linear_system import LinearSystem
+from dynamics.linearize.speed_matrices import SpeedMatrices, speed_matrices
 from dynamics.linearize.speeds import mesh_frequencies
+from dynamics.linearize.whirl import ComplexArray
 from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray
 
-CLOSE = 1e-9  # of the frequency: residual of a crossing
-ITERATIONS = 20
+CLOSE = 1e-9  # of the eigenvalue: last step of a crossing, whose error is of the order of its square
+ITERATIONS = 12
+HALVINGS = 12
+ALIKE = 0.5  # modal assurance with the mode at either speed
 
 
 @dataclass(frozen=True)
@@ -29,7 +35,7 @@ class CriticalSpeeds:
     mode, mesh, order : (C,) int arrays
         Branch, mesh, and multiple of its mesh frequency.
     residual : (C,) array
-        Frequency of the mode less that of the order, Hz.
+        Of the eigenvalue problem there, as an error of the frequency, Hz.
     """
 
     speed: FloatArray
@@ -46,9 +52,11 @@ def critical_speeds(
 ) -> CriticalSpeeds:
     """Return where the orders 1 to `orders` of every mesh meet the modes within the speeds of `branches`.
 
-    Meshes that share a mesh frequency count once, under the name of the first. Between two speeds the
-    crossing is refined on the mode itself: speed = frequency(speed) / (order x mesh frequency per speed).
+    Meshes that share a mesh frequency count once, under the name of the first. Between two speeds Newton's
+    method finds eigenvector, damping and speed together.
     """
+    turns = float(np.max(branches.speed))
+    matrices = speed_matrices(system, linear, turns) if turns > 0.0 else None
     per_speed = mesh_frequencies(system, np.ones(1))[:, 0]
     rows: list[tuple[float, ...]] = []
     for mesh, rate in enumerate(per_speed):
@@ -58,7 +66,9 @@ def critical_speeds(
             gap = branches.frequency - order * rate * branches.speed[:, None]
             crossed = (gap[:-1] > 0.0) & (gap[1:] <= 0.0) | (gap[:-1] < 0.0) & (gap[1:] >= 0.0)
             for row, mode in zip(*np.nonzero(crossed), strict=True):
-                found = _refined(system, linear, branches, int(row), int(mode), order * rate)
+                assert matrices is not None  # between two speeds one is not 0
+                between = _between(branches, int(row), int(mode), order * rate)
+                found = _refined(system, linear, matrices, between)
                 rows.append((*found, float(mode), float(mesh), float(order)))
     table = np.array(sorted(rows)).reshape(-1, 7)
     counts = table[:, 4:].astype(np.int64)
@@ -67,21 +77,133 @@ def critical_speeds(
     )
 
 
+@dataclass(frozen=True)
+class _Between:
+    """Two speeds between which a mode meets a line of `rate` Hz per rad/s.
+
+    Attributes
+    ----------
+    speed, gap : (2,) arrays
+        rad/s; frequency of the mode less that of the line, Hz.
+    frequency, damping_ratio : (2,) arrays
+    shape : (2, n) complex array
+    rate : float
+    """
+
+    speed: FloatArray
+    gap: FloatArray
+    frequency: FloatArray
+    damping_ratio: FloatArray
+    shape: ComplexArray
+    rate: float
+
+    @property
+    def weight(self) -> float:
+        """Where the gap closes if it is straight, from 0 to 1."""
+        return float(self.gap[0] / (self.gap[0] - self.gap[1]))
+
+
+def _between(branches: WhirlBranches, row: int, mode: int, rate: float) -> _Between:
+    """Look at a mode at two of the speeds."""
+    both = slice(row, row + 2)
+    speed, frequency = branches.speed[both], branches.frequency[both, mode]
+    ratio, shape = branches.damping_ratio[both, mode], branches.shape[both, mode]
+    return _Between(speed, frequency - rate * speed, frequency, ratio, shape, rate)
+
+
 def _refined(
-    system: System, linear: LinearSystem, branches: WhirlBranches, row: int, mode: int, rate: float
+    system: System, linear: LinearSystem, matrices: SpeedMatrices, between: _Between
 ) -> tuple[float, float, float, float]:
-    """Return speed, frequency, damping ratio and residual of a crossing between two of the speeds."""
-    speeds, lines = branches.speed[row : row + 2], branches.frequency[row : row + 2, mode]
-    gap = lines - rate * speeds
-    weight = gap[0] / (gap[0] - gap[1])
-    speed = float(speeds[0] + weight * (speeds[1] - speeds[0]))
-    near = branches.shape[row + round(float(weight)), mode][None, :]
+    """Return speed, frequency, damping ratio and residual of a crossing.
+
+    Where Newton's method leaves the two speeds or the mode (modes that veer), they are halved: the mode in
+    the middle is that most like the ends.
+    """
+    for _ in range(HALVINGS):
+        found = _newton(linear, matrices, between)
+        if found is not None:
+            return found
+        between = _halved(system, linear, between)
+    end = int(np.argmin(np.abs(between.gap)))
+    values = (between.speed, between.frequency, between.damping_ratio, between.gap)
+    return tuple(float(value[end]) for value in values)  # type: ignore[return-value]
+
+
+def _newton(
+    linear: LinearSystem, matrices: SpeedMatrices, between: _Between
+) -> tuple[float, float, float, float] | None:
+    """Solve P(s, W) x = 0 with Im s = 2 pi rate W for x, Re s and W; None if that leads elsewhere.
+
+    The steps x + dx = -P^-1 (P_s ds + P_W dW) x keep c^H x = 1, c along the first guess: a complex equation
+    for the two real unknowns.
+    """
+    low, high = between.speed
+    nearest = round(between.weight)
+    speed = float(low + between.weight * (high - low))
+    per_speed = 2.0 * math.pi * between.rate
+    ratio = float(np.interp(speed, between.speed, between.damping_ratio))
+    decay = -ratio / math.sqrt(1.0 - ratio**2) * per_speed * speed
+    start = between.shape[nearest] * linear.scale
+    x = start / np.linalg.norm(start)
+    along = np.conj(x)
     for _ in range(ITERATIONS):
-        modes = modes_at(system, linear, speed)
-        which = int(np.argmax(likeness(linear, near, modes.shape)[0]))
-        frequency = float(modes.frequency[which])
-        left = frequency - rate * speed
-        if abs(left) <= CLOSE * frequency:
-            break
-        speed = float(np.clip(frequency / rate, speeds[0], speeds[1]))
-    return speed, frequency, float(modes.damping_ratio[which]), left
+        value = complex(decay, per_speed * speed)
+        sides = (matrices.by_eigenvalue(value, speed) @ x, matrices.by_speed(value, speed) @ x)
+        try:
+            by_value, by_speed = np.linalg.solve(matrices.at(value, speed), np.stack(sides, axis=1)).T
+        except np.linalg.LinAlgError:
+            return None
+        share = along @ by_value
+        columns = np.array([share, 1j * per_speed * share + along @ by_speed])
+        both = np.array([columns.real, columns.imag])
+        if abs(np.linalg.det(both)) == 0.0 or not np.all(np.isfinite(both)):
+            return None
+        change, moved = np.linalg.solve(both, [-1.0, 0.0])
+        x = -(by_value * (change + 1j * per_speed * moved) + by_speed * moved)
+        decay, speed = decay + float(change), speed + float(moved)
+        if not low - (high - low) <= speed <= high + (high - low):
+            return None
+        if abs(complex(change, per_speed * moved)) <= CLOSE * abs(value):
+            return _accepted(linear, matrices, between, x, complex(decay, per_speed * speed))
+    return None
+
+
+def _accepted(
+    linear: LinearSystem, matrices: SpeedMatrices, between: _Between, x: ComplexArray, value: complex
+) -> tuple[float, float, float, float] | None:
+    """Return the crossing if it is between the speeds and of the mode."""
+    frequency = value.imag / (2.0 * math.pi)
+    speed = frequency / between.rate
+    low, high = between.speed
+    room = CLOSE * max(abs(low), abs(high))
+    shape = (x / linear.scale)[None, :]
+    if not low - room <= speed <= high + room or likeness(linear, between.shape, shape).max() < ALIKE:
+        return None
+    force = matrices.at(value, speed) @ x
+    slope = matrices.by_eigenvalue(value, speed) @ x
+    left = float(np.linalg.norm(force) / np.linalg.norm(slope)) / (2.0 * math.pi)
+    return speed, frequency, -value.real / abs(value), left
+
+
+def _halved(system: System, linear: LinearSystem, between: _Between) -> _Between:
+    """Return the half in which the gap changes its sign."""
+    middle = float(np.mean(between.speed))
+    modes = modes_at(system, linear, middle)
+    which = int(np.argmax(likeness(linear, between.shape, modes.shape).max(axis=0)))
+    frequency = float(modes.frequency[which])
+    gap = frequency - between.rate * middle
+    end = 0 if (gap > 0.0) == (between.gap[0] > 0.0) else 1
+
+    def put(values: Any, value: Any) -> Any:
+        changed = values.copy()
+        changed[end] = value
+        return changed
+
+    return _Between(
+        put(between.speed, middle),
+        put(between.gap, gap),
+        put(between.frequency, frequency),
+        put(between.damping_ratio, modes.damping_ratio[which]),
+        put(between.shape, modes.shape[which]),
+        between.rate,
+    )

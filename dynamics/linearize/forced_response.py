@@ -12,10 +12,11 @@ import numpy as np
 from dynamics.errors import InputError
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
-from dynamics.linearize.linear_system import linearize
+from dynamics.linearize.linear_system import about_running, linearize
 from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.speeds import checked_speeds, leading_law
 from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.results.force_check import checked_ledger
 from dynamics.system.assemble import System
 from dynamics.types import FloatArray, Json
 
@@ -104,14 +105,16 @@ def forced_response(
     InputError
         If a value is out of range, or the meshes have no common period.
     SolveError
-        If there is no static equilibrium.
+        If there is no static equilibrium, or one beyond a table (`ForceChecks`) that may not pass.
     """
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:
         raise InputError("speed", [], "at least one speed")
     share = _halves(progress)
     began = clock.process_time()
+    system = about_running(system)
     linear = linearize(system, time)
+    ledger = checked_ledger(system, linear.equilibrium.mesh_force)
     frequency = natural_modes(averaged(system, linear, flank_cycles(system, linear, time), time)).frequency
     seconds = {"equilibrium_and_modes": clock.process_time() - began}
     began = clock.process_time()
@@ -124,7 +127,8 @@ def forced_response(
         "time": time,
         "equilibrium": {"status": start.status.name, "residual": start.residual},
         "seconds": seconds,
-        "effect_ledger": system.ledger.to_json(),
+        "effect_ledger": ledger,
+        **system.corrections,
     }
     plain = {f.name: getattr(found, f.name) for f in fields(found)}
     return ForcedResponse(

@@ -18,7 +18,6 @@ from dynamics.linearize.steady_vibration import (
     excited,
     steady_vibration,
 )
-from dynamics.results.histories import bearing_force
 from dynamics.system.assemble import System
 from dynamics.system.force_balance import block_diagonal
 from dynamics.system.observation import local_state
@@ -177,9 +176,9 @@ def _bearing_force(at: Excited, omega: FloatArray, u: ComplexArray) -> ComplexAr
     rows = system.arrays.direction.T
     local = (q @ rows) @ block_diagonal(elements, at_rest.tangent).T
     local = local + (rate @ rows) @ block_diagonal(elements, at_rest.viscous).T
-    none = bearing_force(system, np.zeros((rows.shape[1], 1)), rest[None, :], rest[None, :])
+    none = system.bearing_force(np.zeros((rows.shape[1], 1)), rest[None, :], rest[None, :])
     real, imaginary = (
-        bearing_force(system, np.ascontiguousarray(part(local.T)), part(q), part(rate)) - none
+        system.bearing_force(np.ascontiguousarray(part(local.T)), part(q), part(rate)) - none
         for part in (np.real, np.imag)
     )
     found = real + 1j * imaginary

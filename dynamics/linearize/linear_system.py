@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from dynamics.errors import SolveError
+from dynamics.forces.spatial_flank import as_running
 from dynamics.integrators import StaticSolution, static_equilibrium
 from dynamics.system.assemble import System
 from dynamics.system.columns import elastic_terms
@@ -55,14 +56,27 @@ class LinearSystem:
     equilibrium: StaticSolution
 
 
+def about_running(system: System) -> System:
+    """Return `system` for small motions about gears that run in the sense of the scene.
+
+    Friction then has the direction of running, also at a time of rest, and no slope in the speed.
+    """
+    elements = system.arrays.elements
+    if elements.laws.spatial_flank.running.size == 0:
+        return system
+    laws = elements.laws._replace(spatial_flank=as_running(elements.laws.spatial_flank))
+    return replace(system, arrays=system.arrays._replace(elements=elements._replace(laws=laws)))
+
+
 def linearize(system: System, time: float = 0.0) -> LinearSystem:
-    """Linearise `system` about its static equilibrium under the loads at `time`.
+    """Linearise `system` about its static equilibrium under the loads at `time`, gears running.
 
     Raises
     ------
     SolveError
         If there is no static equilibrium.
     """
+    system = about_running(system)
     start = static_equilibrium(system, time)
     if not start.status.usable:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")

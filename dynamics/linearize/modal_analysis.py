@@ -14,11 +14,13 @@ from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
 from dynamics.linearize.energy_shares import freedom_parts, spring_parts
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
-from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
 from dynamics.linearize.modes import Modes, natural_modes
+from dynamics.linearize.resolution import resolved_to, with_shafts_to
 from dynamics.linearize.speeds import checked_speeds, leading_law, mesh_frequencies
 from dynamics.linearize.whirl import ComplexArray
 from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.results.force_check import checked_ledger
 from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray, Json
 
@@ -80,7 +82,8 @@ class ModalAnalysis:
     critical_mode, critical_mesh, critical_order : (C,) int arrays
     facts : dict
         Plain JSON: `leading_shaft`, `time`, `orders`, `equilibrium` (status, residual in N, mesh forces),
-        `seconds` (CPU by stage), `effect_ledger`.
+        `seconds` (CPU by stage), `effect_ledger`, `highest_frequency` (Hz, to which shafts that bend are
+        resolved).
     """
 
     freedom: tuple[str, ...]
@@ -151,6 +154,7 @@ def modal_analysis(
     orders: int = 10,
     time: float = 0.0,
     progress: Callable[[float], None] | None = None,
+    highest_frequency: float | None = None,
 ) -> ModalAnalysis:
     """Return the natural modes of `system` and, at the speeds given, its whirl modes and critical speeds.
 
@@ -167,18 +171,24 @@ def modal_analysis(
         When loads are taken, s.
     progress : callable, optional
         Called with the fraction done; what it raises ends the analysis.
+    highest_frequency : float, optional
+        Hz to which shafts that bend and twist are resolved, whatever the scene's output asks for; left out:
+        the highest of the `orders` at the highest of the speeds, or of the scene's where none is given.
 
     Raises
     ------
     InputError
         If a value is out of range, or nothing turns where speeds are given.
     SolveError
-        If there is no static equilibrium.
+        If there is no static equilibrium, or one beyond a table (`ForceChecks`) that may not pass.
     """
     integer("orders", orders, 1, MOST_ORDERS)
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=False)
     began = clock.process_time()
+    highest = resolved_to(system, speeds, orders, highest_frequency)
+    system = about_running(with_shafts_to(system, highest))
     linear = linearize(system, time)
+    ledger = checked_ledger(system, linear.equilibrium.mesh_force)
     linear = averaged(system, linear, flank_cycles(system, linear, time), time)
     rest = natural_modes(linear)
     seconds = {"equilibrium_and_rest": clock.process_time() - began}
@@ -186,7 +196,8 @@ def modal_analysis(
     branches = whirl_branches(system, linear, speeds, progress)
     crossings = critical_speeds(system, linear, branches, orders) if speeds.size else _none()
     seconds["over_speed"] = clock.process_time() - began
-    facts = _facts(system, linear, time, orders, seconds, speeds.size > 0)
+    facts = _facts(system, linear, time, orders, seconds, speeds.size > 0) | {"effect_ledger": ledger}
+    facts |= {"highest_frequency": highest} | system.corrections
     return _analysis(system, linear, rest, branches, crossings, facts)
 
 
@@ -207,7 +218,6 @@ def _facts(
             },
         },
         "seconds": seconds,
-        "effect_ledger": system.ledger.to_json(),
     }
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
-from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
 from dynamics.linearize.speeds import law_speeds
 from dynamics.linearize.whirl import terms_at
 from dynamics.system.assemble import System
@@ -91,6 +91,7 @@ def excited(system: System, time: float = 0.0, orders: int = 10, samples: int = 
     SolveError
         If there is no static equilibrium.
     """
+    system = about_running(system)
     period, linear = common_period(system), linearize(system, time)
     cycles = flank_cycles(system, linear, time, orders, samples)
     return Excited(system, time, period, averaged(system, linear, cycles, time), cycles)

@@ -139,7 +139,8 @@ def _along_the_shaft(system: System, index: int, spin: float) -> FloatArray:
     """Gyroscopic terms of a shaft that bends, beyond those of its tilt as a rigid body, (N, N)."""
     rows, inertia = pair_rows(system.rotors, index), spun_inertia(system.rotors[index])
     inertia[0, 0] = 0.0
-    return np.asarray(-spin * np.einsum("ij,iap,ab,jbq->pq", inertia, rows, QUARTER_TURN, rows))
+    across = QUARTER_TURN @ np.tensordot(inertia, rows, axes=1)
+    return np.asarray(-spin * np.tensordot(rows, across, axes=((0, 1), (0, 1))))
 
 
 def _eigen(

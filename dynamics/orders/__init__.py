@@ -4,6 +4,7 @@ from dynamics.orders.peaks import Peak, find_peaks
 from dynamics.orders.position_grid import resample_to_position
 from dynamics.orders.sidebands import Sideband, sidebands
 from dynamics.orders.spectrum import MeshOrder, Spectrum, mesh_orders, spectrum, window_spectrum
+from dynamics.orders.valid_orders import highest_valid_order
 from dynamics.orders.waterfall import OrderTrack, Waterfall, frequency_waterfall, order_track, order_waterfall
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "Waterfall",
     "find_peaks",
     "frequency_waterfall",
+    "highest_valid_order",
     "mesh_orders",
     "order_track",
     "order_waterfall",

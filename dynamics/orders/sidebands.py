@@ -11,9 +11,12 @@ from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.orders.position_grid import resample_to_position
 from dynamics.orders.spectrum import spectrum
+from dynamics.orders.valid_orders import checked_order
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 
+ORDERS = 3
+"""Mesh orders with sidebands where no number is given, as far as the output holds them."""
 REVOLUTIONS = 4
 """Least length in periods of the modulation: under a Hann window a line reaches one line to either side."""
 
@@ -60,9 +63,9 @@ def sidebands(
     Raises
     ------
     InputError
-        If the run is shorter than four periods.
+        If the run is shorter than four periods, or its output does not hold the orders.
     """
-    integer("orders", orders, 1, 1000)
+    orders = checked_order(result, "orders", orders, mesh, ORDERS)
     integer("count", count, 0, 1000)
     if np.ndim(values) != 1:
         raise InputError("values", np.shape(values), "one signal, (T,)", "Pick one bearing and direction.")

@@ -10,6 +10,7 @@ from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.orders.position_grid import check_series, resample_to_position
 from dynamics.orders.spectrum import spectrum
+from dynamics.orders.valid_orders import checked_order
 from dynamics.results import RunResult
 from dynamics.types import FloatArray
 
@@ -74,20 +75,21 @@ class OrderTrack:
 
 
 def order_waterfall(
-    result: RunResult, series: str, pitches: int = 16, highest: int = 10, mesh: int = 0
+    result: RunResult, series: str, pitches: int = 16, highest: int | None = None, mesh: int = 0
 ) -> Waterfall:
     """Return the spectra over mesh orders, up to `highest`, of blocks of `pitches` base pitches.
 
-    Orders are 1/`pitches` apart. A multiple of a gear's teeth puts the orders of its shaft on lines.
+    Orders are 1/`pitches` apart. A multiple of a gear's teeth puts the orders of its shaft on lines. Without
+    `highest` they reach to the tenth mesh order, or as far as the output holds.
 
     Raises
     ------
     InputError
-        If the run is shorter than one block, or has no such series.
+        If the run is shorter than one block, has no such series, or its output does not hold the order.
     """
     unit = check_series(result, series)
     integer("pitches", pitches, 1, 1_000_000)
-    integer("highest", highest, 1, 1000)
+    highest = checked_order(result, "highest", highest, mesh)
     per_pitch = max(64, 8 * highest)
     _, time, values = resample_to_position(result, getattr(result, series), per_pitch, mesh)
     length = pitches * per_pitch
@@ -103,17 +105,17 @@ def order_waterfall(
 
 
 def order_track(
-    result: RunResult, series: str, pitches: int = 16, highest: int = 10, mesh: int = 0
+    result: RunResult, series: str, pitches: int = 16, highest: int | None = None, mesh: int = 0
 ) -> OrderTrack:
     """Return the amplitudes of the mesh orders 0 to `highest` in blocks of `pitches` base pitches.
 
     Raises
     ------
     InputError
-        If the run is shorter than one block.
+        If the run is shorter than one block, or its output does not hold the order.
     """
     whole = order_waterfall(result, series, pitches, highest, mesh)
-    orders = np.arange(highest + 1)
+    orders = np.arange((whole.line.size - 1) // pitches + 1)
     amplitude = whole.amplitude[..., orders * pitches]
     return OrderTrack(orders.astype(float), whole.time, whole.mesh_frequency, amplitude)
 

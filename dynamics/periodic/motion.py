@@ -10,7 +10,6 @@ from scipy.interpolate import CubicHermiteSpline
 from dynamics.periodic.floquet import ComplexArray
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
 from dynamics.periodic.shooting import Orbit
-from dynamics.results.histories import bearing_force
 from dynamics.system.observation import observe, static_deflections
 from dynamics.types import FloatArray
 
@@ -93,7 +92,7 @@ def motion(
         static,
         seen.force[driving],
         seen.force[coast],
-        bearing_force(system, seen.force, q, v),
+        system.bearing_force(seen.force, q, v),
         np.ascontiguousarray(q.T),
         np.ascontiguousarray(v.T),
         np.arange(samples // 2 + 1) / pitches,

@@ -15,6 +15,7 @@ from dynamics.integrators.advance import prepare_steps
 from dynamics.integrators.workspace import Workspace, make_workspace
 from dynamics.linearize import natural_modes
 from dynamics.linearize.common_period import CommonPeriod, common_period
+from dynamics.linearize.linear_system import about_running
 from dynamics.periodic.constant_speed import at_constant_speed
 from dynamics.periodic.march import HALVINGS, march
 from dynamics.periodic.period_grid import PeriodGrid, period_grid, refined
@@ -84,7 +85,7 @@ def periodic_problem(
     integer("steps_per_cycle", steps_per_cycle, 4, 100_000)
     if not system.freedoms.name:
         raise InputError("freedoms", 0, "at least one", "Leave a shaft free to turn, or switch effects on.")
-    period, start = common_period(system), static_equilibrium(system, time)
+    period, start = common_period(system), static_equilibrium(about_running(system), time)
     if not start.status.usable:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
     at_constant_speed(system, period, slowest, time)  # checks the speed

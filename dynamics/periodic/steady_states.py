@@ -18,6 +18,7 @@ from dynamics.periodic.shooting import Orbit
 from dynamics.periodic.steady_figures import KINDS, MotionFigures, figures_of
 from dynamics.periodic.sweep import SETTLING, sweep
 from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.results.force_check import checked_ledger
 from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray, Json
 
@@ -158,7 +159,7 @@ def steady_states(
     InputError
         If a value is out of range, there is nothing to vibrate, or the meshes have no common period.
     SolveError
-        If there is no static equilibrium.
+        If there is no static equilibrium, or a motion goes beyond a table (`ForceChecks`) and may not.
     """
     speeds = checked_speeds(np.asarray(speed, dtype=float), above_zero=True)
     if not speeds.size:
@@ -210,7 +211,8 @@ def _study(
         "freedoms": list(problem.system.freedoms.name),
         "steps_per_period": int(problem.grid.rung.size) * problem.repeat,
         "seconds": seconds,
-        "effect_ledger": problem.system.ledger.to_json(),
+        "effect_ledger": checked_ledger(problem.system, _largest(figures)),
+        **problem.system.corrections,
     }
     return SteadyStates(
         tuple(mesh.name for mesh in scene.meshes),
@@ -223,6 +225,11 @@ def _study(
         jump_speed=np.array([ends for _, ends in jumps], dtype=float).reshape(-1, 2),
         facts=facts,
     )
+
+
+def _largest(figures: MotionFigures) -> FloatArray:
+    """Return the largest force of each mesh over all motions that were found, (m,) N."""
+    return np.asarray(np.max(np.nan_to_num(figures.largest_force), axis=0, initial=0.0))
 
 
 def _jumps(figures: MotionFigures, speeds: int) -> list[tuple[int, tuple[float, float]]]:

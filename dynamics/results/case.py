@@ -38,7 +38,7 @@ def resolved_case(system: System) -> Json:
         "duration": scene.duration,
         "effects": dict(scene.effects),
         "tolerance": scene.tolerance,
-        "outputs": asdict(scene.outputs),
+        "outputs": {**asdict(scene.outputs), "sample_rate": system.sampling.rate},
         "integration": asdict(scene.integration),
         "freedoms": list(system.freedoms.name),
         "damping_reach": [float(value) for value in flanks.law.reach[: len(scene.meshes)]],

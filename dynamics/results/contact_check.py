@@ -20,18 +20,18 @@ class ContactChecks:
         self._gap = np.zeros(len(meshes))
         self._first = np.full(len(meshes), -1, dtype=np.int64)
 
-    def see(self, position: FloatArray, deflection: FloatArray, force: FloatArray) -> None:
-        """Take series (m, T) of the driving flanks."""
+    def see(self, position: FloatArray, deflection: FloatArray, force: FloatArray, least: FloatArray) -> None:
+        """Take series (m, T) of the driving flanks; `least` is what the force falls to between samples."""
         before = self._samples
         self._samples += position.shape[1]
         for index in self._watched:
-            apart = force[index] <= 0.0
+            apart = least[index] <= 0.0
             if self._first[index] < 0 and np.any(apart):
                 self._first[index] = before + int(np.argmax(apart))
             touch = np.empty(position.shape[1])
             table = self._system.arrays.elements.laws.flank.table
             static_deflections(table, index, position[index], 0.0, touch)
-            self._parted[index] += np.count_nonzero(apart)
+            self._parted[index] += np.count_nonzero(force[index] <= 0.0)
             gap = float(np.max((touch - deflection[index])[apart], initial=0.0))
             self._gap[index] = max(self._gap[index], gap)
 
@@ -57,7 +57,7 @@ class ContactChecks:
             "holds": bool(gap <= room),
             "parted": float(self._parted[index] / max(self._samples, 1)),
             "widest_gap": gap,
-            "since": (first - 1) / self._system.scene.outputs.sample_rate if first > 0 else None,
+            "since": (first - 1) / self._system.sampling.rate if first > 0 else None,
             "reason": _reason(gap, mesh.coast is not None, room),
         }
 

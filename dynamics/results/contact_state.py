@@ -21,10 +21,7 @@ class ContactState(IntEnum):
 
 def contact_state(result: RunResult) -> NDArray[np.int8]:
     """Return a `ContactState` per mesh and sample, (m, T)."""
-    state = (result.mesh_force > 0.0).astype(np.int8)
-    if result.coast_force.size:
-        state += 2 * (result.coast_force > 0.0).astype(np.int8)
-    return state
+    return result.contact.astype(np.int8)
 
 
 def contact_shares(result: RunResult) -> list[dict[str, float]]:

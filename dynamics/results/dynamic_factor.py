@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.checks import integer
+from dynamics.checks import integer, positive
 from dynamics.errors import InputError
 from dynamics.results.run_result import RunResult
 from dynamics.types import FloatArray
@@ -38,16 +38,21 @@ def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> Dynam
     Raises
     ------
     InputError
-        If the run is shorter than one block.
+        If the run is shorter than one block, or nothing loads the mesh.
     """
     integer("pitches", pitches, 1, 1_000_000)
     integer("mesh", mesh, 0, len(result.mesh) - 1)
+    positive("nominal_force", float(result.nominal_force[mesh]), "An idle mesh has no dynamic factor.")
     travel = np.abs(np.unwrap(result.position[mesh], period=1.0) - result.position[mesh][0])
     block = np.floor(travel * (1.0 + 1e-12) / pitches).astype(int)
     first = np.searchsorted(block, np.arange(block[-1] + 1))
     if first.size < 2:
         raise InputError("pitches", pitches, f"at most {int(travel[-1])}, the run's length")
-    force = result.mesh_force[mesh, : first[-1]] / result.nominal_force[mesh]
+    nominal = result.nominal_force[mesh]
+    force, least, largest = (
+        series[mesh, : first[-1]] / nominal
+        for series in (result.mesh_force, result.least_mesh_force, result.largest_mesh_force)
+    )
     first = np.unique(first[:-1])
     samples = np.diff(np.append(first, force.size))
 
@@ -57,7 +62,7 @@ def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> Dynam
     return DynamicFactor(
         mean(result.time),
         mean(result.mesh_frequency[mesh]),
-        np.maximum.reduceat(force, first),
+        np.maximum.reduceat(largest, first),
         mean(force),
-        np.minimum.reduceat(force, first),
+        np.minimum.reduceat(least, first),
     )

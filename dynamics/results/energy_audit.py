@@ -31,6 +31,9 @@ class EnergyAudit:
         Gained from start to end.
     held : float
         Elastic energy of meshes and bearings in the equilibrium that the run starts from, >= 0.
+    fallen : float
+        How far the loss in bushings, meshes or by friction fell below its highest value on the way, >= 0:
+        what is dissipated does not come back.
     """
 
     drive: float
@@ -44,6 +47,7 @@ class EnergyAudit:
     stored_bushings: float
     stored_meshes: float
     held: float = 0.0
+    fallen: float = 0.0
 
     @property
     def residual(self) -> float:
@@ -90,7 +94,7 @@ class EnergyAudit:
         return cls(**{name: data.get(name, 0.0) for name in cls.__dataclass_fields__})
 
     @classmethod
-    def from_arrays(cls, work: FloatArray, stored: FloatArray) -> EnergyAudit:
+    def from_arrays(cls, work: FloatArray, stored: FloatArray, fallen: float = 0.0) -> EnergyAudit:
         """Build from works in the order of the first seven fields and stored energies (2, 3), start, end."""
         gained, held = stored[1] - stored[0], np.sum(np.abs(stored[0, 1:]))
-        return cls(*(float(value) for value in (*work, *gained, held)))
+        return cls(*(float(value) for value in (*work, *gained, held, fallen)))

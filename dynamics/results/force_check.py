@@ -1,49 +1,114 @@
-"""Whether a run stayed below the highest load of its mesh-force tables."""
+"""Whether mesh forces stayed below the highest load of their tables.
+
+A table of several loads goes on straight with its last stiffness above the highest one. Up to `STRAIGHT_ON`
+times that load the result is told to be extrapolated. Beyond it is wrong: pairs of teeth that would share the
+load, and corner contact that would set in, are not in the table. A table of two levels is a closed form and
+holds everywhere.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
+from dynamics.errors import SolveError
+from dynamics.results.verdict import ending
 from dynamics.system.assemble import System
+from dynamics.system.scene import Scene
 from dynamics.types import FloatArray, Json
+
+STRAIGHT_ON = 1.2
+"""Times the highest load of a table: up to here it may go on straight."""
 
 
 class ForceChecks:
-    """Gathers, block by block, how far driving flanks were pressed beyond the loads of their tables."""
+    """Gathers, block by block, how far flanks were pressed beyond the loads of their tables."""
 
     def __init__(self, system: System) -> None:
-        self._meshes = system.scene.meshes
+        self._scene = system.scene
         self._samples = 0
-        self._highest = np.array([float(mesh.table.level[-1]) for mesh in self._meshes])
-        self._beyond = np.zeros(len(self._meshes), dtype=np.int64)
-        self._largest = np.zeros(len(self._meshes))
+        self._highest = np.array([_highest(system.scene, i) for i in range(len(system.scene.meshes))])
+        self._beyond = np.zeros(self._highest.size, dtype=np.int64)
+        self._largest = np.zeros(self._highest.size)
 
-    def see(self, force: FloatArray) -> None:
-        """Take the mesh forces (m, T), N."""
+    def see(self, driving: FloatArray, coast: FloatArray) -> None:
+        """Take the forces of driving and coast flanks (m, T), N; none of these where there are none."""
+        force = np.maximum(driving, coast) if coast.shape == driving.shape else driving
         self._samples += force.shape[1]
         self._beyond += np.count_nonzero(force > self._highest[:, None], axis=1)
         self._largest = np.maximum(self._largest, np.max(force, axis=1, initial=0.0))
 
     def found(self) -> list[Json]:
-        """Return one entry per mesh whose table is read between its loads.
+        """Return the entries of `force_checks`; ``beyond`` is the share of samples above the highest load."""
+        shares = self._beyond / max(self._samples, 1)
+        return force_checks(self._scene, self._largest, shares)
 
-        A table of two levels is a closed form and holds everywhere. ``beyond`` is the share of the samples
-        above the highest load, where the table goes on straight, ``largest`` the largest force in N.
-        """
-        return [self._entry(i) for i, mesh in enumerate(self._meshes) if mesh.table.level.size > 2]
 
-    def _entry(self, index: int) -> Json:
-        """One mesh."""
-        largest, highest = float(self._largest[index]), float(self._highest[index])
-        reason = f"forces up to {largest:.4g} N of {highest:.4g} N in the table"
-        if largest > highest:
-            reason = f"{reason}: beyond it goes on straight. Compute the table to a higher load"
-        return {
-            "effect": "",
-            "assumption": "force inside the table",
-            "part": self._meshes[index].name,
-            "holds": largest <= highest,
-            "beyond": float(self._beyond[index] / max(self._samples, 1)),
-            "largest": largest,
-            "reason": reason,
-        }
+def force_checks(scene: Scene, largest: FloatArray, beyond: FloatArray | None = None) -> list[Json]:
+    """Return one entry per mesh whose table is read between its loads.
+
+    `largest` (m,) are the largest transverse mesh forces, N, also in the entries.
+    """
+    return [
+        _entry(
+            scene, index, float(largest[index]), {} if beyond is None else {"beyond": float(beyond[index])}
+        )
+        for index, mesh in enumerate(scene.meshes)
+        if mesh.table.level.size > 2
+    ]
+
+
+def checked_ledger(system: System, largest: FloatArray) -> Json:
+    """Return the effect ledger of a study whose largest mesh forces are `largest` (m,), N, with its checks.
+
+    Raises
+    ------
+    SolveError
+        If a force is beyond its table and the scene's ``on_violation`` does not let that pass.
+    """
+    checks = force_checks(system.scene, largest)
+    if wrong := ending(checks, system.scene.on_violation):
+        raise SolveError(f"assumptions of the study that do not hold: {wrong}")
+    return {**system.ledger.to_json(), "checks": checks}
+
+
+def _entry(scene: Scene, index: int, largest: float, share: Json) -> Json:
+    """One mesh."""
+    highest = _highest(scene, index)
+    times = largest / highest
+    reason = f"forces up to {largest:.4g} N of {highest:.4g} N in the table"
+    if times > 1.0:
+        radius = _table_driver_radius(scene, index)
+        reason = (
+            f"forces up to {largest:.4g} N, {times:.3g} times the table's highest load of {highest:.4g} N; "
+            f"above it the table goes on straight, up to {STRAIGHT_ON:g} times. Compute it with torques up "
+            f"to {_rounded_up(largest * radius):g} N m, it ends at {highest * radius:.4g} N m"
+        )
+    return {
+        "effect": "",
+        "assumption": "force inside the table",
+        "part": scene.meshes[index].name,
+        "holds": times <= 1.0,
+        "valid": times <= STRAIGHT_ON,
+        **share,
+        "largest": largest,
+        "reason": reason,
+    }
+
+
+def _highest(scene: Scene, index: int) -> float:
+    """Highest load of a mesh's table, N; of the lower one where the coast flank has its own."""
+    coast = scene.meshes[index].coast
+    tables = [scene.meshes[index].table, *([coast.table] if coast is not None and coast.table else [])]
+    return min(float(table.level[-1]) for table in tables)
+
+
+def _table_driver_radius(scene: Scene, index: int) -> float:
+    """Return the base radius of the gear whose torques the table counts, m: the driver, or the pinion."""
+    driver, driven = scene.gear(scene.meshes[index].driver), scene.gear(scene.meshes[index].driven)
+    return driven.base_radius if driver.internal else driver.base_radius
+
+
+def _rounded_up(value: float) -> float:
+    """Return the next number of two digits."""
+    digit = 10.0 ** (np.floor(np.log10(value)) - 1.0)
+    return float(np.ceil(value / digit) * digit)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,28 +12,58 @@ from dynamics.results.axis_series import axis_series
 from dynamics.system.assemble import System
 from dynamics.system.freedoms import ROTATION
 from dynamics.system.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
-from dynamics.system.observation import observe, observe_laws, static_deflections
+from dynamics.system.observation import Observed, observe_laws, static_deflections
+from dynamics.system.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
 
-def histories(
-    system: System,
-    time: FloatArray,
-    q: FloatArray,
-    v: FloatArray,
-    moved: IntArray,
-    acceleration: FloatArray | None = None,
-) -> dict[str, Any]:
-    """Return the series of `RunResult` for the states `q`, `v` (T, n), `moved` (T, k) at `time` (T,).
+class Signals(NamedTuple):
+    """What series are made of at T times: n freedoms, R local coordinates, m meshes.
 
-    `acceleration` (T, n) is that of the freedoms, if wanted.
+    Attributes
+    ----------
+    q, v : (T, n) arrays
+    coordinate, force : (R, T) arrays
+        Of the elements.
+    static : (m, T) array
+        Static transmission error, m.
+    """
+
+    q: FloatArray
+    v: FloatArray
+    coordinate: FloatArray
+    force: FloatArray
+    static: FloatArray
+
+
+def unfiltered(system: System, seen: Observed, states: States) -> Signals:
+    """Return the signals of points of the motion."""
+    position = seen.position[: len(system.scene.meshes)]
+    return Signals(states.q, states.v, seen.coordinate, seen.force, _static(system, position))
+
+
+def filtered(system: System, states: States) -> Signals:
+    """Return the signals behind the anti-alias filter."""
+    n, rows, channels = states.q.shape[1], states.least.shape[1], states.filtered
+    ends = np.cumsum([rows, n, n, rows])
+    force, q, v, coordinate, static = np.split(channels, ends, axis=1)
+    across = (np.ascontiguousarray(part.T) for part in (coordinate, force, static))
+    return Signals(np.ascontiguousarray(q), np.ascontiguousarray(v), *across)
+
+
+def histories(
+    system: System, time: FloatArray, states: States, seen: Observed, signals: Signals
+) -> dict[str, Any]:
+    """Return the series of `RunResult` made of `signals`, for the `states` at `time` (T,) as `seen`.
+
+    Positions, contact and the extremes of the mesh forces are those of the unfiltered motion.
     """
     arrays, scene = system.arrays, system.scene
     laws = observe_laws(arrays, time)
-    seen = observe(arrays, time, q, v, moved)
+    q, v, moved = signals.q, signals.v, states.moved
     wanted = scene.outputs
-    position = seen.position[: len(scene.meshes)]
-    force, moment = _on_the_ground(system, laws, seen.force, q, v, moved)
+    force, moment = _on_the_ground(system, laws, signals.force, q, v, moved)
+    driving = system.driving_rows
     return {
         "time": time,
         "mesh": tuple(mesh.name for mesh in scene.meshes),
@@ -42,41 +72,64 @@ def histories(
         "freedom": system.freedoms.name if wanted.displacements else (),
         "drive": tuple(drive.name for drive in scene.drives),
         "coupling": system.couplings.name,
-        "position": position,
+        "position": seen.position[: len(scene.meshes)],
         "mesh_frequency": _mesh_frequency(system, laws[SPEED], v),
-        "dynamic_transmission_error": seen.coordinate[system.driving_rows],
-        "static_transmission_error": _static(system, position),
-        "mesh_force": seen.force[system.driving_rows],
-        "coast_force": _coast_force(system, seen.force),
-        **axis_series(system, seen.coordinate, seen.force),
+        "dynamic_transmission_error": signals.coordinate[driving],
+        "static_transmission_error": signals.static,
+        "mesh_force": signals.force[driving],
+        "coast_force": _coast_force(system, signals.force),
+        "least_mesh_force": np.ascontiguousarray(states.least[:, driving].T),
+        "largest_mesh_force": np.ascontiguousarray(states.largest[:, driving].T),
+        "contact": _contact(system, seen.force),
+        **axis_series(system, signals.coordinate, signals.force),
         "speed": _speed(system, laws[SPEED], v),
-        "drive_torque": _drive_torque(system, time, laws[ACCELERATION], seen.force, q, v),
+        "drive_torque": _drive_torque(system, time, laws[ACCELERATION], signals.force, q, v),
         "coupling_torque": _coupling_torque(system, q, v),
         "bearing_force": force,
         "bearing_moment": moment,
         "displacement": np.ascontiguousarray(q.T) if wanted.displacements else np.empty((0, time.size)),
         "velocity": np.ascontiguousarray(v.T) if wanted.displacements else np.empty((0, time.size)),
         "nominal_force": system.flanks.nominal_force,
-        **_accelerations(system, laws, acceleration, moved),
+        **_accelerations(system, laws, time, signals, moved),
     }
 
 
+def _contact(system: System, force: FloatArray) -> FloatArray:
+    """Return which flanks of each mesh carry, (m, T): 1 the driving, 2 the coast flank, 3 both, 0 none."""
+    coast = _coast_force(system, force)
+    found = (force[system.driving_rows] > 0.0).astype(float)
+    return found + 2.0 * (coast > 0.0) if coast.size else found
+
+
 def _accelerations(
-    system: System, laws: FloatArray, acceleration: FloatArray | None, moved: IntArray
+    system: System, laws: FloatArray, time: FloatArray, signals: Signals, moved: IntArray
 ) -> dict[str, FloatArray]:
     """Accelerations of the freedoms, and of the shafts at their bearings."""
     none = {"acceleration": np.empty((0, len(moved))), "bearing_acceleration": np.empty((0, 3, len(moved)))}
-    if acceleration is None:
+    if not system.scene.outputs.accelerations:
         return none
-    found = dict(none)
+    acceleration, found = _acceleration(system, laws[ACCELERATION], time, signals), dict(none)
     if system.scene.outputs.displacements:
-        found["acceleration"] = np.ascontiguousarray(acceleration.T)
+        found["acceleration"] = acceleration
     if system.scene.outputs.bearing_forces:
         moves = system.freedoms.keep(system.supports.motion)
         bearings, _, freedoms = moves.shape
-        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration.T).reshape(bearings, 3, len(moved))
+        seats = (moves.reshape(3 * bearings, freedoms) @ acceleration).reshape(bearings, 3, len(moved))
         found["bearing_acceleration"] = _seen_from_the_ground(system, seats, laws, moved)
     return found
+
+
+def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: Signals) -> FloatArray:
+    """Return q'' (n, T) from the equations of motion: linear in the signals, filtered as they are.
+
+    `laws` (k, T) are the accelerations of the laws.
+    """
+    arrays = system.arrays
+    force = arrays.inertial.T @ laws + arrays.constant[:, None]
+    for row, load in enumerate(system.scene.loads):
+        force += arrays.load.direction[row][:, None] * load.torque(time)
+    force -= arrays.damping @ signals.v.T + arrays.stiffness @ signals.q.T
+    return np.asarray(np.linalg.solve(arrays.mass, force - arrays.direction.T @ signals.force))
 
 
 def _on_the_ground(
@@ -89,7 +142,7 @@ def _on_the_ground(
     none = np.empty((0, 3, q.shape[0]))
     if not system.scene.outputs.bearing_forces:
         return none, none
-    found = bearing_force(system, local, q, v)
+    found = system.bearing_force(local, q, v)
     force, moment = found[:, :3], found[:, 3:]
     turned = _seen_from_the_ground(system, np.ascontiguousarray(force), laws, moved)
     if not _holds_tilt(system):
@@ -103,27 +156,6 @@ def _holds_tilt(system: System) -> bool:
         return True
     matrices = (system.bearing_stiffness[:, 3:], system.bearing_damping[:, 3:])
     return any(bool(np.any(matrix)) for matrix in (*matrices, system.seats.preload.reshape(-1, SEAT)[:, 3:]))
-
-
-def bearing_force(system: System, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
-    """Return the force (N) on the ground or the pin at each support in its own frame, (b, 3, T).
-
-    With seats (b, 6, T): force and moment (N m), the one about the axis 0. `local` (R, T) in N are the forces
-    of the elements.
-    """
-    bearings, rows, freedoms = system.bearing_stiffness.shape
-    force = system.bearing_stiffness.reshape(rows * bearings, freedoms) @ q.T
-    force += system.bearing_damping.reshape(rows * bearings, freedoms) @ v.T
-    supports, seats = system.supports, system.seats
-    found = force.reshape(bearings, rows, q.shape[0])
-    found[:, :3] -= (supports.stiffness * supports.error)[:, :, None]
-    if seats.name:
-        found[seats.place, :SEAT] -= seats.preload.reshape(-1, SEAT)[:, :, None]
-    first = system.arrays.elements.first[len(system.elements) - len(system.bearings) :]
-    for start, at in zip(first, system.bearings, strict=False):
-        rows = np.flatnonzero(np.any(at.way != 0.0, axis=0))
-        found[at.support, rows] += at.way[:, rows].T @ local[start : start + at.way.shape[0]]
-    return np.asarray(found)
 
 
 def _seen_from_the_ground(system: System, force: FloatArray, laws: FloatArray, moved: IntArray) -> FloatArray:

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
     import xarray
 
 SCHEMA = "lineofaction dynamics run"
-SCHEMA_VERSION = 2
-DOCUMENTS = ("effect_ledger", "receipt", "case", "modes")
+SCHEMA_VERSION = 3
+DOCUMENTS = {"effect_ledger": "{}", "receipt": "{}", "case": "{}", "modes": "{}", "warnings": "[]"}
+"""JSON attributes, and what stands for one that an older file has not."""
 
 
 def to_dataset(result: RunResult) -> xarray.Dataset:
@@ -112,5 +113,5 @@ def _from_dataset(dataset: xarray.Dataset) -> RunResult:
         status=RunStatus[dataset.attrs["status"]],
         statistics=StepStatistics(**json.loads(dataset.attrs["statistics"])),
         energy=EnergyAudit.from_json(energy) if energy else None,
-        **{name: json.loads(dataset.attrs.get(name, "{}")) for name in DOCUMENTS},
+        **{name: json.loads(dataset.attrs.get(name, absent)) for name, absent in DOCUMENTS.items()},
     )

@@ -11,7 +11,8 @@ from dynamics.results.contact_check import ContactChecks
 from dynamics.results.force_check import ForceChecks
 from dynamics.results.held_place_check import HeldPlaceChecks
 from dynamics.system.assemble import System
-from dynamics.types import FloatArray, Json
+from dynamics.system.sampled_states import States
+from dynamics.types import Json
 
 
 class SeriesCheck(Protocol):
@@ -32,15 +33,15 @@ class RunChecks:
         self._contact, self._axes = ContactChecks(system), AxisChecks(system)
         self._force, self._bearings = ForceChecks(system), BearingLoadChecks(system)
 
-    def see(self, series: dict[str, Any], q: FloatArray) -> None:
-        """Take a block of series, and the displacements (T, n) they are of."""
-        self._places.see(q)
+    def see(self, series: dict[str, Any], states: States) -> None:
+        """Take a block of unfiltered series, and the states they are of."""
+        self._places.see(states.q)
         for check in self._further:
             check.see(series)
-        names = ("position", "dynamic_transmission_error", "mesh_force")
+        names = ("position", "dynamic_transmission_error", "mesh_force", "least_mesh_force")
         self._contact.see(*(series[name] for name in names))
         self._axes.see(series)
-        self._force.see(series["mesh_force"])
+        self._force.see(series["largest_mesh_force"], series["coast_force"])
         self._bearings.see(series["bearing_force"])
 
     def found(self) -> list[Json]:

@@ -38,9 +38,14 @@ class RunResult:
         m; the table's at the nominal force and the same position, misaligned and apart as the bodies rest at
         t = 0: the static reference.
     mesh_force : (m, T) array
-        Transverse force of the driving flank in N, damping included, >= 0.
+        Transverse force of the driving flank in N, damping included; behind the anti-alias filter, which may
+        ring a little below 0 where flanks part.
     coast_force : (m, T) array
-        Transverse force of the coast flank in N, >= 0; m = 0 here if backlash is off in all meshes.
+        Transverse force of the coast flank in N; m = 0 here if backlash is off in all meshes.
+    least_mesh_force, largest_mesh_force : (m, T) arrays
+        N; extremes of the unfiltered force of the driving flank around each sample, >= 0.
+    contact : (m, T) array
+        Flanks in contact at each sample: 0 none, 1 the driving, 2 the coast flank, 3 both.
     misalignment, center_distance_change : (m, T) arrays
         m; where each mesh's table was read, as its bodies tilt and move; m = 0 here if the effect is off in
         all meshes.
@@ -76,6 +81,8 @@ class RunResult:
         terms are on also `over_speed`: whirl modes (a lists of S values each: `frequency` in Hz,
         `damping_ratio`, `whirl` from -1, backward, to 1, forward) at S speeds of `shaft` (`speed`, rad/s;
         `mesh_frequency` of every mesh, Hz) from rest to the largest of the run, and `freedom` at the last.
+    warnings : list of dict
+        What is implausible about the scene; empty where nothing is.
     acceleration : (n, T) array
         Second rate of the deviations, m/s2 and rad/s2; n = 0 if not asked for.
     bearing_acceleration : (b, 3, T) array
@@ -96,6 +103,9 @@ class RunResult:
     static_transmission_error: FloatArray
     mesh_force: FloatArray
     coast_force: FloatArray
+    least_mesh_force: FloatArray
+    largest_mesh_force: FloatArray
+    contact: FloatArray
     misalignment: FloatArray
     center_distance_change: FloatArray
     load_centroid: FloatArray
@@ -114,6 +124,7 @@ class RunResult:
     receipt: Json = field(default_factory=dict)
     case: Json = field(default_factory=dict)
     modes: Json = field(default_factory=dict)
+    warnings: list[Json] = field(default_factory=list)
     acceleration: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     bearing_acceleration: FloatArray = field(default_factory=lambda: np.empty((0, 3, 0)))
 

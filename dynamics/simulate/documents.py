@@ -10,23 +10,25 @@ from typing import Any
 import numpy as np
 
 from dynamics.errors import SolveError
-from dynamics.integrators.accelerations import accelerations
 from dynamics.integrators.march import Ending
-from dynamics.integrators.state_sink import States
 from dynamics.integrators.workspace import Count
 from dynamics.linearize import natural_modes
 from dynamics.linearize.campbell import whirl_branches
 from dynamics.linearize.linear_system import LinearSystem, linearize
 from dynamics.linearize.speeds import leading_law, mesh_frequencies
+from dynamics.plausibility import scene_findings
 from dynamics.results import EnergyAudit, StepStatistics
 from dynamics.results.case import resolved_case
 from dynamics.results.effect_ledger import effect_ledger
-from dynamics.results.histories import histories
+from dynamics.results.energy_check import energy_check
+from dynamics.results.histories import filtered, histories, unfiltered
 from dynamics.results.run_checks import RunChecks
 from dynamics.simulate.violations import FIRST, EarlierRun
 from dynamics.system import Integration
 from dynamics.system.assemble import System
 from dynamics.system.effects.gyroscopic import Gyroscopic
+from dynamics.system.observation import observe
+from dynamics.system.sampled_states import States
 from dynamics.types import FloatArray, Json
 from dynamics.worth import Decided, Worth, estimate_worths
 
@@ -51,14 +53,25 @@ def documents(
     began = clock.process_time()
     worths = {name: worth.to_json() for name, worth in known_worths(decided, system, end).items()}
     seconds = {**seconds, "worth_estimates": clock.process_time() - began + decided.seconds}
-    audit = EnergyAudit.from_arrays(end.work, end.stored)
+    audit = None
+    if system.scene.outputs.energy_audit:
+        audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
+    found = [*checks.found(), *([] if audit is None else [energy_check(audit)])]
     return {
         "status": end.status,
         "statistics": _statistics(system, end),
-        "energy": audit if system.scene.outputs.energy_audit else None,
-        "effect_ledger": effect_ledger(system, checks.found(), automatic, worths),
-        "receipt": {"seconds": seconds, "error": error} | before.to_json(),
+        "energy": audit,
+        "effect_ledger": effect_ledger(system, found, automatic, worths),
+        "receipt": {
+            "seconds": seconds,
+            "error": {**error, "sampling": end.figures.error(system)},
+            "sampling": system.sampling.to_json(),
+            "peaks": end.figures.to_json(system),
+        }
+        | before.to_json()
+        | system.corrections,
         "case": resolved_case(system),
+        "warnings": [finding.to_json() for finding in scene_findings(decided.scene)],
         "modes": _modes(system),
     }
 
@@ -72,12 +85,13 @@ def known_worths(decided: Decided, system: System, end: Ending) -> Mapping[str, 
     return estimate_worths(scene)
 
 
-def series_of(system: System, time: FloatArray, states: States) -> dict[str, Any]:
-    """Return all series of `RunResult` for the `states` at `time` (T,)."""
-    seconds = None
-    if system.scene.outputs.accelerations:
-        seconds = accelerations(system.arrays, time, states)
-    return histories(system, time, *states, acceleration=seconds)
+def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return all series of `RunResult` for the `states` at `time` (T,), as stored and unfiltered."""
+    seen = observe(system.arrays, time, states.q, states.v, states.moved)
+    raw = histories(system, time, states, seen, unfiltered(system, seen, states))
+    if system.sampling.stop_band == 0.0:
+        return raw, raw
+    return histories(system, time, states, seen, filtered(system, states)), raw
 
 
 def _modes(system: System) -> Json:

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.integrators import StaticSolution, integrate
-from dynamics.integrators.state_sink import States
-from dynamics.results.histories import bearing_force
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
 from dynamics.system import Integration
 from dynamics.system.assemble import System
 from dynamics.system.later_start import starting_at
 from dynamics.system.observation import observe
+from dynamics.system.sampled_states import States
 from dynamics.types import FloatArray, StaticStatus
 
 WINDOWS = 3
@@ -87,12 +86,12 @@ def windows(system: System, states_of: StatesOf, samples: int) -> list[Window]:
 
 def _window(system: System, states_of: StatesOf, first: int, stop: int) -> Window:
     """Look at the run from sample `first` to `stop` - 1."""
-    rate = system.scene.outputs.sample_rate
+    rate = system.sampling.rate
     states, time = states_of(first, stop), np.arange(stop - first) / rate
     later = starting_at(system, first / rate, states.moved[0])
     outputs = replace(system.scene.outputs, energy_audit=False)
     scene = replace(system.scene, duration=float(time[-1]), outputs=outputs)
-    later = replace(later, scene=scene)
+    later = replace(later, scene=scene, sampling=system.sampling.points())
     counted = states._replace(moved=states.moved - states.moved[0])
     position, error, force = _seen(later, time, counted)
     return Window(first, stop, time, later, counted, position, error, force)
@@ -100,8 +99,8 @@ def _window(system: System, states_of: StatesOf, first: int, stop: int) -> Windo
 
 def _seen(system: System, time: FloatArray, states: States) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return positions, transmission errors and bearing forces."""
-    seen = observe(system.arrays, time, *states)
-    force = bearing_force(system, seen.force, states.q, states.v)
+    seen = observe(system.arrays, time, states.q, states.v, states.moved)
+    force = system.bearing_force(seen.force, states.q, states.v)
     meshes = len(system.scene.meshes)  # frames that turn have positions too, behind those of the meshes
     return unwrapped(seen.position[:meshes]), seen.coordinate[system.driving_rows], force[:, :3]
 
@@ -113,8 +112,7 @@ def run_again(window: Window, system: System, integration: Integration) -> Diffe
     found = integrate(system, start, integration, velocity=first.v[0])
     if not found.status.usable or found.samples != window.time.size:
         return None
-    states = States(found.q, found.v, found.moved)
-    _, error, force = _seen(window.system, window.time, states)
+    _, error, force = _seen(window.system, window.time, found.states)
     apart, pushed = error - window.error, force - window.force
     orders = min((orders_seen(position, ORDERS) for position in window.position), default=0)
     if np.ptp(window.position[0]) < 1.0:

@@ -10,12 +10,14 @@ import numpy as np
 
 from dynamics.errors import SolveError
 from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
-from dynamics.integrators.state_sink import States, blocks
+from dynamics.integrators import march as marching
+from dynamics.integrators.state_sink import MemorySink, blocks
 from dynamics.integrators.taking_over import Trail
-from dynamics.integrators.workspace import Count, Power
+from dynamics.plausibility import scene_findings, warn_of
 from dynamics.results import RunResult
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.series import over_time
+from dynamics.results.verdict import ending
 from dynamics.simulate.documents import (
     asked_error,
     documents,
@@ -25,11 +27,12 @@ from dynamics.simulate.documents import (
     squared_difference,
 )
 from dynamics.simulate.error_by_source import error_by_source
-from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said, taken_over
+from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, taken_over
 from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
+from dynamics.system.sampled_states import States
 from dynamics.system.static_reference import with_static_reference
-from dynamics.types import FloatArray, Json, RunStatus
+from dynamics.types import Json, RunStatus
 from dynamics.worth import Decided, decide_effects
 from dynamics.worth.spared_check import SparedChecks
 
@@ -58,9 +61,15 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
         If the scene's parts do not fit each other.
     SolveError
         If there is no equilibrium to start from, the run stopped early or was cancelled, or something that
-        it took for granted is wrong and the scene's ``on_violation`` is "fail"; ``partial`` is the result up
-        to there.
+        it took for granted is wrong and the scene's ``on_violation`` is "fail", or "repeat" and no effect
+        mends it; ``partial`` is the result up to there.
+
+    Warns
+    -----
+    PlausibilityWarning
+        Once for each thing about the scene that is far from practice; all are in `RunResult.warnings`.
     """
+    warn_of(scene_findings(scene))
     decided, before = decide_effects(scene), FIRST
     run = _run(decided, before, None, progress, cancel)
     while needed := _needed(scene, run.result):
@@ -72,11 +81,12 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
 
 
 def _needed(scene: Scene, result: RunResult) -> dict[str, str]:
-    """Return the effects that a run is to be repeated with; raises where the scene asked for that."""
-    wrong = said(result.effect_ledger)
-    if wrong and scene.on_violation == "fail":
+    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
+    needed = needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
+    wrong = "" if needed else ending(result.effect_ledger["checks"], scene.on_violation)
+    if wrong:
         raise SolveError(f"assumptions of the run that do not hold: {wrong}", result)
-    return needed_effects(result.effect_ledger) if scene.on_violation == "repeat" else {}
+    return needed
 
 
 @dataclass(frozen=True)
@@ -89,8 +99,7 @@ class _Run:
 
     def states(self, first: int, stop: int) -> States:
         """Return its samples `first` to `stop` - 1."""
-        run = self.trajectory
-        return States(run.q, run.v, run.moved).rows(first, stop)
+        return self.trajectory.states.rows(first, stop)
 
 
 def _run(
@@ -151,10 +160,10 @@ def _result(
     checks = RunChecks(system, [SparedChecks(decided)])
     parts: list[dict[str, Any]] = []
     for first, stop in blocks(trajectory.samples):
-        part = slice(first, stop)
-        states = States(trajectory.q[part], trajectory.v[part], trajectory.moved[part])
-        parts.append(series_of(system, trajectory.time[part], states))
-        checks.see(parts[-1], states.q)
+        states = trajectory.states.rows(first, stop)
+        series, raw = series_of(system, trajectory.time[first:stop], states)
+        parts.append(series)
+        checks.see(raw, states)
     seconds = {**seconds, "outputs": clock.perf_counter() - began}
     about = documents(system, trajectory, checks, seconds, error, decided, before)
     return RunResult(**_joined(parts), **about)
@@ -177,8 +186,7 @@ def _error_estimate(
     integration = system.scene.integration
     if not trajectory.status.usable:
         return asked_error(integration)
-    states = States(trajectory.q, trajectory.v, trajectory.moved)
-    error = error_by_source(system, states.rows, trajectory.samples)
+    error = error_by_source(system, trajectory.states.rows, trajectory.samples)
     if not integration.estimate_error:
         return error
     check = integrate(system, start, finer(integration), progress)
@@ -188,18 +196,11 @@ def _error_estimate(
 
 def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
     """Stand for a run that never started: its first sample is where the search for equilibrium ended."""
-    q: FloatArray = start.displacement[None, :]
+    march = marching.start_march(system, start, system.scene.integration)
+    sink = MemorySink(1, march.widths)
+    marching.sample_rest(march, sink)
     return Trajectory(
-        status=RunStatus.NO_EQUILIBRIUM,
-        samples=1,
+        **vars(marching.ending(march, sink, RunStatus.NO_EQUILIBRIUM, 0.0)),
         time=np.zeros(1),
-        q=q,
-        v=np.zeros_like(q),
-        moved=np.zeros((1, len(system.scene.references)), dtype=np.int64),
-        end=0.0,
-        stored=np.zeros((2, 3)),
-        work=np.zeros(len(Power)),
-        count=np.zeros(len(Count), dtype=np.int64),
-        step_range=np.zeros(2),
-        seconds=0.0,
+        states=sink.states(0, 1),
     )

@@ -13,21 +13,24 @@ from dynamics.integrators import Cancel, Progress, StaticSolution
 from dynamics.integrators.checkpoint import fingerprint, restore
 from dynamics.integrators.march import Ending, March, ending, march_on, start_march
 from dynamics.integrators.state_spool import StateSpool
-from dynamics.integrators.taking_over import Taken, Trail, take_over
+from dynamics.integrators.taking_over import Taken, Trail, take_over, widened
+from dynamics.integrators.workspace import Count
 from dynamics.simulate.violations import taken_over
 from dynamics.system import Integration
 from dynamics.system.assemble import System
+from dynamics.system.sampled_states import Widths
 from dynamics.types import Json, RunStatus
 
 
 @dataclass(frozen=True)
 class MadeRun:
-    """A run as made: its status, effect ledger and wall time (s), and where it stood on its way."""
+    """A run as made: its status, effect ledger and wall time (s), where it stood on its way, its records."""
 
     status: RunStatus
     ledger: Json
     seconds: float
     trail: Trail
+    widths: Widths
 
 
 class Leg:
@@ -44,10 +47,11 @@ class Leg:
         earlier: MadeRun | None = None,
     ) -> None:
         self.march: March = start_march(system, start, integration)
-        work, control, outputs = self.march.work, self.march.control, system.scene.outputs
-        rates = (system.scene.duration, outputs.sample_rate)
-        self._mark = fingerprint(system.arrays, control, work.ladder, start.displacement, rates)
-        self.spool = stack.enter_context(StateSpool(place, work.q.size, work.moved.size))
+        work, control, duration = self.march.work, self.march.control, system.scene.duration
+        self._mark = fingerprint(
+            system.arrays, control, self.march.sampler, work.ladder, start.displacement, duration
+        )
+        self.spool = stack.enter_context(StateSpool(place, self.march.widths))
         self._seconds = 0.0
         self._status: RunStatus | None = None
         self.since = 0.0
@@ -55,8 +59,8 @@ class Leg:
         taken = earlier and taken_over(earlier.ledger, earlier.trail, self.spool.states, system)
         if found is not None:
             self._take_up(place, *found)
-        elif taken:
-            self._go_on_for(taken)
+        elif earlier and taken:
+            self._go_on_for(earlier.widths, taken)
         else:
             self.spool.begin()
 
@@ -64,16 +68,18 @@ class Leg:
         """Stand where the checkpoint was written."""
         if str(facts.get("mark")) != self._mark:
             raise ResultError(f"{place}: of another scene or version. Start the run anew.")
-        restore(self.march.work, arrays, place)
+        restore(self.march.state, arrays, place)
         self.spool.resume(int(facts["samples"]))
         self._seconds, self.since = float(facts["seconds"]), float(facts["since"])
         status = RunStatus(int(facts["status"]))
         self._status = None if status is RunStatus.CANCELLED else status
 
-    def _go_on_for(self, taken: Taken) -> None:
+    def _go_on_for(self, widths: Widths, taken: Taken) -> None:
         """Stand where an earlier run stood, whose samples the spool holds; kept at once: its own are gone."""
         take_over(self.march, taken.at, taken.place)
-        self.spool.resume(taken.at.samples)
+        samples = taken.at.samples
+        self.spool.rewrite(widths, samples, lambda states: widened(states, taken.place, self.march))
+        self.spool.resume(samples)
         self.since = taken.at.time
         self._save(RunStatus.CANCELLED)
 
@@ -99,10 +105,10 @@ class Leg:
             self._seconds = before + clock.perf_counter() - began
             self._save(status)
             self._status = status
-        return ending(self.march, self._status, self._seconds)
+        return ending(self.march, self.spool, self._status, self._seconds)
 
     def _save(self, status: RunStatus) -> None:
         """Write a checkpoint."""
-        samples = int(ending(self.march, status, 0.0).samples)
+        samples = int(self.march.work.counts[Count.OUTPUT])
         facts = {"mark": self._mark, "samples": samples, "seconds": self._seconds, "since": self.since}
-        self.spool.save(self.march.work, **facts, status=int(status))
+        self.spool.save(self.march.state, **facts, status=int(status))

@@ -15,11 +15,13 @@ import numpy as np
 from dynamics.errors import ResultError, SolveError
 from dynamics.integrators import Cancel, Progress, static_equilibrium
 from dynamics.integrators.march import Ending
-from dynamics.integrators.state_sink import States, blocks
+from dynamics.integrators.state_sink import blocks
 from dynamics.integrators.taking_over import Trail
+from dynamics.plausibility import scene_findings, warn_of
 from dynamics.results.netcdf import attributes
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_file import RunFile
+from dynamics.results.verdict import ending
 from dynamics.simulate.documents import (
     asked_error,
     documents,
@@ -31,9 +33,10 @@ from dynamics.simulate.documents import (
 from dynamics.simulate.error_by_source import error_by_source
 from dynamics.simulate.in_memory import require_equilibrium
 from dynamics.simulate.leg import Leg, MadeRun
-from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects, said
+from dynamics.simulate.violations import FIRST, EarlierRun, needed_effects
 from dynamics.system import Scene
 from dynamics.system.assemble import System, assemble
+from dynamics.system.sampled_states import States
 from dynamics.system.static_reference import with_static_reference
 from dynamics.types import Json, RunStatus
 from dynamics.worth import Decided, decide_effects
@@ -88,7 +91,7 @@ def simulate_to_file(
         If the scene's parts do not fit each other, or another process runs to the same file.
     SolveError
         If there is no equilibrium to start from, or something that the run took for granted is wrong and the
-        scene's ``on_violation`` is "fail"; the file is then complete.
+        scene's ``on_violation`` is "fail", or "repeat" and no effect mends it; the file is then complete.
     ResultError
         If the checkpoint is damaged, or that of another scene.
     """
@@ -96,6 +99,7 @@ def simulate_to_file(
     folder = interrupted_run(path)
     how = _How(resume, progress, cancel, checkpoint_every)
     before = _read_earlier(folder) if resume else FIRST
+    warn_of(scene_findings(scene))
     decided = decide_effects(scene)
     run = _run_to_file(before.of(decided), path, before, how, None)
     while needed := _needed(scene, path, run):
@@ -112,12 +116,15 @@ def simulate_to_file(
 
 
 def _needed(scene: Scene, path: Path, run: MadeRun) -> dict[str, str]:
-    """Return the effects that a run is to be repeated with; raises where the scene asked for that."""
-    wrong = said(run.ledger) if run.status.usable else ""
-    if wrong and scene.on_violation == "fail":
+    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
+    if not run.status.usable:
+        return {}
+    needed = needed_effects(run.ledger) if scene.on_violation == "repeat" else {}
+    wrong = "" if needed else ending(run.ledger["checks"], scene.on_violation)
+    if wrong:
         _remove(interrupted_run(path))
         raise SolveError(f"assumptions of the run that do not hold: {wrong}. It is in {path}")
-    return needed_effects(run.ledger) if wrong and scene.on_violation == "repeat" else {}
+    return needed
 
 
 @dataclass(frozen=True)
@@ -157,7 +164,7 @@ def _run_to_file(
             error = error | (_difference(system, leg, check, other) if other.status.usable else {})
         seconds["integration"] = end.seconds
         ledger = _write(path, system, leg, end, seconds, error, decided, before)
-    return MadeRun(end.status, ledger, sum(seconds.values()), trail)
+    return MadeRun(end.status, ledger, sum(seconds.values()), trail, leg.march.widths)
 
 
 def _read_earlier(folder: Path) -> EarlierRun:
@@ -195,8 +202,8 @@ def _write(
     began = clock.perf_counter()
     checks = RunChecks(system, [SparedChecks(decided)])
     with RunFile(path) as file:
-        for series, states in _series(system, leg, end.samples):
-            checks.see(series, states.q)
+        for series, raw, states in _series(system, leg, end.samples):
+            checks.see(raw, states)
             file.append(series)
         seconds["outputs"] = clock.perf_counter() - began
         about = documents(system, end, checks, seconds, error, decided, before)
@@ -204,12 +211,13 @@ def _write(
     return dict(about["effect_ledger"])
 
 
-def _series(system: System, leg: Leg, samples: int) -> Iterator[tuple[dict[str, Any], States]]:
-    """Yield the series of all blocks, and the states that they are of."""
-    rate = system.scene.outputs.sample_rate
+def _series(
+    system: System, leg: Leg, samples: int
+) -> Iterator[tuple[dict[str, Any], dict[str, Any], States]]:
+    """Yield the series of all blocks as stored and unfiltered, and the states that they are of."""
     for first, stop in blocks(samples):
         states = leg.spool.states(first, stop)
-        yield series_of(system, np.arange(first, stop) / rate, states), states
+        yield *series_of(system, np.arange(first, stop) / system.sampling.rate, states), states
 
 
 def _remove(folder: Path) -> None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
-from dynamics.integrators.state_sink import States
 from dynamics.integrators.taking_over import Taken, Trail, added_rows
 from dynamics.system.assemble import System
+from dynamics.system.sampled_states import States
 from dynamics.types import Json
 from dynamics.worth import Decided
 from dynamics.worth.spared_check import ANY_PART
@@ -89,11 +89,3 @@ def _wrong(ledger: Json) -> list[Json]:
         for part in (entry["part"], ANY_PART)
     }
     return [one for one in ledger["checks"] if one["holds"] is False and (one["effect"], one["part"]) in able]
-
-
-def said(ledger: Json) -> str:
-    """Say which assumptions do not hold; empty if all do."""
-    wrong = [one for one in ledger["checks"] if one["holds"] is False]
-    return "; ".join(
-        f"{one['assumption']} ({one['part'] or one['effect']}): {one['reason']}" for one in wrong
-    )

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from dynamics.system.arrays import SystemArrays
+from dynamics.system.base_pitches import Corrections
 from dynamics.system.bearing_elements import BearingElement
+from dynamics.system.bearing_force import BearingForce, bearing_force_map
 from dynamics.system.bearing_rest import linear_scene
 from dynamics.system.connections import forces_on_ground
 from dynamics.system.coupling_rows import CouplingRows
@@ -20,11 +24,12 @@ from dynamics.system.line_of_action import LineOfAction
 from dynamics.system.mechanism import gather_mechanism
 from dynamics.system.model import Model, decide_model
 from dynamics.system.rotor import Rotor
+from dynamics.system.sampling import Sampling, choose_sampling, top_mode
 from dynamics.system.scene import Scene
 from dynamics.system.seats import Seats
 from dynamics.system.supports import Supports
 from dynamics.system.system_arrays import system_arrays
-from dynamics.types import FloatArray, IntArray
+from dynamics.types import FloatArray, IntArray, Json
 
 
 @dataclass(frozen=True)
@@ -56,7 +61,13 @@ class System:
     bearing_stiffness, bearing_damping : (b, 3 or 6, n) arrays
         Force on the ground, or on the pin, at each support per freedom and its rate; where bearings may
         exert moments, these too.
+    bearing_map : BearingForce
+        The whole force there.
+    sampling : Sampling
+        How the run is sampled.
     ledger : EffectLedger
+    corrected : dict
+        Base radii of gears as given and as used, m, that were corrected to the base pitch of their train.
     """
 
     scene: Scene
@@ -73,12 +84,37 @@ class System:
     couplings: CouplingRows
     bearing_stiffness: FloatArray
     bearing_damping: FloatArray
+    bearing_map: BearingForce
+    sampling: Sampling
     ledger: EffectLedger
+    corrected: Corrections
+
+    @property
+    def corrections(self) -> Json:
+        """Say what of the scene was corrected; nothing where nothing was."""
+        found = {name: {"given": given, "used": used} for name, (given, used) in self.corrected.items()}
+        return {"base_radius_corrected": found} if found else {}
 
     @property
     def driving_rows(self) -> IntArray:
         """Rows of the transmission errors among the local coordinates, (m,): driving flanks come first."""
         return self.arrays.elements.first[: len(self.scene.meshes)]
+
+    @property
+    def resolved_scene(self) -> Scene:
+        """The scene with the output rate and the highest frequency of its shafts spelled out."""
+        outputs = replace(self.scene.outputs, sample_rate=self.sampling.rate)
+        elastic = [rotor.elastic.highest for rotor in self.rotors if rotor.elastic is not None]
+        highest = elastic[0] if elastic else self.scene.highest_frequency
+        return replace(self.scene, outputs=outputs, highest_frequency=highest)
+
+    def bearing_force(self, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
+        """Return the force (N) on the ground or the pin at each support in its own frame, (b, 3, T).
+
+        With seats or bearings that hold tilt (b, 6, T): force and moment (N m), the one about the axis 0.
+        `local` (R, T) in N are the forces of the elements, `q` and `v` (T, n) the state.
+        """
+        return self.bearing_map.of(local, q, v).reshape(*self.bearing_stiffness.shape[:2], q.shape[0])
 
 
 def assemble(scene: Scene) -> System:
@@ -92,7 +128,8 @@ def assemble(scene: Scene) -> System:
     system = _assemble(scene)
     if not system.bearings or scene.effects.get(BearingClearance().name) != "off":
         return system
-    return replace(_assemble(_with_linear_bearings(system)), ledger=system.ledger)
+    linear = _assemble(_with_linear_bearings(system))
+    return replace(linear, ledger=system.ledger, corrected=system.corrected)
 
 
 def _assemble(scene: Scene) -> System:
@@ -130,5 +167,19 @@ def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArr
         joined.couplings,
         stiffness,
         damping,
+        bearing_force_map(
+            stiffness, damping, joined.supports, joined.seats, mechanism.bearings, arrays.elements
+        ),
+        choose_sampling(mechanism.scene, mechanism.kinematics, _top_mode(model, arrays)),
         model.ledger,
+        mechanism.corrected,
     )
+
+
+def _top_mode(model: Model, arrays: SystemArrays) -> float:
+    """Return the highest mode that the meshes excite, as far as shafts are resolved, Hz."""
+    elements, meshes = arrays.elements, len(model.mechanism.scene.meshes)
+    rows = arrays.direction[elements.first[:meshes]]
+    other = arrays.direction.T @ (elements.stiffness[:, None] * arrays.direction)
+    elastic = [rotor.elastic.highest for rotor in model.mechanism.rotors if rotor.elastic is not None]
+    return top_mode(arrays, rows, model.flanks.mean_stiffness, other, max(elastic, default=np.inf))

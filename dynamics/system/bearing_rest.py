@@ -9,7 +9,7 @@ import numpy as np
 
 from dynamics.forces.element_laws import Law
 from dynamics.joints import Bushing, PlanetBearing
-from dynamics.joints.matrix import Matrix
+from dynamics.joints.matrix import Matrix, congruent
 from dynamics.joints.seat import SEAT, seat_matrix
 from dynamics.system.arrays import SystemArrays
 from dynamics.system.bearing_elements import BearingElement
@@ -125,8 +125,8 @@ def with_tangent(
     symmetric = 0.5 * (stiffness + stiffness.T)
     return replace(
         bearing,
-        stiffness=_rows(bearing.added_stiffness + spread.T @ symmetric @ spread),
-        damping=_rows(seat_matrix(bearing.damping) + spread.T @ damping @ spread),
+        stiffness=_rows(bearing.added_stiffness + congruent(symmetric, spread)),
+        damping=_rows(seat_matrix(bearing.damping) + congruent(damping, spread)),
         preload=tuple(float(value) for value in added + (symmetric @ coordinate - force) @ spread),
     )
 

@@ -19,7 +19,7 @@ from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
 
 DAMPING_REACH = 0.05
-"""Damping acts in full from this fraction of the nominal force on (of the last level without one)."""
+"""Damping acts in full from this fraction of the typical force on."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Flanks:
     nominal_force : (m,) array
         Transverse, N.
     mean_stiffness : (m,) array
-        Tangent stiffness of the table at the nominal force, mean over the positions, N/m.
+        Tangent stiffness of the table at the typical force, mean over the positions, N/m.
     used : tuple of PlainTable
         The tables after the mesh's technique.
     law : FlankLaws
@@ -56,7 +56,11 @@ class Flanks:
 def flank_laws(
     scene: Scene, kinematics: Kinematics, nominal: FloatArray, polar_inertia: Sequence[float]
 ) -> Flanks:
-    """Resolve the force law of every driving flank."""
+    """Resolve the force law of every driving flank.
+
+    Stiffness and damping are those at the typical force: the nominal one, and where nothing loads a mesh the
+    lowest load of its table. A line contact has no stiffness at lift-off, and idle gears would not be damped.
+    """
     static: list[PlainTable] = []
     used: list[PlainTable] = []
     for index, mesh in enumerate(scene.meshes):
@@ -66,15 +70,14 @@ def flank_laws(
         except InputError as error:
             raise error.within(f"meshes[{index}]") from None
     packed = pack_tables(static)
+    typical = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
     stiffness = np.array(
-        [mean_stiffness(packed, f, nominal[f], static[f].position) for f in range(len(static))]
+        [mean_stiffness(packed, f, typical[f], static[f].position) for f in range(len(static))]
     )
     damping = np.array(
         [_damping(scene, kinematics, f, stiffness[f], polar_inertia) for f in range(len(static))]
     )
-    top = np.array([table.level[-1] for table in static])
-    reach = DAMPING_REACH * np.where(nominal > 0.0, nominal, top)
-    law = FlankLaws(pack_tables(used), damping, reach)
+    law = FlankLaws(pack_tables(used), damping, DAMPING_REACH * typical)
     return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
 
 
@@ -122,9 +125,8 @@ def _apply_technique(technique: str, table: PlainTable, force: float) -> PlainTa
     if technique == "variable_torque":
         return table
     if force <= 0.0:
-        raise InputError(
-            "technique", technique, "used with a nominal force", "Load the mesh or give nominal_force."
-        )
+        suggestion = 'Load the mesh, give nominal_force, or use "variable_torque".'
+        raise InputError("technique", technique, "used with a nominal force", suggestion)
     return secant_table(table, force)
 
 

@@ -8,6 +8,7 @@ from dynamics.bodies import Shaft
 from dynamics.checks import one_of
 from dynamics.errors import InputError
 from dynamics.joints import Bushing, Housing
+from dynamics.joints.seat import SEAT
 from dynamics.types import FloatArray
 
 ISOTROPY = 1e-9  # relative
@@ -42,7 +43,8 @@ def _check_isotropic(field: str, bushing: Bushing) -> None:
         if not alike_across(matrix):
             bound = "the same in all directions across the axis"
             raise InputError(f"{field}.{name}", bushing.name, bound, "The carrier's frame turns against it.")
-    if bushing.preload is not None and any(bushing.preload[kind] != 0.0 for kind in (0, 1, 3, 4)):
+    preload = np.zeros(SEAT) if bushing.preload is None else np.abs(bushing.preload)
+    if np.any(preload[[0, 1, 3, 4]] > ISOTROPY * np.max(preload)):
         bound = "zero across the axis: the carrier's frame turns against it"
         raise InputError(f"{field}.preload", bushing.preload, bound)
 

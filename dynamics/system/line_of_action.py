@@ -12,8 +12,6 @@ from dynamics.errors import InputError
 from dynamics.system.scene import Scene
 from dynamics.types import FloatArray
 
-BASE_PITCH_AGREEMENT = 1e-9
-
 
 @dataclass(frozen=True)
 class LineOfAction:
@@ -54,7 +52,7 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     Raises
     ------
     InputError
-        If the gears cannot mesh: base pitch, hand, faces or centre distance do not fit.
+        If the gears cannot mesh: hand, faces or centre distance do not fit.
     """
     mesh = scene.meshes[index]
     driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
@@ -97,16 +95,13 @@ def _acting_base_radii(driver: GearBody, driven: GearBody) -> float:
 
 
 def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
-    """Equal base pitch, opposite hand; the same hand and a smaller pinion in a ring gear."""
+    """Opposite hand; the same hand and a smaller pinion in a ring gear."""
     ring = driver if driver.internal else driven
     pinion = driven if driver.internal else driver
     if ring.internal and pinion.internal:
         raise InputError(field, driven.name, "an external gear where the driver is a ring gear")
     if ring.internal and pinion.teeth >= ring.teeth:
         raise InputError(field, driven.teeth, f"such that the ring gear has more teeth than {pinion.teeth}")
-    if abs(driver.base_pitch / driven.base_pitch - 1.0) > BASE_PITCH_AGREEMENT:
-        bound = f"a gear of base pitch {driver.base_pitch:.12g} m like the driver's"
-        raise InputError(field, driven.base_pitch, bound, "base_radius / teeth must agree to 1e-9.")
     hand, name = (1.0, "the same hand") if ring.internal else (-1.0, "the other hand")
     if abs(driver.base_helix_angle - hand * driven.base_helix_angle) > 1e-9:
         bound = f"of base helix angle {hand * driver.base_helix_angle:g}, {name}"

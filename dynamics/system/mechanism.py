@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from dynamics.errors import InputError
+from dynamics.system.base_pitches import Corrections, with_common_base_pitches
 from dynamics.system.bearing_elements import (
     BearingElement,
     bearing_loads,
@@ -20,6 +21,7 @@ from dynamics.system.planets import kinematic_vectors, turning_inertia
 from dynamics.system.rotor import Rotor, build_rotor
 from dynamics.system.scene import Scene
 from dynamics.system.supports import gather_supports
+from dynamics.system.thrust_check import check_thrust
 from dynamics.types import FloatArray
 
 GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
@@ -52,6 +54,7 @@ class Mechanism:
     nominal_force: FloatArray
     bearing_load: dict[str, float]
     bearings: tuple[BearingElement, ...]
+    corrected: Corrections
 
     @property
     def polar_inertia(self) -> list[float]:
@@ -75,8 +78,10 @@ def gather_mechanism(scene: Scene) -> Mechanism:
     Raises
     ------
     InputError
-        If parts do not fit each other, or a shaft free to turn has no moment of inertia.
+        If parts do not fit each other, a shaft free to turn has no moment of inertia, or nothing holds one
+        along its axis that helical gears push.
     """
+    scene, corrected = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)
     rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
@@ -85,7 +90,8 @@ def gather_mechanism(scene: Scene) -> Mechanism:
     bearings, rotors = _with_bearings(scene, rotors, loads)
     rotors = with_couplings(scene, rotors)
     _check_rotation(rotors, kinematics)
-    return Mechanism(scene, kinematics, rotors, lines, forces, loads, bearings)
+    check_thrust(scene, kinematics, rotors, lines, forces)
+    return Mechanism(scene, kinematics, rotors, lines, forces, loads, bearings, corrected)
 
 
 def _with_bearings(

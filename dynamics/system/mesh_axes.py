@@ -142,7 +142,6 @@ def mesh_axes(
                 moment=None if lever is None else force * lever**2 * float(m @ compliance @ m),
                 friction=mesh.friction,
                 slides=getattr(mesh.table, "sliding_lever", None) is not None,
-                driven=not scene.free_rotations,
                 slowed=_slowed(scene, index, force, float(flanks.mean_stiffness[index])),
             )
         )

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from dynamics.errors import InputError
+from dynamics.system.base_pitches import with_common_base_pitches
 from dynamics.system.kinematics import Kinematics, solve_kinematics
 from dynamics.system.line_of_action import line_of_action
-from dynamics.system.nominal_forces import nominal_forces
-from dynamics.system.planets import turning_inertia
-from dynamics.system.rotor import build_rotor
+from dynamics.system.mechanism import gather_mechanism
 from dynamics.system.scene import Scene
 
 
@@ -22,6 +21,7 @@ def check_motion(scene: Scene) -> Kinematics:
         If gears cannot mesh, a train is locked or not driven, a load acts on a shaft that stands, or one
         pulls flanks apart that have no coast flank behind them.
     """
+    scene, _ = with_common_base_pitches(scene)
     kinematics = solve_kinematics(scene)
     for index, sense in enumerate(kinematics.mesh_sense):
         line_of_action(scene, index, sense)
@@ -29,15 +29,14 @@ def check_motion(scene: Scene) -> Kinematics:
     return kinematics
 
 
-def check_load_flow(scene: Scene, kinematics: Kinematics) -> None:
-    """Refuse loads that do not press the driving flanks of a scene with all its planets.
+def check_load_flow(scene: Scene) -> None:
+    """Refuse a scene with all its planets whose loads do not press its flanks, or whose shafts are not held.
 
     Raises
     ------
     InputError
     """
-    rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
-    nominal_forces(scene, kinematics, turning_inertia(rotors))
+    gather_mechanism(scene)
 
 
 def check_loads(scene: Scene, kinematics: Kinematics) -> None:

@@ -8,6 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from dynamics.bodies import ElasticShaft, Inertia, Shaft
+from dynamics.bodies.places import nearest_on
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.system.frame_check import on_axis
 from dynamics.system.scene import Scene
@@ -70,7 +71,7 @@ class Rotor:
 
     def on_shaft(self, position: float) -> float:
         """Return the place on the shaft nearest to `position`, m from its left end."""
-        return min(max(position, 0.0), self.shaft.length)
+        return nearest_on(position, self.shaft.length)
 
     def lever(self, support: Bushing | PlanetBearing) -> float:
         """Axial distance of `support` from the centre of mass, m."""

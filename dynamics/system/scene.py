@@ -14,12 +14,15 @@ from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRot
 from dynamics.system.bearing_check import check_bearing_laws
 from dynamics.system.frame_check import check_couplings, check_frames
 from dynamics.system.housing_check import check_housings
+from dynamics.system.place_check import check_places
 
 METHODS = ("implicit", "explicit")
 ON_VIOLATION = ("repeat", "fail", "report")
 RECEIPTS = ("full", "minimal")
 TOLERANCES = (1e-6, 0.5)
 SAMPLE_LIMIT = 2e7  # a run's states are held in memory
+MOST_ORDERS = 1000
+LEAST_RATE = 1000.0  # Hz, of an output whose rate is chosen
 
 
 @dataclass(frozen=True)
@@ -28,8 +31,13 @@ class Outputs:
 
     Attributes
     ----------
-    sample_rate : float
-        Hz of the uniform output grid.
+    sample_rate : float or None
+        Hz of the uniform output grid; None: what the mesh orders and the highest resolved mode need.
+    mesh_orders : int
+        Multiples of the mesh frequency that the output is to hold at the highest speed of the run.
+    anti_alias : bool
+        Filter what is stored, so that nothing above half the rate folds into the output (see `Sampling`).
+        False: points of the motion.
     bearing_forces : bool
         Store the force of every bearing, and its moment where a bearing holds tilt.
     displacements : bool
@@ -44,15 +52,19 @@ class Outputs:
         ``"minimal"``: state the tolerance only.
     """
 
-    sample_rate: float = 20e3
+    sample_rate: float | None = None
     bearing_forces: bool = True
     displacements: bool = False
     energy_audit: bool = True
     accelerations: bool = False
     receipt: str = "full"
+    mesh_orders: int = 10
+    anti_alias: bool = True
 
     def __post_init__(self) -> None:
-        positive("sample_rate", self.sample_rate)
+        if self.sample_rate is not None:
+            positive("sample_rate", self.sample_rate)
+        integer("mesh_orders", self.mesh_orders, 1, MOST_ORDERS)
         one_of("receipt", self.receipt, RECEIPTS)
 
 
@@ -146,11 +158,14 @@ class Scene:
     outputs : Outputs
     integration : Integration
     on_violation : str
-        Where a run shows that something it took for granted is wrong: ``"repeat"`` runs again with the
-        automatic effect that it needs, ``"fail"`` raises, ``"report"`` says so in the ledger's checks.
+        Where a run or a study shows that something it took for granted is wrong: ``"repeat"`` runs again
+        with the automatic effect that it needs, and raises where the result is wrong and no effect mends it;
+        ``"fail"`` raises at any, ``"report"`` says so in the ledger's checks.
     tolerance : float or None
         Relative change of mean and peak-to-peak transmission error and of bearing forces that automatic
         effects may make by being off; None: they are as the scene calls for them. Runs decide by it.
+    highest_frequency : float or None
+        Hz to which shafts that bend and twist are resolved; None: half the output rate.
     """
 
     shafts: tuple[Shaft, ...]
@@ -172,15 +187,16 @@ class Scene:
     integration: Integration = Integration()
     on_violation: str = "repeat"
     tolerance: float | None = None
+    highest_frequency: float | None = None
 
     def __post_init__(self) -> None:
         not_negative("duration", self.duration)
         one_of("on_violation", self.on_violation, ON_VIOLATION)
         if self.tolerance is not None:
             within("tolerance", self.tolerance, *TOLERANCES)
-        if self.duration * self.outputs.sample_rate > SAMPLE_LIMIT:
-            bound = f"at most {SAMPLE_LIMIT:g} samples at {self.outputs.sample_rate:g} Hz"
-            raise InputError("duration", self.duration, bound, "Shorten the run or lower the sample rate.")
+        if self.highest_frequency is not None:
+            positive("highest_frequency", self.highest_frequency)
+        check_samples(self.duration, self.outputs.sample_rate or LEAST_RATE)
         for kind in KINDS:
             distinct(kind, [part.name for part in getattr(self, kind)])
         shafts, gears = _names(self.shafts), _names(self.gears)
@@ -196,6 +212,8 @@ class Scene:
         ):
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
+        for kind in ("gears", "bushings", "planet_bearings"):
+            check_places(self.shafts, kind, getattr(self, kind))
         for index, mesh in enumerate(self.meshes):
             one_of(f"meshes[{index}].driver", mesh.driver, gears)
             one_of(f"meshes[{index}].driven", mesh.driven, gears)
@@ -241,6 +259,20 @@ class Scene:
     def shaft_index(self, name: str) -> int:
         """Return the place of the shaft called `name`."""
         return _names(self.shafts).index(name)
+
+
+def check_samples(duration: float, rate: float) -> None:
+    """Refuse a run of too many samples.
+
+    Raises
+    ------
+    InputError
+        Naming its duration.
+    """
+    if duration * rate > SAMPLE_LIMIT:
+        bound = f"at most {SAMPLE_LIMIT:g} samples at {rate:g} Hz"
+        suggestion = "Shorten the run, or lower outputs.mesh_orders or outputs.sample_rate."
+        raise InputError("duration", duration, bound, suggestion)
 
 
 def _names(parts: Iterable[_Named]) -> list[str]:

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from typing import Protocol
 
 from dynamics.bodies import Disc, ElasticShaft, Grip, elastic_shaft
+from dynamics.bodies.places import on_length
 from dynamics.system.mechanism import Mechanism
 from dynamics.system.rotor import Rotor
+from dynamics.system.sampling import order_rate
 from dynamics.system.scene import Scene
 from dynamics.system.seats import seated
-
-SAME_PLACE = 1e-9  # of the shaft's length
 
 
 class _Placed(Protocol):
@@ -39,7 +39,7 @@ def why_rigid(mechanism: Mechanism, index: int) -> str:
     if bent:
         return f'the table of "{bent[0]}" has the bending of its shafts in it'
     for name, place in _places(scene, rotor):
-        if not -SAME_PLACE * shaft.length <= place <= (1.0 + SAME_PLACE) * shaft.length:
+        if not on_length(place, shaft.length):
             return f'"{name}" at {place:g} m is off the shaft, which is {shaft.length:g} m long'
     return ""
 
@@ -48,7 +48,7 @@ def elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
     """Return the elastic coordinates of the shaft `index`, reduced to where forces act on it.
 
     It bends where bearings hold it across and in tilt, and neither is switched off; it stretches where it may
-    move along its axis. The highest frequency of interest is half the output's sample rate.
+    move along its axis. It is resolved to the scene's highest frequency, else to half the rate of the output.
     """
     scene, rotor = mechanism.scene, mechanism.rotors[index]
     shaft = rotor.shaft
@@ -60,10 +60,17 @@ def elastic_of(mechanism: Mechanism, index: int) -> ElasticShaft:
         shaft.sections,
         discs,
         _grips(scene, rotor, _bends(scene, rotor), _stretches(scene, rotor)),
-        0.5 * scene.outputs.sample_rate,
+        _highest(mechanism),
         shaft.damping_ratio,
         None if drive is None else rotor.on_shaft(drive.position),
     )
+
+
+def _highest(mechanism: Mechanism) -> float:
+    """Return the frequency to which shafts are resolved, Hz."""
+    scene = mechanism.scene
+    rate = scene.outputs.sample_rate or order_rate(scene, mechanism.kinematics)
+    return scene.highest_frequency or 0.5 * rate
 
 
 def _bends(scene: Scene, rotor: Rotor) -> bool:

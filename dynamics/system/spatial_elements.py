@@ -180,4 +180,5 @@ def _pack(flanks: Sequence[SpatialFlank]) -> SpatialFlankLaws:
         np.array([flank.mid_face for flank in flanks], dtype=float),
         np.array([flank.friction for flank in flanks], dtype=float),
         np.array([flank.radius for flank in flanks], dtype=float),
+        np.zeros(len(flanks), dtype=np.bool_),
     )

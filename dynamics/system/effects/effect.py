@@ -144,8 +144,6 @@ class MeshAxes:
         Coefficient of friction; None: not given.
     slides : bool
         Whether the table says where along the path of contact the load slides.
-    driven : bool
-        Whether drives move the train.
     slowed : float
         Change of the transmission error that the largest friction torque makes, m.
     """
@@ -162,7 +160,6 @@ class MeshAxes:
     moment: float | None
     friction: float | None
     slides: bool
-    driven: bool
     slowed: float
 
     def not_read(self) -> str | None:

@@ -9,7 +9,7 @@ from dynamics.system.effects.effect import LoadedMesh, Verdict
 
 @dataclass(frozen=True)
 class Friction:
-    """Two more local coordinates of the flank: sliding at the pitch point and relative rotation."""
+    """Two more local coordinates of a flank; their rates are its sliding."""
 
     name: str = "friction"
     cost: str = "two more rows per flank and eight numbers more per look-up"
@@ -21,7 +21,4 @@ class Friction:
             return Verdict(False, False, "no coefficient of friction given", 0.0)
         if not axes.slides:
             return Verdict(False, False, "the table does not say where along the path the load slides", 0.0)
-        if not axes.driven:
-            reason = "a train without a drive starts in an equilibrium that is sought without friction"
-            return Verdict(False, False, reason, 0.0)
         return Verdict(True, True, f"a coefficient of {axes.friction:g} is given", axes.slowed)

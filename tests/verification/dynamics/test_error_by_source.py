@@ -11,7 +11,6 @@ from planetary_scenes import planetary_scene, published_set
 
 from dynamics.bodies import TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.integrators.state_sink import States
 from dynamics.results.order_fit import order_amplitudes, unwrapped
 from dynamics.simulate import simulate
 from dynamics.simulate.error_windows import run_again, windows
@@ -74,7 +73,7 @@ def test_a_window_run_again_as_it_was_is_the_run(make):
     """Law, loads and counted quanta at its start are right: only the choice of steps is another."""
     system = assemble(make())
     found = integrate(system, static_equilibrium(system), system.scene.integration)
-    looked = windows(system, States(found.q, found.v, found.moved).rows, found.samples)
+    looked = windows(system, found.states.rows, found.samples)
     for window in looked:
         again = run_again(window, window.system, system.scene.integration)
         assert again is not None

@@ -16,7 +16,7 @@ from dynamics.system.scene import Integration, Outputs
 
 pytest.importorskip("exudyn", reason="Exudyn is not installed: pip install lineofaction[exudyn]")
 
-OUTPUTS = Outputs(bearing_forces=False, energy_audit=False)
+OUTPUTS = Outputs(20e3, bearing_forces=False, energy_audit=False, anti_alias=False)
 
 
 def scene(speed: float = 900.0, **changes):

@@ -10,7 +10,7 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, with_mesh
 
 from dynamics.bodies import TimeLaw
 from dynamics.simulate import simulate
-from dynamics.system import Integration
+from dynamics.system import Integration, Outputs
 
 STIFFNESS = 4e8
 INERTIA = 1.1344291072112745e-3
@@ -21,7 +21,9 @@ STEP = 20.0
 
 def torsional(torque, **changes):
     """Rotation of the driven shaft alone on a linear mesh that never lifts off, undamped."""
-    scene = replace(gear_pair_scene(spring_table(STIFFNESS), duration=0.004), bushings=(), effects={})
+    points = Outputs(20e3, anti_alias=False)
+    scene = gear_pair_scene(spring_table(STIFFNESS), duration=0.004, outputs=points)
+    scene = replace(scene, bushings=(), effects={})
     scene = with_mesh(scene, damping=0.0, nominal_force=torque(0.0) / BASE_RADIUS)
     return replace(scene, loads=(replace(scene.loads[0], torque=torque),), **changes)
 

@@ -17,7 +17,7 @@ STEPS = 2.0 ** -(np.arange(12) / 4)  # three octaves; where in a step a kink lie
 
 def torsional(table, torque, rpm):
     """One rotation, damped."""
-    outputs = Outputs(5e3, energy_audit=False)
+    outputs = Outputs(5e3, energy_audit=False, anti_alias=False)
     pair = gear_pair_scene(
         table, torque=torque, speed=TimeLaw.constant(rpm * RPM), duration=0.01, outputs=outputs
     )

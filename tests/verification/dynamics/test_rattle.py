@@ -33,7 +33,7 @@ def scene(method):
         (ImposedRotation("d", "s0", TimeLaw.constant(RATE / TEETH)),),
         duration=DURATION,
         loads=(LoadTorque("l", "s1", TimeLaw.constant(MEAN)),),
-        outputs=Outputs(sample_rate=10.0, energy_audit=False),
+        outputs=Outputs(sample_rate=10.0, energy_audit=False, anti_alias=False),
         integration=Integration(method, tolerance=1e-9, largest_step=1.0),
     )
 
@@ -66,8 +66,8 @@ def test_the_audit_closes_while_teeth_rattle():
     )
     rattling = with_mesh(rattling, coast=CoastFlank(30e-6))
     result = simulate(rattling)
-    assert np.mean(result.coast_force > 0.0) > 0.02
-    assert not np.any((result.coast_force > 0.0) & (result.mesh_force > 0.0))
+    assert np.mean(result.contact == 2.0) > 0.02
+    assert not np.any(result.contact == 3.0)
     assert result.energy.relative < 1e-3
 
 
@@ -77,7 +77,10 @@ def test_flanks_in_free_flight_keep_their_energy():
     still = with_mesh(replace(still, bushings=()), damping=0.0, coast=CoastFlank(5e-6))
     jolt = TimeLaw((0.0, 0.001, 0.0011, 0.0014, 0.0015), (100.0, 100.0, -900.0, -900.0, 0.0))
     thrown = replace(
-        still, loads=(replace(still.loads[0], torque=jolt),), integration=Integration(tolerance=1e-12)
+        still,
+        loads=(replace(still.loads[0], torque=jolt),),
+        integration=Integration(tolerance=1e-12),
+        on_violation="report",  # thrown far beyond the table's loads
     )
     result = simulate(thrown)
     after = result.time > 0.0016

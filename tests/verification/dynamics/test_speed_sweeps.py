@@ -60,5 +60,5 @@ def test_a_slow_run_follows_the_stable_branch_and_jumps_at_the_fold(first, last,
     late = (rpm[jump : jump + 2].mean() - branch.folds[0] / RPM) * np.sign(last - first)
     record_figure(f"jump of a slow run {name} behind the fold", late, "0 to 50 rpm", "rpm", "own target")
     assert -15.0 < late < 50.0  # within the window, and late by what the jump takes
-    parted = windows(run.mesh_force[0] == 0.0).mean(axis=1)
+    parted = windows(run.contact[0] == 0.0).mean(axis=1)
     assert max(parted[jump - 5], parted[jump + 5]) > 0.2

@@ -14,7 +14,6 @@ import pytest
 from wind_turbine import wind_turbine
 
 from dynamics.integrators import static_equilibrium
-from dynamics.results.histories import bearing_force
 from dynamics.simulate import simulate
 from dynamics.system.assemble import assemble
 from dynamics.system.frame_couplings import frame_turns
@@ -38,7 +37,7 @@ def rest():
     assert found.status.usable
     q = found.displacement
     local = local_state(system.arrays, 0.0, q, 0.0 * q)
-    force = bearing_force(system, local.force[:, None], q[None], 0.0 * q[None])[:, :3, 0]
+    force = system.bearing_force(local.force[:, None], q[None], 0.0 * q[None])[:, :3, 0]
     meshes = dict(zip((mesh.name for mesh in system.scene.meshes), found.mesh_force, strict=True))
     return system, meshes, dict(zip(system.supports.name, force, strict=True)), q
 

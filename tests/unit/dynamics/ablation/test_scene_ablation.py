@@ -11,6 +11,7 @@ from geared_scenes import gear_pair_scene
 from dynamics.ablation import Ablation, ablate
 from dynamics.errors import InputError
 from dynamics.simulate import simulate
+from dynamics.system import Outputs
 
 SCENE = gear_pair_scene(duration=0.06)
 
@@ -22,7 +23,8 @@ def made() -> Ablation:
 
 def test_a_change_is_that_of_two_runs(made: Ablation) -> None:
     whole = simulate(SCENE)
-    held = simulate(gear_pair_scene(duration=0.06, effects={"lateral": "off"}))
+    outputs = Outputs(whole.sample_rate)
+    held = simulate(gear_pair_scene(duration=0.06, effects={"lateral": "off"}, outputs=outputs))
     (entry,) = (one for one in made.effects if one.name == "lateral")
     assert entry.on
     settled = slice(whole.time.size // 2, None)

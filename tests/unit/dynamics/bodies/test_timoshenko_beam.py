@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from dynamics.bodies import BeamSection, craig_bampton, hollow_cylinder, timoshenko_beam
+from dynamics.bodies import (
+    BeamSection,
+    Grip,
+    Shaft,
+    craig_bampton,
+    elastic_shaft,
+    hollow_cylinder,
+    timoshenko_beam,
+)
 from dynamics.errors import InputError
 
 STUBBY = BeamSection(0.3, 0.06, 0.02)
@@ -178,6 +186,21 @@ def test_a_stiff_shaft_on_springs_is_the_rigid_one():
     square = eigh(stiffness[np.ix_(plane, plane)], reduced.mass[np.ix_(plane, plane)], eigvals_only=True)[:2]
     expected = np.sort([2.0 * spring / body.mass, 2.0 * spring * 0.15**2 / body.transverse])
     np.testing.assert_allclose(square, expected, rtol=1e-5)
+
+
+def test_a_bearing_at_the_end_of_added_lengths_is_at_the_end():
+    """Nine pieces of 0.6 m add to 5.3999999999999995 m; a micrometre further is off the beam."""
+    pieces = [BeamSection(0.6, 0.4 + 0.01 * k) for k in range(9)]
+    assert sum(piece.length for piece in pieces) < 5.4
+    beam = timoshenko_beam(pieces, stations=[0.0, 5.4])
+    assert beam.position.size == 10
+    assert beam.freedoms(5.4).tolist() == list(range(54, 60))
+    shaft = Shaft("shaft", 5.4, sections=tuple(pieces))
+    ends = tuple(Grip(place, True, True, True, True) for place in (0.0, 5.4))
+    elastic = elastic_shaft(shaft.sections, (), ends, 100.0, 0.0)
+    np.testing.assert_array_equal(elastic.motion(5.4), elastic.motion(float(elastic.position[-1])))
+    with pytest.raises(InputError, match=r"on the beam, from 0 to 5\.4 m"):
+        timoshenko_beam(pieces, stations=[5.400001])
 
 
 def test_what_is_no_beam_is_named():

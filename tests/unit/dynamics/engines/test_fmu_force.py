@@ -101,7 +101,11 @@ def test_axes_are_the_tables_and_their_ends_are_told(element, rng, tmp_path):
 
 def test_the_recorded_angles_of_a_run_give_its_mesh_force(tmp_path):
     """Angles about +z, the shafts' displacements along the line of action, and all rates, from a run."""
-    scene = gear_pair_scene(speed=TimeLaw.constant(60.0), duration=0.05, outputs=Outputs(displacements=True))
+    scene = gear_pair_scene(
+        speed=TimeLaw.constant(60.0),
+        duration=0.05,
+        outputs=Outputs(20e3, displacements=True, anti_alias=False),
+    )
     scene = with_mesh(scene, damping_ratio=0.15)
     run = simulate(scene)
     element = mesh_element(scene, scene.meshes[0].name)
@@ -245,7 +249,7 @@ def test_rattle_comes_back_from_its_recorded_motion(tmp_path):
         speed=speed,
         duration=0.03,
         torque=1.0,
-        outputs=Outputs(displacements=True),
+        outputs=Outputs(20e3, displacements=True, anti_alias=False),
         effects={"backlash": "on"},
     )
     scene = with_mesh(scene, coast=CoastFlank(5e-6, 0.48), damping_ratio=0.05)

@@ -12,7 +12,7 @@ from dynamics.bodies import AngleLaw, TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.workspace import Count
 from dynamics.simulate import simulate
-from dynamics.system import Integration
+from dynamics.system import Integration, Outputs
 from dynamics.system.assemble import assemble
 
 STIFFNESS = 4e8
@@ -24,7 +24,8 @@ KNOTS, SPEEDS = (0.0, 0.0101, 0.0202, 0.0304), (10.0, 30.0, 20.0, 50.0)
 def torsional(speed, **changes):
     """The driven shaft alone on a mesh of constant stiffness, undamped."""
     scene = gear_pair_scene(spring_table(STIFFNESS), speed=speed, duration=0.04)
-    return with_mesh(replace(scene, bushings=(), effects={}, **changes), damping=0.0)
+    outputs = Outputs(20e3, anti_alias=False)
+    return with_mesh(replace(scene, bushings=(), effects={}, outputs=outputs, **changes), damping=0.0)
 
 
 def ringing(time):

@@ -13,9 +13,9 @@ from dynamics.bodies import TimeLaw
 from dynamics.errors import SolveError
 from dynamics.forces.by_address import by_address
 from dynamics.integrators import static_equilibrium
-from dynamics.integrators.advance import advance, prepare_steps
-from dynamics.integrators.step_control import Control
-from dynamics.integrators.workspace import Count, make_workspace, step_ladder
+from dynamics.integrators.advance import advance
+from dynamics.integrators.march import start_march
+from dynamics.integrators.workspace import Count
 from dynamics.simulate import simulate
 from dynamics.system import Integration, Outputs
 from dynamics.system.assemble import assemble
@@ -28,7 +28,8 @@ def test_a_complete_run_covers_its_duration_and_tells_how():
     seen = []
     result = simulate(SCENE, progress=lambda fraction, text: seen.append((fraction, text)))
     assert result.status is RunStatus.COMPLETED
-    np.testing.assert_allclose(result.time, np.arange(401) / 20e3)
+    assert result.time[-1] == pytest.approx(SCENE.duration, abs=1.0 / result.sample_rate)
+    np.testing.assert_allclose(result.time, np.arange(result.time.size) / result.sample_rate)
     assert [fraction for fraction, _ in seen] == sorted(fraction for fraction, _ in seen)
     assert seen[-1] == (1.0, "done")
     assert result.statistics.accepted > 100
@@ -75,21 +76,19 @@ def test_a_run_that_cannot_go_on_keeps_what_it_has(changes, status):
 @pytest.mark.parametrize("speed", [TimeLaw.constant(90.0), TimeLaw((0.0, 0.007, 0.0145), (0.0, 50.0, 90.0))])
 def test_cutting_a_run_into_chunks_changes_no_bit(speed):
     system = assemble(gear_pair_scene(speed=speed, duration=0.02))
-    start = static_equilibrium(system).displacement
-    control = by_address(Control(True, True, True, 3, 1e-10, 1e-4, 10**9))
+    start = static_equilibrium(system)
 
     def run(stops):
-        work = by_address(make_workspace(system.arrays, step_ladder(1e-3, 1e-12), start, 1e-6))
-        prepare_steps(system.arrays, work, implicit=True, audit=True)
-        q, v = np.zeros((401, start.size)), np.zeros((401, start.size))
-        moved = np.zeros((401, 1), dtype=np.int64)
+        march = start_march(system, start, Integration(tolerance=1e-9))
+        out = march.widths.states(march.samples)
         for stop in stops:
-            advance(system.arrays, work, control, stop, 20e3, q, v, moved)
-        return q, v, work.work, int(work.counts[Count.ACCEPTED])
+            advance(*march.compiled, stop, by_address(out))
+        work = march.work
+        return out.q, out.filtered, out.largest, work.work, int(work.counts[Count.ACCEPTED])
 
     whole, parts = run([0.02]), run([*np.linspace(0.0, 0.014, 29)[1:], 0.0145, 0.0146, 0.02])
-    assert whole[3] == parts[3] > 100
-    for a, b in zip(whole[:3], parts[:3], strict=True):
+    assert whole[-1] == parts[-1] > 100
+    for a, b in zip(whole[:-1], parts[:-1], strict=True):
         np.testing.assert_array_equal(a, b)
 
 
@@ -101,11 +100,12 @@ def test_a_run_of_no_duration_is_the_equilibrium():
 
 def test_outputs_not_asked_for_are_empty():
     result = simulate(replace(SCENE, outputs=Outputs(bearing_forces=False, energy_audit=False)))
-    assert result.bearing_force.shape == (0, 3, 401)
+    samples = result.time.size
+    assert result.bearing_force.shape == (0, 3, samples)
     assert result.bearing == result.freedom == ()
     assert result.energy is None
     everything = simulate(replace(SCENE, outputs=Outputs(displacements=True)))
-    assert everything.displacement.shape == (5, 401)
+    assert everything.displacement.shape == (5, samples)
     np.testing.assert_array_equal(result.mesh_force, everything.mesh_force)  # the audit changes no bit
 
 

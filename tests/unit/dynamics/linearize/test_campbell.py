@@ -6,15 +6,28 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from flexible_scenes import flexible_pair
 from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, published_set
 
 from dynamics.bodies import Inertia, Shaft, TimeLaw
 from dynamics.errors import InputError, ResultError
 from dynamics.joints import Bushing, Coupling
-from dynamics.linearize import ModalAnalysis, linearize, modal_analysis, natural_modes, whirl_modes
+from dynamics.linearize import (
+    ModalAnalysis,
+    campbell,
+    critical_speeds,
+    linearize,
+    modal_analysis,
+    natural_modes,
+    whirl_modes,
+)
 from dynamics.linearize.campbell import _whirl, likeness, modes_at
-from dynamics.system.assemble import assemble
+from dynamics.linearize.flank_cycles import averaged, flank_cycles
+from dynamics.linearize.linear_system import LinearSystem
+from dynamics.linearize.whirl import WhirlModes
+from dynamics.system import Outputs
+from dynamics.system.assemble import System, assemble
 
 DISC = Inertia(4.0, 0.02, 0.0104)
 STIFFNESS, LENGTH, TEETH = 1e6, 0.2, 20
@@ -182,3 +195,51 @@ def test_what_cannot_be_used_is_named(speed, orders, field):
     with pytest.raises(InputError) as caught:
         modal_analysis(assemble(gear_pair_scene()), speed, orders)
     assert caught.value.field == field
+
+
+def test_critical_speeds_follow_eigenvectors_and_agree_with_the_dense_solve(monkeypatch):
+    """One dense solve per speed of the diagram, none per trial; each crossing is a mode there to 1e-8."""
+    system = assemble(driven_scene(published_set(4), speed=TimeLaw.constant(800.0)))
+    solved: list[float] = []
+    dense = campbell.modes_at
+
+    def counted(of: System, linear: LinearSystem, speed: float) -> WhirlModes:
+        solved.append(speed)
+        return dense(of, linear, speed)
+
+    for module in (campbell, critical_speeds):
+        monkeypatch.setattr(module, "modes_at", counted)
+    speeds = np.linspace(0.0, 800.0, 5)
+    found = modal_analysis(system, speeds, orders=4)
+    assert found.critical_speed.size > 20
+    assert len(solved) <= speeds.size + 0.1 * found.critical_speed.size
+    linear = averaged_linear(system)
+    for index in range(0, found.critical_speed.size, 4):
+        modes = dense(system, linear, found.critical_speed[index])
+        nearest = np.argmin(np.abs(modes.frequency - found.critical_frequency[index]))
+        assert modes.frequency[nearest] == pytest.approx(found.critical_frequency[index], rel=1e-8)
+        assert modes.damping_ratio[nearest] == pytest.approx(found.critical_damping_ratio[index], abs=1e-8)
+
+
+def averaged_linear(system: System) -> LinearSystem:
+    linear = linearize(system)
+    return averaged(system, linear, flank_cycles(system, linear, 0.0), 0.0)
+
+
+def test_modes_resolve_to_a_frequency_of_their_own():
+    """However finely the run is sampled, shafts have the coordinates that the frequency asks for."""
+    scene = flexible_pair(speed=TimeLaw.constant(100.0))
+    sizes = [
+        modal_analysis(assemble(replace(scene, outputs=Outputs(rate))), [0.0, 100.0], orders=3).freedom
+        for rate in (2e3, 2e5)
+    ]
+    assert sizes[0] == sizes[1]
+    coarse, fine = (
+        modal_analysis(assemble(scene), [0.0, 100.0], orders=3, highest_frequency=f) for f in (1e3, 4e4)
+    )
+    assert coarse.facts["highest_frequency"] == 1e3
+    assert len(coarse.freedom) < len(fine.freedom)
+    low = fine.natural_frequency[fine.natural_frequency < 1e3]
+    np.testing.assert_allclose(coarse.natural_frequency[: low.size], low, rtol=2e-2, atol=1e-3)
+    with pytest.raises(InputError, match="highest_frequency"):
+        modal_analysis(assemble(scene), highest_frequency=-1.0)

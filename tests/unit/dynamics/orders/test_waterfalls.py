@@ -32,6 +32,7 @@ def run_up(signal, start=0.0):
         position=(position % 1.0)[None],
         mesh_frequency=(start + (TOP - start) * time / DURATION)[None],
         mesh_force=signal(position, time)[None],
+        receipt={"sampling": {"rate": RATE, "pass_frequency": RATE / 2.56}},
         case={
             "gears": [{"name": "pinion", "teeth": TEETH[0]}, {"name": "wheel", "teeth": TEETH[1]}],
             "meshes": [{"driver": "pinion", "driven": "wheel"}],

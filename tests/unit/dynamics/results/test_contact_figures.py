@@ -62,16 +62,17 @@ def test_planets_without_errors_share_equally_and_a_pair_has_none():
 
 def test_contact_states_tell_the_flanks_that_carry():
     run = simulate(gear_pair_scene(duration=0.002))
-    driving, coast = np.zeros((1, 41)), np.zeros((1, 41))
-    driving[0, 10:20], coast[0, 15:30] = 5.0, 5.0
-    state = contact_state(replace(run, mesh_force=driving, coast_force=coast))[0]
+    contact = np.zeros((1, 41))
+    contact[0, 10:20] += 1.0
+    contact[0, 15:30] += 2.0
+    state = contact_state(replace(run, contact=contact))[0]
     assert [int(state[k]) for k in (0, 12, 17, 25)] == [
         ContactState.OFF,
         ContactState.DRIVING,
         ContactState.BOTH,
         ContactState.COAST,
     ]
-    (shares,) = contact_shares(replace(run, mesh_force=driving, coast_force=coast))
+    (shares,) = contact_shares(replace(run, contact=contact))
     assert shares == pytest.approx({"off": 21 / 41, "driving": 5 / 41, "coast": 10 / 41, "both": 5 / 41})
 
 

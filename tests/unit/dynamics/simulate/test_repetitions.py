@@ -65,7 +65,7 @@ def test_a_run_without_coast_flanks_is_repeated_from_where_the_teeth_had_not_par
     since = repeated.receipt["repeated"]["since"]
     reported = simulate(replace(scene, on_violation="report"))
     last = check(reported, "coast flanks")["since"]
-    assert last == pytest.approx(reported.time[np.argmax(reported.mesh_force[0] <= 0.0) - 1], abs=0.0)
+    assert last == pytest.approx(reported.time[np.argmax(reported.least_mesh_force[0] <= 0.0) - 1], abs=0.0)
     assert last - scene.duration / 50.0 - scene.integration.largest_step < since <= last
     file = tmp_path / "run.nc"
     simulate_to_file(scene, file)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import subprocess
 import sys
@@ -106,7 +107,9 @@ def test_a_cancelled_run_says_so_and_holds_the_beginning_of_the_whole(tmp_path):
     part = RunResult.from_netcdf(tmp_path / "run.nc")
     assert status is part.status is RunStatus.CANCELLED
     assert 0.3 * whole.time.size < part.time.size < 0.6 * whole.time.size
-    np.testing.assert_array_equal(part.mesh_force, whole.mesh_force[:, : part.time.size])
+    np.testing.assert_array_equal(part.contact, whole.contact[:, : part.time.size])
+    known = slice(0, part.time.size - math.ceil(part.receipt["sampling"]["edge"] * part.sample_rate))
+    np.testing.assert_array_equal(part.mesh_force[:, known], whole.mesh_force[:, known])
     assert part.energy.relative_to_throughput < 1e-7
     assert interrupted_run(tmp_path / "run.nc").is_dir()
 

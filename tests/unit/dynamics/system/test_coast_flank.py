@@ -157,7 +157,7 @@ def test_a_run_without_it_says_whether_the_flanks_parted():
     blind = simulate(scene)
     check = blind.effect_ledger["checks"][0]
     assert not check["holds"]
-    assert check["parted"] == pytest.approx(np.mean(blind.mesh_force == 0.0))
+    assert check["parted"] == pytest.approx(np.mean(blind.contact == 0.0))
     wide = with_coast(scene, effect="off", backlash=2.0 * check["widest_gap"])
     assert simulate(wide).effect_ledger["checks"][0]["holds"]
     narrow = with_coast(scene, effect="off", backlash=0.5 * check["widest_gap"])
@@ -169,9 +169,24 @@ def test_a_run_without_it_says_whether_the_flanks_parted():
     np.testing.assert_allclose(reached.mesh_force, blind.mesh_force, rtol=0.0, atol=1e-6 * FORCE)
 
 
+@pytest.mark.parametrize("torque", [100.0, -100.0])
+def test_nominal_gears_without_backlash_rest_on_either_flank(torque):
+    scene = with_coast(gear_pair_scene(spring_table(4e8), torque=torque), backlash=0.0)
+    system = assemble(scene)
+    found = static_equilibrium(system)
+    assert found.status is StaticStatus.CONVERGED
+    drive, coast = (direction @ found.displacement for direction in system.arrays.direction[:2])
+    loaded, free = (drive, coast) if torque > 0.0 else (coast, drive)
+    assert loaded == pytest.approx(FORCE / 4e8, rel=1e-9)
+    assert free < 0.0
+    result = simulate(replace(scene, duration=1e-3))
+    force = result.mesh_force[0] - result.coast_force[0]
+    np.testing.assert_allclose(force, math.copysign(FORCE, torque), rtol=1e-6)
+
+
 def test_bad_coast_flanks_are_refused_by_name():
     with pytest.raises(InputError, match="backlash"):
-        CoastFlank(0.0)
+        CoastFlank(-1e-9)
     with pytest.raises(InputError, match="thickness"):
         CoastFlank(1e-4, math.nan)
     with pytest.raises(InputError, match="table"):

@@ -20,7 +20,6 @@ from geared_scenes import with_gear
 from dynamics.bodies import BeamSection, Inertia, Shaft
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import Bushing, Coupling
-from dynamics.results.histories import bearing_force
 from dynamics.system.assemble import assemble
 from dynamics.system.force_balance import force_balance
 
@@ -34,7 +33,7 @@ def rested(system):
     assert start.status.usable
     still = np.zeros((1, start.displacement.size))
     local = force_balance(system.arrays, 0.0, start.displacement, still[0], still[0]).local
-    return start, bearing_force(system, local.force[:, None], start.displacement[None], still)[:, :, 0]
+    return start, system.bearing_force(local.force[:, None], start.displacement[None], still)[:, :, 0]
 
 
 @pytest.mark.parametrize("section", [STEEL, HOLLOW])

@@ -16,7 +16,7 @@ from dynamics.forces import LoadTorque
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import FreeRotation
 from dynamics.simulate import simulate
-from dynamics.system import Integration
+from dynamics.system import Integration, Outputs
 from dynamics.system.assemble import assemble
 from dynamics.system.motion import QUANTUM, flank_phase, move_free_trains, write_motion
 
@@ -46,7 +46,7 @@ def test_unbalanced_torques_accelerate_the_train_as_a_rigid_one():
 
 
 def test_the_position_is_that_of_the_turned_angle():
-    result = simulate(free_scene(duration=0.2))
+    result = simulate(free_scene(duration=0.2, outputs=Outputs(20e3)))
     turned = np.concatenate([[0.0], np.cumsum(0.5 * (result.speed[0, 1:] + result.speed[0, :-1]))])
     turned *= result.time[1] / (2.0 * math.pi) * 20.0
     assert turned[-1] > 30.0

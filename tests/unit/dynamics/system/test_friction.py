@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear, with_mesh
-from sliced_face import sliced_database
+from sliced_face import ADDENDUM, rigid_share_database, sliced_database
 
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
@@ -22,19 +22,7 @@ from dynamics.system.rotor import build_rotor
 
 MU = 0.06
 PITCH = 2.0 * math.pi * BASE_RADIUS / 20
-ADDENDUM = 0.78  # tip contact ratios of both gears: contact from -0.78 to 0.78 pitches
 SPATIAL = ("dynamic_misalignment", "dynamic_center_distance", "moving_application_point")
-
-
-def rigid_share_database(positions=400):
-    """Equal shares of the pairs between the ends of the path of contact; a stiffness of its own."""
-    database = sliced_database((0.0,), (0.0,), positions=positions)
-    pair = np.array([-1, 0, 1])
-    y = database.position[:, None] + pair
-    touching = (np.abs(y) <= ADDENDUM).astype(float)
-    share = touching / touching.sum(axis=1, keepdims=True)
-    grid = database.static_transmission_error.shape
-    return replace(database, pair=pair, load_share=np.broadcast_to(share[:, None, None, None], (*grid, 3)))
 
 
 @pytest.fixture(scope="module")

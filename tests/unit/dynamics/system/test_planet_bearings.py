@@ -16,7 +16,6 @@ from dynamics.forces import LoadTorque, RollingContact, SpringCurve
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import BearingStiffness, ImposedRotation
 from dynamics.linearize import natural_modes
-from dynamics.results.histories import bearing_force
 from dynamics.simulate import simulate
 from dynamics.system import Integration, with_planets
 from dynamics.system.assemble import assemble
@@ -53,7 +52,7 @@ def at_rest(scene):
     assert found.status.usable
     q = found.displacement
     local = local_state(system.arrays, 0.0, q, 0.0 * q)
-    force = bearing_force(system, local.force[:, None], q[None], 0.0 * q[None])[:, :, 0]
+    force = system.bearing_force(local.force[:, None], q[None], 0.0 * q[None])[:, :, 0]
     strain = system.freedoms.keep(system.supports.motion) @ q - system.supports.error
     names = system.supports.name
     return system, found, dict(zip(names, strain, strict=True)), dict(zip(names, force, strict=True))

@@ -17,7 +17,6 @@ from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.energy import stored_energy
 from dynamics.joints import Bushing, Coupling, Housing
 from dynamics.linearize import natural_modes
-from dynamics.results.histories import bearing_force
 from dynamics.simulate import simulate
 from dynamics.system import Integration
 from dynamics.system.assemble import assemble
@@ -137,7 +136,7 @@ def test_the_shaft_rests_along_the_load_where_the_closed_form_says(exponent):
     np.testing.assert_allclose(found.displacement[at], expected, rtol=1e-8)
     rest = np.zeros((1, found.displacement.size))
     local = local_state(system.arrays, 0.0, found.displacement, rest[0])
-    force = bearing_force(system, local.force[:, None], found.displacement[None], rest)[:, :, 0]
+    force = system.bearing_force(local.force[:, None], found.displacement[None], rest)[:, :, 0]
     np.testing.assert_allclose(force[0, :2], push / 2.0, rtol=1e-8)
 
 

@@ -17,7 +17,7 @@ from dynamics.forces.element_laws import SPATIAL_FLANK
 from dynamics.integrators import static_equilibrium
 from dynamics.linearize import natural_modes
 from dynamics.simulate import simulate
-from dynamics.system import Integration
+from dynamics.system import Integration, Outputs
 from dynamics.system.assemble import assemble
 from dynamics.system.force_balance import force_balance
 from dynamics.system.rotor import build_rotor
@@ -214,7 +214,8 @@ def test_off_changes_no_bit(table, technique):
 
 def test_a_run_beyond_the_axis_says_so_and_holds_the_last_value(database):
     narrow = sliced_database((-1e-7, 1e-7), positions=12).force_table()
-    result = simulate(scene_on(narrow, EFFECTS[:1], duration=2e-3))
+    points = Outputs(20e3, anti_alias=False)
+    result = simulate(replace(scene_on(narrow, EFFECTS[:1], duration=2e-3), outputs=points))
     check = next(c for c in result.effect_ledger["checks"] if c["effect"] == "dynamic_misalignment")
     assert not check["holds"]
     assert "tilt beyond the axis" in check["reason"]

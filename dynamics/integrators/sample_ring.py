@@ -1,0 +1,125 @@
+"""What a run carries to sample its steps: the points that the anti-alias filter sees, and running figures."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.forces.element_laws import make_local
+from dynamics.forces.local_state import LocalState
+from dynamics.forces.packed_tables import PackedTables
+from dynamics.system.arrays import SystemArrays
+from dynamics.system.assemble import System
+from dynamics.system.bearing_force import BearingForce
+from dynamics.system.motion import MOTION_COLUMNS
+from dynamics.types import FloatArray, IntArray
+
+
+class Sampler(NamedTuple):
+    """What to take from the steps.
+
+    Attributes
+    ----------
+    taps : (L,) array
+        Weights of the anti-alias filter.
+    factor : int
+        Points of the inner grid per output sample.
+    rate : float
+        Points per second.
+    static : PackedTables
+        Tables of the static transmission error.
+    nominal_force : (m,) array
+        N.
+    bearings : BearingForce
+    """
+
+    taps: FloatArray
+    factor: int
+    rate: float
+    static: PackedTables
+    nominal_force: FloatArray
+    bearings: BearingForce
+
+
+class Peaks(NamedTuple):
+    """Figures of P signals over the inner grid: R local forces, then the forces at the supports.
+
+    Attributes
+    ----------
+    last : (2, P) array
+        Values at the point before the current one, and at that before it.
+    now, largest, square : (P,) arrays
+        Values; largest magnitude so far, by the parabola through three points; sum of squares.
+    """
+
+    last: FloatArray
+    now: FloatArray
+    largest: FloatArray
+    square: FloatArray
+
+
+class SampleRing(NamedTuple):
+    """Points of the inner grid: L as the filter has taps, n freedoms, R local coordinates, m meshes, k laws.
+
+    A point's C channels are the R local forces, q, v, the R local coordinates and the m static deflections.
+
+    Attributes
+    ----------
+    point : (L, C) array
+        The last L points, in a ring.
+    q, v : (n,) arrays
+        Scratch: the state at a point.
+    local : LocalState
+        Of the elements there.
+    motion : (k, 4) array
+        Of the laws there.
+    moved : (k,) int array
+        Scratch: quanta of free trains before a step's end.
+    peaks : Peaks
+    removed, folded : (C,) arrays
+        Sums over the output samples of the squares of what the filter took away, and of the content near
+        half the inner rate.
+    """
+
+    point: FloatArray
+    q: FloatArray
+    v: FloatArray
+    local: LocalState
+    motion: FloatArray
+    moved: IntArray
+    peaks: Peaks
+    removed: FloatArray
+    folded: FloatArray
+
+
+def make_sampler(system: System) -> Sampler:
+    """Gather what the compiled loop needs."""
+    sampling = system.sampling
+    static, nominal = system.flanks.static, system.flanks.nominal_force
+    taps = sampling.filter_taps()
+    return Sampler(taps, sampling.factor, sampling.inner_rate, static, nominal, system.bearing_map)
+
+
+def make_ring(arrays: SystemArrays, sampler: Sampler) -> SampleRing:
+    """Allocate."""
+    n, rows, laws = arrays.mass.shape[0], arrays.direction.shape[0], arrays.inertial.shape[0]
+    channels = channel_count(arrays, sampler)
+    signals = rows + sampler.bearings.constant.size
+    return SampleRing(
+        np.zeros((sampler.taps.size, channels)),
+        np.zeros(n),
+        np.zeros(n),
+        make_local(arrays.elements, arrays.turn.shape[0]),
+        np.zeros((laws, MOTION_COLUMNS)),
+        np.zeros(laws, dtype=np.int64),
+        Peaks(np.zeros((2, signals)), *(np.zeros(signals) for _ in range(3))),
+        np.zeros(channels),
+        np.zeros(channels),
+    )
+
+
+def channel_count(arrays: SystemArrays, sampler: Sampler) -> int:
+    """Return the number of channels of a point."""
+    rows, n = arrays.direction.shape
+    return int(2 * (rows + n) + sampler.nominal_force.size)

@@ -1,0 +1,225 @@
+"""Compiled samples of the steps: an inner grid, an anti-alias filter, peaks and what the filter took away.
+
+At every point of the inner grid the step's polynomials give displacements and rates, and the force laws give
+local forces. All of them are channels of a ring that holds as many points as the filter has taps. When the
+ring's middle lies on the output grid, the filtered channels and the state in the middle are stored: the
+output trails the integration by half the filter, and its delay is compensated.
+"""
+
+from __future__ import annotations
+
+from dynamics.forces.compiled import compiled, inner
+from dynamics.forces.element_laws import evaluate
+from dynamics.forces.routine import routine
+from dynamics.forces.table_lookup import table_deflection
+from dynamics.integrators.sample_ring import Sampler, SampleRing
+from dynamics.integrators.workspace import Count, Workspace
+from dynamics.system.arrays import SystemArrays
+from dynamics.system.motion import (
+    QUANTUM,
+    add_motion,
+    move_free_trains,
+    set_drift,
+    set_phases,
+    write_motion,
+)
+from dynamics.system.sampled_states import States
+
+HIGH_PASS = (1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0)
+"""Sixth difference: 64 at half the rate, sin^6 below."""
+HIGH_PASS_GAIN = 64.0
+
+
+@routine
+def sample_start(
+    system: SystemArrays, work: Workspace, sampler: Sampler, ring: SampleRing, out: States
+) -> None:
+    """Put the state at t = 0 into the ring."""
+    for i in range(ring.q.size):
+        ring.q[i], ring.v[i] = work.q[i], work.v[i]
+    _look(system, work, sampler, ring, work.time[0], 0)
+    _see_peaks(ring, sampler, 0, True)
+    work.counts[Count.POINT] = 1
+    _store_if_due(work, sampler, ring, 0, out)
+
+
+@routine
+def sample_step(
+    system: SystemArrays,
+    work: Workspace,
+    sampler: Sampler,
+    ring: SampleRing,
+    step: float,
+    end: float,
+    out: States,
+) -> None:
+    """Take the inner points of the step from ``work.time`` to `end`."""
+    counts = work.counts
+    while counts[Count.POINT] / sampler.rate <= end:
+        point = counts[Count.POINT]
+        time = point / sampler.rate
+        row = point % sampler.taps.size
+        _interpolate(work, ring, step, time - work.time[0])
+        _look(system, work, sampler, ring, time, row)
+        if point <= sampler.taps.size // 2:
+            _mirror(ring, 0, point, -point)
+        _see_peaks(ring, sampler, row, False)
+        counts[Count.POINT] = point + 1
+        _store_if_due(work, sampler, ring, point, out)
+
+
+@compiled
+def continue_past_the_end(
+    work: Workspace, sampler: Sampler, ring: SampleRing, points: int, out: States
+) -> None:
+    """Add `points` points, the motion before the last one turned about it."""
+    counts = work.counts
+    last = counts[Count.POINT] - 1
+    for ahead in range(1, points + 1):
+        _mirror(ring, last, max(last - ahead, 0), last + ahead)
+        if last + ahead <= points:
+            _mirror(ring, 0, last + ahead, -last - ahead)
+        counts[Count.POINT] += 1
+        _store_if_due(work, sampler, ring, last + ahead, out)
+
+
+@inner
+def _mirror(ring: SampleRing, center: int, source: int, target: int) -> None:
+    """Write the point `source`, turned about the point `center`, to `target`: values and trends go on."""
+    size = ring.point.shape[0]
+    here, there, at = center % size, source % size, target % size
+    for c in range(ring.point.shape[1]):
+        ring.point[at, c] = 2.0 * ring.point[here, c] - ring.point[there, c]
+
+
+@inner
+def move_sampled_trains(system: SystemArrays, work: Workspace, ring: SampleRing) -> None:
+    """Move the own rotation of free trains into the reference, in the state and in the ring alike."""
+    for k in range(work.moved.size):
+        ring.moved[k] = work.moved[k]
+    move_free_trains(system.reference, work.moved, work.q)
+    first = ring.local.force.size
+    for k in range(work.moved.size):
+        count = work.moved[k] - ring.moved[k]
+        if count == 0:
+            continue
+        for row in range(ring.point.shape[0]):
+            for i in range(work.q.size):
+                ring.point[row, first + i] -= system.reference.vector[k, i] * (count * QUANTUM)
+
+
+@inner
+def _interpolate(work: Workspace, ring: SampleRing, step: float, elapsed: float) -> None:
+    """Cubic Hermite interpolation of displacements (with rates) and of rates (with accelerations)."""
+    u = elapsed / step
+    end = u * u * (3.0 - 2.0 * u)
+    first, last = step * u * (1.0 - u) ** 2, -step * u * u * (1.0 - u)
+    q, v = ring.q, ring.v
+    for i in range(q.size):
+        q[i] = work.q[i] + end * (work.q_new[i] - work.q[i]) + first * work.v[i] + last * work.v_new[i]
+        v[i] = work.v[i] + end * (work.v_new[i] - work.v[i]) + first * work.a[i] + last * work.a_new[i]
+
+
+@inner
+def _look(
+    system: SystemArrays, work: Workspace, sampler: Sampler, ring: SampleRing, time: float, row: int
+) -> None:
+    """Write the channels of the state in the ring's `q` and `v` at `time` into its point `row`."""
+    local, q, v = ring.local, ring.q, ring.v
+    write_motion(system.reference, time, work.moved, ring.motion)
+    set_phases(system.reference, ring.motion, local.position, local.pace)
+    set_drift(system.elements, ring.motion, local)
+    add_motion(system, q, v, local.position, local.coordinate, local.rate)
+    for e in range(system.elements.law.size):
+        evaluate(system.elements, local, e)
+    rows, n = local.force.size, q.size
+    for r in range(rows):
+        ring.point[row, r] = local.force[r]
+        ring.point[row, rows + 2 * n + r] = local.coordinate[r]
+    for i in range(n):
+        ring.point[row, rows + i], ring.point[row, rows + n + i] = q[i], v[i]
+    for m in range(sampler.nominal_force.size):
+        static = table_deflection(sampler.static, m, local.position[m], sampler.nominal_force[m])
+        ring.point[row, 2 * (rows + n) + m] = static
+
+
+@inner
+def _see_peaks(ring: SampleRing, sampler: Sampler, row: int, first: bool) -> None:
+    """Add the point `row` to the running figures; a peak is the vertex through the last three points."""
+    rows, point, peaks, bearings = ring.local.force.size, ring.point, ring.peaks, sampler.bearings
+    for r in range(rows):
+        peaks.now[r] = point[row, r]
+    for s in range(bearings.constant.size):
+        force = bearings.constant[s]
+        for entry in range(bearings.first[s], bearings.first[s + 1]):
+            force += bearings.weight[entry] * point[row, bearings.column[entry]]
+        peaks.now[rows + s] = force
+    for p in range(peaks.now.size):
+        now = peaks.now[p]
+        if first:
+            peaks.last[0, p], peaks.last[1, p] = now, now
+        middle, before = peaks.last[0, p], peaks.last[1, p]
+        height = abs(now)
+        bend = before - 2.0 * middle + now
+        if (middle - before) * (now - middle) < 0.0 and bend * middle < 0.0:
+            height = max(height, abs(middle - (now - before) ** 2 / (8.0 * bend)))
+        peaks.largest[p] = max(peaks.largest[p], height)
+        peaks.square[p] += now * now
+        peaks.last[1, p], peaks.last[0, p] = middle, now
+
+
+@inner
+def _store_if_due(work: Workspace, sampler: Sampler, ring: SampleRing, point: int, out: States) -> None:
+    """Store the output sample in the middle of the ring if there is one."""
+    counts = work.counts
+    middle = point - sampler.taps.size // 2
+    row = counts[Count.OUTPUT] - counts[Count.FIRST_ROW]
+    if middle < 0 or middle % sampler.factor != 0 or row >= out.q.shape[0]:
+        return
+    taps, channels = sampler.taps.size, ring.point.shape[1]
+    oldest = (point + 1) % taps
+    filtered = out.filtered[row]
+    for c in range(channels):
+        filtered[c] = 0.0
+    for t in range(taps):
+        at, weight = (oldest + t) % taps, sampler.taps[t]
+        for c in range(channels):
+            filtered[c] += weight * ring.point[at, c]
+    center = middle % taps
+    rows, n = ring.local.force.size, ring.q.size
+    for i in range(n):
+        out.q[row, i], out.v[row, i] = ring.point[center, rows + i], ring.point[center, rows + n + i]
+    for k in range(work.moved.size):
+        out.moved[row, k] = work.moved[k]
+    _see_extremes(ring, sampler.factor, center, out, row)
+    _see_removed(ring, center, point, out, row)
+    counts[Count.OUTPUT] += 1
+
+
+@inner
+def _see_extremes(ring: SampleRing, factor: int, center: int, out: States, row: int) -> None:
+    """Store least and largest local forces over the points nearest to the output sample."""
+    taps = ring.point.shape[0]
+    half = min((factor + 1) // 2, taps // 2)
+    for r in range(ring.local.force.size):
+        least, largest = ring.point[center, r], ring.point[center, r]
+        for step in range(-half, half + 1):
+            value = ring.point[(center + step) % taps, r]
+            least, largest = min(least, value), max(largest, value)
+        out.least[row, r], out.largest[row, r] = least, largest
+
+
+@inner
+def _see_removed(ring: SampleRing, center: int, point: int, out: States, row: int) -> None:
+    """Add up the squares of what the filter took away and of what lies near half the inner rate."""
+    taps = ring.point.shape[0]
+    for c in range(ring.point.shape[1]):
+        removed = ring.point[center, c] - out.filtered[row, c]
+        ring.removed[c] += removed * removed
+    if point < taps:
+        return
+    for c in range(ring.point.shape[1]):
+        high = 0.0
+        for t in range(len(HIGH_PASS)):
+            high += HIGH_PASS[t] * ring.point[(point - t) % taps, c]
+        ring.folded[c] += (high / HIGH_PASS_GAIN) ** 2

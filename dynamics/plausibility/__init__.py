@@ -1,0 +1,9 @@
+"""Plausibility of scenes: named checks with limits and sources. They warn and change no number."""
+
+from __future__ import annotations
+
+from dynamics.plausibility.check import CHECKS, Check
+from dynamics.plausibility.finding import Finding, PlausibilityWarning, warn_of
+from dynamics.plausibility.scene_checks import scene_findings
+
+__all__ = ["CHECKS", "Check", "Finding", "PlausibilityWarning", "scene_findings", "warn_of"]

@@ -1,0 +1,217 @@
+"""Checks of a scene: its run, bearings, meshes, bodies, and what loads them. Nothing is integrated."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from dynamics.bodies import GearBody, Inertia, Shaft
+from dynamics.joints import Bushing, PlanetBearing
+from dynamics.plausibility.check import CHECKS
+from dynamics.plausibility.finding import Finding
+from dynamics.system import Scene
+from dynamics.system.mechanism import Mechanism, gather_mechanism
+from dynamics.types import FloatArray
+
+ROLLING = (1e7, 1e10)
+"""N/m; usual stiffness of rolling bearings."""
+
+
+def scene_findings(scene: Scene) -> tuple[Finding, ...]:
+    """Return what is implausible about a scene that can move.
+
+    Raises
+    ------
+    InputError
+        The parts of the scene do not fit each other.
+    """
+    mechanism = gather_mechanism(scene)
+    return (
+        *judged("duration", "duration", scene.duration, "s", skip_zero=True),
+        *_speeds(mechanism),
+        *_bearings(scene),
+        *_meshes(scene),
+        *_bodies(mechanism),
+        *_supports(mechanism),
+        *_loads(mechanism),
+    )
+
+
+def judged(
+    check: str,
+    field: str,
+    value: float,
+    unit: str,
+    *,
+    scale: float = 1.0,
+    reason: str | None = None,
+    skip_zero: bool = False,
+) -> Iterator[Finding]:
+    """Yield a finding if |value| is out of the bounds of a check, times `scale` in `unit`."""
+    rule = CHECKS[check]
+    low = 0.0 if rule.low is None else rule.low * scale
+    high = math.inf if rule.high is None else rule.high * scale
+    if not low <= abs(value) <= high and not (skip_zero and value == 0.0):
+        words = reason or f"implausible {rule.quantity}"
+        yield Finding(check, field, float(value), low, high, unit, words, rule.source)
+
+
+def _speeds(mechanism: Mechanism) -> Iterator[Finding]:
+    """Check the fastest base circle that each drive or free rotation moves."""
+    scene, ratio = mechanism.scene, np.abs(mechanism.kinematics.float_ratio)
+    radius = [
+        max((g.base_radius for g in scene.gears if g.shaft == s.name), default=0.0) for s in scene.shafts
+    ]
+    for law, part in enumerate(scene.references):
+        fastest = abs(part.speed.extreme)
+        lever = float(np.max(ratio[:, law] * radius, initial=0.0))
+        kind, index = (
+            ("drives", law) if law < len(scene.drives) else ("free_rotations", law - len(scene.drives))
+        )
+        field = f"{kind}[{index}]." + ("speed" if kind == "drives" else "initial_speed")
+        reason = f"a gear turns at {fastest * lever:.3g} m/s"
+        for finding in judged("pitch_line_speed", field, fastest * lever, "rad/s", reason=reason):
+            yield replace(finding, value=fastest, high=finding.high / lever)
+
+
+def _bearings(scene: Scene) -> Iterator[Finding]:
+    """Check stiffness, damping and clearance of every bearing."""
+    parts: list[tuple[str, Bushing | PlanetBearing]] = [
+        *((f"bushings[{i}]", part) for i, part in enumerate(scene.bushings)),
+        *((f"planet_bearings[{i}]", part) for i, part in enumerate(scene.planet_bearings)),
+    ]
+    places = {part.name: place for place, part in parts}
+    for place, part in parts:
+        for name in ("radial_stiffness", "axial_stiffness"):
+            value = float(getattr(part, name))
+            for finding in judged("support_stiffness", f"{place}.{name}", value, "N/m", skip_zero=True):
+                yield replace(finding, low=ROLLING[0], high=ROLLING[1])
+        yield from judged("damping_ratio", f"{place}.damping_ratio", part.damping_ratio, "1")
+    for contact in scene.rolling_contacts:
+        place = f"{places[contact.bushing]}.rolling_contact"
+        yield from judged("clearance", f"{place}.radial_clearance", contact.clearance, "m", skip_zero=True)
+        yield from judged("damping_ratio", f"{place}.damping_ratio", contact.damping_ratio, "1")
+
+
+def _meshes(scene: Scene) -> Iterator[Finding]:
+    """Check damping, backlash, friction and misalignment of every mesh."""
+    for index, mesh in enumerate(scene.meshes):
+        place = f"meshes[{index}]"
+        yield from judged("damping_ratio", f"{place}.damping_ratio", mesh.damping_ratio, "1")
+        if mesh.coast is not None:
+            yield from judged("backlash", f"{place}.coast_flank.backlash", mesh.coast.backlash, "m")
+        if mesh.friction is not None:
+            yield from judged("friction", f"{place}.friction", mesh.friction, "1")
+        face = scene.gear(mesh.driver).face_width
+        skew, words = mesh.misalignment, f"a misalignment of {1e3 * abs(mesh.misalignment) / face:.2g} mrad"
+        for check, scale in (("mesh_misalignment", 1.0), ("mesh_misalignment_over_face", face)):
+            for finding in judged(
+                check, f"{place}.misalignment", skew, "m", scale=scale, reason=words, skip_zero=True
+            ):
+                yield replace(finding, low=CHECKS["mesh_misalignment"].low or 0.0, high=0.002 * face)
+
+
+def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
+    """Check shafts and gears."""
+    for index, shaft in enumerate(mechanism.scene.shafts):
+        yield from _shaft(f"shafts[{index}]", shaft)
+    for index, gear in enumerate(mechanism.scene.gears):
+        yield from _gear(f"gears[{index}]", gear)
+    for index, rotor in enumerate(mechanism.rotors):
+        if rotor.radial_stiffness or rotor.axial_stiffness:
+            reason = "bearings carry a shaft and gears without mass"
+            yield from judged(
+                "mass", f"shafts[{index}].inertia.mass", rotor.inertia.mass, "kg", reason=reason
+            )
+
+
+def _shaft(place: str, shaft: Shaft) -> Iterator[Finding]:
+    """Check a shaft's shape, material and inertia."""
+    if shaft.sections:
+        widest = max(section.outer_diameter for section in shaft.sections)
+        reason = f"{shaft.length / widest:.3g} diameters long"
+        yield from judged(
+            "shaft_slenderness", f"{place}.length", shaft.length, "m", scale=widest, reason=reason
+        )
+    for index, section in enumerate(shaft.sections):
+        where = f"{place}.sections[{index}]"
+        yield from judged("shaft_density", f"{where}.density", section.density, "kg/m^3")
+        yield from judged("shaft_modulus", f"{where}.youngs_modulus", section.youngs_modulus, "Pa")
+    yield from judged("material_damping", f"{place}.damping_ratio", shaft.damping_ratio, "1")
+    yield from _gyration("shaft_inertia", place, shaft.inertia, shaft.length)
+
+
+def _gear(place: str, gear: GearBody) -> Iterator[Finding]:
+    """Check a gear's inertia by its size."""
+    yield from _gyration("gear_inertia", place, gear.inertia, gear.base_radius)
+
+
+def _gyration(check: str, place: str, inertia: Inertia, size: float) -> Iterator[Finding]:
+    """Check the radius of gyration of a body that has mass and inertia, against a length of it (m)."""
+    if inertia.mass <= 0.0 or inertia.polar <= 0.0:
+        return
+    radius, scale = math.sqrt(inertia.polar / inertia.mass), inertia.mass * size**2
+    reason = f"a radius of gyration of {1e3 * radius:.3g} mm"
+    for finding in judged(check, f"{place}.inertia.polar", radius / size, "kg m^2", reason=reason):
+        low, high = finding.low**2 * scale, finding.high**2 * scale
+        yield replace(finding, value=inertia.polar, low=low, high=high)
+
+
+def _supports(mechanism: Mechanism) -> Iterator[Finding]:
+    """Check that something carries the shafts that mesh forces push aside, where there are bearings."""
+    scene, rotors = mechanism.scene, mechanism.rotors
+    if scene.effects.get("lateral") == "off" or not any(rotor.radial_stiffness for rotor in rotors):
+        return
+    for index, rotor in enumerate(rotors):
+        push, whole = _push(mechanism, index)
+        if mechanism.kinematics.sense[index] and not rotor.radial_stiffness and push > 1e-6 * whole:
+            reason = (
+                f'nothing carries "{rotor.shaft.name}" under {push:.4g} N of its meshes: it is held rigidly'
+            )
+            source = CHECKS["support"].source
+            yield Finding("support", f"shafts[{index}]", 0.0, 0.0, math.inf, "1", reason, source)
+
+
+def _push(mechanism: Mechanism, index: int) -> tuple[float, float]:
+    """Return the resultant of the mesh forces across a shaft, and the sum of their amounts, N."""
+    scene, total, whole = mechanism.scene, np.zeros(2), 0.0
+    for mesh, line, force in zip(scene.meshes, mechanism.lines, mechanism.nominal_force, strict=True):
+        for name, sign in ((mesh.driver, -1.0), (mesh.driven, 1.0)):
+            if scene.gear(name).shaft == scene.shafts[index].name:
+                pushed: FloatArray = (
+                    sign * float(force) * np.array([float(line.force[0]), float(line.force[1])])
+                )
+                total, whole = total + pushed, whole + float(np.hypot(*pushed))
+    return float(np.hypot(*total)), whole
+
+
+def _loads(mechanism: Mechanism) -> Iterator[Finding]:
+    """Check the nominal force of every mesh by face width and module, in the field of the largest load."""
+    scene = mechanism.scene
+    if not scene.loads:
+        return
+    at, torque = max(
+        ((i, float(load.torque(0.0))) for i, load in enumerate(scene.loads)), key=lambda pair: abs(pair[1])
+    )
+    for mesh, force in zip(scene.meshes, mechanism.nominal_force, strict=True):
+        driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
+        module = driver.base_pitch / (math.pi * math.cos(math.radians(20.0)))
+        intensity = float(force) / (min(driver.face_width, driven.face_width) * module)
+        words = f'"{mesh.name}" carries {intensity / 1e6:.3g} N/mm^2 of load over face width and module'
+        light = () if mesh.coast is not None else judged("mesh_load", "", intensity, "Pa", skip_zero=True)
+        for finding in (*light, *judged("mesh_overload", "", intensity, "Pa")):
+            low, high = 20.0 * (CHECKS["mesh_load"].low or 0.0), 0.5 * (CHECKS["mesh_overload"].high or 0.0)
+            part = abs(torque) / intensity
+            yield replace(
+                finding,
+                field=f"loads[{at}].torque",
+                value=torque,
+                unit="N m",
+                reason=words,
+                low=low * part,
+                high=high * part,
+            )
+            return

@@ -1,0 +1,36 @@
+"""Where gears and bearings sit: on their shafts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from dynamics.bodies import Shaft
+from dynamics.bodies.places import on_length
+from dynamics.errors import InputError
+
+
+class _Placed(Protocol):
+    """A part at a place of a shaft."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def shaft(self) -> str: ...
+    @property
+    def position(self) -> float: ...
+
+
+def check_places(shafts: Sequence[Shaft], kind: str, parts: Sequence[_Placed]) -> None:
+    """Refuse a part of a `kind` ("gears", "bushings", "planet_bearings") that is off its shaft.
+
+    Raises
+    ------
+    InputError
+    """
+    length = {shaft.name: shaft.length for shaft in shafts}
+    for index, part in enumerate(parts):
+        if not on_length(part.position, length[part.shaft]):
+            bound = f'on the shaft "{part.shaft}", from 0 m to {length[part.shaft]:.6g} m from its left end'
+            advice = "Lengthen the shaft, or move what sits on it."
+            raise InputError(f"{kind}[{index}].position", part.position, bound, advice)

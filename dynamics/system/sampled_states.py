@@ -1,0 +1,58 @@
+"""The samples of a run: states, and what the anti-alias filter gives."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.types import FloatArray, IntArray
+
+
+class States(NamedTuple):
+    """Sampled states: n freedoms, k laws, R local forces, C channels (see `SampleRing`).
+
+    Attributes
+    ----------
+    q, v : (T, n) arrays
+        Deviations from the kinematic motion and their rates.
+    moved : (T, k) int array
+        Quanta of a revolution by which each free train's own rotation was moved into the kinematic motion.
+    filtered : (T, C) array
+        All channels behind the anti-alias filter.
+    least, largest : (T, R) arrays
+        Extremes of the local forces between the samples, unfiltered.
+    """
+
+    q: FloatArray
+    v: FloatArray
+    moved: IntArray
+    filtered: FloatArray
+    least: FloatArray
+    largest: FloatArray
+
+    def rows(self, first: int, stop: int) -> States:
+        """Return a view of the samples `first` to `stop` - 1."""
+        part = slice(first, stop)
+        moved, filtered = self.moved[part], self.filtered[part]
+        return States(self.q[part], self.v[part], moved, filtered, self.least[part], self.largest[part])
+
+
+class Widths(NamedTuple):
+    """Numbers of freedoms, laws, channels and local forces of `States`."""
+
+    freedoms: int
+    laws: int
+    channels: int
+    rows: int
+
+    def states(self, samples: int) -> States:
+        """Allocate."""
+        return States(
+            np.zeros((samples, self.freedoms)),
+            np.zeros((samples, self.freedoms)),
+            np.zeros((samples, self.laws), dtype=np.int64),
+            np.zeros((samples, self.channels)),
+            np.zeros((samples, self.rows)),
+            np.zeros((samples, self.rows)),
+        )
