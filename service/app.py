@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
@@ -9,7 +10,7 @@ from fastapi import FastAPI
 
 from service.access import open_keyring
 from service.jobs.catalogue import default_registry
-from service.jobs.live_desk import live_desk
+from service.jobs.live_desk import live_desk, reading_desk
 from service.jobs.machinery import job_machinery
 from service.jobs.process import Registry
 from service.jobs.workload import WorkloadReader
@@ -39,6 +40,8 @@ from service.routes.processes import processes_router
 from service.routes.warm_up import warm_up
 from service.settings import Settings
 from service.store import DirectoryLock
+from service.store.deployment import Deployment
+from service.store.write_check import WriteCheck
 from service.version import solver_version
 
 _DESCRIPTION = (
@@ -59,15 +62,22 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     Raises
     ------
     BadInput
-        Another service works in the data directory, or it cannot be written; the address is not loopback and
-        there are no access keys; or their file cannot be used.
+        Another service works in the data directory, or it cannot be written; the files of results are those
+        of another database; the address is not loopback and there are no access keys, or their file cannot
+        be used.
     """
+    warnings.filterwarnings("ignore", message="implausible")  # said in the fields of the caller
     keyring = open_keyring(settings)
     lock = DirectoryLock(settings.data_directory) if works else None
     if lock is not None:
         lock.acquire()
     offered = registry or default_registry()
-    context = _context(settings, offered, works)
+    try:
+        context = _context(settings, offered, works)
+    except BaseException:
+        if lock is not None:
+            lock.release()
+        raise
 
     @asynccontextmanager
     async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
@@ -78,7 +88,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         try:
             yield
         finally:
-            context.live.stop()
+            context.stop_waiting()
             context.scheduler.stop()
             context.close()
             if lock is not None:
@@ -93,7 +103,7 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
         redoc_url=None,
     )
     app.state.context = context
-    app.state.metrics = Metrics(WorkloadReader(context.engine))
+    app.state.metrics = Metrics(WorkloadReader(context.engine), context.writes)
     install_error_handlers(app)
     install_description(app)
     app.add_middleware(Access, keyring=keyring, always=not settings.loopback or bool(keyring))
@@ -110,5 +120,8 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     """Open the store and put the parts together."""
     parts = job_machinery(settings, registry, works=works)
-    live, engine = live_desk(settings), parts.engine
-    return Context(settings, registry, parts.submissions, parts.scheduler, parts.store, live, engine)
+    desks, engine = (live_desk(settings), reading_desk(settings)), parts.engine
+    writes = WriteCheck(Deployment(engine, parts.store))
+    return Context(
+        settings, registry, parts.submissions, parts.scheduler, parts.store, *desks, engine, writes
+    )

@@ -36,6 +36,8 @@ class Settings(BaseSettings):
         What the cache of files from elsewhere may hold, MB.
     retention_days : float or None
         How long results and ended jobs are kept that nobody asks for; None: for ever.
+    quarantine_days : float
+        How long a removed result can be had back.
     workers : int
         Jobs that run at the same time.
     queue_limit : int
@@ -65,6 +67,7 @@ class Settings(BaseSettings):
     results_url: str | None = None
     results_cache_mb: int = Field(10_000, ge=1, le=1_000_000_000)
     retention_days: float | None = Field(None, ge=1.0, le=100_000.0)
+    quarantine_days: float = Field(7.0, ge=0.0, le=100_000.0)
     workers: int = Field(1, ge=1, le=256)
     queue_limit: int = Field(100, ge=1, le=100_000)
     body_limit: int = Field(4_000_000, ge=1_000, le=1_000_000_000)

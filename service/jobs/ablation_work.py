@@ -17,13 +17,15 @@ STAGE = "ablation"
 def switch_effects(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Switch the effects of a case or a scene over, into a JSON file."""
     file = order.workspace / "ablation.json"
-    products: list[Product] = []
+    products: tuple[Product, ...] = ()
+    warnings = None
     found: Ablation | SceneAblation
     if "scene" in order.inputs:
-        scene, products = ordered_scene(order, progress)
-        found = ablation_of_scene(scene, order.inputs["only"], lambda _, done: progress(STAGE, done))
+        ordered = ordered_scene(order, progress)
+        products, warnings = ordered.products, ordered.warnings
+        found = ablation_of_scene(ordered.scene, order.inputs["only"], lambda _, done: progress(STAGE, done))
     else:
         case = Case.model_validate_json(json.dumps(order.inputs["case"]))
         found = ablation_of_case(case, order.inputs["only"], order.data_directory / "compliance", progress)
     file.write_text(f"{json.dumps(ablation_json(found), allow_nan=False)}\n", encoding="utf-8")
-    return (*products, Product(order.key, "ablation", file))
+    return (*products, Product(order.key, "ablation", file, warnings))

@@ -7,6 +7,7 @@ import json
 from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
 from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
+from service.convert.plausibility import phrased_database
 from service.jobs.cluster import table_workers
 from service.jobs.order import Product, Progress, WorkOrder
 from service.schemas import Case
@@ -23,7 +24,7 @@ def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 def database_of(case: Case, order: WorkOrder, progress: Progress) -> SteDatabase:
     """Return the STE database of a case of an order; condensed gears are kept in the service's cache."""
     with boundary_errors(), table_workers(order) as workers:
-        return analyze(
+        database = analyze(
             gear_pair(case),
             **analysis_arguments(case),
             case=case_json(case),
@@ -31,3 +32,4 @@ def database_of(case: Case, order: WorkOrder, progress: Progress) -> SteDatabase
             progress=progress,
             workers=workers,
         )
+    return phrased_database(database, case)

@@ -36,8 +36,8 @@ class Attempt:
     log: Path
 
     def note_end(self, how: str) -> None:
-        """Log how the worker ended and what it took; it has been reaped."""
-        assert self.worker.usage is not None
+        """Log how the worker ended and, if it has been reaped, what it took."""
+        usage = {} if self.worker.usage is None else self.worker.usage.as_json()
         logger.info(
             "worker ended",
             computation=self.claim.id,
@@ -45,7 +45,7 @@ class Attempt:
             pid=self.worker.pid,
             attempt=self.claim.attempts,
             outcome=how,
-            **self.worker.usage.as_json(),
+            **usage,
         )
 
 

@@ -20,6 +20,7 @@ import sys
 import threading
 import time
 import traceback
+import warnings
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -35,6 +36,9 @@ _SHORTEST_INTERVAL_S = 0.1
 
 def main() -> None:
     """Run one order."""
+    warnings.filterwarnings(
+        "ignore", message="implausible"
+    )  # results say it in the caller's fields and units
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
     order = WorkOrder.from_line(_first_line())
     threading.Thread(target=_watch_parent, args=(order.lease_s,), daemon=True).start()
@@ -110,6 +114,7 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
     try:
         module, _, name = order.entry.partition(":")
         products: tuple[Product, ...] = getattr(importlib.import_module(module), name)(order, progress)
+        _stamp(order, products)
     except MemoryError:
         limit = order.memory_limit_mb
         return {"failure": out_of_memory(machine_memory_mb() if limit is None else limit)}
@@ -122,6 +127,13 @@ def _outcome(order: WorkOrder, progress: _Reporter) -> dict[str, Any]:
             return {"failure": "unexpected", "unexpected": True}
         return {"failure": str(known), "faults": [fault.as_json() for fault in known.faults]}
     return {"products": [{"key": p.key, "kind": p.kind, "file": str(p.file)} for p in products]}
+
+
+def _stamp(order: WorkOrder, products: tuple[Product, ...]) -> None:
+    """Write into the files what is implausible about what they were made from."""
+    from service.jobs.product_warnings import stamp_products  # noqa: PLC0415 (start-up time)
+
+    stamp_products(order, products)
 
 
 def _translated(error: Exception) -> ServiceError | None:

@@ -16,13 +16,15 @@ from service.schemas import Case
 def climb_ladder(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Run the ladder on a case or a scene, into a JSON file."""
     file = order.workspace / "frontier.json"
-    products: list[Product] = []
+    products: tuple[Product, ...] = ()
+    warnings = None
     found: Frontier | SceneFrontier
     if "scene" in order.inputs:
-        scene, products = ordered_scene(order, progress)
-        found = run_frontier_of(scene, order.inputs["rungs"], progress)
+        ordered = ordered_scene(order, progress)
+        products, warnings = ordered.products, ordered.warnings
+        found = run_frontier_of(ordered.scene, order.inputs["rungs"], progress)
     else:
         case = Case.model_validate_json(json.dumps(order.inputs["case"]))
         found = frontier_of(case, order.inputs["rungs"], progress)
     file.write_text(f"{json.dumps(found.to_json(), allow_nan=False)}\n", encoding="utf-8")
-    return (*products, Product(order.key, "frontier", file))
+    return (*products, Product(order.key, "frontier", file, warnings))

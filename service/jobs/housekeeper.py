@@ -7,6 +7,7 @@ import threading
 import structlog
 
 from service.jobs.retention import Retention
+from service.problems import ServiceError
 
 FIRST_S, EVERY_S = 60.0, 3600.0
 logger = structlog.get_logger(__name__)
@@ -46,10 +47,12 @@ class Housekeeper:
             pause = EVERY_S
             try:
                 removed = 0
-                for _ in self._retention.collect(self._days):
+                for _ in self._retention.expire(self._days):
                     removed += 1
                     if self._stopping.is_set():
                         break
                 logger.info("collected", removed=removed)
+            except ServiceError as error:
+                logger.warning("nothing collected", error=str(error))
             except Exception:
                 logger.exception("collection failed")

@@ -17,7 +17,7 @@ ENDED = ("successful", "failed", "dismissed")
 
 @dataclass(frozen=True)
 class Job:
-    """A job with the state of its computation; times are RFC 3339 in UTC."""
+    """A job with the state of its computation; times are RFC 3339 in UTC, normalised inputs JSON."""
 
     id: str
     computation: str
@@ -36,6 +36,7 @@ class Job:
     faults: tuple[dict[str, Any], ...]
     reference: str
     delivery: Delivery
+    inputs: str
 
     @property
     def ended(self) -> bool:
@@ -76,4 +77,5 @@ def job_of(row: Any) -> Job:
         faults=tuple(json.loads(row.faults)),
         reference=row.reference,
         delivery=Delivery.of(row.delivery),
+        inputs=row.inputs,
     )

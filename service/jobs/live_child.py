@@ -15,6 +15,7 @@ import signal
 import sys
 import threading
 import traceback
+import warnings
 from typing import BinaryIO
 
 from service.jobs.live_order import AnswerHead, LiveOrder, LiveWork
@@ -27,6 +28,9 @@ _NICENESS = 5
 
 def main() -> None:
     """Answer until the service is gone or memory is out."""
+    warnings.filterwarnings(
+        "ignore", message="implausible"
+    )  # answers say it in the caller's fields and units
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
     os.nice(_NICENESS)
     orders: queue.SimpleQueue[bytes] = queue.SimpleQueue()

@@ -56,8 +56,14 @@ class _Question:
 class LiveDesk:
     """Hands questions to the one live worker, which it starts, watches and ends."""
 
-    def __init__(self, data_directory: Path, memory_limit_mb: int, limits: LiveLimits | None = None) -> None:
-        self._log = data_directory / "log" / "live.log"
+    def __init__(
+        self,
+        data_directory: Path,
+        memory_limit_mb: int,
+        limits: LiveLimits | None = None,
+        name: str = "live",
+    ) -> None:
+        self._name, self._log = name, data_directory / "log" / f"{name}.log"
         self._memory_limit_mb, self._limits = memory_limit_mb, limits or LiveLimits()
         self._waiting: OrderedDict[str, _Question] = OrderedDict()
         self._changed = threading.Condition()
@@ -91,7 +97,7 @@ class LiveDesk:
             self._waiting[name] = question
             if self._thread is None:
                 self._stopping = False
-                self._thread = threading.Thread(target=self._loop, name="live desk", daemon=True)
+                self._thread = threading.Thread(target=self._loop, name=f"{self._name} desk", daemon=True)
                 self._thread.start()
             self._changed.notify()
         return question.future
@@ -130,7 +136,7 @@ class LiveDesk:
         try:
             question.future.set_result(self._answer(question.order))
         except WorkerGone as gone:
-            logger.warning("live worker gone", late=gone.late, entry=question.order.entry)
+            logger.warning(f"{self._name} worker gone", late=gone.late, entry=question.order.entry)
             self._end_worker()
             question.future.set_exception(LiveUnavailable(self._told(gone)))
         except Exception as error:  # noqa: BLE001 (whoever asked is told)
@@ -181,7 +187,7 @@ class LiveDesk:
             if self._worker is None:
                 self._log.parent.mkdir(parents=True, exist_ok=True)
                 self._worker = LiveWorker(self._log, self._memory_limit_mb)
-                logger.info("live worker started", pid=self._worker.pid)
+                logger.info(f"{self._name} worker started", pid=self._worker.pid)
             return self._worker
 
     def _end_worker(self) -> None:
@@ -200,5 +206,14 @@ def _refuse(question: _Question, error: Exception) -> None:
 
 def live_desk(settings: Settings) -> LiveDesk:
     """Return the desk of a service; its worker may have as much memory as one computation."""
-    share = settings.memory_limit_mb or machine_memory_mb() // settings.workers
-    return LiveDesk(settings.data_directory, max(share, LEAST_MEMORY_MB))
+    return LiveDesk(settings.data_directory, _share(settings))
+
+
+def reading_desk(settings: Settings) -> LiveDesk:
+    """Return the desk whose worker reads large texts, so that the service does not."""
+    return LiveDesk(settings.data_directory, _share(settings), LiveLimits(idle_s=60.0), "reading")
+
+
+def _share(settings: Settings) -> int:
+    """Return the memory of one computation, MB."""
+    return max(settings.memory_limit_mb or machine_memory_mb() // settings.workers, LEAST_MEMORY_MB)

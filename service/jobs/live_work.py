@@ -11,6 +11,7 @@ from typing import Any
 from fe_contact.analysis import CondensedPair
 from service.convert.live import condensed_of, live_curves
 from service.convert.plan import plan_of
+from service.convert.plausibility import case_warnings
 from service.schemas import Case
 from service.schemas.live import LiveInput
 
@@ -36,7 +37,8 @@ def live_ste(inputs: Json) -> Json:
 def live_plan(inputs: Json) -> Json:
     """Return what `loa plan --json` says of a case."""
     case = Case.model_validate_json(json.dumps(inputs["case"]))
-    return plan_of(case, inputs["time_budget_s"], Path(inputs["cache"])).to_json()
+    plan = plan_of(case, inputs["time_budget_s"], Path(inputs["cache"]))
+    return plan.to_json() | {"warnings": case_warnings(case)}
 
 
 def _bodies(key: str, file: Path, cache: Path, *, compute: bool) -> tuple[Case, CondensedPair]:

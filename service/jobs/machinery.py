@@ -15,6 +15,7 @@ from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
 from service.settings import Settings
 from service.store import DATABASE_FILE, ResultStore, identity_of, open_database, result_store
+from service.store.schema import Schema
 
 
 @dataclass(frozen=True)
@@ -46,12 +47,14 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
     Raises
     ------
     BadInput
-        The database or the place of results is none, or the schema another program's.
-    DatabaseUnavailable
-        It does not answer.
+        The database or the place of results is none, or they do not belong together, or the schema is another
+        program's.
+    DatabaseUnavailable, StoreUnavailable
+        One does not answer; `DatabaseDamaged`: it has to be mended.
     """
     engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
     try:
+        Schema(engine).check()
         place = (settings.results_url, settings.results_cache_mb)
         store = result_store(engine, settings.data_directory, *place)
     except BaseException:
@@ -68,4 +71,5 @@ def _housekeeper(settings: Settings, engine: Engine, store: ResultStore) -> Hous
     """Return who removes what nobody asks for, if anything is to be removed."""
     if settings.retention_days is None:
         return None
-    return Housekeeper(Retention(engine, store, settings.data_directory), settings.retention_days)
+    retention = Retention(engine, store, settings.data_directory, settings.quarantine_days)
+    return Housekeeper(retention, settings.retention_days)

@@ -69,11 +69,15 @@ class WorkOrder:
 
 @dataclass(frozen=True)
 class Product:
-    """A file the work made, to be moved into the store under `key`."""
+    """A file the work made, to be moved into the store under `key`.
+
+    `warnings` are those of what it was made from; None: those of the order's case, or in the file already.
+    """
 
     key: str
     kind: str
     file: Path
+    warnings: list[dict[str, Any]] | None = None
 
 
 @dataclass(frozen=True)

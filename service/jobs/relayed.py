@@ -6,6 +6,7 @@ import json
 from typing import Any
 
 from service.problems import ServiceError
+from service.problems.error import last_part
 
 
 class Relayed(ServiceError):
@@ -14,6 +15,11 @@ class Relayed(ServiceError):
     def __init__(self, facts: dict[str, Any]) -> None:
         self._facts = facts
         super().__init__(str(facts["detail"]))
+
+    @property
+    def kind(self) -> str:
+        """Last part of the type of the problem that came."""
+        return last_part(str(self._facts["type"]))
 
     def as_json(self) -> dict[str, Any]:
         """Return the problem details as they came."""

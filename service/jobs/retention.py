@@ -11,7 +11,16 @@ from sqlalchemy import Engine, delete, exists, func, select
 
 from service.jobs.tables import computations, jobs
 from service.store import reading, retried, writing
-from service.store.maintenance import GRACE_S, Leftover, collect_results, days_ago
+from service.store.deployment import Deployment
+from service.store.maintenance import (
+    GRACE_S,
+    Leftover,
+    collect_orphans,
+    days_ago,
+    expire_results,
+    purge_quarantine,
+)
+from service.store.quarantine import Quarantine
 from service.store.results import ResultStore
 
 _ENDED = ("successful", "failed", "dismissed")
@@ -27,18 +36,36 @@ class Retention:
     store : ResultStore
     data_directory : Path
         Whose workspaces and logs are looked at.
+    quarantine_days : float
+        How long a file that is removed from the store can be had back.
     """
 
-    def __init__(self, engine: Engine, store: ResultStore, data_directory: Path) -> None:
+    def __init__(
+        self, engine: Engine, store: ResultStore, data_directory: Path, quarantine_days: float
+    ) -> None:
         self._engine, self._store, self._data_directory = engine, store, data_directory
+        self._quarantine = Quarantine(store.files, Deployment(engine, store), quarantine_days)
 
     def collect(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
-        """Remove, or only tell, what is left over: results, jobs, workspaces, logs."""
-        yield from collect_results(self._store, older_than_days, dry_run=dry_run)
+        """Remove, or only tell, what is left over: files and lines without each other, and what expired."""
+        yield from collect_orphans(self._store, self._quarantine, dry_run=dry_run)
+        yield from self.expire(older_than_days, dry_run=dry_run)
+
+    def expire(self, older_than_days: float | None = None, *, dry_run: bool = False) -> Iterator[Leftover]:
+        """Remove what is dated and old: results, jobs, workspaces, logs, and what was in quarantine.
+
+        Raises
+        ------
+        BadInput
+            The files of the store are another deployment's by now.
+        """
+        self._quarantine.confirm()
         if older_than_days is not None:
+            yield from expire_results(self._store, self._quarantine, older_than_days, dry_run=dry_run)
             yield from self._jobs(days_ago(older_than_days), dry_run=dry_run)
         yield from self._workspaces(dry_run=dry_run)
         yield from self._logs(dry_run=dry_run)
+        yield from purge_quarantine(self._quarantine, dry_run=dry_run)
 
     def _jobs(self, since: str, *, dry_run: bool) -> Iterator[Leftover]:
         """Remove ended jobs that nobody asked for since an instant, and the computations of no job."""

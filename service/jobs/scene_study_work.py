@@ -39,8 +39,8 @@ def _study(
     run: Callable[[Scene, Any, Progress], Any],
 ) -> tuple[Product, ...]:
     """Run a study of the scene of an order, into a file."""
-    scene, products = ordered_scene(order, progress)
+    ordered = ordered_scene(order, progress)
     varied = {name: value for name, value in order.inputs.items() if name != "scene"}
     file = order.workspace / f"{kind}.nc"
-    run(scene, model.model_validate_json(json.dumps(varied)), progress).to_netcdf(file)
-    return (*products, Product(order.key, kind, file))
+    run(ordered.scene, model.model_validate_json(json.dumps(varied)), progress).to_netcdf(file)
+    return (*ordered.products, Product(order.key, kind, file, ordered.warnings))

@@ -20,11 +20,15 @@ from service.jobs.order import Outcome
 from service.jobs.process import Registry
 from service.jobs.settlement import Ended, Settlement
 from service.jobs.worker import Worker
-from service.problems import ServiceError
+from service.problems import DatabaseUnavailable, ServiceError, StoreUnavailable
 from service.settings import Settings
 from service.store import ResultStore
 
 _HEARTBEAT_S = 0.5
+_STOPPING_S = 1.0
+"""How long a stop waits for killed workers to be dead."""
+_OUTAGES = (DatabaseUnavailable, StoreUnavailable)
+"""After which what has to be noted is noted later."""
 logger = structlog.get_logger(__name__)
 
 
@@ -101,7 +105,7 @@ class Scheduler:
             try:
                 self._turn()
             except Exception as error:
-                if isinstance(error, ServiceError) and error.retry_after_s is not None:
+                if isinstance(error, _OUTAGES):
                     logger.warning("scheduler turn failed", error=str(error))
                 else:
                     logger.exception("scheduler turn failed")
@@ -113,7 +117,10 @@ class Scheduler:
         """End all workers; without a database the leases end by themselves."""
         running = list(self._running.values())
         for one in running:
-            self._kill(one, "stopped")
+            one.worker.end_group()
+        deadline = time.monotonic() + _STOPPING_S
+        for one in running:
+            self._kill(one, "stopped", patience_s=max(deadline - time.monotonic(), 0.0))
         with contextlib.suppress(ServiceError):
             self._settle_all()
             for one in running:
@@ -176,9 +183,11 @@ class Scheduler:
             self._leases.drop(running.claim)
         return running.worker
 
-    def _kill(self, running: Attempt, why: str, *, keep_lease: bool = False) -> None:
+    def _kill(
+        self, running: Attempt, why: str, *, keep_lease: bool = False, patience_s: float | None = None
+    ) -> None:
         """End a worker that has not ended."""
-        self._forget(running, keep_lease=keep_lease).kill()
+        self._forget(running, keep_lease=keep_lease).kill(patience_s)
         running.note_end(why)
 
     def _settle_all(self) -> None:
@@ -187,9 +196,9 @@ class Scheduler:
             ended = self._unsettled[0]
             try:
                 self._settlement.settle(ended)
-            except ServiceError as error:
-                if error.retry_after_s is not None:
-                    raise
+            except _OUTAGES:
+                raise
+            except ServiceError:
                 logger.exception("outcome could not be settled", computation=ended.claim.id)
             self._unsettled.pop(0)
             self._leases.drop(ended.claim)

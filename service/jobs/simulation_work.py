@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from dynamics.errors import ResultError
 from dynamics.simulate import simulate_to_file
 from dynamics.system import Scene
 from fe_contact.ste import SteDatabase
 from service.convert.case import case_json
+from service.convert.plausibility import scene_warnings
 from service.convert.runs import staged
 from service.convert.scene import dynamic_scene
 from service.jobs.analysis_work import database_of
@@ -22,20 +25,31 @@ from service.store import stored_results
 
 def simulate_scene(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Run a scene; tables come from the store, those missing are computed and kept."""
-    scene, products = ordered_scene(order, progress)
+    ordered = ordered_scene(order, progress)
     file = order.workspace / "run.nc"
-    _run(scene, file, progress)
-    return (*products, Product(order.key, "run", file))
+    _run(ordered.scene, file, progress)
+    return (*ordered.products, Product(order.key, "run", file, ordered.warnings))
 
 
-def ordered_scene(order: WorkOrder, progress: Progress) -> tuple[Scene, list[Product]]:
-    """Return the scene of an order with its tables, and those of them that had to be computed."""
-    scene = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
+@dataclass(frozen=True)
+class OrderedScene:
+    """The scene of an order with its tables, those of them that had to be computed, and its warnings."""
+
+    scene: Scene
+    products: tuple[Product, ...]
+    warnings: list[dict[str, Any]]
+
+
+def ordered_scene(order: WorkOrder, progress: Progress) -> OrderedScene:
+    """Gather or compute the tables of the scene of an order."""
+    given = SceneInput.model_validate_json(json.dumps(order.inputs["scene"]))
     products: list[Product] = []
     databases: dict[str, SteDatabase] = {}
-    for index, mesh in enumerate(scene.meshes):
+    for index, mesh in enumerate(given.meshes):
         databases[mesh.name] = _table(order, index, mesh, products, progress)
-    return dynamic_scene(scene, databases), products
+    scene = dynamic_scene(given, databases)
+    tables = {name: database.metadata.warnings for name, database in databases.items()}
+    return OrderedScene(scene, tuple(products), scene_warnings(given, scene, tables))
 
 
 def _run(scene: Scene, file: Path, progress: Progress) -> None:

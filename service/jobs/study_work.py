@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from service.convert.flanks import flanks_of
+from service.convert.plausibility import phrased_flanks
 from service.convert.sensitivity import Deviations, study_case
 from service.convert.sensitivity_file import write_studies
 from service.jobs.catalogue import ANALYZE
@@ -19,7 +20,8 @@ def study_flanks(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
     """Compute the flank results of a case of one load and one alignment."""
     case = Case.model_validate_json(json.dumps(order.inputs["case"]))
     file = order.workspace / "flanks.nc"
-    flanks_of(case, order.data_directory / "compliance", progress).to_netcdf(file)
+    found = flanks_of(case, order.data_directory / "compliance", progress)
+    phrased_flanks(found, case).to_netcdf(file)
     return (Product(order.key, "flanks", file),)
 
 

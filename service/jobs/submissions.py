@@ -16,7 +16,7 @@ from service.jobs.job import ENDED, Job, job_of, select_jobs
 from service.jobs.job_filter import EVERY_JOB, JobFilter
 from service.jobs.tables import computations, jobs
 from service.problems import NoSuchJob, QueueFull
-from service.store import Mark, behind, instant, now, optional, reading, retried, writing
+from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
 
 _LOOKED_AT = 500  # at a time, where durations are asked for
@@ -120,7 +120,7 @@ class Submissions:
         """Note, once an hour, that an ended job was asked for; nobody waits for that."""
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         if row.state in ENDED and (row.asked or row.job_created) < before:
-            with writing(self._engine, brief=True) as connection:
+            with writing(self._engine, patience_ms=BRIEF_MS) as connection:
                 connection.execute(update(jobs).where(jobs.c.id == row.job_id).values(asked=now()))
 
     def page(self, limit: int, wanted: JobFilter = EVERY_JOB, after: Mark | None = None) -> list[Job]:

@@ -120,29 +120,40 @@ class Worker:
 
     def finish(self) -> Outcome:
         """End the process group, reap the child and return how it ended."""
-        self._await_exit()
+        self._has_exited(_LEAVING_S)
         self.kill()
         if self._outcome is not None:
             return self._outcome
         return Outcome(failure=_cause(self._process.returncode), died=True)
 
-    def _await_exit(self) -> None:
-        """Give a child that closed its channel a moment to leave by itself; do not reap it yet.
+    def _has_exited(self, patience_s: float) -> bool:
+        """Whether the child leaves within a moment; do not reap it yet.
 
         Until it is reaped its process id, which is also its group's, cannot be given to another.
         """
-        deadline = time.monotonic() + _LEAVING_S
-        while time.monotonic() < deadline:
-            if os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None:
-                return
+        deadline = time.monotonic() + patience_s
+        while os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is None:
+            if time.monotonic() > deadline:
+                return False
             time.sleep(0.005)
+        return True
 
-    def kill(self) -> None:
-        """Kill the group (gmsh's process included), reap the child, close the pipes. Idempotent."""
+    def end_group(self) -> None:
+        """Send the group (gmsh's process included) SIGKILL."""
         if self._process.returncode is None:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(self.pid, signal.SIGKILL)
-            self._reap()
+
+    def kill(self, patience_s: float | None = None) -> None:
+        """Kill the group, reap the child, close the pipes. Idempotent.
+
+        A killed process needs the processor to die, and at our low priority it waits for that long beside
+        others: one that is not dead after `patience_s` is left to the system, without its `usage`.
+        """
+        if self._process.returncode is None:
+            self.end_group()
+            if patience_s is None or self._has_exited(patience_s):
+                self._reap()
         if self._process.stdin is not None:
             with self._giving, contextlib.suppress(BrokenPipeError):
                 self._process.stdin.close()

@@ -12,14 +12,18 @@
     |- JobDismissed      the job was cancelled
     |- TooLarge          the request body is beyond the limit
     |- TooSlow           the request body does not come
+    |- HeadTooLarge      the head of the request is beyond the limit
+    |- Malformed         what came is no request
     |- NotForUs          the request names another machine
     |- UnsupportedMediaType, NotAcceptable   a body, or an answer, of a type that is not known here
     |- QueueFull         the queue is at its limit; try again later
     |- RateExceeded      the caller's key asks more often than it may; try again later
+    |- TooManyRequests   the server process is busy with others; try again later
     |- Superseded        a later question of the same caller took its place
     |- NotAnalysed       nothing is kept to answer from; submit a job first
     |- LiveUnavailable   the live worker ended or took too long; try again
     |- DatabaseUnavailable  the database does not answer; try again later
+    |  `- DatabaseDamaged    it answers, and has to be mended first
     |- StoreUnavailable  the store of results does not answer; try again later
     |- DamagedFile       a file does not hold what its digest says
     |- Unreachable       no service at the address
@@ -30,21 +34,38 @@ Each carries the HTTP status, the problem type (RFC 9457) and the exit code of t
 
 from __future__ import annotations
 
-from service.problems.busy import LiveUnavailable, NotAnalysed, QueueFull, RateExceeded, Superseded, TryLater
+from service.problems.busy import (
+    LiveUnavailable,
+    NotAnalysed,
+    QueueFull,
+    RateExceeded,
+    Superseded,
+    TooManyRequests,
+    TryLater,
+)
 from service.problems.error import (
     EXIT_BAD_INPUT,
     EXIT_FAILED,
     EXIT_INTERRUPTED,
     EXIT_UNEXPECTED,
     EXIT_UNREACHABLE,
+    EXIT_WARNINGS,
     BadInput,
     ServiceError,
     Unexpected,
 )
 from service.problems.fault import Fault
 from service.problems.no_result import JobDismissed, JobFailed, ResultNotReady, StillRunning
-from service.problems.outages import DamagedFile, DatabaseUnavailable, StoreUnavailable, Unreachable
+from service.problems.outages import (
+    DamagedFile,
+    DatabaseDamaged,
+    DatabaseUnavailable,
+    StoreUnavailable,
+    Unreachable,
+)
 from service.problems.refused import (
+    HeadTooLarge,
+    Malformed,
     NoSuchJob,
     NoSuchProcess,
     NotAcceptable,
@@ -62,13 +83,17 @@ __all__ = [
     "EXIT_INTERRUPTED",
     "EXIT_UNEXPECTED",
     "EXIT_UNREACHABLE",
+    "EXIT_WARNINGS",
     "BadInput",
     "DamagedFile",
+    "DatabaseDamaged",
     "DatabaseUnavailable",
     "Fault",
+    "HeadTooLarge",
     "JobDismissed",
     "JobFailed",
     "LiveUnavailable",
+    "Malformed",
     "NoSuchJob",
     "NoSuchProcess",
     "NotAcceptable",
@@ -83,6 +108,7 @@ __all__ = [
     "StoreUnavailable",
     "Superseded",
     "TooLarge",
+    "TooManyRequests",
     "TooSlow",
     "TryLater",
     "Unauthorised",

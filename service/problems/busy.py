@@ -37,6 +37,15 @@ class RateExceeded(TryLater):
     retry_after_s = 1
 
 
+class TooManyRequests(TryLater):
+    """The server process answers as many requests as it can."""
+
+    status = 503
+    type = "urn:lineofaction:problem:too-many-requests"
+    title = "Too many requests at once"
+    retry_after_s = 1
+
+
 class Superseded(ServiceError):
     """A later question of the same caller took the place of this one."""
 

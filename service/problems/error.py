@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from typing import Any, ClassVar
 
 from service.problems.fault import Fault
 
+EXIT_FAILED = 1
 EXIT_BAD_INPUT = 2
-EXIT_FAILED = 3
+EXIT_WARNINGS = 3
 EXIT_UNREACHABLE = 4
 EXIT_UNEXPECTED = 5
 EXIT_INTERRUPTED = 130
 OGC = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
+
+
+def last_part(problem_type: str) -> str:
+    """Return the last part of the URI of a problem type."""
+    return re.split("[:/]", problem_type)[-1]
 
 
 class ServiceError(Exception):
@@ -23,8 +30,14 @@ class ServiceError(Exception):
     title: ClassVar[str] = "Unexpected failure"
     exit_code: ClassVar[int] = EXIT_UNEXPECTED
     challenge: ClassVar[str | None] = None
+    accept_post: str | None = None
     faults: tuple[Fault, ...] = ()
     retry_after_s: int | None = None
+
+    @property
+    def kind(self) -> str:
+        """Last part of the problem type, by which it is counted and logged."""
+        return last_part(self.type)
 
     def as_json(self) -> dict[str, Any]:
         """Return the problem details object of RFC 9457."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,8 +47,32 @@ class Fault:
 
 def _shown(value: object) -> str:
     """Value as a short text."""
-    text = "nothing" if value is None else repr(value)
-    return text if len(text) <= _LONGEST_VALUE else f"{text[:_LONGEST_VALUE]}..."
+    if value is None:
+        return "nothing"
+    text = ""
+    for piece in _pieces(value):
+        text += piece
+        if len(text) > _LONGEST_VALUE:
+            return f"{text[:_LONGEST_VALUE]}..."
+    return text
+
+
+def _pieces(value: object) -> Iterator[str]:
+    """Yield what `repr` would write, piece by piece, so that no more of a long list is written than shown."""
+    if type(value) is list:
+        yield "["
+        for place, item in enumerate(value):
+            yield ", " if place else ""
+            yield from _pieces(item)
+        yield "]"
+    elif type(value) is dict:
+        yield "{"
+        for place, (name, item) in enumerate(value.items()):
+            yield f", {name!r}: " if place else f"{name!r}: "
+            yield from _pieces(item)
+        yield "}"
+    else:
+        yield repr(value)
 
 
 def _plain(value: object) -> object:

@@ -12,7 +12,16 @@ class DatabaseUnavailable(ServiceError):
     type = "urn:lineofaction:problem:database-unavailable"
     title = "The database cannot be reached"
     exit_code = EXIT_UNREACHABLE
-    retry_after_s = 5
+    retry_after_s: int | None = 5
+
+
+class DatabaseDamaged(DatabaseUnavailable):
+    """The database answers, and cannot be used until somebody mends it."""
+
+    type = "urn:lineofaction:problem:database-damaged"
+    title = "The database cannot be used"
+    exit_code = EXIT_FAILED
+    retry_after_s = None
 
 
 class StoreUnavailable(ServiceError):

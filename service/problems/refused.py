@@ -56,6 +56,24 @@ class TooSlow(ServiceError):
     exit_code = EXIT_UNREACHABLE
 
 
+class HeadTooLarge(ServiceError):
+    """The head of the request is beyond the limit."""
+
+    status = 431
+    type = "urn:lineofaction:problem:head-too-large"
+    title = "The head of the request is too large"
+    exit_code = EXIT_BAD_INPUT
+
+
+class Malformed(ServiceError):
+    """What came is no request."""
+
+    status = 400
+    type = "urn:lineofaction:problem:malformed"
+    title = "The request is not HTTP"
+    exit_code = EXIT_BAD_INPUT
+
+
 class NotForUs(ServiceError):
     """The request names another machine in its header Host."""
 
@@ -72,6 +90,14 @@ class UnsupportedMediaType(ServiceError):
     type = "urn:lineofaction:problem:unsupported-media-type"
     title = "The type of the body is not known here"
     exit_code = EXIT_BAD_INPUT
+
+    @classmethod
+    def of(cls, sent: str, *read: str) -> UnsupportedMediaType:
+        """Return the error of a body of the type `sent`, where the types `read` are."""
+        headers = " or ".join(f"Content-Type: {kind}" for kind in read)
+        error = cls(f"The body is {sent or 'of no stated type'}. Send it with the header {headers}.")
+        error.accept_post = ", ".join(read)
+        return error
 
 
 class NotAcceptable(ServiceError):

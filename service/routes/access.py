@@ -7,11 +7,13 @@ from structlog.contextvars import bind_contextvars
 
 from service.access import AccessKey, Keyring, RateLimits
 from service.problems import NotForUs, RateExceeded, Unauthorised
+from service.routes.caching import for_one_caller
 from service.routes.host import meant_for_us
 
-OPEN_PATHS = ("/health", "/")
+OPEN_PATHS = ("/health", "/ready", "/")
 OPEN_FOLDER = "/page/"
-"""Answered to everybody: they tell nothing about anybody's work. The page asks its reader for a key."""
+"""Answered to everybody: they tell nothing about anybody's work. Supervisors and load balancers ask without a
+key; the page asks its reader for one."""
 
 _SCHEME = "bearer "
 
@@ -42,6 +44,7 @@ class Access:
         if closed and not _open(scope["path"]):
             key = self._known(scope)
             bind_contextvars(caller=key.name)
+            send = for_one_caller(send)
             scope.setdefault("state", {})["caller"] = key
             wait_s = self._rates.wait_s(key)
             if wait_s:

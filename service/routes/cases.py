@@ -2,19 +2,27 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import Any
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
+from starlette.concurrency import run_in_threadpool
+from starlette.responses import JSONResponse, Response
 
 from service.convert.toml import toml_text
+from service.jobs.live_order import LiveOrder
 from service.jobs.process import on_demand
 from service.page.examples import Example, examples
+from service.routes.context import Context, Ctx
 from service.routes.errors import documented
+from service.routes.media_types import JSON
 from service.schemas import Case
 from service.schemas.model import BoundaryModel
 from service.schemas.reading import validated
-from service.schemas.toml_table import toml_table
+
+_LONGEST_READ_HERE = 65_536
+"""Characters; so many take 0.1 s at most."""
 
 router = APIRouter(tags=["cases"])
 case_json, outline_json = (
@@ -61,20 +69,34 @@ def example_cases() -> list[ExampleBody]:
     return [_example(found) for found in examples()]
 
 
-@router.post("/cases/outline", summary="Drawing of the two gears", responses=documented(400, 413, 422))
+@router.post("/cases/outline", summary="Drawing of the two gears", responses=documented(400, 413, 415, 422))
 def outline(body: CaseRequest) -> dict[str, Any]:
     """Transverse outlines of both gears in mm, the path of contact, and the figures of the pair."""
     found: dict[str, Any] = outline_json(body.inputs.case)
     return found
 
 
-@router.post("/cases/from-toml", summary="Read a case file", responses=documented(400, 413, 422))
-def from_toml(body: TomlBody) -> CaseBody:
+@router.post(
+    "/cases/from-toml",
+    summary="Read a case file",
+    response_model=CaseBody,
+    responses=documented(400, 413, 415, 422, 429, 503),
+)
+async def from_toml(body: TomlBody, context: Ctx) -> Response:
     """Read the case in a file's text, with all defaults; files that it names cannot be read here."""
-    return CaseBody(case=case_json(validated(Case, toml_table(body.toml, "toml"))))
+    return await read_toml("service.convert.toml_file:case_of_toml", body, context)
 
 
-@router.post("/cases/to-toml", summary="Write a case file", responses=documented(400, 413, 422))
+async def read_toml(entry: str, body: TomlBody, context: Context) -> Response:
+    """Read a short text in a thread, a long one in a process of its own, for reading holds all others up."""
+    inputs = {"toml": body.toml}
+    if len(body.toml) <= _LONGEST_READ_HERE:
+        return JSONResponse(await run_in_threadpool(on_demand(entry), inputs))
+    answer = await asyncio.wrap_future(context.reader.ask(LiveOrder(entry, inputs)))
+    return Response(answer, media_type=JSON)
+
+
+@router.post("/cases/to-toml", summary="Write a case file", responses=documented(400, 413, 415, 422))
 def to_toml(body: CaseRequest) -> TomlBody:
     """Write the case with all defaults as a file's text."""
     return TomlBody(toml=toml_text(case_json(body.inputs.case)))

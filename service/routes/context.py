@@ -19,6 +19,7 @@ from service.routes.open_databases import OpenDatabases
 from service.routes.streams import Streams
 from service.settings import Settings
 from service.store import ResultStore
+from service.store.write_check import WriteCheck
 
 
 @dataclass(frozen=True)
@@ -31,9 +32,16 @@ class Context:
     scheduler: Scheduler | WorkElsewhere
     store: ResultStore
     live: LiveDesk
+    reader: LiveDesk
     engine: Engine
+    writes: WriteCheck
     databases: OpenDatabases = field(default_factory=OpenDatabases)
     streams: Streams = field(default_factory=Streams)
+
+    def stop_waiting(self) -> None:
+        """End the workers of those who wait for an answer."""
+        self.live.stop()
+        self.reader.stop()
 
     def close(self) -> None:
         """Close what is open; it opens again when it is needed."""

@@ -14,7 +14,9 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 from starlette.routing import compile_path
 
-from service.problems import BadInput, Fault, ServiceError
+from service.problems import BadInput, Fault, ServiceError, UnsupportedMediaType
+from service.routes.caching import NO_STORE
+from service.routes.media_types import JSON, media_type
 from service.schemas.faults import fault_of, innermost
 from service.schemas.problem import ProblemBody
 
@@ -22,9 +24,10 @@ MEDIA_TYPE = "application/problem+json"
 
 
 def problem_response(facts: Mapping[str, Any], headers: Mapping[str, str] | None = None) -> Response:
-    """Return a problem; the text is ASCII, so that nothing a caller sent can break it."""
+    """Return a problem, which no cache keeps, in ASCII, so that nothing a caller sent can break it."""
     body = json.dumps(facts, allow_nan=False, ensure_ascii=True).encode()
-    return Response(body, int(facts["status"]), headers, media_type=MEDIA_TYPE)
+    told = {"Cache-Control": NO_STORE, **(headers or {})}
+    return Response(body, int(facts["status"]), told, media_type=MEDIA_TYPE)
 
 
 def problem_of(error: ServiceError) -> Response:
@@ -32,6 +35,8 @@ def problem_of(error: ServiceError) -> Response:
     headers = {} if error.retry_after_s is None else {"Retry-After": str(error.retry_after_s)}
     if error.challenge is not None:
         headers["WWW-Authenticate"] = error.challenge
+    if error.accept_post is not None:
+        headers["Accept-Post"] = error.accept_post
     return problem_response(error.as_json(), headers)
 
 
@@ -50,17 +55,28 @@ def install_error_handlers(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, _refused_by_framework)
 
 
-def _raised_on_purpose(_request: Request, error: Exception) -> Response:
+def _raised_on_purpose(request: Request, error: Exception) -> Response:
     """Answer an error of our own tree."""
     assert isinstance(error, ServiceError)
+    request.state.problem = error.kind
     return problem_of(error)
 
 
 def _invalid_request(request: Request, error: Exception) -> Response:
     """Answer a body or parameter that its model refuses."""
     assert isinstance(error, RequestValidationError)
+    sent = media_type(request.headers.get("content-type", ""))
+    unread = any(item["loc"][0] == "body" and item["type"] != "missing" for item in error.errors())
+    if unread and not _is_json(sent):
+        return _raised_on_purpose(request, UnsupportedMediaType.of(sent, JSON))
     model = getattr(request.scope.get("endpoint"), "body_model", None)
-    return problem_of(BadInput(_request_fault(item, model) for item in innermost(error.errors())))
+    faults = (_request_fault(item, model) for item in innermost(error.errors()))
+    return _raised_on_purpose(request, BadInput(faults))
+
+
+def _is_json(kind: str) -> bool:
+    """Whether the framework reads bodies of a media type."""
+    return kind == JSON or (kind.startswith("application/") and kind.endswith("+json"))
 
 
 def _request_fault(item: Mapping[str, Any], model: type[BaseModel] | None) -> Fault:
@@ -86,6 +102,7 @@ def _refused_by_framework(request: Request, error: Exception) -> Response:
     """Answer what routing refuses: unknown path, wrong method, unreadable body."""
     assert isinstance(error, HTTPException)
     phrase = HTTPStatus(error.status_code).phrase
+    request.state.problem = phrase.lower().replace(" ", "-")
     facts = {
         "type": "about:blank",
         "title": phrase,

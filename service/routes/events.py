@@ -12,6 +12,7 @@ from starlette.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
 from service.problems import QueueFull
+from service.routes.caching import NO_STORE
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
 from service.routes.jobs import status_info
@@ -48,7 +49,7 @@ async def events(job_id: str, context: Ctx) -> Response:
     await run_in_threadpool(context.submissions.find, job_id)
     if not context.streams.enter():
         raise TooManyStreams(f"{context.streams.most} event streams are open. Poll the status, or try again.")
-    headers = {"Cache-Control": "no-store", "X-Accel-Buffering": "no"}
+    headers = {"Cache-Control": NO_STORE, "X-Accel-Buffering": "no"}
     return _Stream(context.streams, _changes(context, job_id), headers)
 
 
@@ -72,7 +73,8 @@ async def _changes(context: Context, job_id: str) -> AsyncIterator[bytes]:
     told, last = b"", time.monotonic()
     while True:
         job = await run_in_threadpool(context.submissions.find, job_id)
-        document = status_info(job, context.registry).model_dump_json().encode()
+        status = await run_in_threadpool(status_info, job, context.registry)
+        document = status.model_dump_json().encode()
         if document != told:
             told, last = document, time.monotonic()
             yield b"event: status\ndata: " + document + b"\n\n"

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from fastapi import APIRouter, Request, Response
+from fastapi import APIRouter, Depends, Request, Response
 
 from service.problems import ServiceError
+from service.routes.caching import NO_STORE
 from service.routes.context import Ctx
 from service.routes.errors import documented
 
-router = APIRouter(tags=["operations"])
+
+async def _of_now(response: Response) -> None:
+    """Let no cache answer in place of the service."""
+    response.headers["Cache-Control"] = NO_STORE
+
+
+router = APIRouter(tags=["operations"], dependencies=[Depends(_of_now)])
 
 
 class NotReady(ServiceError):
@@ -30,7 +37,10 @@ async def health() -> dict[str, Any]:
 
 @router.get("/ready", summary="Ready for jobs?", responses=documented(503))
 def ready(context: Ctx) -> dict[str, Any]:
-    """Answer that the table can be read and the scheduler runs."""
+    """Answer that database and place of results take what is written, and that the scheduler runs."""
+    outcome = context.writes.outcome()
+    if outcome.fault:
+        raise NotReady(outcome.fault)
     counts = context.submissions.counts()
     if not context.scheduler.alive:
         raise NotReady("The scheduler does not run. Restart the service.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fastapi import APIRouter, Request
 
 from service.jobs.job import Job
-from service.jobs.process import Registry
+from service.jobs.process import Registry, on_demand
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.errors import documented
@@ -14,6 +14,7 @@ from service.schemas.ogc import JobList, JobStatus, Link, StatusInfo
 from service.store import Mark
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
+input_warnings = on_demand("service.jobs.input_warnings:input_warnings")
 
 
 @router.get("", summary="Jobs", responses=documented(422))
@@ -30,7 +31,8 @@ def jobs(
 @router.get("/{job_id}", summary="Status of a job", responses=documented(404))
 def job(job_id: str, context: Ctx) -> StatusInfo:
     """How far the job is."""
-    return status_info(context.submissions.find(job_id), context.registry)
+    found = context.submissions.find(job_id)
+    return status_info(found, context.registry)
 
 
 @router.delete("/{job_id}", summary="Dismiss a job", responses=documented(404))
@@ -42,7 +44,7 @@ def dismiss(job_id: str, context: Ctx) -> StatusInfo:
 
 
 def status_info(job: Job, registry: Registry) -> StatusInfo:
-    """Return a job as the standard's status document."""
+    """Return a job as the standard's status document, with what is implausible about its inputs."""
     path = f"/v1/jobs/{job.id}"
     links = [
         Link(href=path, rel="self", title="Status"),
@@ -66,4 +68,5 @@ def status_info(job: Job, registry: Registry) -> StatusInfo:
         stage_progress=int(100 * job.stage_fraction),
         attempts=job.attempts,
         links=links,
+        warnings=list(input_warnings(job.inputs)),
     )

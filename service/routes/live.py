@@ -19,7 +19,7 @@ router = APIRouter(tags=["live"])
 
 STE, PLAN = "service.jobs.live_work:live_ste", "service.jobs.live_work:live_plan"
 
-_REFUSED = documented(400, 409, 413, 422, 429, 500, 503)
+_REFUSED = documented(400, 409, 413, 415, 422, 429, 500, 503)
 
 
 @router.post(

@@ -10,6 +10,7 @@ from prometheus_client.registry import Collector
 
 from service.jobs.workload import Workload, WorkloadReader
 from service.problems import DatabaseUnavailable
+from service.store.write_check import WriteCheck
 
 _STATES = ("accepted", "running", "successful", "failed", "dismissed")
 _ENDED = ["process", "outcome"]
@@ -18,18 +19,33 @@ _ENDED = ["process", "outcome"]
 class Metrics:
     """Figures of one app."""
 
-    def __init__(self, workload: WorkloadReader) -> None:
+    def __init__(self, workload: WorkloadReader, writes: WriteCheck) -> None:
         self._registry = CollectorRegistry()
         self._requests = Counter(
             "loa_requests", "Requests answered", ["method", "route", "status"], registry=self._registry
         )
         self._seconds = Histogram("loa_request_seconds", "Time to answer", ["route"], registry=self._registry)
+        self._problems = Counter(
+            "loa_problems", "Requests answered with a problem", ["problem"], registry=self._registry
+        )
+        self._dropped = Counter(
+            "loa_dropped_connections", "Idle connections closed to make room", registry=self._registry
+        )
         self._registry.register(_FromDatabase(workload))
+        self._registry.register(_Writable(writes))
 
     def observe(self, method: str, route: str, status: int, seconds: float) -> None:
         """Note one answered request."""
         self._requests.labels(method, route, str(status)).inc()
         self._seconds.labels(route).observe(seconds)
+
+    def refused(self, problem: str) -> None:
+        """Note the kind of problem of an answer."""
+        self._problems.labels(problem).inc()
+
+    def dropped(self) -> None:
+        """Note an idle connection that made room for another."""
+        self._dropped.inc()
 
     def text(self) -> bytes:
         """Return all figures in the text exposition format."""
@@ -56,6 +72,22 @@ class _FromDatabase(Collector):
         yield from _queue(load)
         yield from _ended(load)
         yield from _results(load)
+
+
+class _Writable(Collector):
+    """What can be written, tried when asked."""
+
+    def __init__(self, writes: WriteCheck) -> None:
+        self._writes = writes
+
+    def collect(self) -> Iterable[Metric]:
+        """Return a figure for each part."""
+        outcome = self._writes.outcome()
+        text = "Whether this process can write to the database, and to the place of results"
+        writable = GaugeMetricFamily("loa_writable", text, labels=["part"])
+        writable.add_metric(["database"], float(not outcome.database))
+        writable.add_metric(["results"], float(not outcome.results))
+        yield writable
 
 
 def _queue(load: Workload) -> Iterable[Metric]:

@@ -5,13 +5,22 @@ from __future__ import annotations
 import asyncio
 import time
 import uuid
+from typing import NoReturn
 
 import structlog
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from structlog.contextvars import bind_contextvars, clear_contextvars
 
-from service.problems import ServiceError, TooLarge, TooSlow, Unexpected, UnsupportedMediaType
+from service.problems import (
+    ServiceError,
+    TooLarge,
+    TooManyRequests,
+    TooSlow,
+    Unexpected,
+    UnsupportedMediaType,
+)
 from service.routes.errors import problem_of
+from service.routes.extent import Extent
 from service.routes.metrics import Metrics
 
 API_PREFIX = "/v1"
@@ -19,6 +28,10 @@ logger = structlog.get_logger(__name__)
 
 PATIENCE_S, LEAST_BYTES_PER_S = 30.0, 10_000.0
 """A body is to be there after so long, and longer by what has come at this rate."""
+
+MOST_REQUESTS = 400
+"""Answered at once by one server process; asked for its health it answers also then."""
+_VITAL = ("/health", "/ready")
 
 _AS_SAID = (b"x-content-type-options", b"nosniff")  # a browser takes no answer for what it is not
 
@@ -28,6 +41,7 @@ class Guard:
 
     def __init__(self, app: ASGIApp, body_limit: int, metrics: Metrics) -> None:
         self._app, self._body_limit, self._metrics = app, body_limit, metrics
+        self._open = 0
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve one request."""
@@ -38,7 +52,9 @@ class Guard:
         clear_contextvars()
         bind_contextvars(request_id=exchange.identifier)  # stands in every line that this request logs
         begin = time.perf_counter()
+        self._open += 1
         try:
+            self._refuse_beyond(scope["path"])
             exchange.refuse_announced()
             await self._app(scope, exchange.receive, exchange.send)
         except ServiceError as error:
@@ -47,12 +63,19 @@ class Guard:
             logger.exception("unexpected failure", reference=exchange.identifier, path=scope["path"])
             await self._answer(Unexpected(exchange.identifier), exchange, scope)
         finally:
+            self._open -= 1
             self._note(scope, exchange, time.perf_counter() - begin)
+
+    def _refuse_beyond(self, path: str) -> None:
+        """Refuse what is too much at once."""
+        if self._open > MOST_REQUESTS and path not in _VITAL:
+            raise TooManyRequests(f"{MOST_REQUESTS} requests are being answered. Ask again soon.")
 
     @staticmethod
     async def _answer(error: ServiceError, exchange: _Exchange, scope: Scope) -> None:
         """Send a problem, unless part of an answer is on its way already."""
         if exchange.status is None:
+            scope.setdefault("state", {})["problem"] = error.kind
             await problem_of(error)(scope, exchange.receive, exchange.send)
 
     def _note(self, scope: Scope, exchange: _Exchange, seconds: float) -> None:
@@ -61,6 +84,10 @@ class Guard:
         status = exchange.status or 0
         self._metrics.observe(scope["method"], route, status, seconds)
         facts = {"method": scope["method"], "route": route, "status": status, "seconds": round(seconds, 6)}
+        problem = scope.get("state", {}).get("problem")
+        if problem is not None:
+            self._metrics.refused(problem)
+            facts["problem"] = problem
         logger.info("request", **facts)
 
 
@@ -79,17 +106,18 @@ class _Exchange:
     def __init__(self, scope: Scope, receive: Receive, send: Send, body_limit: int) -> None:
         self._scope, self._receive, self._send, self._body_limit = scope, receive, send, body_limit
         self._received, self._whole, self._begin = 0, False, time.perf_counter()
+        self._headers = dict(scope["headers"])
+        self._extent = Extent(self._headers.get(b"content-type", b"").decode("latin-1"))
         self.refusal: ServiceError | None = None
         self.status: int | None = None
         self.identifier = uuid.uuid4().hex[:12]
 
     def refuse_announced(self) -> None:
         """Refuse a body that says itself that it is too long, or packed."""
-        headers = dict(self._scope["headers"])
-        announced = headers.get(b"content-length", b"0")
+        announced = self._headers.get(b"content-length", b"0")
         if announced.isdigit() and int(announced) > self._body_limit:
             raise self._too_large()
-        if headers.get(b"content-encoding", b"identity").strip().lower() not in (b"identity", b""):
+        if self._headers.get(b"content-encoding", b"identity").strip().lower() not in (b"identity", b""):
             raise UnsupportedMediaType("The body is packed (Content-Encoding). Send it as it is.")
 
     def _too_large(self) -> TooLarge:
@@ -104,14 +132,22 @@ class _Exchange:
             async with asyncio.timeout_at(self._due()):
                 message = await self._receive()
         except TimeoutError:
-            self.refusal = TooSlow(f"The body did not come within {time.perf_counter() - self._begin:.0f} s.")
-            raise self.refusal from None
-        self._received += len(message.get("body", b""))
+            self._refuse(TooSlow(f"The body did not come within {time.perf_counter() - self._begin:.0f} s."))
+        piece = message.get("body", b"")
+        self._received += len(piece)
         self._whole = not message.get("more_body", False)
         if self._received > self._body_limit:
-            self.refusal = self._too_large()
-            raise self.refusal
+            self._refuse(self._too_large())
+        try:
+            self._extent.add(piece)
+        except TooLarge as error:
+            self._refuse(error)
         return message
+
+    def _refuse(self, error: ServiceError) -> NoReturn:
+        """Raise why the body is not read on, and keep it: the framework takes it for an unreadable body."""
+        self.refusal = error
+        raise error from None
 
     def _due(self) -> float:
         """Return when the next piece is to be there, by the clock of the event loop."""
@@ -127,6 +163,7 @@ class _Exchange:
         if self.refusal is None:
             await self._pass(message)
         elif self.status is None:
+            self._scope.setdefault("state", {})["problem"] = self.refusal.kind
             await problem_of(self.refusal)(self._scope, self._receive, self._pass)
 
     async def _pass(self, message: Message) -> None:

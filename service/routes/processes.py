@@ -104,7 +104,7 @@ def _add_execution(router: APIRouter, process: Process) -> None:
         status_code=201,
         name=f"execute_{process.id}",
         summary=f"Run {process.id}",
-        responses=documented(400, 413, 422, 429)
+        responses=documented(400, 413, 415, 422, 429)
         | {201: {"headers": {"Location": {"description": "The job", "schema": {"type": "string"}}}}},
     )
 

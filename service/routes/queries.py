@@ -50,7 +50,7 @@ async def _answer(request: Request) -> Response:
         raise BadInput.of("key", key, f"a text of the form {KEY_PATTERN}", "Content hash of the input.")
     sent = media_type(request.headers.get("content-type", ""))
     if sent not in READ:
-        raise UnsupportedMediaType(f"The body is {sent or 'of no stated type'}. Send {', '.join(READ)}.")
+        raise UnsupportedMediaType.of(sent, *READ)
     offered = (sent, *(kind for kind in READ if kind != sent))
     wanted = negotiated(request.headers.get("accept", "*/*"), offered)
     if wanted is None:

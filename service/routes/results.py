@@ -60,9 +60,9 @@ def _figures(context: Context, stored: StoredResult) -> dict[str, Any]:
         from service.convert.answers import metadata_json  # noqa: PLC0415 (start-up time)
 
         return metadata_json(context.databases.get(context.store, stored.key).database)
-    from service.convert.result_figures import FIGURES  # noqa: PLC0415 (start-up time)
+    from service.convert.result_figures import figures_of  # noqa: PLC0415 (start-up time)
 
-    return FIGURES[stored.kind](stored.path)
+    return figures_of(stored.kind, stored.path)
 
 
 for _kind in RESULT_KINDS.values():

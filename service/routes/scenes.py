@@ -6,14 +6,14 @@ from typing import Any
 
 from fastapi import APIRouter
 from pydantic import BaseModel, Field
+from starlette.responses import Response
 
 from service.convert.toml import toml_text
-from service.routes.cases import TomlBody, explained
+from service.routes.cases import TomlBody, explained, read_toml
+from service.routes.context import Ctx
 from service.routes.errors import documented
 from service.schemas.model import BoundaryModel
-from service.schemas.reading import validated
 from service.schemas.scene import SceneInput
-from service.schemas.toml_table import toml_table
 
 router = APIRouter(tags=["scenes"])
 
@@ -40,21 +40,21 @@ class SceneBody(BaseModel):
     scene: dict[str, Any]
 
 
-@router.post("/scenes/from-toml", summary="Read a scene file", responses=documented(400, 413, 422))
-def from_toml(body: SceneToml) -> SceneBody:
+@router.post(
+    "/scenes/from-toml",
+    summary="Read a scene file",
+    response_model=SceneBody,
+    responses=documented(400, 413, 415, 422, 429, 503),
+)
+async def from_toml(body: SceneToml, context: Ctx) -> Response:
     """Read the scene in a file's text; files that it names cannot be read here."""
-    return SceneBody(scene=_given(validated(SceneInput, toml_table(body.toml, "toml"))))
+    return await read_toml("service.convert.toml_file:scene_of_toml", body, context)
 
 
-@router.post("/scenes/to-toml", summary="Write a scene file", responses=documented(400, 413, 422))
+@router.post("/scenes/to-toml", summary="Write a scene file", responses=documented(400, 413, 415, 422))
 def to_toml(body: SceneRequest) -> SceneToml:
     """Write the scene as a file's text, without defaults."""
-    return SceneToml(toml=toml_text(_given(body.inputs.scene)))
-
-
-def _given(scene: SceneInput) -> dict[str, Any]:
-    """Return what was given of a scene."""
-    return scene.model_dump(mode="json", exclude_unset=True)
+    return SceneToml(toml=toml_text(body.inputs.scene.model_dump(mode="json", exclude_unset=True)))
 
 
 explained(from_toml, SceneToml)

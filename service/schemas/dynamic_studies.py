@@ -25,6 +25,13 @@ class ModesInput(BoundaryModel):
         examples=[[0.0, 1500.0, 3000.0]],
     )
     orders: Orders = Field(default=10, description="Multiples of the mesh frequencies", examples=[10])
+    highest_frequency_hz: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e7,
+        description="To which shafts are resolved; left out: the highest of the orders at the highest speed",
+        examples=[5000.0],
+    )
 
     @model_validator(mode="after")
     def _increasing(self) -> Self:

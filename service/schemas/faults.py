@@ -13,10 +13,12 @@ from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
 
 from service.problems import Fault
+from service.schemas.few_faults import MOST_FAULTS
 
 Loc = Sequence[int | str]
 
-_MOST_FAULTS = 50
+_LONGEST_NAME = 200
+_LONGEST_GUESS = 64
 
 _KINDS = {
     "int_type": "an integer",
@@ -46,12 +48,12 @@ def faults_of(error: ValidationError, model: type[BaseModel]) -> tuple[Fault, ..
 def innermost(items: Sequence[Any]) -> list[Any]:
     """Return the errors without those of a list or table whose own parts are at fault already.
 
-    At most the first 50: a body may have as many as it has bytes, and each costs a search for what was meant.
+    At most the first 50; see `service.schemas.few_faults`.
     """
     places = [tuple(item["loc"]) for item in items]
     around = {place[:depth] for place in places for depth in range(len(place))}
     inner = (item for item, place in zip(items, places, strict=True) if place not in around)
-    return list(islice(inner, _MOST_FAULTS))
+    return list(islice(inner, MOST_FAULTS))
 
 
 def fault_of(item: Mapping[str, Any], model: type[BaseModel] | None, loc: Loc) -> Fault:
@@ -69,7 +71,8 @@ def _dotted(loc: Loc) -> str:
     """Place as the user writes it: pair.pinion.teeth, load.torque_n_m[2]."""
     text = ""
     for part in (part for part in loc if part not in ("[key]", "[one]", "[many]")):
-        text += f"[{part}]" if isinstance(part, int) else f".{part}" if text else str(part)
+        name = str(part)[:_LONGEST_NAME]
+        text += f"[{name}]" if isinstance(part, int) else f".{name}" if text else name
     return text or "input"
 
 
@@ -186,5 +189,5 @@ def _described(info: FieldInfo | None) -> str:
 
 def _nearest(name: str, known: Sequence[str]) -> str:
     """Return the field that was probably meant."""
-    close = difflib.get_close_matches(name, known, n=1)
+    close = difflib.get_close_matches(name[:_LONGEST_GUESS], known, n=1)
     return f"Did you mean {close[0]}?" if close else f"Known here: {', '.join(known)}."

@@ -4,14 +4,23 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from pydantic import BaseModel, ConfigDict
-from pydantic_core import PydanticCustomError
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler
+from pydantic_core import CoreSchema, PydanticCustomError
+
+from service.schemas.few_faults import with_few_faults
 
 
 class BoundaryModel(BaseModel):
     """A table of the case or scene file, or a JSON body: unknown fields and NaN are refused."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, source: type[BaseModel], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        """Stop looking when enough is wrong."""
+        return with_few_faults(handler(source))
 
 
 def refuse(field: str, value: object, bound: str, suggestion: str = "") -> NoReturn:

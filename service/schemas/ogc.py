@@ -85,6 +85,10 @@ class StatusInfo(BaseModel):
     stage: str = Field(description="The stage the job is in")
     stage_progress: int = Field(ge=0, le=100, description="Per cent of the stage")
     attempts: int = Field(ge=0, description="How often the work was started")
+    warnings: list[dict[str, Any]] | None = Field(
+        default=None,
+        description="What is implausible about the inputs: check, field, value, unit, message; null in lists",
+    )
     links: list[Link]
 
 

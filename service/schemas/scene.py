@@ -40,7 +40,7 @@ class CoastFlankInput(BoundaryModel):
     """The backs of a mesh's teeth, alike to their fronts, for the effect "backlash"."""
 
     backlash_um: float = Field(
-        gt=0.0, le=1e5, description="Backlash along the transverse line of action in um", examples=[80.0]
+        ge=0.0, le=1e5, description="Backlash along the transverse line of action in um", examples=[80.0]
     )
     tooth_thickness: float | None = Field(
         default=None,
@@ -135,8 +135,8 @@ class RunInput(BoundaryModel):
     duration_s: float = Field(ge=0.0, le=1e6, description="Duration in s", examples=[5.0])
     on_violation: Literal["repeat", "fail", "report"] = Field(
         default="repeat",
-        description="Where an assumption of the run turns out wrong: repeat with the effect it needs, fail, "
-        "or report",
+        description="Where an assumption of a run or study turns out wrong: repeat with the effect it needs "
+        "and fail where none mends a wrong result, fail at any, or report",
         examples=["repeat"],
     )
 
@@ -157,8 +157,26 @@ class SceneAccuracyInput(BoundaryModel):
 class OutputsInput(BoundaryModel):
     """What to store."""
 
-    sample_rate_hz: float = Field(
-        default=20e3, gt=0.0, le=1e7, description="Samples per second", examples=[20000.0]
+    sample_rate_hz: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1e7,
+        description="Samples per second; left out: what the mesh orders and the highest mode that the meshes "
+        "excite need",
+        examples=[20000.0],
+    )
+    mesh_orders: int = Field(
+        default=10,
+        ge=1,
+        le=1000,
+        description="Multiples of the mesh frequency that the output holds at the highest speed",
+        examples=[10],
+    )
+    anti_alias: bool = Field(
+        default=True,
+        description="Filter the output, so that nothing above half the rate folds into it; false: points of "
+        "the motion",
+        examples=[True],
     )
     bearing_forces: bool = Field(
         default=True, description="Store forces and moments of every bearing", examples=[True]

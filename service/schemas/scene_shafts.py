@@ -22,7 +22,7 @@ class SectionInput(BoundaryModel):
         default=0.0, ge=0.0, le=1e5, description="Bore in mm; 0: solid", examples=[10.0]
     )
     youngs_modulus_gpa: float = Field(
-        default=206.0, gt=0.0, le=1e9, description="Young's modulus in GPa", examples=[206.0]
+        default=210.0, gt=0.0, le=1e9, description="Young's modulus in GPa", examples=[210.0]
     )
     poissons_ratio: float = Field(
         default=0.3, ge=0.0, le=0.499, description="Poisson's ratio", examples=[0.3]

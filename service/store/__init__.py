@@ -1,6 +1,6 @@
 """What is kept: a database, and content-addressed result files."""
 
-from service.store.database import instant, now, open_database, reading, writing
+from service.store.database import BRIEF_MS, instant, now, open_database, reading, writing
 from service.store.dialects import dialect_of
 from service.store.directory import DirectoryLock, identity_of
 from service.store.mark import Mark, behind
@@ -9,6 +9,7 @@ from service.store.places import DATABASE_FILE, RESULTS_DIRECTORY, result_store,
 from service.store.results import IndexLine, ResultStore, StoredResult
 
 __all__ = [
+    "BRIEF_MS",
     "DATABASE_FILE",
     "RESULTS_DIRECTORY",
     "DirectoryLock",

@@ -15,6 +15,8 @@ from service.store.dialects import dialect_of
 from service.store.schema import prepare_schema
 
 metadata = MetaData()
+BRIEF_MS = 100
+"""Patience of those who can do without what they write."""
 
 _DRIVERS = {"sqlite": "sqlite", "postgresql": "postgresql+psycopg"}
 
@@ -68,13 +70,14 @@ def _url(text: str) -> URL:
 
 
 @contextmanager
-def writing(engine: Engine, *, in_turn: bool = False, brief: bool = False) -> Iterator[Connection]:
+def writing(engine: Engine, *, in_turn: bool = False, patience_ms: int | None = None) -> Iterator[Connection]:
     """Open a transaction that may write.
 
     With `in_turn` it is alone among all that take turns: what it has read stays so until it ends. Others
-    rely on the rows they lock. With `brief` it fails at once rather than wait for others.
+    rely on the rows they lock. It fails if others hold the database for longer than `patience_ms`, by default
+    10 s.
     """
-    with engine.execution_options(immediate=True, brief=brief).begin() as connection:
+    with engine.execution_options(immediate=True, patience_ms=patience_ms).begin() as connection:
         if in_turn:
             dialect_of(connection).take_turn(connection)
         yield connection

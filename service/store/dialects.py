@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
+import sqlite3
 import time
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,9 +18,9 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 from service.problems import BadInput
 
 _PRAGMAS = (
+    "PRAGMA busy_timeout=10000",  # first: the others may have to wait too
     "PRAGMA journal_mode=WAL",
     "PRAGMA synchronous=FULL",
-    "PRAGMA busy_timeout=10000",
     "PRAGMA foreign_keys=ON",
 )
 _TURN = 0x6C6F61  # "loa": any number that all our processes know
@@ -31,7 +34,6 @@ _SILENT: Mapping[str, Any] = {
     "tcp_user_timeout": 20_000,
 }
 """A network that swallows everything is noticed after half a minute, not after the system's quarter hour."""
-_BRIEF_MS = 100
 _POOL: Mapping[str, Any] = {"pool_size": 5, "max_overflow": 15, "pool_timeout": 5.0, "pool_pre_ping": True}
 
 
@@ -55,6 +57,12 @@ class Dialect(Protocol):
     def lost(self, error: DBAPIError) -> bool:
         """Whether the database, not the statement, is why it failed: another attempt may succeed."""
 
+    def remedy(self, error: DBAPIError) -> str | None:
+        """Return what a person has to do before any attempt can succeed; None if it is not that."""
+
+    def check(self, connection: Connection) -> str | None:
+        """Look through the whole database where that is cheap; return what is damaged, None if nothing is."""
+
 
 class SQLite:
     """One file with a write-ahead log, synchronous FULL, and one writer at a time."""
@@ -64,7 +72,7 @@ class SQLite:
     def engine(self, url: URL, *, pooled: bool) -> Engine:
         """Return an engine on the file."""
         if url.database:
-            Path(url.database).parent.mkdir(parents=True, exist_ok=True)
+            _make_private(Path(url.database))
         # no pool: a connection kept for a thread that has ended is closed by nobody, and opening one is cheap
         engine = create_engine(url, poolclass=NullPool)
         event.listen(engine, "connect", _prepare)
@@ -86,6 +94,52 @@ class SQLite:
         """Whether others held the file for too long."""
         return any(word in str(error.orig) for word in ("locked", "busy"))
 
+    def remedy(self, error: DBAPIError) -> str | None:
+        """Tell by the primary result code; a file that was replaced by an empty one has no tables."""
+        if "no such table" in str(error.orig):
+            return RESTORE
+        return _SQLITE_REMEDIES.get(getattr(error.orig, "sqlite_errorcode", 0) & 0xFF)
+
+    def check(self, connection: Connection) -> str | None:
+        """Read every page, some 0.1 to 1 s for 100 MB."""
+        found = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar_one())
+        return None if found == "ok" else found
+
+
+def _make_private(file: Path) -> None:
+    """Make an empty file of its owner's alone, unless there is one; SQLite gives its log the same rights."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    with contextlib.suppress(OSError):  # SQLite tells why it cannot be opened
+        os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_CLOEXEC, 0o600))
+
+
+RESTORE = (
+    "Stop the service. Restore the database from its backup; or move it aside, for SQLite with its -wal and "
+    "-shm, and rebuild the index of results with loa store reindex (docs/operations.md)."
+)
+_RIGHTS = "Give the service the right to write it, and for SQLite its folder."
+_ROOM = "Make room on its disk."
+_DISK = "Look at its disk and at the log of the system."
+_SQLITE_REMEDIES: Mapping[int, str] = {
+    sqlite3.SQLITE_CORRUPT: RESTORE,
+    sqlite3.SQLITE_NOTADB: RESTORE,
+    sqlite3.SQLITE_PERM: _RIGHTS,
+    sqlite3.SQLITE_READONLY: _RIGHTS,
+    sqlite3.SQLITE_CANTOPEN: _RIGHTS,
+    sqlite3.SQLITE_FULL: _ROOM,
+    sqlite3.SQLITE_IOERR: _DISK,
+    sqlite3.SQLITE_PROTOCOL: _DISK,
+}
+_POSTGRESQL_REMEDIES: Mapping[str, str] = {
+    "XX001": RESTORE,  # data corrupted
+    "XX002": RESTORE,  # index corrupted
+    "42P01": RESTORE,  # undefined table
+    "25006": _RIGHTS,  # read-only transaction
+    "42501": _RIGHTS,  # insufficient privilege
+    "53100": _ROOM,  # disk full
+    "58030": _DISK,  # I/O error
+}
+
 
 def _prepare(connection: Any, _record: object) -> None:
     """Set a new connection up: we begin transactions ourselves (see `_begin`)."""
@@ -97,8 +151,8 @@ def _prepare(connection: Any, _record: object) -> None:
 def _begin(connection: Connection) -> None:
     """Begin; a writer takes the lock at once, since a lock upgrade in mid-transaction can only fail."""
     options = connection.get_execution_options()
-    if options.get("brief", False):  # the connection is not used again: there is no pool
-        connection.exec_driver_sql(f"PRAGMA busy_timeout={_BRIEF_MS}")
+    if (patience_ms := options.get("patience_ms")) is not None:  # the connection is not used again
+        connection.exec_driver_sql(f"PRAGMA busy_timeout={patience_ms:d}")
     connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get("immediate", False) else "BEGIN")
 
 
@@ -154,11 +208,19 @@ class PostgreSQL:
             return type(error.orig).__name__ in ("OperationalError", "InterfaceError", "ConnectionTimeout")
         return error.connection_invalidated or state.startswith(("08", "40", "53", "57P", "55P03"))
 
+    def remedy(self, error: DBAPIError) -> str | None:
+        """Tell by the SQLSTATE."""
+        return _POSTGRESQL_REMEDIES.get(getattr(error.orig, "sqlstate", None) or "")
+
+    def check(self, _connection: Connection) -> str | None:
+        """Find nothing: a server has tools and an administrator of its own (pg_amcheck)."""
+        return None
+
 
 def _begin_on_server(connection: Connection) -> None:
     """Wait for locks but briefly, if that is asked for; the transaction's end undoes it."""
-    if connection.get_execution_options().get("brief", False):
-        connection.exec_driver_sql(f"SET LOCAL lock_timeout = {_BRIEF_MS}")
+    if (patience_ms := connection.get_execution_options().get("patience_ms")) is not None:
+        connection.exec_driver_sql(f"SET LOCAL lock_timeout = {patience_ms:d}")
 
 
 _DIALECTS: Mapping[str, Dialect] = {"sqlite": SQLite(), "postgresql": PostgreSQL()}
@@ -174,5 +236,10 @@ def dialect_of(database: Engine | Connection | URL) -> Dialect:
 def is_lost(error: BaseException, database: Engine) -> bool:
     """Whether `error` says that the database cannot be reached or asks to try again."""
     if isinstance(error, DBAPIError):
-        return dialect_of(database).lost(error)
+        return remedy_of(error, database) is None and dialect_of(database).lost(error)
     return isinstance(error, PoolTimeout)
+
+
+def remedy_of(error: BaseException, database: Engine) -> str | None:
+    """Return what a person has to do if `error` says that the database cannot be used as it is."""
+    return dialect_of(database).remedy(error) if isinstance(error, DBAPIError) else None

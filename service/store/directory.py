@@ -7,6 +7,7 @@ import os
 import uuid
 from pathlib import Path
 
+from service.directories import private
 from service.problems import BadInput
 
 
@@ -31,7 +32,7 @@ class DirectoryLock:
         if self._descriptor is not None:
             return
         try:
-            self._directory.mkdir(parents=True, exist_ok=True)
+            private(self._directory)
             descriptor = os.open(
                 self._directory / "service.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600
             )

@@ -16,6 +16,7 @@ SET_ASIDE = ".damaged"
 """Ending of what was found damaged: kept for a person to look at, never served."""
 PARTIAL = ".part"
 """Ending of what is being written."""
+_PRIVATE = 0o600
 
 
 class WrongContent(Exception):
@@ -32,7 +33,15 @@ class KeptFile:
 
 
 class ResultFiles(Protocol):
-    """A place for files by name. What has a name is whole: nobody sees a file that is being written."""
+    """A place for files by name. What has a name is whole: nobody sees a file that is being written.
+
+    Attributes
+    ----------
+    address : str
+        The folder, or the URL of the bucket and prefix.
+    """
+
+    address: str
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Keep the bytes of `file`, durably when this returns; `file` stays."""
@@ -51,24 +60,36 @@ class ResultFiles(Protocol):
             Its bytes are others.
         """
 
-    def compare(self, name: str, sha256: str) -> None:
-        """Read the bytes in the place itself, whatever is kept of them here; raises as `local`."""
+    def digest(self, name: str) -> str:
+        """Return the SHA-256 of the bytes in the place itself, whatever is kept of them here.
 
-    def set_aside(self, name: str) -> None:
-        """Rename a damaged file, so that it is not served; it may be gone already."""
+        Raises
+        ------
+        FileNotFoundError
+            There is no file of this name.
+        """
+
+    def note(self, name: str) -> str | None:
+        """Return the text of a note, None if there is none of this name."""
+
+    def put_note(self, name: str, text: str, *, replace: bool = False) -> None:
+        """Keep a short text; unless it may `replace` another, the first of several writers is heeded."""
+
+    def move(self, name: str, target: str) -> None:
+        """Rename a file; it may be gone already."""
 
     def delete(self, name: str) -> None:
         """Remove a file; it may be gone already."""
 
     def files(self) -> Iterator[KeptFile]:
-        """Return all there are, those set aside or left half-written too."""
+        """Return all there are: those set aside, in quarantine or left half-written, and notes too."""
 
 
 class DirectoryFiles:
     """Files in a directory; several processes may use it at once."""
 
     def __init__(self, directory: Path) -> None:
-        self._directory = directory
+        self._directory, self.address = directory, str(directory)
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Link the file to its name, or copy it where that cannot be."""
@@ -87,15 +108,39 @@ class DirectoryFiles:
             raise WrongContent
         return path
 
-    def compare(self, name: str, sha256: str) -> None:
-        """Read the file; raises as `ResultFiles.local`."""
-        self.local(name, sha256)
+    def digest(self, name: str) -> str:
+        """Read the file; raises as `ResultFiles.digest`."""
+        return digest_of(self._directory / name)
 
-    def set_aside(self, name: str) -> None:
-        """Rename."""
-        path = self._directory / name
+    def note(self, name: str) -> str | None:
+        """Read a note."""
         with contextlib.suppress(FileNotFoundError):
-            path.replace(path.with_name(path.name + SET_ASIDE))
+            return (self._directory / name).read_text(encoding="utf-8")
+        return None
+
+    def put_note(self, name: str, text: str, *, replace: bool = False) -> None:
+        """Write a draft and give it the name, in one step."""
+        self._directory.mkdir(parents=True, exist_ok=True)
+        target = self._directory / name
+        draft = target.with_name(f"{name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
+        try:
+            draft.write_text(text, encoding="utf-8")
+            draft.chmod(_PRIVATE)
+            sync(draft)
+            if replace:
+                draft.replace(target)
+            else:
+                _name_if_free(draft, target)
+            sync(self._directory)
+        finally:
+            draft.unlink(missing_ok=True)
+
+    def move(self, name: str, target: str) -> None:
+        """Rename."""
+        path = self._directory / target
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with contextlib.suppress(FileNotFoundError):
+            (self._directory / name).replace(path)
 
     def delete(self, name: str) -> None:
         """Remove."""
@@ -112,6 +157,17 @@ class DirectoryFiles:
                     )
 
 
+def _name_if_free(draft: Path, target: Path) -> None:
+    """Give a short file its name unless that is taken; where there are no links its text is written anew."""
+    try:
+        os.link(draft, target)
+    except FileExistsError:
+        return
+    except OSError:
+        with contextlib.suppress(FileExistsError), target.open("x", encoding="utf-8") as stream:
+            stream.write(draft.read_text(encoding="utf-8"))
+
+
 def place_whole(file: Path, target: Path) -> None:
     """Give a file a second name, its bytes on disk first; on another file system a copy gets the name."""
     draft = target.with_name(f"{target.name}.{uuid.uuid4().hex[:8]}{PARTIAL}")
@@ -119,6 +175,7 @@ def place_whole(file: Path, target: Path) -> None:
         os.link(file, draft)
     except OSError:
         shutil.copyfile(file, draft)
+    draft.chmod(_PRIVATE)
     sync(draft)
     os.utime(draft)
     draft.replace(target)

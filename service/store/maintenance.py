@@ -1,4 +1,4 @@
-"""Keeping the store in order beside a running service: verify, collect what nobody needs, expire."""
+"""Keeping the store in order beside a running service: verify, expire, collect what nobody needs."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 from service.store.database import instant
-from service.store.files import PARTIAL, SET_ASIDE, KeptFile, WrongContent
+from service.store.deployment import NOTES
+from service.store.files import PARTIAL, SET_ASIDE, KeptFile
+from service.store.quarantine import Quarantine, is_quarantined
 from service.store.results import IndexLine, ResultStore
 
 GRACE_S = 3600.0
@@ -25,11 +27,18 @@ class Verified:
         Files that have their digest.
     damaged, missing : tuple of str
         Names of those that had other bytes, and are set aside; of those that are gone.
+    unknown : tuple of str
+        Names of files that the index does not name. Retention never removes them.
+    quarantined, reindexed : int
+        Files on their way out; lines rebuilt from files, whose retention counts from then.
     """
 
     sound: int
     damaged: tuple[str, ...]
     missing: tuple[str, ...]
+    unknown: tuple[str, ...] = ()
+    quarantined: int = 0
+    reindexed: int = 0
 
 
 def verify_store(store: ResultStore) -> Verified:
@@ -38,74 +47,98 @@ def verify_store(store: ResultStore) -> Verified:
     A result that is expired while this runs counts as neither.
     """
     sound, damaged, missing = 0, [], []
-    for line in store.lines():
+    # the files first, then the index: what is entered meanwhile is in the index
+    files = list(store.files.files())
+    lines = store.lines()
+    for line in lines:
         try:
-            store.files.compare(line.file, line.sha256)
-            sound += 1
-        except WrongContent:
-            store.set_aside(line)
-            damaged.append(line.file)
+            if store.files.digest(line.file) == line.sha256:
+                sound += 1
+            else:
+                store.set_aside(line)
+                damaged.append(line.file)
         except FileNotFoundError:
             if line in store.lines():
                 missing.append(line.file)
-    return Verified(sound, tuple(damaged), tuple(missing))
+    named = {line.file for line in lines}
+    unknown = tuple(file.name for file in files if file.name not in named and _is_ours(file.name))
+    quarantined = sum(is_quarantined(file.name) for file in files)
+    reindexed = sum(line.reindexed is not None for line in lines)
+    return Verified(sound, tuple(damaged), tuple(missing), unknown, quarantined, reindexed)
 
 
 @dataclass(frozen=True)
 class Leftover:
-    """Something that nobody needs: why, its name, and its bytes."""
+    """Something that nobody needs: why, its name, its bytes, and whether it stays in quarantine."""
 
     why: str
     name: str
     size: int
+    quarantined: bool = False
 
 
-def collect_results(
-    store: ResultStore, older_than_days: float | None, *, dry_run: bool
+def expire_results(
+    store: ResultStore, quarantine: Quarantine, older_than_days: float, *, dry_run: bool
 ) -> Iterator[Leftover]:
-    """Remove files that no line names, lines whose file is gone, and results unused for so many days.
+    """Take out of the index, and to quarantine, what was not asked for in so many days.
 
-    A line goes before its file, so that nothing is found whose file is gone; it goes only if it is still as
-    it was seen, so that what is asked for just now stays.
+    Only what the index dates goes. A line goes before its file, so that nothing is found whose file is gone;
+    it goes only if it is still as it was seen, so that what is asked for just now stays.
     """
-    yield from _lines(store, older_than_days, dry_run=dry_run)
-    # the files first, then the index: what is entered meanwhile is in the index
-    files = list(store.files.files())
-    named = {line.file for line in store.lines()}
-    for file in files:
-        why = _why_orphan(file, named)
-        if why is not None:
-            if not dry_run:
-                store.files.delete(file.name)
-            yield Leftover(why, file.name, file.size)
-
-
-def _lines(store: ResultStore, older_than_days: float | None, *, dry_run: bool) -> Iterator[Leftover]:
-    """Remove lines without file and expired results."""
-    since = None if older_than_days is None else days_ago(older_than_days)
+    since = days_ago(older_than_days)
     for line in store.lines():
-        if not store.files.has(line.file):
-            if dry_run or store.strike(line):
-                yield Leftover("no file", line.file, 0)
-        elif since is not None and line.used < since and (dry_run or _expire(store, line, since)):
-            yield Leftover("not asked for", line.file, line.size)
+        if line.used < since and (dry_run or _expire(store, quarantine, line, since)):
+            yield Leftover("not asked for", line.file, line.size, quarantined=True)
 
 
-def _expire(store: ResultStore, line: IndexLine, since: str) -> bool:
-    """Remove a result, unless it was asked for meanwhile."""
+def _expire(store: ResultStore, quarantine: Quarantine, line: IndexLine, since: str) -> bool:
+    """Take a result out, unless it was asked for meanwhile."""
+    quarantine.confirm()
     if not store.strike(line, unused_since=since):
         return False
-    store.files.delete(line.file)
+    quarantine.admit(line.file)
     return True
 
 
-def _why_orphan(file: KeptFile, named: set[str]) -> str | None:
-    """Why a file may go, None if it may not; what was set aside is kept as long as anything young."""
-    if file.name in named or time.time() - file.modified < GRACE_S:
-        return None
-    if file.name.endswith(PARTIAL):
+def collect_orphans(store: ResultStore, quarantine: Quarantine, *, dry_run: bool) -> Iterator[Leftover]:
+    """Strike lines whose file is gone, and take to quarantine the files that no line names."""
+    quarantine.confirm()
+    for line in store.lines():
+        if not store.files.has(line.file) and (dry_run or store.strike(line)):
+            yield Leftover("no file", line.file, 0)
+    for file in _orphans(store):
+        if not dry_run:
+            quarantine.admit(file.name)
+        yield Leftover(_why_orphan(file.name), file.name, file.size, quarantined=True)
+
+
+def _orphans(store: ResultStore) -> list[KeptFile]:
+    """Return the files that no line names, but for quite new ones."""
+    files = list(store.files.files())
+    named = {line.file for line in store.lines()}
+    return [
+        file
+        for file in files
+        if _is_ours(file.name) and file.name not in named and time.time() - file.modified >= GRACE_S
+    ]
+
+
+def _is_ours(name: str) -> bool:
+    """Whether a file is there to be named by the index: no note, and not on its way out."""
+    return name not in NOTES and not is_quarantined(name)
+
+
+def _why_orphan(name: str) -> str:
+    """Why a file may go; what was set aside is kept as long as anything young."""
+    if name.endswith(PARTIAL):
         return "half written"
-    return "damaged" if file.name.endswith(SET_ASIDE) else "not in the index"
+    return "damaged" if name.endswith(SET_ASIDE) else "not in the index"
+
+
+def purge_quarantine(quarantine: Quarantine, *, dry_run: bool) -> Iterator[Leftover]:
+    """Remove for good what has been in quarantine for long enough."""
+    for file in quarantine.purge(dry_run=dry_run):
+        yield Leftover("quarantine ended", file.name, file.size)
 
 
 def days_ago(days: float) -> str:

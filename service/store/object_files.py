@@ -14,7 +14,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from service.problems import BadInput, StoreUnavailable
-from service.store.files import PARTIAL, SET_ASIDE, KeptFile, WrongContent, digest_of, place_whole
+from service.store.files import PARTIAL, KeptFile, WrongContent, digest_of, place_whole
 
 if TYPE_CHECKING:
     from obstore.store import ClientConfig, RetryConfig, S3Store
@@ -32,14 +32,17 @@ class ObjectFiles:
     Parameters
     ----------
     store : S3Store
+    address : str
+        URL of bucket and prefix.
     cache : Path
         Directory of files under their digests, shared by all processes of a machine.
     cache_bytes : int
         What it may hold.
     """
 
-    def __init__(self, store: S3Store, cache: Path, cache_bytes: int) -> None:
-        self._store, self._cache, self._cache_bytes = store, cache, cache_bytes
+    def __init__(self, store: S3Store, address: str, cache: Path, cache_bytes: int) -> None:
+        self._store, self.address = store, address
+        self._cache, self._cache_bytes = cache, cache_bytes
 
     def put(self, name: str, file: Path, sha256: str) -> None:
         """Send the file, in parts if it is long, and keep it in the cache."""
@@ -72,13 +75,26 @@ class ObjectFiles:
         self._evict()
         return cached
 
-    def compare(self, name: str, sha256: str) -> None:
-        """Read the object, not the cache; raises as `ResultFiles.local`."""
+    def digest(self, name: str) -> str:
+        """Read the object, not the cache; raises as `ResultFiles.digest`."""
         digest = hashlib.sha256()
         for piece in self._pieces(name):
             digest.update(piece)
-        if digest.hexdigest() != sha256:
-            raise WrongContent
+        return digest.hexdigest()
+
+    def note(self, name: str) -> str | None:
+        """Read an object as text."""
+        with contextlib.suppress(FileNotFoundError):
+            return b"".join(bytes(piece) for piece in self._pieces(name)).decode()
+        return None
+
+    def put_note(self, name: str, text: str, *, replace: bool = False) -> None:
+        """Send the text; the store itself refuses a second one (``If-None-Match: *``)."""
+        import obstore  # noqa: PLC0415 (an extra)
+        from obstore.exceptions import AlreadyExistsError  # noqa: PLC0415 (an extra)
+
+        with _answering(), contextlib.suppress(AlreadyExistsError):
+            obstore.put(self._store, name, text.encode(), mode="overwrite" if replace else "create")
 
     def _pieces(self, name: str) -> Iterator[memoryview]:
         """Read an object piece by piece."""
@@ -123,12 +139,12 @@ class ObjectFiles:
             path.unlink(missing_ok=True)
             excess -= size
 
-    def set_aside(self, name: str) -> None:
-        """Rename."""
+    def move(self, name: str, target: str) -> None:
+        """Copy, then remove."""
         import obstore  # noqa: PLC0415 (an extra)
 
         with _answering(), contextlib.suppress(FileNotFoundError):
-            obstore.copy(self._store, name, name + SET_ASIDE)
+            obstore.copy(self._store, name, target)
             obstore.delete(self._store, name)
 
     def delete(self, name: str) -> None:
@@ -179,7 +195,7 @@ def object_files(url: str, cache: Path, cache_bytes: int) -> ObjectFiles:
         store = S3Store.from_url(url, client_options=client, retry_config=RETRIES)
     except (BaseError, ValueError) as error:
         raise BadInput.of("results_url", url, f"of a bucket we can use ({error})") from None
-    return ObjectFiles(store, cache, cache_bytes)
+    return ObjectFiles(store, url, cache, cache_bytes)
 
 
 _ENDPOINTS = ("AWS_ENDPOINT_URL", "AWS_ENDPOINT_URL_S3", "AWS_ENDPOINT")

@@ -12,8 +12,8 @@ from sqlalchemy.exc import SQLAlchemyError
 from tenacity import RetryCallState, Retrying, retry_if_exception, stop_after_attempt, stop_after_delay
 from tenacity.wait import wait_exponential, wait_random
 
-from service.problems import DatabaseUnavailable
-from service.store.dialects import is_lost
+from service.problems import DatabaseDamaged, DatabaseUnavailable
+from service.store.dialects import is_lost, remedy_of
 
 _ATTEMPTS = 6
 _PATIENCE_S = 5.0
@@ -44,6 +44,8 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
     ------
     DatabaseUnavailable
         The database has not come back after about two seconds, or others hold what is needed for too long.
+    DatabaseDamaged
+        It has to be mended first: damaged, full, read-only. Not tried again.
     """
 
     @functools.wraps(step)
@@ -59,11 +61,29 @@ def retried(step: Callable[Concatenate[S, P], R]) -> Callable[Concatenate[S, P],
         try:
             return attempts(step, self, *args, **kwargs)
         except SQLAlchemyError as error:
-            if is_lost(error, engine):
-                raise DatabaseUnavailable("The database cannot be reached. Try again in a while.") from error
-            raise
+            outage = outage_of(error, engine)
+            if outage is None:
+                raise
+            raise outage from error
 
     return cast(Callable[Concatenate[S, P], R], run)
+
+
+def outage_of(error: SQLAlchemyError, engine: Engine) -> DatabaseUnavailable | None:
+    """Return what callers are told of an error of the database itself; None: it is the statement's."""
+    if is_lost(error, engine):
+        return DatabaseUnavailable("The database cannot be reached. Try again in a while.")
+    remedy = remedy_of(error, engine)
+    return None if remedy is None else damaged(engine, str(getattr(error, "orig", error)), remedy)
+
+
+def damaged(engine: Engine, what: str, remedy: str) -> DatabaseDamaged:
+    """Return the error of a database that has to be mended; callers are not told where it is, the log is."""
+    where = engine.url.render_as_string(hide_password=True)
+    logger.error("database damaged", database=where, error=what, remedy=remedy)
+    error = DatabaseDamaged(f"The database cannot be used: {what}.")
+    error.add_note(f"{where}: {remedy}")
+    return error
 
 
 def optional(step: Callable[Concatenate[S, P], None]) -> Callable[Concatenate[S, P], None]:
@@ -74,7 +94,7 @@ def optional(step: Callable[Concatenate[S, P], None]) -> Callable[Concatenate[S,
         try:
             step(self, *args, **kwargs)
         except SQLAlchemyError as error:
-            if not is_lost(error, self._engine):
+            if not is_lost(error, self._engine) and remedy_of(error, self._engine) is None:
                 raise
 
     return cast(Callable[Concatenate[S, P], None], run)

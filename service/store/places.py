@@ -9,6 +9,7 @@ from sqlalchemy import Engine
 
 from service.problems import BadInput
 from service.store.database import open_database
+from service.store.deployment import Deployment
 from service.store.files import DirectoryFiles, ResultFiles
 from service.store.object_files import object_files
 from service.store.results import ResultStore
@@ -46,8 +47,18 @@ def result_files(
 def result_store(
     engine: Engine, data_directory: Path, results_url: str | None = None, cache_mb: int = DEFAULT_CACHE_MB
 ) -> ResultStore:
-    """Return the store whose index is in a database; raises as `result_files`."""
-    return ResultStore(engine, result_files(data_directory, results_url, cache_mb))
+    """Return the store whose index is in a database.
+
+    Raises
+    ------
+    BadInput
+        As `result_files`, or the files are not those of the database: see `service.store.deployment`.
+    StoreUnavailable, DatabaseUnavailable
+        The place, or the database, does not answer.
+    """
+    store = ResultStore(engine, result_files(data_directory, results_url, cache_mb))
+    Deployment(engine, store).open_place()
+    return store
 
 
 def stored_results(

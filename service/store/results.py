@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import time
-import uuid
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -25,12 +24,12 @@ from sqlalchemy import (
 )
 
 from service.problems import DamagedFile, NotFound
-from service.schemas.result_kinds import suffix_of
-from service.store.database import instant, metadata, now, reading, writing
+from service.store.database import BRIEF_MS, instant, metadata, now, reading, writing
 from service.store.dialects import dialect_of
-from service.store.files import ResultFiles, WrongContent, digest_of
+from service.store.files import SET_ASIDE, ResultFiles, WrongContent, digest_of
 from service.store.mark import Mark, behind
 from service.store.outages import optional, retried
+from service.store.result_names import new_name
 
 USE_NOTED_EVERY_S = 3600.0
 """A result that is read all the time is noted as used this often."""
@@ -45,6 +44,7 @@ results = Table(
     Column("created", String, nullable=False),
     Column("file", String, nullable=False, default=""),
     Column("used", String, nullable=False, default=""),
+    Column("reindexed", String),
 )
 Index("result_by_use", results.c.used)
 
@@ -67,6 +67,8 @@ class IndexLine:
         Name of the file in its place.
     used : str
         When it was last asked for, within an hour.
+    reindexed : str or None
+        When the line was rebuilt from its file: the result is as old as that, or older.
     """
 
     key: str
@@ -75,6 +77,7 @@ class IndexLine:
     size: int
     file: str
     used: str
+    reindexed: str | None = None
 
 
 @dataclass(frozen=True)
@@ -123,24 +126,29 @@ class ResultStore:
 
     def _put(self, key: str, kind: str, file: Path) -> IndexLine:
         """Place the file under a name of its own, and enter it if nobody was quicker."""
-        name = f"{kind}/{key[:2]}/{key}.{uuid.uuid4().hex[:8]}{suffix_of(kind)}"
-        line = IndexLine(key, kind, digest_of(file), file.stat().st_size, name, now())
-        self.files.put(name, file, line.sha256)
-        entered = self._enter(line)
+        sha256 = digest_of(file)
+        name = new_name(key, kind, sha256)
+        line = IndexLine(key, kind, sha256, file.stat().st_size, name, now())
+        self.files.put(name, file, sha256)
+        entered = self.enter(line)
         if entered.file != name:
             self.files.delete(name)
         return entered
 
     @retried
-    def _enter(self, line: IndexLine) -> IndexLine:
-        """Enter a result, unless there is one whose file is there; return the one there is now."""
+    def enter(self, line: IndexLine, *, made: str | None = None) -> IndexLine:
+        """Enter a result, unless there is one whose file is there; return the one there is now.
+
+        With `made`, the date of its file, it is marked as entered anew: by `service.store.reindex`.
+        """
         with writing(self._engine, in_turn=True) as connection:
             before = _line(connection, line.key, line.kind)
             if before is not None and (before.file == line.file or self.files.has(before.file)):
                 return before
             facts = {"sha256": line.sha256, "size": line.size, "file": line.file, "used": line.used}
+            facts["reindexed"] = None if made is None else line.used
             insert = dialect_of(connection).insert(results)
-            statement = insert.values(key=line.key, kind=line.kind, created=line.used, **facts)
+            statement = insert.values(key=line.key, kind=line.kind, created=made or line.used, **facts)
             connection.execute(statement.on_conflict_do_update(index_elements=["key", "kind"], set_=facts))
         return line
 
@@ -166,10 +174,7 @@ class ResultStore:
         ordered = statement.order_by(results.c.created.desc(), results.c.key.desc()).limit(limit)
         with reading(self._engine) as connection:
             rows = connection.execute(ordered).all()
-        facts = ("key", "kind", "sha256", "size", "file", "used")
-        return [
-            (Mark(row.created, row.key), IndexLine(*(getattr(row, name) for name in facts))) for row in rows
-        ]
+        return [(Mark(row.created, row.key), _read(row)) for row in rows]
 
     def verified(self, key: str, kind: str) -> StoredResult:
         """Return the result after comparing its bytes with its digest.
@@ -213,14 +218,14 @@ class ResultStore:
         """Write down that a result was asked for; nobody waits for that."""
         mine = (results.c.key == key, results.c.kind == kind)
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
-        with writing(self._engine, brief=True) as connection:
+        with writing(self._engine, patience_ms=BRIEF_MS) as connection:
             connection.execute(update(results).where(*mine, results.c.used < before).values(used=now()))
         self._noted[(key, kind)] = time.monotonic()
 
     def set_aside(self, line: IndexLine) -> None:
         """Take a damaged file out of service."""
         self.strike(line)
-        self.files.set_aside(line.file)
+        self.files.move(line.file, line.file + SET_ASIDE)
 
     @retried
     def strike(self, line: IndexLine, *, unused_since: str | None = None) -> bool:
@@ -230,6 +235,12 @@ class ResultStore:
             mine.append(results.c.used < unused_since)
         with writing(self._engine) as connection:
             return connection.execute(delete(results).where(*mine)).rowcount > 0
+
+    @retried
+    def is_empty(self) -> bool:
+        """Whether the index has no line."""
+        with reading(self._engine) as connection:
+            return connection.execute(select(results.c.key).limit(1)).first() is None
 
     @retried
     def lines(self) -> list[IndexLine]:
@@ -254,4 +265,4 @@ def _line(connection: Connection, key: str, kind: str) -> IndexLine | None:
 
 def _read(row: Row[Any]) -> IndexLine:
     """Return a row as a line."""
-    return IndexLine(row.key, row.kind, row.sha256, row.size, row.file, row.used)
+    return IndexLine(row.key, row.kind, row.sha256, row.size, row.file, row.used, row.reindexed)

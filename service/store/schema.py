@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from sqlalchemy import Connection, Engine, inspect, text
 
 from service.problems import BadInput
-from service.store.dialects import dialect_of
+from service.store.dialects import RESTORE, dialect_of
 from service.store.migrations import REVISIONS
-from service.store.outages import retried
+from service.store.outages import damaged, retried
 
 if TYPE_CHECKING:
     from alembic.config import Config
@@ -34,6 +34,20 @@ class Schema:
         """Return the number of the schema; None: there are no tables."""
         with self._engine.begin() as connection:
             return _revision(connection)
+
+    @retried
+    def check(self) -> None:
+        """Look through the database, before it is worked on for long.
+
+        Raises
+        ------
+        DatabaseDamaged
+            Something in it is damaged; the notes of the error say where it is and what to do.
+        """
+        with self._engine.begin() as connection:
+            fault = dialect_of(connection).check(connection)
+        if fault is not None:
+            raise damaged(self._engine, fault, RESTORE)
 
     @retried
     def upgrade(self) -> None:

@@ -42,7 +42,7 @@ def bearing(key: str) -> dict[str, str]:
     return {"Authorization": f"Bearer {key}"}
 
 
-def test_every_path_but_health_and_the_page_asks_for_a_key(http: TestClient) -> None:
+def test_every_path_but_health_readiness_and_the_page_asks_for_a_key(http: TestClient) -> None:
     paths = {
         (method, path.replace("{", "").replace("}", ""))
         for path, methods in http.app.openapi()["paths"].items()  # type: ignore[attr-defined]
@@ -50,13 +50,13 @@ def test_every_path_but_health_and_the_page_asks_for_a_key(http: TestClient) -> 
     }
     paths |= {("get", f"/{name}") for name in ("openapi.json", "nowhere", "health/", "pages", "page")}
     assert len(paths) > 25
-    for method, path in sorted(paths - {("get", "/health")}):
+    for method, path in sorted(paths - {("get", "/health"), ("get", "/ready")}):
         answer = http.request(method, path)
         assert answer.status_code == 401, (method, path)
         assert answer.headers["www-authenticate"] == "Bearer"
         assert answer.headers["content-type"] == "application/problem+json"
         assert "x-request-id" in answer.headers
-    assert [http.get(path).status_code for path in ("/health", "/", "/page/api.js")] == [200] * 3
+    assert [http.get(path).status_code for path in ("/health", "/ready", "/", "/page/api.js")] == [200] * 4
 
 
 @pytest.mark.parametrize(

@@ -93,3 +93,23 @@ def test_a_body_in_pieces_is_read_up_to_the_limit(port: int) -> None:
 def test_a_caller_in_time_is_answered_again_and_again_on_a_connection(port: int) -> None:
     closing = WHOLE[:-2] + b"Connection: close\r\n\r\n"
     assert answered(port, WHOLE, WHOLE, closing).count(b'{"status":"ok"}') == 3
+
+
+def test_where_every_connection_is_busy_one_more_is_told_so(
+    port: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bounded_http, "MOST_CONNECTIONS", 1)
+    monkeypatch.setattr(bounded_http, "MOST_BUSY_CONNECTIONS", 1)
+    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as busy:
+        busy.sendall(POST + b"Content-Length: 1000\r\n\r\n{")
+        answer = answered(port)
+    assert answer.startswith(b"HTTP/1.1 503 ") and b"retry-after: 1\r\n" in answer.lower()
+    assert b"urn:lineofaction:problem:too-many-requests" in answer
+
+
+def test_an_idle_connection_makes_room_for_another(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bounded_http, "MOST_CONNECTIONS", 1)
+    closing = WHOLE[:-2] + b"Connection: close\r\n\r\n"
+    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as idle:
+        assert b'{"status":"ok"}' in answered(port, closing)
+        assert idle.recv(65536) == b""

@@ -18,6 +18,7 @@ from small_table import small_table
 from service.access import KeyFile
 from service.app import create_app
 from service.problems import BadInput, DatabaseUnavailable
+from service.routes import middleware
 from service.schemas.request_examples import CASE, SCENE
 from service.schemas.toml_table import toml_table
 from service.settings import Settings, load_settings
@@ -46,7 +47,7 @@ def refused(answer: Response, *statuses: int) -> Any:
 
 
 TOML = {
-    "deep arrays": "a = " + "[" * 100_000,
+    "deep arrays": "a = " + "[" * 40_000,
     "deep tables": "a = " + "{b=" * 3000 + "1" + "}" * 3000,
     "long key": ".".join("a" * 20_000) + " = 1",
     "long quoted key": " . ".join(['"a"'] * 20_000) + " = 1",
@@ -63,6 +64,16 @@ def test_toml_that_costs_much_is_refused(http: TestClient, kind: str) -> None:
     assert len(problem["errors"]) <= 50
     if "long" in kind:
         assert problem["errors"][0]["bound"] == "TOML with keys of at most 32 parts"
+
+
+def test_beyond_so_many_requests_at_once_the_service_answers_for_its_health_alone(
+    http: TestClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(middleware, "MOST_REQUESTS", 0)
+    problem = refused(http.get("/v1/jobs"), 503)
+    assert problem["type"] == "urn:lineofaction:problem:too-many-requests"
+    assert http.get("/health").status_code == 200
+    assert 'loa_problems_total{problem="too-many-requests"}' in http.app.state.metrics.text().decode()  # type: ignore[attr-defined]
 
 
 def test_keys_as_long_as_they_may_be_and_rows_of_numbers_are_read() -> None:
@@ -91,11 +102,17 @@ def test_a_gear_without_width_is_refused(http: TestClient, process: str, field: 
 
 
 @pytest.mark.parametrize(
-    "body", [b'{"inputs":' + b"[" * 3_900_000, b"[" * 100_000 + b"]" * 100_000, b"9" * 1_000_000]
+    "body",
+    [
+        b'{"inputs":' + b"[" * 3_900_000,
+        b"[" * 100_000 + b"]" * 100_000,
+        b"[" * 40_000 + b"]" * 40_000,
+        b"9" * 1_000_000,
+    ],
 )
 @pytest.mark.parametrize("path", ["/v1/processes/analyze/execution", QUERY])
 def test_json_that_is_deep_or_long_is_refused(http: TestClient, path: str, body: bytes) -> None:
-    refused(http.post(path, content=body, headers={"Content-Type": "application/json"}), 400, 422)
+    refused(http.post(path, content=body, headers={"Content-Type": "application/json"}), 400, 413, 422)
 
 
 CBOR = {
@@ -190,7 +207,7 @@ def test_what_a_form_of_another_site_can_send_starts_nothing(http: TestClient, k
     body = json.dumps({"inputs": {"case": CASE}})
     before = http.get("/v1/jobs").json()["jobs"]
     answer = http.post("/v1/processes/analyze/execution", content=body, headers={"Content-Type": kind})
-    refused(answer, 422)
+    refused(answer, 415)
     assert http.get("/v1/jobs").json()["jobs"] == before
 
 

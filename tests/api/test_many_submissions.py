@@ -67,7 +67,7 @@ def several_processes(tmp_path: Path, postgres: PostgresServer) -> Iterator[Aske
             httpx2.Client(base_url=service.address, headers=one, timeout=60.0) for one in headers
         )
         with first, second:
-            assert httpx2.get(f"{service.address}/ready").status_code == 401
+            assert httpx2.get(f"{service.address}/v1/jobs").status_code == 401
             yield Asked([first, second], int(os.environ.get("LOA_DISTINCT_CASES", "6")), tmp_path)
 
 

@@ -65,7 +65,8 @@ def test_the_optimisation_is_that_of_python(served: Served, data: Path) -> None:
     here = optimisation_of(
         validated(Case, CASE), validated(OptimisationInput, STUDY), data / "compliance", lambda *_: None
     )
-    assert untimed(told) == untimed(json.loads(json.dumps(optimisation_json(here))))
+    expected = json.loads(json.dumps(optimisation_json(here))) | {"warnings": []}
+    assert untimed(told) == untimed(expected)
     assert told["outcome"] == "improved" and told["gain_um"] > told["gain_error_um"]
     assert set(told["optimum"]["values"]) == {"pinion", "wheel"}
     for gear, values in told["optimum"]["values"].items():

@@ -52,6 +52,18 @@ def is_problem(answer: Any, *statuses: int) -> None:
     assert answer.json()["status"] == answer.status_code
 
 
+@pytest.mark.parametrize("path", [p for method, p in ROUTES if method == "POST" and "process_id" not in p])
+@pytest.mark.parametrize("sent", ["application/x-www-form-urlencoded", "text/plain", ""])
+def test_a_body_of_another_type_is_told_the_header_to_send(client: TestClient, path: str, sent: str) -> None:
+    """As ``curl -d`` sends it: the body was called no object, which it was."""
+    answer = client.post(
+        named(path), content=b'{"inputs": {}}', headers={"Content-Type": sent} if sent else {}
+    )
+    is_problem(answer, 415)
+    assert "Content-Type: application/json" in answer.json()["detail"]
+    assert "application/json" in answer.headers["accept-post"]
+
+
 @pytest.mark.parametrize("wrong", WRONG_BODIES)
 @pytest.mark.parametrize("path", [path for method, path in ROUTES if method == "POST"])
 def test_a_wrong_body_is_a_problem_that_is_documented(client: TestClient, path: str, wrong: str) -> None:

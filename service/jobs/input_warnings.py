@@ -1,0 +1,60 @@
+"""What is implausible about the inputs of a job, before it is done."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from typing import Any
+
+from pydantic import ValidationError
+
+from service.convert.case import gear_pair
+from service.convert.plausibility import case_warnings, scene_warnings, within
+from service.convert.scene import check_scene
+from service.convert.topology import facts_of
+from service.problems import BadInput
+from service.schemas import Case
+from service.schemas.scene import SceneInput
+
+Json = dict[str, Any]
+
+
+@lru_cache(maxsize=256)
+def input_warnings(inputs: str) -> tuple[Json, ...]:
+    """Return the warnings of normalised inputs, given as JSON.
+
+    There are none of what has neither case nor scene, and of an older job whose inputs are refused today.
+    """
+    try:
+        return tuple(_warnings(json.loads(inputs)))
+    except (BadInput, ValidationError):
+        return ()
+
+
+def _warnings(given: Json) -> list[Json]:
+    """Judge a case or a scene."""
+    if given.get("scene") is not None:
+        return _of_scene(SceneInput.model_validate_json(json.dumps(given["scene"])))
+    if given.get("case") is not None:
+        return warnings_of_case(given["case"])
+    return []
+
+
+def warnings_of_case(case: Json) -> list[Json]:
+    """Judge a normalised case."""
+    return case_warnings(Case.model_validate_json(json.dumps(case)))
+
+
+def _of_scene(scene: SceneInput) -> list[Json]:
+    """Judge the cases of all meshes, and the scene itself where no mesh takes a stored table."""
+    cases = {mesh.name: mesh.case for mesh in scene.meshes if mesh.case is not None}
+    found = [
+        within(warning, f"meshes[{index}]")
+        for index, mesh in enumerate(scene.meshes)
+        if mesh.case is not None
+        for warning in case_warnings(mesh.case)
+    ]
+    if len(cases) < len(scene.meshes):
+        return found
+    moving = check_scene(scene, {name: facts_of(gear_pair(case)) for name, case in cases.items()})
+    return [*found, *scene_warnings(scene, moving)]

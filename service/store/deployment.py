@@ -1,0 +1,231 @@
+"""Whose results they are: one database and one place of files belong together, and each names the other.
+
+A deployment is known by a random identifier. It stands in the database and in a note beside the files. Where
+the two differ nothing is served and nothing is removed.
+"""
+
+from __future__ import annotations
+
+import json
+import uuid
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from sqlalchemy import Column, Engine, String, Table, insert, select, update
+from sqlalchemy.exc import SQLAlchemyError
+
+from service.problems import BadInput
+from service.store.database import metadata, now, reading, writing
+from service.store.outages import outage_of, retried
+from service.store.result_names import ResultName
+from service.store.results import ResultStore
+from service.store.schema import shown
+
+NOTE = "deployment.json"
+"""Name of the note beside the files."""
+_WRITTEN = "written"
+"""Name of what is written to see whether that is possible."""
+_MOMENT_MS = 600
+"""Patience of the one who sees whether the database takes what is written."""
+NOTES = (NOTE, _WRITTEN)
+"""What is beside the files and belongs to no result."""
+
+deployments = Table(
+    "deployment",
+    metadata,
+    Column("id", String, primary_key=True),
+    Column("created", String, nullable=False),
+    Column("checked", String),
+)
+
+
+@dataclass(frozen=True)
+class _Owner:
+    """Whom a note names: a deployment and the database it had then."""
+
+    deployment: str
+    database: str
+
+    @classmethod
+    def of(cls, text: str) -> _Owner:
+        """Read a note; one that cannot be read names nobody we are."""
+        try:
+            facts = json.loads(text)
+            return cls(str(facts["deployment"]), str(facts["database"]))
+        except (ValueError, TypeError, KeyError):
+            return cls("unknown", f"{NOTE} cannot be read")
+
+    def __str__(self) -> str:
+        return f"deployment {self.deployment} (database {self.database})"
+
+
+_REINDEX = (
+    "If the database of these files is lost, run loa store reindex: it rebuilds the index from them. If it "
+    "is not, name that database (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or another place for the results of "
+    "this one (LOA_RESULTS_URL): two deployments on one place would remove each other's files."
+)
+_ELSEWHERE = (
+    "Name the database of these files (LOA_DATABASE_URL, LOA_DATA_DIRECTORY), or the place of the results "
+    "that this one names (LOA_RESULTS_URL)."
+)
+
+_WRITABLE = "Give the service the right to write there, or name another place (LOA_RESULTS_URL)."
+
+
+class Deployment:
+    """A database and the place of its results.
+
+    Parameters
+    ----------
+    engine : Engine
+    store : ResultStore
+        Its index, and the files.
+    """
+
+    def __init__(self, engine: Engine, store: ResultStore) -> None:
+        self._engine, self._store, self._files = engine, store, store.files
+
+    @retried
+    def identifier(self) -> str | None:
+        """Return the name that the database has, None if it has none yet."""
+        with reading(self._engine) as connection:
+            return connection.execute(select(deployments.c.id)).scalar()
+
+    def _named(self) -> str:
+        """Return the name of the database, given to it now if it has none."""
+        return self.identifier() or self._name()
+
+    @retried
+    def _name(self) -> str:
+        """Give the database a name, unless it has one."""
+        with writing(self._engine, in_turn=True) as connection:
+            known: str | None = connection.execute(select(deployments.c.id)).scalar()
+            if known is None:
+                known = uuid.uuid4().hex
+                connection.execute(insert(deployments).values(id=known, created=now()))
+            return known
+
+    def open_place(self) -> None:
+        """See to it that the files are those of the database; mark a new place, or one of older versions.
+
+        Raises
+        ------
+        BadInput
+            The files are another deployment's; or there are files and the index is empty, or names none of
+            them; or the index names files and the place is empty.
+        """
+        if self._owner() is None:
+            self._compared().refuse_strangers(self._refusal)
+            self._mark()
+        self.confirm()
+
+    def confirm(self) -> None:
+        """See to it that the place is ours: at the start, and right before anything is removed.
+
+        Raises
+        ------
+        BadInput
+            The note beside the files names another deployment, or is gone.
+        """
+        owner = self._owner()
+        if owner is None or owner.deployment != self._named():
+            whose = f"to {owner}" if owner is not None else f"to nobody: its {NOTE} is gone"
+            tip = _REINDEX if self._compared().may_be_ours else _ELSEWHERE
+            raise self._refusal(f": it belongs {whose}", tip)
+
+    def write_database(self) -> None:
+        """Write to the database, in turn as those who enter jobs: to see that this is possible.
+
+        Raises
+        ------
+        DatabaseUnavailable
+            It does not answer, has to be mended, or others hold it for longer than a moment.
+        """
+        try:
+            with writing(self._engine, in_turn=True, patience_ms=_MOMENT_MS) as connection:
+                connection.execute(update(deployments).values(checked=now()))
+        except SQLAlchemyError as error:
+            raise outage_of(error, self._engine) or error from error
+
+    def write_place(self) -> None:
+        """Write to the place of results: to see that this is possible.
+
+        Raises
+        ------
+        BadInput
+            The place is no longer ours, or cannot be written.
+        StoreUnavailable
+            It does not answer.
+        """
+        self.confirm()
+        self._put(_WRITTEN, now(), replace=True)
+
+    def take_over(self) -> None:
+        """Make the files ours, whoever had them: who did removes none of them any more.
+
+        Raises
+        ------
+        BadInput
+            They are another's, and the index names other files.
+        """
+        if self._owner() is None or self._compared().may_be_ours:
+            self._mark(replace=True)
+        self.confirm()
+
+    def _owner(self) -> _Owner | None:
+        """Return whom the note names, None if there is no note."""
+        text = self._files.note(NOTE)
+        return None if text is None else _Owner.of(text)
+
+    def _mark(self, *, replace: bool = False) -> None:
+        """Leave the note; of several deployments that do so at the same time one is heeded."""
+        facts = {"deployment": self._named(), "database": shown(self._engine), "since": now()}
+        self._put(NOTE, json.dumps(facts, indent=1) + "\n", replace=replace)
+
+    def _put(self, name: str, text: str, *, replace: bool) -> None:
+        """Leave a note; raises `BadInput` if the place cannot be written."""
+        try:
+            self._files.put_note(name, text, replace=replace)
+        except OSError as error:
+            raise self._refusal(f", where we may write: {error.strerror}", _WRITABLE) from None
+
+    def _compared(self) -> _Comparison:
+        """Compare the index with the files."""
+        named = {line.file for line in self._store.lines()}
+        first = None
+        for file in self._files.files():
+            if file.name in named:
+                return _Comparison(len(named), file.name, known=True)
+            if first is None and ResultName.of(file.name) is not None:
+                first = file.name
+        return _Comparison(len(named), first, known=False)
+
+    def _refusal(self, bound: str, tip: str) -> BadInput:
+        """Return the error of a place that is not ours."""
+        ours = f"the place of deployment {self._named()} (database {shown(self._engine)})"
+        return BadInput.of("results", self._files.address, ours + bound, tip)
+
+
+@dataclass(frozen=True)
+class _Comparison:
+    """An index and the files: how many it names, one of these, and whether it names that."""
+
+    named: int
+    file: str | None
+    known: bool
+
+    @property
+    def may_be_ours(self) -> bool:
+        """Whether nothing speaks against the files being those of the index."""
+        return self.named == 0 or self.known
+
+    def refuse_strangers(self, refusal: Callable[[str, str], BadInput]) -> None:
+        """Raise if files that nobody has marked cannot be those of the index."""
+        if self.known or (self.named == 0 and self.file is None):
+            return
+        if self.file is None:
+            tip = "Is its volume mounted? If the results are lost, run loa store reindex: it strikes them."
+            raise refusal(f", whose index names {self.named} files: none of them is there", tip)
+        index = "names other files" if self.named else "is empty"
+        bound = f": there are files (such as {self.file}) and the index {index}"
+        raise refusal(bound, _ELSEWHERE if self.named else _REINDEX)

@@ -1,0 +1,93 @@
+"""The index rebuilt from the files, after its database was lost or restored from before."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from service.store.database import instant, now
+from service.store.deployment import Deployment
+from service.store.files import KeptFile
+from service.store.result_names import ResultName
+from service.store.results import IndexLine, ResultStore
+
+
+@dataclass(frozen=True)
+class Reindexed:
+    """What became of the files and the lines.
+
+    Attributes
+    ----------
+    known, entered : int
+        Files that the index named already; files that it names now.
+    damaged, doubled : tuple of str
+        Files whose bytes do not agree with their names; files of results that another file holds. Both are
+        left where they are.
+    struck : tuple of str
+        Files that lines named and that are gone.
+    """
+
+    known: int
+    entered: int
+    damaged: tuple[str, ...]
+    doubled: tuple[str, ...]
+    struck: tuple[str, ...]
+
+
+def reindex(store: ResultStore, deployment: Deployment) -> Reindexed:
+    """Make the place this deployment's, enter the files that no line names, strike lines whose file is gone.
+
+    A result is dated by its file for lists, and for retention by this instant: the former may be that of a
+    copy.
+
+    Raises
+    ------
+    BadInput
+        The files are another deployment's, and the index has results of its own.
+    """
+    deployment.take_over()
+    struck = tuple(line.file for line in store.lines() if _gone(store, line))
+    named = {line.file for line in store.lines()}
+    entered, damaged, doubled = 0, [], []
+    for file in list(store.files.files()):
+        name = ResultName.of(file.name)
+        if name is None or file.name in named:
+            continue
+        with contextlib.suppress(FileNotFoundError):  # another was quicker
+            sha256 = store.files.digest(file.name)
+            if not (name.agrees(sha256) and _opens(store.files.local(file.name, sha256))):
+                damaged.append(file.name)
+            elif _enter(store, file, name, sha256):
+                entered += 1
+            else:
+                doubled.append(file.name)
+    return Reindexed(len(named), entered, tuple(damaged), tuple(doubled), struck)
+
+
+def _gone(store: ResultStore, line: IndexLine) -> bool:
+    """Strike a line whose file is gone."""
+    return not store.files.has(line.file) and store.strike(line)
+
+
+def _opens(path: Path) -> bool:
+    """Whether a file is a whole one of its format: names of older versions say nothing of the bytes."""
+    import h5py  # noqa: PLC0415 (start-up time)
+
+    try:
+        if path.suffix == ".json":
+            json.loads(path.read_bytes())
+        else:
+            h5py.File(path, "r").close()
+    except (OSError, ValueError):
+        return False
+    return True
+
+
+def _enter(store: ResultStore, file: KeptFile, name: ResultName, sha256: str) -> bool:
+    """Enter a file; whether it is the one of its result."""
+    made = instant(datetime.fromtimestamp(file.modified, UTC))
+    line = IndexLine(name.key, name.kind, sha256, file.size, file.name, now())
+    return store.enter(line, made=min(made, line.used)).file == file.name

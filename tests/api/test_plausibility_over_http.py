@@ -1,0 +1,75 @@
+"""What is implausible is said before a job runs, in its status, and by every form of its result."""
+
+from __future__ import annotations
+
+import io
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import h5netcdf
+import pytest
+from fastapi.testclient import TestClient
+from study_service import empty_service
+
+from service.client import LineOfActionClient
+
+GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
+RELIEVED = GEAR | {"tip_relief_um": 0.02, "tip_relief_length_mm": 1.5}
+CASE: dict[str, Any] = {
+    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": RELIEVED, "wheel": GEAR},
+    "load": {"torque_n_m": [100.0]},
+    "accuracy": {"level": "draft", "positions": 8, "model": "plane_strain", "receipt": "minimal"},
+}
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[LineOfActionClient, TestClient]]:
+    """A client of a running service with its real processes, and the bare HTTP one."""
+    with empty_service(tmp_path_factory.mktemp("service") / "data") as found:
+        yield found
+
+
+def messages(body: dict[str, Any]) -> list[str]:
+    return [warning["message"].partition(":")[0] for warning in body["warnings"]]
+
+
+def test_a_case_is_judged_from_plan_to_result(served: tuple[LineOfActionClient, TestClient]) -> None:
+    client, http = served
+    said = ["pair.pinion.tip_relief_um = 0.02 um"]
+    inputs = {"inputs": {"case": CASE}}
+    assert messages(http.post("/v1/plans", json=inputs).json()) == said
+    status = http.post("/v1/processes/analyze/execution", json=inputs).json()
+    assert messages(status) == said
+    result = client.wait(status["jobID"])
+    assert messages(http.get(f"/v1/jobs/{status['jobID']}").json()) == said
+    place = f"/v1/databases/{result.key}"
+    assert messages(http.get(place).json()) == said
+    (alarm,) = http.get(f"{place}/figures").json()["alarms"][:1]
+    assert alarm.startswith(f"Implausible: {said[0]}")
+    file = http.get(place, headers={"accept": "application/x-netcdf"}).content
+    with h5netcdf.File(io.BytesIO(file), "r") as content:
+        assert messages({"warnings": json.loads(content.attrs["warnings"])}) == said
+
+
+def test_studies_in_json_and_netcdf_carry_it(
+    served: tuple[LineOfActionClient, TestClient], tmp_path: Path
+) -> None:
+    client, http = served
+    for process, kind, further in (
+        ("flank", "flanks", {"torque_n_m": 100.0}),
+        ("ablate", "ablations", {"only": ["tooth_coupling"]}),
+    ):
+        status = http.post(
+            f"/v1/processes/{process}/execution", json={"inputs": {"case": CASE, **further}}
+        ).json()
+        result = client.wait(status["jobID"])
+        assert kind in result.href
+        assert messages(http.get(result.href).json()) == ["pair.pinion.tip_relief_um = 0.02 um"]
+
+
+def test_a_plausible_case_has_an_empty_list(served: tuple[LineOfActionClient, TestClient]) -> None:
+    _, http = served
+    plain = CASE | {"pair": CASE["pair"] | {"pinion": GEAR}}
+    assert http.post("/v1/plans", json={"inputs": {"case": plain}}).json()["warnings"] == []
