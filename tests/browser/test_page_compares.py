@@ -59,9 +59,12 @@ def test_flanks_are_compared_with_those_that_were_kept(visit: Visit, tmp_path: P
     count = answers(page)
     page.get_by_role("button", name="Keep as reference").press("Enter")
     until(lambda: answers(page) > count)
-    expect(page.locator("#kept-words")).to_contain_text("20/20, pinion relief 20 µm")
+    expect(page.locator("#kept-words")).to_contain_text("20/20, pinion tip relief 20 µm")
     assert re.search(r"\+0 %$", change(page)), "itself is the reference"
     moved(page, "#live-pinion-tip_relief_um", "Home")
+    expect(page.locator("#kept-words")).to_contain_text(
+        "differs from what is shown: pinion tip relief 20 µm (now 0 µm)"
+    )
     found = curves(page, tmp_path)
     assert found["reference, y"] == relieved
     assert found["now, y"] == found["as analysed, y"] != relieved
@@ -106,6 +109,13 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     expect(page.locator("#live-figures dd").first).not_to_have_text(before or "")
     moved(page, "#live-pinion-helix_crowning_um", "End")
     assert page.locator("#live-pinion-helix_crowning_um").get_attribute("aria-valuetext") == "30 µm"
+    page.get_by_role("button", name="Keep as reference").press("Enter")
+    kept = page.locator("#kept-words")
+    expect(kept).to_contain_text("pinion helix crowning 30 µm, misalignment 50 µm")
+    count = answers(page)
+    page.get_by_role("button", name="As analysed").press("Enter")
+    until(lambda: answers(page) > count)
+    expect(kept).to_contain_text("pinion helix crowning 30 µm (now 0 µm), misalignment 50 µm (now 0 µm)")
     page.get_by_role("button", name="Compute flank pressure").press("Enter")
     pattern = page.locator("[data-figure=contact_pattern] .plot")
     expect(pattern).to_have_attribute("data-drawn", "yes")

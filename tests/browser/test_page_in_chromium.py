@@ -8,7 +8,19 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from page_visit import PATIENCE, Visit, answers, choose_case, found_inaccessible, opened, unfold, until
+from page_visit import (
+    CASE,
+    GEAR,
+    PATIENCE,
+    Visit,
+    answers,
+    choose_case,
+    computed,
+    found_inaccessible,
+    opened,
+    unfold,
+    until,
+)
 from playwright.sync_api import Browser, Page, expect
 
 FIGURES = (
@@ -173,4 +185,17 @@ def test_a_script_from_elsewhere_does_not_run(browser: Browser, address: str, vi
         " document.head.append(s); }"
     )
     assert page.evaluate("window.intruder") is None
+    page.close()
+
+
+def test_what_is_implausible_is_said_above_the_plan_and_above_the_results(
+    browser: Browser, address: str
+) -> None:
+    pair = CASE["pair"] | {"pinion": GEAR | {"face_width_mm": 1000.0}}  # of module 1
+    page = opened(browser, f"{address}/#database={computed(address, case=CASE | {'pair': pair})}").page
+    for part in ("#plan", "#results-body"):
+        expect(page.locator(f"{part} > .alarm + .headline")).to_be_visible()
+        expect(page.locator(f"{part} > .alarm")).to_contain_text(
+            "Implausible: pair.pinion.face_width_mm = 1000 mm"
+        )
     page.close()

@@ -16,7 +16,7 @@ STUDIES = {
     "ablate": ("Effects", "Switch every effect over", {}, ["ablation"], False),
     "frontier": (
         "Accuracy frontier", "Climb the accuracy ladder",
-        {"Up to": "2-D finite elements"}, ["frontier"], False,
+        {"Up to": "2-D finite elements; with a helix draft 3-D"}, ["frontier"], False,
     ),
     "sensitivity": (
         "Sensitivity", "Study the sensitivity",

@@ -1,8 +1,6 @@
 /** A study on the page: what it does, its fields, a button, progress and what came out. */
 
-import { Problem } from "./api.js";
 import { make } from "./elements.js";
-import { showFailure } from "./job.js";
 
 /**
  * @typedef {{name: string, label: string, value?: string, choices?: [string, string][], list?: boolean}} StudyField
@@ -34,26 +32,21 @@ function valuesOf(controls) {
 }
 
 /**
- * @param {{title: string, text: string, action: string, fields?: StudyField[], more?: Node[], level?: string}} study
- * @param {(values: object, progress: Node, result: Node) => Promise<void>} start
+ * @param {{title: string, text: string, action: string, fields?: StudyField[], more?: Node[]}} study
+ * @param {(parts: object) => import("./slot.js").Slot} slot shows the job in the card's parts
+ * @param {(values: object) => {process: string, inputs: object | (() => Promise<object>)}} job of what was typed
  */
-export function card({ title, text, action, fields = [], more = [], level = "h3" }, start) {
+export function card({ title, text, action, fields = [], more = [] }, slot, job) {
   const controls = fields.map((field) => control(field, title));
-  const progress = make("div");
-  const result = make("div", { class: "result" });
-  const button = make("button", { type: "button" }, action);
-  button.addEventListener("click", async () => {
-    button.disabled = true;
-    result.replaceChildren();
-    try {
-      await start(valuesOf(controls), progress, result);
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      showFailure(progress, problem);
-    } finally {
-      button.disabled = false;
-    }
+  const parts = { progress: make("div"), result: make("div", { class: "result" }), button: make("button", { type: "button" }, action) };
+  const row = make("div", { class: "row" }, ...controls.map(({ block }) => block), parts.button);
+  const block = make(
+    "div", { class: "study" }, make("h3", {}, title), make("p", { class: "hint" }, text), ...more, row, parts.progress, parts.result,
+  );
+  const shown = slot(parts);
+  parts.button.addEventListener("click", () => {
+    const { process, inputs } = job(valuesOf(controls));
+    shown.submit(process, inputs);
   });
-  const row = make("div", { class: "row" }, ...controls.map(({ block }) => block), button);
-  return make("div", { class: "study" }, make(level, {}, title), make("p", { class: "hint" }, text), ...more, row, progress, result);
+  return block;
 }

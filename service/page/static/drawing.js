@@ -76,6 +76,7 @@ export class Drawing {
 
   /** @param {object} found answer of /v1/cases/outline */
   show(found) {
+    this.mark("");
     this.gears = [found.pinion, found.wheel];
     const [C, tip] = [found.path_of_contact.points_mm.C, found.pinion.radius_mm];
     const size = Math.max(2.6 * (tip.tip - tip.root), 1.25 * this.reach(found.path_of_contact.points_mm)) * 2;
@@ -93,6 +94,16 @@ export class Drawing {
       ["backlash, circumferential", `${number(Math.abs(k.circumferential_backlash_um) < 1e-6 ? 0 : k.circumferential_backlash_um, 3)} µm`],
     ]);
     this.roll();
+  }
+
+  /** Say that the pair as typed cannot be drawn: what is shown is the last one that could. */
+  stale() {
+    this.mark("(not yet the pair as typed)");
+  }
+
+  mark(text) {
+    byId("drawing-state").textContent = text;
+    byId("mesh-figure").parentElement.classList.toggle("stale", Boolean(text));
   }
 
   reach(points) {

@@ -2,8 +2,6 @@
 
 import { card } from "./card.js";
 import { byId } from "./elements.js";
-import { runJob } from "./job.js";
-import { showReport } from "./report.js";
 import { sceneOf } from "./scene.js";
 
 const SPEEDS = 11;
@@ -12,15 +10,6 @@ const SPEEDS = 11;
 export const evenly = (low, high, count) => Array.from(
   { length: count }, (_, k) => low + (k * (high - low)) / Math.max(count - 1, 1),
 );
-
-/** Offer the dynamics of an analysed pair. */
-export function showDynamics(known) {
-  const external = known !== null && !known.case.pair.wheel.internal;
-  byId("dynamics-none").hidden = external;
-  byId("dynamics-body").hidden = !external;
-  if (!external) return;
-  byId("dynamics-body").replaceChildren(...dynamicsCards(known));
-}
 
 /** Torque that the brake holds against the middle one of the table, N m on the wheel. */
 function brakeOf(known) {
@@ -32,28 +21,51 @@ function brakeOf(known) {
 /** The scene of an analysed pair as it is offered first. */
 export const usualScene = (known) => sceneOf(known, { top_rpm: 3000, duration_s: 1, torque_n_m: brakeOf(known) });
 
-function dynamicsCards(known) {
-  const brake = brakeOf(known);
-  const fields = [
+const RUN_UP = {
+  title: "Run-up", action: "Simulate the run-up",
+  text: "Time integration from standstill: dynamic transmission error, bearing forces, waterfall over speed, mesh orders.",
+  fields: [
     { name: "top_rpm", label: "Top speed, rpm", value: "3000" },
     { name: "duration_s", label: "Duration, s", value: "1" },
-    { name: "torque_n_m", label: "Brake on the wheel, N m", value: String(brake) },
-  ];
-  const wish = (values) => ({ top_rpm: 3000, duration_s: 1, torque_n_m: brake, ...values });
-  const run = card({
-    title: "Run-up", action: "Simulate the run-up", fields,
-    text: "Time integration from standstill: dynamic transmission error, bearing forces, waterfall over speed, mesh orders.",
-  }, async (values, progress, result) => {
-    const reference = await runJob(progress, "simulate", { scene: sceneOf(known, wish(values)) });
-    await showReport(result, reference);
-  });
-  const modes = card({
-    title: "Modes", action: "Find the modes", fields: [fields[0]],
-    text: "Natural modes about the loaded equilibrium and where multiples of the mesh frequency meet them (Campbell diagram).",
-  }, async (values, progress, result) => {
-    const { top_rpm: top } = wish(values);
-    const inputs = { scene: sceneOf(known, wish({})), speed_rpm: evenly(0, top, SPEEDS) };
-    await showReport(result, await runJob(progress, "modes", inputs));
-  });
-  return [run, modes];
+    { name: "torque_n_m", label: "Brake on the wheel, N m" },
+  ],
+};
+const MODES = {
+  title: "Modes", action: "Find the modes",
+  text: "Natural modes about the loaded equilibrium and where multiples of the mesh frequency meet them (Campbell diagram).",
+  fields: [{ name: "top_rpm", label: "Top speed, rpm", value: "3000" }],
+};
+
+/** Run-up and modes of the pair of the result that is shown. */
+export class Dynamics {
+  /** @param {{slot: Function, show: Function}} page */
+  constructor({ slot, show }) {
+    this.known = null;
+    byId("dynamics-body").replaceChildren(
+      card(RUN_UP, (parts) => slot("simulate", parts, show), (values) => this.runUp(values)),
+      card(MODES, (parts) => slot("modes", parts, show), (values) => this.modes(values)),
+    );
+  }
+
+  /** @param {object | null} known the analysed pair */
+  show(known) {
+    this.known = known;
+    const external = known !== null && !known.case.pair.wheel.internal;
+    byId("dynamics-none").hidden = external;
+    byId("dynamics-body").hidden = !external;
+    if (external) byId("study-Run-up-torque_n_m").value = String(brakeOf(known));
+  }
+
+  wish(values) {
+    return { top_rpm: 3000, duration_s: 1, torque_n_m: brakeOf(this.known), ...values };
+  }
+
+  runUp(values) {
+    return { process: "simulate", inputs: { scene: sceneOf(this.known, this.wish(values)) } };
+  }
+
+  modes(values) {
+    const scene = sceneOf(this.known, this.wish({}));
+    return { process: "modes", inputs: { scene, speed_rpm: evenly(0, this.wish(values).top_rpm, SPEEDS) } };
+  }
 }

@@ -8,6 +8,9 @@ const UNITS = [
   ["_um", "µm"], ["_rpm", "rpm"], ["_hz", "Hz"], ["_percent", "%"], ["_n", "N"], ["_s", "s"],
 ];
 const SYMBOLS = [[/\bin um\b/g, "in µm"], [/\bN\/um\b/g, "N/µm"]];
+const NONE = "not set";
+const READ = 40; // characters of a list in a sentence
+
 export function unitOf(name) {
   return (UNITS.find(([suffix]) => name.endsWith(suffix)) || ["", ""])[1];
 }
@@ -18,6 +21,8 @@ export function wordsOf(name) {
   const text = bare.replaceAll("_", " ").replace(/\bcenter\b/g, "centre");
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
+
+const spokenChoice = (text) => ({ true: "yes", false: "no" })[text] ?? text.replaceAll("_", " ");
 
 /** A number as typed; text that is none passes as it is, for the service to refuse by name. */
 function typed(text) {
@@ -47,6 +52,12 @@ export class Field {
     return text.toLowerCase() === this.label.toLowerCase() ? "" : text;
   }
 
+  /** The field's name in a sentence, with the gear that it belongs to. */
+  get words() {
+    const gear = ["pinion", "wheel"].includes(this.path[1]) ? `${this.path[1]} ` : "";
+    return `${gear}${this.label.charAt(0).toLowerCase()}${this.label.slice(1)}`;
+  }
+
   get spoken() {
     const unit = unitOf(this.name);
     return unit ? `${this.label}, ${unit}` : this.label;
@@ -62,11 +73,10 @@ export class Field {
     const common = { id: this.id, "aria-describedby": `${this.id}-fault`, name: this.key };
     if (this.kind === "choice" || this.kind === "switch") {
       const options = this.kind === "switch" ? ["true", "false"] : this.schema.enum;
-      const said = (text) => ({ true: "yes", false: "no" })[text] ?? text.replaceAll("_", " ");
-      const none = this.defaultText ? said(this.defaultText) : "not chosen";
+      const none = this.defaultText ? spokenChoice(this.defaultText) : "not chosen";
       return make(
         "select", common, make("option", { value: "" }, none),
-        ...options.filter((text) => text !== this.defaultText).map((text) => make("option", { value: text }, said(text))),
+        ...options.filter((text) => text !== this.defaultText).map((text) => make("option", { value: text }, spokenChoice(text))),
       );
     }
     const placeholder = this.kind === "json" ? "none" : this.defaultText;
@@ -75,11 +85,22 @@ export class Field {
   }
 
   set value(value) {
-    const plain = value === undefined || value === null || same(value, this.schema.default);
-    if (plain) this.input.value = "";
-    else if (this.kind === "list") this.input.value = value.join(", ");
-    else if (this.kind === "json") this.input.value = JSON.stringify(value);
-    else this.input.value = String(value);
+    this.input.value = this.textOf(value);
+  }
+
+  /** A value as it is typed; a default is left empty. */
+  textOf(value) {
+    if (value === undefined || value === null || same(value, this.schema.default)) return "";
+    if (this.kind === "list") return value.join(", ");
+    return this.kind === "json" ? JSON.stringify(value) : String(value);
+  }
+
+  /** A value as it is read in a sentence. */
+  wordsFor(value) {
+    const whole = this.textOf(value) || this.defaultText || NONE;
+    const text = whole.length > READ ? `${whole.slice(0, READ)}…` : whole;
+    const unit = unitOf(this.name);
+    return unit && text !== NONE ? `${text} ${unit}` : spokenChoice(text);
   }
 
   get value() {
@@ -98,7 +119,18 @@ export class Field {
     return text;
   }
 
-  fault(text) {
+  /**
+   * Show a fault, or none. A field that is being typed into is given time to be finished.
+   * @param {string} text
+   * @param {number} [patience] milliseconds
+   */
+  fault(text, patience = 0) {
+    clearTimeout(this.pending);
+    if (text && patience) this.pending = setTimeout(() => this.fault(text), patience);
+    else this.mark(text);
+  }
+
+  mark(text) {
     this.input.setAttribute("aria-invalid", text ? "true" : "false");
     this.message.textContent = text || "";
     this.message.hidden = !text;

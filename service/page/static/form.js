@@ -15,6 +15,8 @@ const GROUPS = {
   "Body, seat, shaft and material": /./,
 };
 
+const TYPING = 1500; // milliseconds after which a field that has the focus says what is wrong with it
+
 export class CaseForm {
   /**
    * @param {object} root schema of a case
@@ -36,6 +38,7 @@ export class CaseForm {
     );
     byId("case-form").addEventListener("input", (event) => {
       this.fields.get(event.target.name)?.fault("");
+      event.target.closest(".replaced")?.classList.remove("replaced");
       if (event.target.closest("#fields")) changed();
     });
     byId("case-form").addEventListener("submit", (event) => event.preventDefault());
@@ -71,7 +74,7 @@ export class CaseForm {
   pair(schema, root) {
     const shared = Object.entries(schema.properties).filter(([name]) => !["pinion", "wheel"].includes(name));
     const fields = shared.map(([name, inner]) => {
-      const leaf = { path: ["pair", name], ...resolved(inner, root) };
+      const leaf = { path: ["pair", name], ...resolved(inner, root), required: schema.required.includes(name) };
       return this.block(this.add(leaf, wordsOf(name)));
     });
     const gears = ["pinion", "wheel"].map((gear) => new Map(
@@ -80,6 +83,7 @@ export class CaseForm {
     const names = [...new Set([...gears[0].keys(), ...gears[1].keys()])];
     const order = [...MAIN].filter((name) => names.includes(name));
     const left = new Set(names.filter((name) => !MAIN.has(name)));
+    const main = this.gearTable("Main data of both gears", order, gears);
     const groups = Object.entries(GROUPS).map(([title, pattern]) => {
       const mine = [...left].filter((name) => pattern.test(name));
       mine.forEach((name) => left.delete(name));
@@ -87,7 +91,7 @@ export class CaseForm {
     });
     return make(
       "fieldset", {}, make("legend", {}, "Gears"), make("div", { class: "fields" }, ...fields),
-      this.gearTable("Main data of both gears", order, gears), ...groups,
+      main, ...groups,
     );
   }
 
@@ -149,33 +153,55 @@ export class CaseForm {
     if (field) field.value = value;
   }
 
+  /** Fields without which there is no case, and which are empty. */
+  get missing() {
+    const loads = ["load.torque_n_m", "load.normal_force_n"].map((key) => this.fields.get(key));
+    const unloaded = loads.every((field) => field.value === undefined) ? [loads[0]] : [];
+    return [...[...this.fields.values()].filter((field) => field.required && field.value === undefined), ...unloaded];
+  }
+
   clear() {
     for (const field of this.fields.values()) field.fault("");
     byId("form-errors").hidden = true;
     byId("form-errors").replaceChildren();
   }
 
-  /** Show a refusal: each fault at its field, all of them in a list that leads there. */
+  /** Show a refusal: what is still to fill in, each fault at its field, all of them in a list that leads there. */
   refuse(problem, { focus = false } = {}) {
-    this.clear();
+    const absent = ({ value, bound }) => value === null && bound.startsWith("given");
+    const faults = problem.errors.filter((fault) => !absent(fault));
+    const named = problem.errors.filter(absent).map(({ field }) => this.fields.get(field)).filter(Boolean);
+    const missing = [...new Set([...this.missing, ...named])];
+    const items = faults.map((fault) => this.item(fault, focus ? 0 : TYPING));
+    const parts = [];
+    if (missing.length) parts.push(make("p", {}, make("strong", {}, "Still to fill in: "), ...this.linked(missing), "."));
+    if (items.length) parts.push(make("strong", {}, "This case cannot be computed:"), make("ul", {}, ...items));
     const box = byId("form-errors");
-    const items = problem.errors.map((fault) => {
-      const field = this.nearest(fault.field);
-      const text = `must be ${fault.bound}${fault.suggestion ? `. ${fault.suggestion}` : ""}`;
-      if (!field) return make("li", {}, `${fault.field} ${text}`);
-      field.fault(text);
-      const open = (event) => {
-        event.preventDefault();
-        this.reveal(field);
-      };
-      return make("li", {}, make("a", { href: `#${field.id}`, onclick: open }, fault.field), ` ${text}`);
-    });
-    box.replaceChildren(
-      make("strong", {}, items.length ? "This case cannot be computed:" : problem.message),
-      ...(items.length ? [make("ul", {}, ...items)] : []),
-    );
+    box.replaceChildren(...(parts.length ? parts : [make("strong", {}, problem.message)]));
+    box.classList.toggle("alarm", faults.length > 0 || !missing.length);
     box.hidden = false;
     if (focus) box.focus();
+  }
+
+  linked(fields) {
+    return fields.flatMap((field, k) => [k ? ", " : "", this.link(field, field.words)]);
+  }
+
+  link(field, text) {
+    const open = (event) => {
+      event.preventDefault();
+      this.reveal(field);
+    };
+    return make("a", { href: `#${field.id}`, onclick: open }, text);
+  }
+
+  /** One fault in the list; its field says it too, once it is not being typed into. */
+  item(fault, patience) {
+    const field = this.nearest(fault.field);
+    const text = `must be ${fault.bound}${fault.suggestion ? `. ${fault.suggestion}` : ""}`;
+    if (!field) return make("li", {}, `${fault.field} ${text}`);
+    field.fault(text, field.input === document.activeElement ? patience : 0);
+    return make("li", {}, this.link(field, fault.field), ` ${text}`);
   }
 
   nearest(name) {

@@ -6,52 +6,66 @@ import { remember, words } from "./job_names.js";
 
 export const ENDED = new Set(["successful", "failed", "dismissed"]);
 const FIRST_LOOK = 150;
+const AGAIN = "It is asked for again until there is an answer.";
 const LONGEST_LOOK = 1000;
 
 /**
- * Run a process and show how far it is.
- * @param {HTMLElement} target where progress is shown
+ * Submit a job. Inputs name their result, so that one whose answer was lost with the connection is submitted again: the work is shared.
+ * @param {HTMLElement} target where it is said that the service is asked in vain
  * @param {string} process
  * @param {object} inputs
- * @param {{expected?: number, label?: string}} options seconds that the plan predicts;
- *   words by which the job is known in the list
+ */
+export async function submitted(target, process, inputs) {
+  const status = await patiently(() => post(`/v1/processes/${process}/execution`, { inputs }), (problem) => {
+    target.replaceChildren(...(problem ? [make("p", { class: "hint", role: "status" }, `${problem.message} ${AGAIN}`)] : []));
+  });
+  remember(status.jobID, { name: words(inputs), case: inputs.case });
+  document.dispatchEvent(new Event("jobs-changed"));
+  return status;
+}
+
+/**
+ * Follow a job to its end and show how far it is.
+ * @param {HTMLElement} target where progress is shown
+ * @param {string} id
+ * @param {{expected?: number, signal: AbortSignal}} options seconds that the plan predicts; given up when the job is left
  * @returns {Promise<{href: string, type: string, hash: string}>} reference to the result
  */
-export async function runJob(target, process, inputs, { expected, label } = {}) {
-  const status = await post(`/v1/processes/${process}/execution`, { inputs });
-  remember(status.jobID, label ?? words(inputs));
-  const card = new JobCard(target, process, status, expected);
-  document.dispatchEvent(new Event("jobs-changed"));
-  const ended = await watched(status, card);
+export async function followed(target, id, { expected, signal }) {
+  const ended = await watched(target, id, expected, signal);
+  if (signal.aborted) return null;
   document.dispatchEvent(new Event("jobs-changed"));
   if (ended.status === "dismissed") throw new Problem({ title: "Cancelled", detail: "The job was cancelled.", status: 410 });
-  return patiently(() => referenceOf(status.jobID));
+  return referenceOf(id);
 }
 
 /** Where a job's result is, whatever form it was submitted with. */
 export async function referenceOf(job) {
-  const results = await get(`/v1/jobs/${job}/results?response=document&transmissionMode=reference`);
+  const results = await patiently(() => get(`/v1/jobs/${job}/results?response=document&transmissionMode=reference`));
   return Object.values(results)[0];
 }
 
-/** Look at a job until it has ended; while the service is away, wait for it. */
-async function watched(status, card) {
-  let now = status;
+/** Look at a job until it has ended or is left; while the service is away, wait for it. */
+async function watched(target, id, expected, signal) {
+  let card = null;
   let wait = FIRST_LOOK;
-  while (!ENDED.has(now.status)) {
+  for (;;) {
+    const now = await patiently(() => get(`/v1/jobs/${id}`), (problem) => card?.waits(problem));
+    if (signal.aborted) return now;
+    card ??= new JobCard(target, now, expected);
     card.show(now);
+    if (ENDED.has(now.status)) return now;
     await pause(wait);
     wait = Math.min(1.3 * wait, LONGEST_LOOK);
-    now = await patiently(() => get(`/v1/jobs/${status.jobID}`), (problem) => card.waits(problem));
+    if (signal.aborted) return now;
   }
-  card.show(now);
-  return now;
 }
 
 export const WORDS = { accepted: "waits for its turn", running: "runs", successful: "done", failed: "failed", dismissed: "cancelled" };
 
 class JobCard {
-  constructor(target, process, status, expected) {
+  constructor(target, status, expected) {
+    const process = status.processID;
     this.process = process;
     this.expected = expected;
     this.said = "";
@@ -78,7 +92,7 @@ class JobCard {
 
   /** Say that the service is asked in vain; null: no longer. */
   waits(problem) {
-    if (problem) this.spoken.textContent = `${problem.message} The job is asked for again until there is an answer.`;
+    if (problem) this.spoken.textContent = `${problem.message} ${AGAIN}`;
     else if (this.spoken.textContent !== this.said) this.spoken.textContent = this.said;
   }
 

@@ -2,14 +2,14 @@
 
 import { Problem, get, pause } from "./api.js";
 import { byId, duration, make } from "./elements.js";
-import { ENDED, WORDS, cancelled, referenceOf, showFailure } from "./job.js";
+import { ENDED, WORDS, cancelled } from "./job.js";
 import { nameOf } from "./job_names.js";
 
 const AT_ONCE = 10;
 const AGAIN = 3000; // milliseconds after which jobs that have not ended are looked at again
 
 export class Jobs {
-  /** @param {(job: object, reference: object) => Promise<void>} open shows a result */
+  /** @param {(job: object) => Promise<void>} open shows what came of a job */
   constructor(open) {
     this.open = open;
     this.shown = AT_ONCE;
@@ -59,8 +59,8 @@ export class Jobs {
       "button", { type: "button", class: "small", "data-job": job.jobID, "aria-label": `${text} ${about}`, onclick: action }, text,
     );
     const actions = {
-      successful: () => button("Open", () => this.reopen(job)),
-      failed: () => button("Why", () => this.reopen(job)),
+      successful: () => button("Open", () => this.open(job)),
+      failed: () => button("Why", () => this.open(job)),
     };
     const action = ENDED.has(job.status) ? actions[job.status]?.() : button("Cancel", () => this.cancel(job));
     const cells = [name, state(job), when, spent(job)].map((text) => make("td", {}, text));
@@ -70,17 +70,6 @@ export class Jobs {
   async cancel(job) {
     await cancelled(job.jobID, this.line);
     await this.refresh();
-  }
-
-  async reopen(job) {
-    try {
-      const reference = await referenceOf(job.jobID);
-      byId("jobs-result").replaceChildren();
-      await this.open(job, reference);
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      showFailure(byId("jobs-result"), problem);
-    }
   }
 }
 

@@ -15,28 +15,44 @@ const STYLES = {
 const AWAY = 2; // seconds after which a service that does not answer is asked again
 
 export class Live {
-  constructor(actions) {
-    this.actions = actions;
-    this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
+  /**
+   * @param {object} page
+   * @param {import("./address.js").Address} page.address keeps the reference
+   * @param {import("./design.js").Design} page.design
+   * @param {string} page.caller by whom curves are asked for
+   * @param {{take: (flanks: object) => void, inThreeDimensions: () => void}} actions
+   */
+  constructor({ address, design, caller }, actions) {
+    Object.assign(this, { address, design, caller, actions });
     this.waiting = null;
     this.busy = false;
     this.kept = null;
   }
 
   /**
-   * Begin with the result of an analysis.
-   * @param {{key: string, case: object, torques: number[], plane: boolean}} known
+   * Begin with the result of an analysis, or with none; `restored` draws it.
+   * @param {{key: string, case: object, torques: number[], plane: boolean} | null} known
    */
-  async show(known) {
-    const highest = known.torques.at(-1);
-    const middle = known.torques[Math.floor(known.torques.length / 2)];
-    this.known = { ...known, highest, torque: middle };
+  show(known) {
     this.before = null;
-    byId("live-none").hidden = true;
-    byId("live-body").hidden = false;
-    this.controls();
-    this.plots();
-    await this.ask();
+    this.waiting = null;
+    byId("live-none").hidden = known !== null;
+    byId("live-body").hidden = known === null;
+    this.known = known && { ...known, highest: known.torques.at(-1), torque: known.torques[Math.floor(known.torques.length / 2)] };
+    if (known) {
+      this.controls();
+      this.plots();
+    } else byId("live-plots").replaceChildren();
+  }
+
+  /** The sliders and the reference stand where the address left them: draw that. */
+  restored() {
+    const { reference } = this.address.kept;
+    const same = JSON.stringify(reference) === JSON.stringify(this.kept && { known: this.kept.known, question: this.kept.question });
+    if (!same) this.kept = reference ? new Reference(reference.known, reference.question) : null;
+    this.sliders.told();
+    this.sayKept();
+    this.ask();
   }
 
   controls() {
@@ -56,7 +72,7 @@ export class Live {
         button("Keep as reference", () => this.keep(), "keep"),
         button("Forget the reference", () => this.forget(), "forget"),
       ),
-      make("p", { class: "hint", id: "kept-words", role: "status" }, ""),
+      make("p", { class: "hint", id: "kept-words" }, make("span", { id: "kept-name", role: "status" }), " ", make("span", { id: "kept-differs" })),
       make("p", { class: "hint", id: "live-time" }, ""),
     );
     this.sayKept();
@@ -64,24 +80,35 @@ export class Live {
 
   /** Keep what is shown now, to draw it beside other flanks and other results. */
   keep() {
-    this.kept = new Reference(this.known, this.question());
-    this.sayKept();
-    this.ask();
+    this.reference(new Reference(this.known, this.question()));
   }
 
   forget() {
-    this.kept = null;
-    this.sayKept();
+    this.reference(null);
     byId("keep").focus();
+  }
+
+  reference(kept) {
+    this.kept = kept;
+    this.address.keep({ reference: kept ? { known: kept.known, question: kept.question } : null });
+    this.sayKept();
     this.ask();
   }
 
   sayKept() {
     byId("forget").hidden = !this.kept;
-    const refused = this.kept?.refusal ? ` Not drawn: ${this.kept.refusal}` : "";
-    byId("kept-words").textContent = this.kept
-      ? `Reference: ${this.kept.words}. Changes in per cent are against it; it stays when another result is opened.${refused}`
-      : "A reference stays when another result is opened: two pairs on one pair of axes.";
+    const fields = [...this.design.fields];
+    said(byId("kept-name"), this.kept
+      ? `Reference: ${this.kept.words(fields)}. Changes in per cent are against it; it stays when another result is opened.`
+      : "A reference stays when another result is opened: two pairs on one pair of axes.");
+    said(byId("kept-differs"), this.kept ? this.keptDiffers(fields) : "");
+  }
+
+  /** In what the reference differs, and why it is not drawn if it is not. */
+  keptDiffers(fields) {
+    const changes = this.kept.differs(fields, this.known, this.question());
+    const differs = changes.length ? `It differs from what is shown: ${changes.join(", ")}.` : "It is what is shown.";
+    return this.kept.refusal ? `${differs} Not drawn: ${this.kept.refusal}` : differs;
   }
 
   question() {
@@ -95,7 +122,7 @@ export class Live {
     if (this.busy) return;
     this.busy = true;
     try {
-      while (this.waiting) await this.next();
+      while (this.waiting && this.known) await this.next();
     } finally {
       this.busy = false;
     }
@@ -111,14 +138,14 @@ export class Live {
       const kept = await this.kept?.at(waiting.torque_n_m[0], `${this.caller}-kept`) ?? null;
       const found = await post(`/v1/databases/${key}/ste`, { ...waiting, caller: this.caller });
       const round = performance.now() - begin;
-      if (key !== this.known.key) return;
+      if (key !== this.known?.key) return;
       await this.draw(found.curves[0], kept);
       this.timed(round, performance.now() - begin, found);
       this.sayKept();
       byId("live-errors").hidden = true;
     } catch (problem) {
       if (!(problem instanceof Problem)) throw problem;
-      if (problem.type.endsWith("superseded")) return;
+      if (problem.type.endsWith("superseded") || key !== this.known?.key) return;
       if (problem.status !== 0) this.refuse(problem); // the line across the page says it
       const wait = problem.retryAfter || (problem.status === 0 ? AWAY : 0);
       if (!wait) return;
@@ -200,6 +227,11 @@ export class Live {
     this.blocks.harmonics.node.setAttribute("aria-label", `Mesh harmonics 1 to ${SHOWN_HARMONICS}: ${tones} µm.`);
     this.blocks.sharing.node.setAttribute("aria-label", "Load share of each tooth pair over the base pitch.");
   }
+}
+
+/** Say something, if it is not said already: a screen reader hears changes only. */
+function said(node, text) {
+  if (node.textContent !== text) node.textContent = text;
 }
 
 const plusMinus = (error) => (Number.isFinite(error) ? `± ${number(error, 2)}` : "");

@@ -1,203 +1,166 @@
-/** The page: a case, its plan, its analysis, and what follows from it. */
+// @ts-check
+/** The page: what its address says is shown, what is typed is kept with it. */
 
-import { Problem, get, post } from "./api.js";
+import { Address } from "./address.js";
+import { get, patiently } from "./api.js";
 import { watchService } from "./away.js";
-import { Drawing } from "./drawing.js";
-import { showDynamics } from "./dynamics.js";
-import { byId, make, save } from "./elements.js";
-import { CaseForm } from "./form.js";
-import { runJob, showFailure } from "./job.js";
+import { CaseFiles } from "./case_files.js";
+import { typedIn } from "./controls.js";
+import { Design } from "./design.js";
+import { Dynamics } from "./dynamics.js";
+import { byId } from "./elements.js";
 import { Jobs } from "./jobs.js";
 import { Live } from "./live.js";
-import { noPlan, showPlan } from "./plan.js";
-import { showReport } from "./report.js";
+import { goToSection, sectionLinks } from "./menu.js";
+import { clearNotice, sayUnknown } from "./notice.js";
+import { Results } from "./results.js";
 import { SceneEditor } from "./scene_editor.js";
-import { showResult, showStudies } from "./studies.js";
+import { Slot } from "./slot.js";
+import { STUDIES, showResult, showStudies } from "./studies.js";
 
-const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
-const PLANE = /plane/;
+const STARTS = ["/v1/examples", "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/v1/"];
+const PLACES = [...STUDIES.map(({ process }) => process), "analyze", "simulate", "modes", "scene", "job"];
+const OF_RESULT = { simulate: null, modes: null }; // jobs on a result, which go with it
+const RESTING = 150; // milliseconds between two writings of what is typed
 
 class Page {
   async begin() {
-    const [examples, analyze, effects, processes, landing] = await Promise.all(
-      ["/v1/examples", "/v1/processes/analyze", "/v1/effects", "/v1/processes", "/openapi.json"].map(get),
-    );
-    byId("version").textContent = landing.info.version;
-    this.drawing = new Drawing();
-    this.form = new CaseForm(analyze.inputs.case.schema, effects, () => this.edited());
-    this.live = new Live({ take: (flanks) => this.take(flanks), inThreeDimensions: () => this.inThreeDimensions() });
-    this.offer(examples);
-    this.files();
-    byId("analyze").addEventListener("click", () => this.analyze());
-    const offered = new Set(processes.processes.map(({ id }) => id));
-    this.studies = { case: () => this.form.case, offered, take: (flanks) => this.take(flanks) };
-    showStudies(this.studies);
-    this.scenes = new SceneEditor();
-    this.jobs = new Jobs((job, reference) => this.reopen(job, reference));
-    this.jobs.refresh();
     watchService(() => this.back());
-    const key = /^#database=([0-9a-f]{64})$/.exec(location.hash)?.[1];
-    if (key) await this.open(key);
-    else this.begun(examples[0]);
+    const starts = await patiently(() => Promise.all(STARTS.map(get)));
+    const [examples, analyze, effects, { processes }, landing] = starts;
+    byId("version").textContent = landing.version;
+    this.address = new Address(PLACES, () => this.typed);
+    this.caller = `page-${Math.random().toString(36).slice(2, 12)}`;
+    this.design = new Design(analyze.inputs.case.schema, effects, examples, this);
+    this.files = new CaseFiles(this.design);
+    /** @type {Map<string, Slot>} */
+    this.slots = new Map();
+    this.parts(new Set(processes.map(({ id }) => id)));
+    this.keepTyped();
+    sectionLinks();
+    addEventListener("popstate", () => {
+      this.address.read();
+      this.render();
+    });
+    await this.render();
+    goToSection(this.address.section);
     document.documentElement.dataset.ready = "yes";
   }
 
-  offer(examples) {
-    const list = byId("example");
-    const opened = make("option", { value: "", hidden: true }, "what was opened");
-    list.replaceChildren(opened, ...examples.map(({ name, title }) => make("option", { value: name }, title)));
-    list.addEventListener("change", () => this.begun(examples.find(({ name }) => name === list.value)));
-  }
-
-  begun(example) {
-    byId("example").value = example.name;
-    byId("example-note").textContent = example.note;
-    this.show(example.case);
-  }
-
-  show(content) {
-    this.form.case = content;
-    this.look();
-  }
-
-  edited() {
-    clearTimeout(this.timer);
-    this.timer = setTimeout(() => this.look(), SETTLED);
-  }
-
-  /** Draw and plan what the form holds; refusals go to their fields. */
-  async look() {
-    const body = { inputs: { case: this.form.case } };
-    const turn = (this.turn = (this.turn ?? 0) + 1);
-    try {
-      const outline = await post("/v1/cases/outline", body);
-      if (turn !== this.turn) return;
-      this.form.clear();
-      this.drawing.show(outline);
-      const plan = await post("/v1/plans", { ...body, caller: this.live.caller });
-      if (turn === this.turn) this.expected = showPlan(plan);
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      const later = problem.type.endsWith("superseded") || problem.status === 0; // asked again when it is back
-      if (turn !== this.turn || later) return;
-      this.form.refuse(problem);
-      noPlan();
-    }
-  }
-
-  async analyze() {
+  /** @param {Set<string>} offered processes of the service */
+  parts(offered) {
+    const take = (flanks) => this.take(flanks);
+    const slot = (name, parts, show) => this.slot(name, parts, show);
+    const show = (this.show = (target, reference, signal) => showResult(target, reference, { take, signal }));
+    showStudies({ design: this.design, offered, slot, show });
+    const dynamics = new Dynamics({ slot, show });
+    const scenes = new SceneEditor({ slot, show });
+    const live = new Live(this, { take, inThreeDimensions: () => this.inThreeDimensions() });
+    this.results = new Results(this, live, [dynamics, scenes]);
     const button = byId("analyze");
-    button.disabled = true;
-    const content = this.form.case;
-    try {
-      const result = await runJob(byId("analyze-job"), "analyze", { case: content }, { expected: this.expected });
-      await this.result(result);
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      if (problem.status === 422) this.form.refuse(problem, { focus: true });
-      else showFailure(byId("analyze-job"), problem);
-    } finally {
-      button.disabled = false;
-    }
+    this.analysis = slot("analyze", { progress: byId("analyze-job"), result: byId("analyze-result"), button },
+      (target, reference) => this.analyzed(reference));
+    this.analysis.refused = (problem) => this.notAnalyzed(problem);
+    button.addEventListener("click", () => this.analyze());
+    this.reopened = slot("job", { progress: byId("jobs-progress"), result: byId("jobs-result") },
+      (target, reference, signal) => this.showReopened(target, reference, signal));
+    this.jobs = new Jobs((job) => this.reopen(job));
+    this.jobs.refresh();
   }
 
-  /** Show a stored table: its report, its live flanks, its dynamics. */
-  async result(reference) {
-    history.replaceState(null, "", `#database=${reference.hash}`);
-    const facts = await get(reference.href);
-    const known = {
-      key: reference.hash, case: facts.case, torques: facts.torque_n_m, plane: PLANE.test(facts.receipt?.plan?.model ?? ""),
+  slot(name, parts, show) {
+    const made = new Slot(name, this, parts, show);
+    this.slots.set(name, made);
+    return made;
+  }
+
+  /** Show what the address says, whatever was shown before. */
+  async render() {
+    const turn = (this.turn = (this.turn ?? 0) + 1);
+    const { kept, faults } = this.address;
+    this.more = false; // what was typed last belongs to the entry that is left
+    clearNotice();
+    for (const fault of faults) sayUnknown(`“${fault}”: the page has no such address.`);
+    if (kept.fields) this.design.restore(kept);
+    else this.design.stands = false;
+    for (const [name, slot] of this.slots) slot.follow(this.address.get(name));
+    await this.results.show(this.address.get("database"));
+    if (turn === this.turn && !this.design.stands) this.design.begin();
+  }
+
+  /** Keep what is typed with the entry of the history that it is typed in: at once, and no more often than browsers allow. */
+  keepTyped() {
+    const rested = () => {
+      this.resting = 0;
+      if (this.more) keep();
     };
-    byId("results-none").hidden = true;
-    await showReport(byId("results-body"), reference, { making: true });
-    await this.live.show(known);
-    showDynamics(known);
-    this.scenes.show(known);
+    const keep = () => {
+      this.more = Boolean(this.resting);
+      if (this.more) return;
+      this.address.keep(this.typed);
+      this.resting = setTimeout(rested, RESTING);
+    };
+    document.addEventListener("input", keep);
+    document.addEventListener("typed", keep);
+    addEventListener("beforeunload", () => this.address.keep(this.typed));
   }
 
-  async open(key) {
-    const href = `/v1/databases/${key}`;
-    try {
-      const facts = await get(href);
-      byId("example").value = "";
-      byId("example-note").textContent = "";
-      this.show(facts.case);
-      await this.result({ href, type: "application/x-netcdf", hash: key });
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      showFailure(byId("analyze-job"), problem);
-    }
+  get typed() {
+    if (!this.design.stands) return {};
+    return { fields: typedIn(byId("main")), ofResult: this.results.typed };
   }
 
-  /** Show what an earlier job has found: a table takes the page, any other result stands below the list. */
-  async reopen(job, reference) {
-    if (reference.href.includes("/databases/")) {
-      await this.open(reference.hash);
-      byId("results").focus();
-      return;
-    }
-    await showResult(byId("jobs-result"), reference, this.studies);
-    byId("jobs-result").focus();
+  analyze() {
+    this.analysis.submit("analyze", { case: this.design.case }, { expected: this.design.expected });
+  }
+
+  /** An analysis has ended: its table is what the address names from now on. */
+  async analyzed({ hash }) {
+    this.address.replace({ analyze: null, database: hash, ...OF_RESULT });
+    for (const name of Object.keys(OF_RESULT)) this.slots.get(name).follow(null);
+    await this.results.show(hash);
+  }
+
+  notAnalyzed(problem) {
+    if (problem.status === 422) this.design.refuse(problem, { focus: true });
+    else Slot.prototype.refused.call(this.analysis, problem);
+  }
+
+  /** Show what came of an earlier job. */
+  async reopen({ jobID: job }) {
+    this.address.push({ job });
+    await this.reopened.follow(job);
+    byId(this.address.get("job") ? "jobs-result" : "results").focus();
+  }
+
+  /** An earlier job is shown: a table takes the page with its design, anything else stands below the list. */
+  async showReopened(target, reference, signal) {
+    if (!reference.href.includes("/databases/")) return this.show(target, reference, signal);
+    const names = { database: reference.hash, analyze: null, job: null, ...OF_RESULT };
+    this.address.replace(names, { fields: undefined, ofResult: undefined });
+    return this.render();
   }
 
   /** The service answers again: ask anew for what hangs on it. */
   back() {
-    this.look();
-    this.live.ask();
-    this.jobs.refresh();
+    this.design?.look();
+    this.results?.live.ask();
+    this.jobs?.refresh();
   }
 
+  /** @param {Record<string, Record<string, any>>} flanks by gear and field */
   take(flanks) {
-    for (const [gear, changes] of Object.entries(flanks)) {
-      for (const [name, value] of Object.entries(changes)) this.form.set(`pair.${gear}.${name}`, value);
-    }
-    this.edited();
+    const entries = Object.entries(flanks).flatMap(
+      ([gear, changes]) => Object.entries(changes).map(([name, value]) => [`pair.${gear}.${name}`, value]),
+    );
+    this.design.take(Object.fromEntries(entries.filter(([key]) => key.startsWith("pair.pinion.") || key.startsWith("pair.wheel."))));
     byId("pair").focus();
   }
 
-  async inThreeDimensions() {
-    this.form.set("accuracy.model", "3d");
-    this.edited();
+  inThreeDimensions() {
+    this.design.take({ "accuracy.model": "3d" });
     byId("run").focus();
-    await this.analyze();
-  }
-
-  files() {
-    byId("export-json").addEventListener("click", () => {
-      save(`${JSON.stringify(this.form.case, null, 2)}\n`, "case.json", "application/json");
-    });
-    byId("export-toml").addEventListener("click", () => this.careful(async () => {
-      const { toml } = await post("/v1/cases/to-toml", { inputs: { case: this.form.case } });
-      save(toml, "case.toml", "application/toml");
-    }));
-    const chosen = byId("import-file");
-    chosen.addEventListener("change", () => this.careful(async () => {
-      const [given] = chosen.files;
-      chosen.value = "";
-      const text = await given.text();
-      const content = given.name.endsWith(".json") ? parsed(text) : (await post("/v1/cases/from-toml", { toml: text })).case;
-      byId("example").value = "";
-      byId("example-note").textContent = given.name;
-      this.show(content);
-    }));
-  }
-
-  /** Do something that the service may refuse; say so at the form. */
-  async careful(action) {
-    try {
-      await action();
-    } catch (problem) {
-      if (!(problem instanceof Problem)) throw problem;
-      this.form.refuse(problem, { focus: true });
-    }
-  }
-}
-
-function parsed(text) {
-  try {
-    return JSON.parse(text);
-  } catch (error) {
-    throw new Problem({ title: "No JSON", detail: `The file is no JSON: ${error.message}.`, status: 400 });
+    this.analyze();
   }
 }
 

@@ -27,25 +27,33 @@ export function showPlan(found) {
   const said = [choice.reason, found.conflict].filter(Boolean).join("; ");
   const chosen = found.levels.findIndex((entry) => entry.level === choice.level);
   byId("plan").replaceChildren(
+    ...found.warnings.map(({ message }) => make("p", { class: "alarm", role: "alert" }, `Implausible: ${message}`)),
     head,
     make("p", { class: choice.met && !found.conflict ? "hint" : "alarm" }, `Mesh ${choice.level}: ${said}.`),
     folded("All meshes", dataTable(levels, (row) => row === chosen)),
-    folded("Effect ledger: which physics is in, why, and what it is worth", dataTable(ledger(found.effect_ledger))),
+    folded("Effect ledger: which physics is in, why, and its influence", dataTable(ledger(found.effect_ledger))),
   );
   return prediction.cpu_seconds;
 }
 
 function ledger(entries) {
   const text = (value) => (value === undefined || value === null ? "" : String(value));
+  const words = (name) => name.replaceAll("_", " ");
+  const shown = entries.filter(({ influence }) => !influence?.trifle);
+  const trifles = entries.filter(({ influence }) => influence?.trifle).map(({ name }) => words(name));
+  const { torque_n_m: torque, misalignment_m: skew } = entries.find(({ influence }) => influence)?.influence ?? {};
+  const place = torque ? `at ${number(torque)} N m, misalignment ${number(1e6 * skew)} um` : "";
+  const rows = shown.map((entry) => [
+    words(entry.name), entry.on ? "yes" : "no", text(entry.reason), entry.influence?.words ?? "not estimated", text(entry.decision),
+  ]);
+  if (trifles.length) rows.push([`${trifles.length} below 0.1 %`, "", trifles.join(", "), "", ""]);
   return {
-    caption: "Effect ledger",
-    head: ["effect", "in this run", "because", "worth", "decision"],
-    rows: entries.map((entry) => [
-      entry.name.replaceAll("_", " "), entry.on ? "yes" : "no", text(entry.reason), text(entry.worth), text(entry.decision),
-    ]),
+    caption: `Effect ledger; without an effect: change by leaving it out, estimated ${place}`,
+    head: ["effect", "in this run", "because", "without it", "decision"],
+    rows,
   };
 }
 
 export function noPlan() {
-  byId("plan").replaceChildren(make("p", { class: "hint" }, "No plan: the case has errors, listed above the form."));
+  byId("plan").replaceChildren(make("p", { class: "hint" }, "No plan yet: see above what is missing."));
 }

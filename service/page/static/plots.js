@@ -1,8 +1,8 @@
 /** Plots by plotly.js: in the colours of the page, with their numbers beside them. */
 
-/* global Plotly */
-
+import { patiently } from "./api.js";
 import { csv, dataTable, folded, make, save } from "./elements.js";
+import { plotly } from "./plotly.js";
 
 const DARK = window.matchMedia("(prefers-color-scheme: dark)");
 const NARROW = window.matchMedia("(max-width: 40rem)"); // also a wide screen that is zoomed
@@ -86,9 +86,17 @@ function drawable(figure) {
   return Boolean(document.createElement("canvas").getContext("webgl"));
 }
 
+/** Let go of plots that have left the page: what plotly.js ties to the window holds them, their data and their listeners. */
+async function swept() {
+  for (const old of [...shown.keys()].filter((node) => !node.isConnected && node.dataset.drawn)) {
+    shown.delete(old);
+    if (old.dataset.drawn === "yes") (await plotly()).purge(old);
+  }
+}
+
 /** Draw or redraw a figure {data, layout} in a node. */
 export async function plot(node, figure) {
-  for (const old of shown.keys()) if (!old.isConnected) shown.delete(old);
+  await swept();
   shown.set(node, figure);
   if (!drawable(figure)) {
     node.parentElement.querySelector("[data-tool=PNG]").hidden = true;
@@ -98,7 +106,7 @@ export async function plot(node, figure) {
   }
   const { data, layout } = fitted(themed(figure), node.clientWidth || 800);
   node.style.height = `${layout.height}px`; // a plot that is resized takes the height of its place
-  await Plotly.react(node, data, layout, CONFIG);
+  await (await patiently(plotly)).react(node, data, layout, CONFIG);
   node.dataset.drawn = "yes";
 }
 
@@ -112,7 +120,7 @@ async function savePng(node, name) {
   const { data, layout } = node;
   const paper = DARK.matches ? "#14181d" : "#ffffff";
   const size = { width: Math.max(node.clientWidth, 900), height: layout.height || node.clientHeight };
-  const url = await Plotly.toImage({ data, layout: { ...layout, paper_bgcolor: paper } }, { format: "png", scale: 2, ...size });
+  const url = await (await plotly()).toImage({ data, layout: { ...layout, paper_bgcolor: paper } }, { format: "png", scale: 2, ...size });
   save(await (await imageOf(url)), `${name}.png`, "image/png");
 }
 

@@ -1,6 +1,6 @@
 /** A stored result as the service's report describes it: main results, figures, tables, files. */
 
-import { Problem, file, get } from "./api.js";
+import { Problem, file, get, patiently } from "./api.js";
 import { dataTable, figures, folded, make, save } from "./elements.js";
 import { figureBlock, plot } from "./plots.js";
 
@@ -8,11 +8,12 @@ import { figureBlock, plot } from "./plots.js";
  * Show the report of a result.
  * @param {HTMLElement} target
  * @param {{href: string, type: string, hash: string}} result reference to it
- * @param {{making?: boolean, after?: Node}} options with the tables that say how it was made
+ * @param {{making?: boolean, signal: AbortSignal}} options with the tables that say how it was made; given up when it is left
  */
-export async function showReport(target, result, { making = false } = {}) {
+export async function showReport(target, result, { making = false, signal }) {
   target.setAttribute("aria-busy", "true");
-  const report = await get(`${result.href}/figures`);
+  const report = await patiently(() => get(`${result.href}/figures`));
+  if (signal.aborted) return null;
   const head = make("dl", { class: "headline" });
   figures(head, report.headlines.map(({ name, value, remark }) => [name, value, remark]));
   const alarms = report.alarms.map((text) => make("p", { class: "alarm", role: "alert" }, text));
@@ -22,7 +23,10 @@ export async function showReport(target, result, { making = false } = {}) {
   target.replaceChildren(
     make("p", { class: "lead" }, lead), ...alarms, head, files(result), ...sections,
   );
-  for (const [node, figure] of drawn) await plot(node, figure);
+  for (const [node, figure] of drawn) {
+    if (signal.aborted) return null;
+    await plot(node, figure);
+  }
   target.setAttribute("aria-busy", "false");
   return report;
 }

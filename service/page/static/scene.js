@@ -1,7 +1,6 @@
 /** A scene of dynamics around an analysed pair: two shafts, four elastic bearings, motor and brake. */
 
 const SPAN = 200;
-const SAMPLES_PER_PITCH = 50;
 
 /**
  * @param {object} known the analysed pair: its case and the hash of its table
@@ -28,12 +27,6 @@ export function sceneOf(known, wish) {
     }],
     drives: [{ name: "motor", shaft: "input", time_s: [0, wish.duration_s], speed_rpm: [0, wish.top_rpm] }],
     loads: [{ name: "brake", shaft: "output", torque_n_m: [wish.torque_n_m] }],
-    outputs: { sample_rate_hz: sampleRate(pair.pinion.teeth, wish.top_rpm), bearing_forces: true },
+    outputs: { bearing_forces: true },
   };
-}
-
-/** Enough samples for the harmonics of the mesh at the highest speed, within bounds. */
-function sampleRate(teeth, rpm) {
-  const wanted = (SAMPLES_PER_PITCH * teeth * rpm) / 60;
-  return Math.min(Math.max(20_000, 1000 * Math.ceil(wanted / 1000)), 200_000);
 }

@@ -4,8 +4,7 @@ import { Problem, post } from "./api.js";
 import { card } from "./card.js";
 import { evenly, usualScene } from "./dynamics.js";
 import { byId, make, save } from "./elements.js";
-import { runJob, showFailure } from "./job.js";
-import { showReport } from "./report.js";
+import { showFailure } from "./job.js";
 
 const WHAT = [
   ["simulate", "Run over time"], ["modes", "Modes over speed"], ["response", "Forced response over speed"],
@@ -19,7 +18,8 @@ const FIELDS = [
 ];
 
 export class SceneEditor {
-  constructor() {
+  /** @param {{slot: Function, show: Function}} page */
+  constructor({ slot, show }) {
     this.text = make("textarea", {
       id: "scene-text", rows: 16, spellcheck: "false", autocomplete: "off", wrap: "off",
     });
@@ -27,14 +27,15 @@ export class SceneEditor {
     this.fromPair = make("button", { type: "button", disabled: true, onclick: () => this.write() }, "Write the scene of the pair above");
     byId("scene-body").replaceChildren(card(
       { title: "A scene of your own", action: "Compute the scene", text: HELP, fields: FIELDS, more: this.parts() },
-      (values, progress, result) => this.compute(values, progress, result),
+      (parts) => slot("scene", parts, show),
+      (values) => this.job(values),
     ));
   }
 
-  /** @param {object} known the analysed pair, which a scene may be written for */
+  /** @param {object | null} known the analysed pair, which a scene may be written for */
   show(known) {
     this.known = known;
-    this.fromPair.disabled = known.case.pair.wheel.internal;
+    this.fromPair.disabled = known === null || known.case.pair.wheel.internal;
   }
 
   parts() {
@@ -55,12 +56,14 @@ export class SceneEditor {
     if (!given) return;
     this.text.value = await given.text();
     chosen.value = "";
+    document.dispatchEvent(new Event("typed"));
     await this.careful(() => this.read());
   }
 
   async write() {
     await this.careful(async () => {
       this.text.value = (await post("/v1/scenes/to-toml", { inputs: { scene: usualScene(this.known) } })).toml;
+      document.dispatchEvent(new Event("typed"));
     });
   }
 
@@ -79,11 +82,10 @@ export class SceneEditor {
     }
   }
 
-  async compute({ process, from, to, count }, progress, result) {
+  job({ process, from, to, count }) {
     this.refusal.replaceChildren();
-    const scene = await this.read();
     const speeds = process === "simulate" ? {} : { speed_rpm: evenly(from, to, count) };
-    await showReport(result, await runJob(progress, process, { scene, ...speeds }));
+    return { process, inputs: async () => ({ scene: await this.read(), ...speeds }) };
   }
 }
 

@@ -18,13 +18,16 @@ export function resolved(schema, root) {
   }
 }
 
-/** All fields below a schema, in its order, as {path, schema, nullable}. */
-export function leaves(given, root, path = []) {
+/** All fields below a schema, in its order, as {path, schema, nullable, required}: required ones have no case without them. */
+export function leaves(given, root, path = [], required = true) {
   const { schema, nullable } = resolved(given, root);
   if (schema.type === "object" && schema.properties) {
-    return Object.entries(schema.properties).flatMap(([name, inner]) => leaves(inner, root, [...path, name]));
+    const needed = new Set(required ? schema.required : []);
+    return Object.entries(schema.properties).flatMap(
+      ([name, inner]) => leaves(inner, root, [...path, name], needed.has(name)),
+    );
   }
-  return [{ path, schema, nullable }];
+  return [{ path, schema, nullable, required }];
 }
 
 export function kindOf(schema) {

@@ -42,7 +42,7 @@ export class Sliders {
     const disabled = this.known.plane && ACROSS.some((name) => knob.key.endsWith(name));
     const facts = { min: low, max: knob.high, step, disabled };
     const range = make("input", { ...facts, type: "range", id });
-    const exact = make("input", { ...facts, type: "number", step: "any", "aria-label": `${knob.label}, ${knob.unit}, as a number` });
+    const exact = make("input", { ...facts, id: `${id}-exact`, type: "number", step: "any", "aria-label": `${knob.label}, ${knob.unit}, as a number` });
     const told = () => range.setAttribute("aria-valuetext", `${exact.value} ${knob.unit}`);
     const put = (value) => {
       range.value = value;
@@ -62,12 +62,18 @@ export class Sliders {
     });
     put(knob.value);
     const label = make("label", { for: id }, `${knob.label}, ${knob.unit}`);
-    return { knob, exact, put, block: make("div", { class: "slider" }, label, range, exact) };
+    return { knob, exact, put, told, block: make("div", { class: "slider" }, label, range, exact) };
   }
 
   reset() {
     for (const { knob, put } of this.controls) put(knob.value);
+    document.dispatchEvent(new Event("typed"));
     this.changed();
+  }
+
+  /** Say the values anew, which were put there from outside. */
+  told() {
+    for (const { told } of this.controls) told();
   }
 
   value(key) {

@@ -2,11 +2,11 @@
 
 import { card } from "./card.js";
 import { byId } from "./elements.js";
-import { runJob } from "./job.js";
 import { optimisationOf, showOptimisation } from "./optimise.js";
 import { showReport } from "./report.js";
 
 const IN_THE_PLANE = ["iso6336", "thin_slices", "plane_strain", "corrected_draft", "corrected", "corrected_fine"];
+const QUICK_HELICAL = ["iso6336", "thin_slices", "3d_draft"];
 
 /** The case for a study across the face, which a model of the plane does not know. */
 function acrossTheFace(content) {
@@ -14,7 +14,7 @@ function acrossTheFace(content) {
   return plane ? { ...content, accuracy: { ...content.accuracy, model: "3d" } } : content;
 }
 
-const STUDIES = [
+export const STUDIES = [
   {
     process: "flank", title: "Flank pressure", action: "Compute flank pressure",
     text: "Contact pressure, line load and gap on the flanks over a mesh cycle, at one load and misalignment.",
@@ -33,9 +33,9 @@ const STUDIES = [
     text: "Error against time of every way to compute this case, from closed forms to the finest mesh.",
     fields: [{
       name: "reach", label: "Up to",
-      choices: [["all", "fine 3-D finite elements (minutes)"], ["plane", "2-D finite elements"]],
+      choices: [["all", "fine 3-D finite elements (minutes)"], ["quick", "2-D finite elements; with a helix draft 3-D"]],
     }],
-    inputs: (found, { reach }) => ({ case: found, ...(reach === "plane" ? { rungs: IN_THE_PLANE } : {}) }),
+    inputs: (found, { reach }) => ({ case: found, ...(reach === "quick" ? { rungs: found.pair?.helix_angle_deg ? QUICK_HELICAL : IN_THE_PLANE } : {}) }),
   },
   {
     process: "sensitivity", title: "Sensitivity", action: "Study the sensitivity",
@@ -66,17 +66,19 @@ const STUDIES = [
   },
 ];
 
-/** Show a result of any kind but a table. */
-export async function showResult(target, reference, page) {
-  const shows = reference.href.includes("/optimisations/") ? showOptimisation : showReport;
-  await shows(target, reference, page);
+/** Show a result of any kind but a table; `take` is given the flanks of an optimisation. */
+export async function showResult(target, reference, { take, signal }) {
+  if (reference.href.includes("/optimisations/")) await showOptimisation(target, reference, { take, signal });
+  else await showReport(target, reference, { signal });
 }
 
-/** @param {{case: () => object, offered: Set<string>, take: (flanks: object) => void}} page */
-export function showStudies(page) {
-  const offered = STUDIES.filter(({ process }) => page.offered.has(process));
-  byId("study-list").replaceChildren(...offered.map((study) => card(study, async (values, progress, result) => {
-    const reference = await runJob(progress, study.process, study.inputs(page.case(), values));
-    await showResult(result, reference, page);
-  })));
+/**
+ * Offer the studies of the pair as typed.
+ * @param {{design: import("./design.js").Design, offered: Set<string>, slot: Function, show: Function}} page
+ */
+export function showStudies({ design, offered, slot, show }) {
+  byId("study-list").replaceChildren(...STUDIES.filter(({ process }) => offered.has(process)).map((study) => {
+    const { process, inputs } = study;
+    return card(study, (parts) => slot(process, parts, show), (values) => ({ process, inputs: inputs(design.case, values) }));
+  }));
 }

@@ -1,0 +1,98 @@
+// @ts-check
+/** The address is the state. Its fragment names what is shown (`#database=HASH&frontier=JOB`), the entry of the browser's
+ * history behind it holds what was typed. Reload, back, forward and a new tab show what they say, and nothing else decides. */
+
+const HASH = /^[0-9a-f]{64}$/;
+const JOB = /^[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}$/;
+
+/**
+ * @typedef {object} Kept what the entry of the history holds; it goes with the tab, not with the address
+ * @property {Record<string, string>} [fields] everything typed, by the id of its control
+ * @property {{key: string, fields: Record<string, string>}} [ofResult] the same of the controls that belong to one result
+ * @property {{example: string, note: string, replaced?: string}} [origin] what the design began with
+ * @property {{known: object, question: object}} [reference] the result kept to compare with
+ */
+
+export class Address {
+  /**
+   * @param {string[]} places names of the parts of the page that show jobs
+   * @param {() => Kept} typed what is typed now
+   */
+  constructor(places, typed) {
+    this.places = new Set(places);
+    this.typed = typed;
+    this.read();
+  }
+
+  /** Read the address and its entry, as they are now. */
+  read() {
+    /** @type {Kept} */
+    this.kept = history.state ?? {};
+    /** @type {Map<string, string>} */
+    this.names = new Map();
+    /** @type {string[]} */
+    this.faults = [];
+    this.section = "";
+    const text = decodeURIComponent(location.hash.slice(1));
+    if (text && !text.includes("=")) this.section = text;
+    else for (const part of text.split("&").filter(Boolean)) this.readPart(part);
+    if (this.section && !document.querySelector(`section#${CSS.escape(this.section)}`)) this.faults.push(this.section);
+  }
+
+  /** @param {string} part */
+  readPart(part) {
+    const [name, value] = part.split("=");
+    const pattern = name === "database" ? HASH : this.places.has(name) ? JOB : null;
+    if (pattern?.test(value ?? "")) this.names.set(name, value);
+    else this.faults.push(part);
+  }
+
+  /** @param {string} name */
+  get(name) {
+    return this.names.get(name) ?? null;
+  }
+
+  /**
+   * Go on to a new entry of the history; the one that is left keeps what was typed in it.
+   * @param {Record<string, string | null>} changes names and what they show now; null: nothing
+   */
+  push(changes) {
+    this.keep(this.typed());
+    this.name(changes);
+    history.pushState(this.kept, "", this.text);
+  }
+
+  /**
+   * Change this entry.
+   * @param {Record<string, string | null>} changes
+   * @param {Kept} [kept]
+   */
+  replace(changes, kept = {}) {
+    this.name(changes);
+    this.keep(kept);
+  }
+
+  /**
+   * Keep something typed with this entry.
+   * @param {Kept} kept
+   */
+  keep(kept) {
+    this.kept = { ...this.kept, ...kept };
+    history.replaceState(this.kept, "", this.text);
+  }
+
+  /** @param {Record<string, string | null>} changes */
+  name(changes) {
+    for (const [name, value] of Object.entries(changes)) {
+      if (value) this.names.set(name, value);
+      else this.names.delete(name);
+    }
+    this.faults = [];
+  }
+
+  get text() {
+    if (this.faults.length || (this.section && !this.names.size)) return location.href;
+    const fragment = [...this.names].map((pair) => pair.join("=")).join("&");
+    return `${location.pathname}${location.search}${fragment ? `#${fragment}` : ""}`;
+  }
+}

@@ -1,0 +1,48 @@
+// @ts-check
+/** Case files: opened into the form, saved from it. */
+
+import { Problem, post } from "./api.js";
+import { byId, save } from "./elements.js";
+
+export class CaseFiles {
+  /** @param {import("./design.js").Design} design */
+  constructor(design) {
+    this.design = design;
+    byId("export-json").addEventListener("click", () => {
+      save(`${JSON.stringify(design.case, null, 2)}\n`, "case.json", "application/json");
+    });
+    byId("export-toml").addEventListener("click", () => this.careful(async () => {
+      const { toml } = await post("/v1/cases/to-toml", { inputs: { case: design.case } });
+      save(toml, "case.toml", "application/toml");
+    }));
+    byId("import-file").addEventListener("change", (event) => this.careful(() => this.open(event.target)));
+  }
+
+  /** @param {any} chosen the control that a file was chosen with */
+  async open(chosen) {
+    const [file] = chosen.files;
+    const text = await file.text();
+    chosen.value = "";
+    const content = file.name.endsWith(".json") ? parsed(text) : (await post("/v1/cases/from-toml", { toml: text })).case;
+    this.design.goTo(content, file.name);
+  }
+
+  /** Do something that the service may refuse; say so at the form. */
+  async careful(action) {
+    try {
+      await action();
+    } catch (problem) {
+      if (!(problem instanceof Problem)) throw problem;
+      this.design.refuse(problem, { focus: true });
+    }
+  }
+}
+
+/** @param {string} text */
+function parsed(text) {
+  try {
+    return JSON.parse(text);
+  } catch (error) {
+    throw new Problem({ title: "No JSON", detail: `The file is no JSON: ${error.message}.`, status: 400 });
+  }
+}

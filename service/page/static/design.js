@@ -1,0 +1,177 @@
+// @ts-check
+/** The design: the case as typed, where it came from, its drawing and its plan, and how it differs from another. */
+
+import { Problem, post } from "./api.js";
+import { differences } from "./comparison.js";
+import { retype } from "./controls.js";
+import { Drawing } from "./drawing.js";
+import { byId, make } from "./elements.js";
+import { CaseForm } from "./form.js";
+import { noPlan, showPlan } from "./plan.js";
+
+const SETTLED = 350; // milliseconds without an edit after which the case is planned and drawn
+const EMPTY = { name: "empty", title: "Empty fields, to type a pair", note: "", case: {} };
+const PLANE = /^plane/;
+
+export class Design {
+  /**
+   * @param {object} schema of a case
+   * @param {object[]} effects what the service offers
+   * @param {{name: string, title: string, note: string, case: object}[]} examples
+   * @param {{address: import("./address.js").Address, caller: string}} page by whom plans are asked for
+   */
+  constructor(schema, effects, examples, { address, caller }) {
+    this.address = address;
+    this.caller = caller;
+    this.examples = [...examples, EMPTY];
+    this.watchers = [];
+    this.stands = false; // whether the form holds what the address says, or what was typed since
+    this.drawing = new Drawing();
+    this.form = new CaseForm(schema, effects, () => this.edited());
+    this.offer();
+  }
+
+  /** @param {() => void} watcher called after every change of the design */
+  watch(watcher) {
+    this.watchers.push(watcher);
+  }
+
+  get case() {
+    return this.form.case;
+  }
+
+  /** Fields of the case, each with its words. */
+  get fields() {
+    return this.form.fields.values();
+  }
+
+  /** What was edited since a case. @param {object} content */
+  differences(content) {
+    return differences(this.fields, content, this.case);
+  }
+
+  offer() {
+    const list = byId("example");
+    const opened = make("option", { value: "", hidden: true }, "the pair below");
+    list.replaceChildren(opened, ...this.examples.map(({ name, title }) => make("option", { value: name }, title)));
+    list.addEventListener("change", () => {
+      const { name, note, case: content } = this.examples.find((example) => example.name === list.value);
+      this.goTo(content, note, name);
+    });
+  }
+
+  /** The design of a page that is opened without an address. */
+  begin() {
+    const [{ name, note, case: content }] = this.examples;
+    this.show(content, { example: name, note });
+  }
+
+  /**
+   * Put another design into the form: a new entry of the history, so that the way back leads to the one that is replaced.
+   * @param {object} content a case
+   * @param {string} note where it comes from
+   * @param {string} [example] its name in the list
+   */
+  goTo(content, note, example = "") {
+    this.address.push({});
+    const replaced = differences(this.fields, this.case, content).filter(({ field }) => field.path[0] !== "pair");
+    this.show(content, { example, note, replaced: settingsReplaced(replaced) });
+    this.address.keep(this.address.typed());
+    for (const { field } of replaced) field.entry.classList.add("replaced");
+  }
+
+  show(content, origin = { example: "", note: "" }) {
+    this.form.case = content;
+    this.from(origin);
+    this.changed();
+    this.look();
+  }
+
+  /** Show what was typed when the address was left. */
+  restore({ fields, origin }) {
+    this.form.clear();
+    retype(fields, byId("main"));
+    this.from(origin ?? { example: "", note: "" });
+    this.changed();
+    this.look();
+  }
+
+  from(origin) {
+    this.stands = true;
+    byId("example").value = origin.example;
+    byId("example-note").textContent = origin.note;
+    byId("example-replaced").textContent = origin.replaced ?? "";
+    this.address.keep({ origin });
+  }
+
+  /** @param {Record<string, any>} values by field of the case */
+  take(values) {
+    for (const [key, value] of Object.entries(values)) this.form.set(key, value);
+    this.edited();
+  }
+
+  changed() {
+    document.dispatchEvent(new Event("typed"));
+    for (const watcher of this.watchers) watcher();
+  }
+
+  edited() {
+    if (byId("example").value || !this.stands) this.from({ note: "", ...this.address.kept.origin, example: "" });
+    this.changed();
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.look(), SETTLED);
+  }
+
+  /** Draw and plan what the form holds; refusals go to their fields. */
+  async look() {
+    clearTimeout(this.timer);
+    const body = { inputs: { case: this.form.case } };
+    const turn = (this.turn = (this.turn ?? 0) + 1);
+    let drawn = false;
+    try {
+      const outline = await post("/v1/cases/outline", body);
+      if (turn !== this.turn) return;
+      this.form.clear();
+      this.drawing.show(outline);
+      drawn = true;
+      const plan = await post("/v1/plans", { ...body, caller: this.caller });
+      if (turn === this.turn) this.expected = showPlan(plan);
+    } catch (problem) {
+      if (!(problem instanceof Problem)) throw problem;
+      const later = problem.type.endsWith("superseded") || problem.status === 0; // asked again when it is back
+      if (turn !== this.turn || later) return;
+      this.refuse(problem);
+      this.expected = undefined;
+      noPlan();
+      if (!drawn) this.drawing.stale();
+    }
+  }
+
+  /** @param {Problem} problem @param {{focus?: boolean}} [options] whether the list of faults takes the focus */
+  refuse(problem, options) {
+    this.form.refuse(problem, options);
+    if (this.helixInThePlane) byId("form-errors").append(this.threeDimensions());
+  }
+
+  get helixInThePlane() {
+    const { pair, accuracy } = this.form.case;
+    return Boolean(pair?.helix_angle_deg) && PLANE.test(accuracy?.model ?? "");
+  }
+
+  /** What a helical pair with a model of the plane is told. */
+  threeDimensions() {
+    const model = this.form.fields.get("accuracy.model").input.selectedOptions[0].text;
+    const button = { type: "button", class: "small", onclick: () => this.take({ "accuracy.model": "3d" }) };
+    return make(
+      "div", {}, make("p", {}, `The pair is helical, and the model “${model}” computes one transverse section: a spur pair. `
+        + "Its contact lines run across the face, which takes three dimensions."),
+      make("button", button, "Set the model to 3d"),
+    );
+  }
+}
+
+/** @param {import("./comparison.js").Difference[]} replaced */
+function settingsReplaced(replaced) {
+  if (!replaced.length) return "";
+  return `Settings replaced with it: ${replaced.map(({ words, before, now }) => `${words} ${before} → ${now}`).join(", ")}.`;
+}

@@ -1,0 +1,104 @@
+// @ts-check
+/** A part of the page that shows one job: submitted from it or named by the address, watched, and shown when it has ended. */
+
+import { Problem } from "./api.js";
+import { DesignNote } from "./design_note.js";
+import { make } from "./elements.js";
+import { followed, showFailure, submitted } from "./job.js";
+import { caseOf } from "./job_names.js";
+import { sayUnknown } from "./notice.js";
+
+export class Slot {
+  /**
+   * @param {string} name in the address
+   * @param {object} page
+   * @param {import("./address.js").Address} page.address
+   * @param {import("./design.js").Design} page.design
+   * @param {object} parts
+   * @param {HTMLElement} parts.progress
+   * @param {HTMLElement} parts.result
+   * @param {HTMLButtonElement} [parts.button] disabled while a job is under way
+   * @param {(target: HTMLElement, reference: object, signal: AbortSignal) => Promise<void>} show
+   */
+  constructor(name, { address, design }, { progress, result, button }, show) {
+    Object.assign(this, { name, address, progress, result, button, show });
+    this.job = null;
+    this.stopping = new AbortController();
+    const words = make("div");
+    result.before(words);
+    this.note = new DesignNote(words, design);
+  }
+
+  /**
+   * Submit a job, which becomes part of the address.
+   * @param {string} process
+   * @param {object | (() => Promise<object>)} inputs
+   * @param {{expected?: number}} [facts] seconds that the plan predicts
+   */
+  async submit(process, inputs, { expected } = {}) {
+    const { signal } = this.begin(null);
+    await this.guarded(signal, async () => {
+      const status = await submitted(this.progress, process, typeof inputs === "function" ? await inputs() : inputs);
+      if (signal.aborted) return;
+      this.job = status.jobID;
+      this.address.push({ [this.name]: this.job });
+      await this.watch(signal, expected);
+    });
+  }
+
+  /**
+   * Show the job that the address names; null: none.
+   * @param {string | null} job
+   */
+  async follow(job) {
+    if (job === this.job) return;
+    const { signal } = this.begin(job);
+    if (!job) return;
+    await this.guarded(signal, () => this.watch(signal));
+  }
+
+  /** Leave what was shown. */
+  begin(job) {
+    this.stopping.abort();
+    this.stopping = new AbortController();
+    this.job = job;
+    this.note.of(null);
+    this.progress.replaceChildren();
+    this.result.replaceChildren();
+    this.busy(false);
+    return this.stopping;
+  }
+
+  /** @param {AbortSignal} signal @param {number} [expected] */
+  async watch(signal, expected) {
+    const reference = await followed(this.progress, this.job, { expected, signal });
+    if (signal.aborted) return;
+    await this.show(this.result, reference, signal);
+    if (!signal.aborted) this.note.of(caseOf(this.job));
+  }
+
+  /** Run until it is done or left; refusals are said in the place of the progress. */
+  async guarded(signal, action) {
+    this.busy(true);
+    try {
+      await action();
+    } catch (problem) {
+      if (!(problem instanceof Problem)) throw problem;
+      if (signal.aborted) return;
+      if (problem.status === 404 && this.job) sayUnknown(`Job ${this.job} (${this.name}): this service does not know it, or no longer.`);
+      this.refused(problem);
+    } finally {
+      if (!signal.aborted) this.busy(false);
+    }
+  }
+
+  /** @param {Problem} problem */
+  refused(problem) {
+    showFailure(this.progress, problem);
+  }
+
+  /** @param {boolean} now */
+  busy(now) {
+    if (this.button) this.button.disabled = now;
+  }
+}

@@ -1,0 +1,115 @@
+"""A pair typed field after field: the page waits, says what is missing, and rewrites nothing."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from page_visit import Visit, found_inaccessible, opened
+from playwright.sync_api import Browser, Page, expect
+
+PAIR = {
+    "pair-normal_module_mm": "2.5",
+    "pair-center_distance_mm": "56.25",
+    "pair-pinion-teeth": "21",
+    "pair-wheel-teeth": "24",
+    "pair-pinion-face_width_mm": "18",
+    "pair-wheel-face_width_mm": "17,5",
+    "pair-pinion-bore_diameter_mm": "20",
+    "pair-wheel-bore_diameter_mm": "22",
+    "load-torque_n_m": "10, 40",
+}
+TYPED_SLOWLY = 30  # milliseconds between keys; a field is left for the service to answer
+EDGES = "() => document.querySelector('#fields').getBoundingClientRect().top + scrollY"
+
+
+@pytest.fixture
+def visit(browser: Browser, address: str) -> Iterator[Visit]:
+    seen = opened(browser, address)
+    yield seen
+    seen.page.close()
+
+
+def typed(page: Page, key: str, text: str) -> None:
+    """Type into a field as a person does, and see that it holds what was typed while the service answers."""
+    field = page.locator(f"#f-{key}")
+    field.focus()
+    page.keyboard.press("ControlOrMeta+a")
+    with page.expect_response("**/v1/cases/outline"):
+        page.keyboard.type(text, delay=TYPED_SLOWLY)
+    assert page.evaluate("document.activeElement.id") == f"f-{key}"
+    assert field.input_value() == text
+
+
+@pytest.mark.parametrize("begin", ["empty", "helical_automotive"])
+def test_a_pair_typed_in_reading_order_is_the_pair_that_is_planned(visit: Visit, begin: str) -> None:
+    page = visit.page
+    page.locator("#example").select_option(begin)
+    shared = {} if begin == "empty" else {"pair-helix_angle_deg": "0"}
+    top = page.evaluate(EDGES)
+    for key, text in ({"pair-normal_module_mm": ""} | shared | PAIR).items():
+        if text:
+            typed(page, key, text)
+        assert page.evaluate(EDGES) == top, "what is refused meanwhile moves no field"
+        assert page.locator("#form-errors li").count() <= 3, "no wall of errors"
+    if begin == "helical_automotive":
+        for gear in ("pinion", "wheel"):
+            typed(page, f"pair-{gear}-profile_shift_coefficient", "0")
+    expect(page.locator("#plan dl")).to_be_visible()
+    expect(page.locator("#form-errors")).to_be_hidden()
+    expect(page.locator("#drawing-state")).to_be_empty()
+    for key, text in PAIR.items():
+        assert page.locator(f"#f-{key}").input_value() == text
+    assert "wheel with 24" in page.locator("#mesh-words").inner_text()
+    assert visit.complaints == []
+
+
+def test_what_is_missing_is_listed_with_the_plan_and_no_field_is_blamed(visit: Visit) -> None:
+    page = visit.page
+    page.locator("#example").select_option("empty")
+    missing = page.locator("#form-errors")
+    expect(missing).to_contain_text("Still to fill in: normal module, centre distance, pinion teeth")
+    expect(page.locator("#drawing-state")).to_have_text("(not yet the pair as typed)")
+    assert page.locator("[aria-invalid=true]").count() == 0
+    assert found_inaccessible(page) == {}
+    missing.get_by_role("link", name="wheel teeth").press("Enter")
+    assert page.evaluate("document.activeElement.id") == "f-pair-wheel-teeth"
+
+
+def test_a_field_that_is_being_typed_into_is_not_blamed_before_it_is_finished(visit: Visit) -> None:
+    page = visit.page
+    typed(page, "pair-pinion-teeth", "2")
+    teeth = page.locator("#f-pair-pinion-teeth")
+    expect(page.locator("#form-errors li")).to_contain_text("pair.pinion.teeth must be")
+    assert teeth.get_attribute("aria-invalid") != "true"
+    page.keyboard.type("0")
+    expect(page.locator("#form-errors")).to_be_hidden()
+    assert teeth.get_attribute("aria-invalid") != "true"
+    assert teeth.input_value() == "20"
+
+
+def test_an_example_says_which_settings_it_replaces(visit: Visit) -> None:
+    page = visit.page
+    page.locator("#f-accuracy-model").select_option("3d")
+    page.locator("#f-accuracy-tolerance").fill("0.005")
+    page.locator("#example").select_option("internal_gear")
+    said = page.locator("#example-replaced")
+    expect(said).to_contain_text("tolerance 0.005 → 0.01")
+    expect(said).to_contain_text("model 3d → plane strain")
+    expect(page.locator(".replaced #f-accuracy-model")).to_have_value("plane_strain")
+    page.go_back()
+    expect(page.locator("#f-accuracy-model")).to_have_value("3d")
+    expect(page.locator("#f-accuracy-tolerance")).to_have_value("0.005")
+    page.locator("#example").select_option("palermo_spur_20_20")
+    expect(page.locator("#f-accuracy-model")).to_have_value("plane_strain")
+
+
+def test_a_helix_with_a_model_of_the_plane_is_told_what_it_is(visit: Visit) -> None:
+    page = visit.page
+    typed(page, "pair-helix_angle_deg", "15")
+    told = page.locator("#form-errors")
+    expect(told).to_contain_text(re.compile("helical.*“plane strain”.*spur pair"))
+    told.get_by_role("button", name="Set the model to 3d").press("Enter")
+    expect(page.locator("#f-accuracy-model")).to_have_value("3d")
+    expect(told).not_to_contain_text("spur pair")
