@@ -7,10 +7,13 @@ from pathlib import Path
 
 from dynamics.ablation import Ablation as SceneAblation
 from fe_contact.analysis.ablation import Ablation
+from service.cli.judged_case import judged_case
 from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.cli.scene_tables import scene_with_tables
+from service.cli.warned import messages, warnings_so_far
 from service.client.portable import scene_of
 from service.convert.ablation import ablation_json, ablation_of_case, ablation_of_scene
+from service.convert.stamp import stamp
 from service.directories import cache_home
 from service.problems import BadInput
 from service.report.ablation import (
@@ -22,7 +25,7 @@ from service.report.ablation import (
 from service.report.ablation_page import ablation_page
 from service.report.image import png
 from service.report.write import write_whole
-from service.schemas import Case, read_model, read_table
+from service.schemas import read_table
 
 
 def run_ablate(file: Path, output: Path | None, only: str | None, *, as_json: bool) -> None:
@@ -47,7 +50,7 @@ def _found(file: Path, only: list[str] | None, report: Report) -> Ablation | Sce
     if "meshes" in read_table(file):
         scene, folder = scene_of(file)
         return ablation_of_scene(scene_with_tables(scene, folder, None, report), only, report)
-    return ablation_of_case(read_model(Case, file), only, cache_home() / "compliance", report)
+    return ablation_of_case(judged_case(file), only, cache_home() / "compliance", report)
 
 
 def _write(found: Ablation | SceneAblation, output: Path) -> None:
@@ -55,9 +58,10 @@ def _write(found: Ablation | SceneAblation, output: Path) -> None:
     if output.suffix == ".json":
         text = json.dumps(ablation_json(found), allow_nan=False, indent=1)
         output.write_text(f"{text}\n", encoding="utf-8")
+        stamp(output, warnings_so_far())
         return
     if output.suffix == ".html":
-        write_whole(ablation_page(found), output)
+        write_whole(ablation_page(found), output, warnings=messages())
         return
     figure = case_ablation_figure(found) if isinstance(found, Ablation) else scene_ablation_figure(found)
     output.write_bytes(png(figure))

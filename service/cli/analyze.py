@@ -9,25 +9,29 @@ from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
 from service.cli.effects import assumption_lines, ledger_lines
+from service.cli.judged_case import judged_case
 from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar, table
+from service.cli.warned import warn
 from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
+from service.convert.plausibility import phrased_database
 from service.convert.task_workers import Hands, working_hands
 from service.convert.units import UM
 from service.directories import cache_home
 from service.problems import JobFailed
-from service.schemas import Case, read_model
+from service.schemas import Case
 
 _SHOWN_HARMONICS = 3
 
 
 def run_analyze(file: Path, output: Path, hands: Hands, *, as_json: bool) -> None:
     """Compute, write, print."""
-    case = read_model(Case, file)
+    case = judged_case(file)
     check_netcdf_output(output)
     with working_hands(hands) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)
+    warn(database.metadata.warnings)
     database.to_netcdf(output)
     summary = {"file": str(output), **summary_json(database)}
     if as_json:
@@ -46,7 +50,7 @@ def analyzed(
     """Return the database of a case, not asked of a service; condensed gears are kept in the user's cache."""
     pair = check_case(case)
     with boundary_errors():
-        return analyze(
+        database = analyze(
             pair,
             **analysis_arguments(case),
             case=case_json(case),
@@ -54,6 +58,7 @@ def analyzed(
             progress=report,
             workers=workers,
         )
+    return phrased_database(database, case)
 
 
 def _show(summary: dict[str, Any]) -> None:

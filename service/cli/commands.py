@@ -11,7 +11,8 @@ from service.cli.verbs import keys, motion, pages, serving, studies, tables, upk
 
 _EPILOG = (
     "Start with: loa analyze examples/palermo_spur_20_20.toml -o ste.nc, then loa report ste.nc. "
-    "Exit codes: 0 done; 2 bad input; 3 a mesh, a solve or a job failed; 4 no service answers; "
+    "Exit codes: 0 done; 1 a mesh, a solve or a job failed; 2 bad input; 3 warnings under --strict; "
+    "4 no service answers; "
     "5 a defect (a log is named); 130 interrupted."
 )
 
@@ -36,6 +37,7 @@ app.add_typer(upkeep.store, name="store")
 
 def main() -> None:
     """Run the command line."""
+    warnings.filterwarnings("ignore", message="implausible")  # each verb says it in its own fields and units
     foreign = warnings.showwarning
 
     def show(

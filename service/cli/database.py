@@ -7,6 +7,7 @@ from typing import Any
 import typer
 
 from service.cli.output import print_json
+from service.directories import keep_private
 from service.problems import EXIT_FAILED
 from service.settings import load_settings
 from service.store import DATABASE_FILE
@@ -40,6 +41,7 @@ def run_status(*, as_json: bool, **given: object) -> None:
 def _schema(given: dict[str, object]) -> tuple[Schema, str]:
     """Return the schema of the database of the settings, and the database's name."""
     settings = load_settings(**given)
+    keep_private()
     engine = database_engine(
         settings.database_address or settings.data_directory / DATABASE_FILE, pooled=False
     )

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from dynamics.periodic.steady_states import BRANCH
 from dynamics.system import Scene
+from service.cli.effects import run_lines
 from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.cli.scene_tables import scene_with_tables
+from service.cli.warned import messages, warnings_so_far
 from service.client.portable import scene_of
 from service.convert.modal import modes_json, modes_of
 from service.convert.response import response_json, response_of
+from service.convert.stamp import stamp
 from service.convert.steady import steady_json, steady_of
 from service.convert.units import RPM
 from service.problems import BadInput, JobFailed
@@ -80,6 +83,7 @@ def run_study(
         print_json(({} if output is None else {"file": str(output)}) | study.json(found))
     else:
         study.show(found)
+        _lines(tuple(run_lines(found.facts)))
         if output is not None:
             console().print(f"written to {output}", highlight=False)
     if failure := study.failure(found):
@@ -103,7 +107,8 @@ def _write(study: Study, found: Any, output: Path) -> None:
     elif output.suffix == ".png":
         output.write_bytes(png(study.picture(found)))
     else:
-        write_page(study.page(found), output)
+        write_page(replace(study.page(found), warnings=tuple(messages())), output)
+    stamp(output, warnings_so_far())
 
 
 def _lines(texts: Sequence[str]) -> None:

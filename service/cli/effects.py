@@ -5,32 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from service.convert.units import UM
+from service.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
 
 
 def ledger_lines(ledger: Iterable[Mapping[str, Any]]) -> Iterator[str]:
-    """Yield the decision about every effect, what it is worth at the largest load, and its price."""
-    for entry in ledger:
+    """Yield the decision about every effect, its influence at the nominal load, and its price."""
+    shown, trifles = by_size(ledger)
+    if place := influence_place(ledger):
+        yield f"influence of effects: what leaving one out changes, estimated {place}"
+    for entry in shown:
         state = "on " if entry["on"] else "off"
         yield f"effect {entry['name']}: {state} ({entry['choice']}); {entry['reason']}"
         if entry["decision"].startswith(("left off", "on after")):
             yield f"       {entry['decision']}"
         if entry["on"] or entry["called_for"]:
-            yield f"       {worth_words(entry)}; cost {cost_words(entry)}"
-        if entry["price"]:
+            yield f"       without it {influence_words(entry)}; cost {cost_words(entry)}"
+        if entry["price"] and entry["on"]:
             yield f"       price of the choice: {entry['price']}"
-
-
-def worth_words(entry: Mapping[str, Any]) -> str:
-    """Say what leaving an effect out is estimated to change."""
-    found = entry["worth_estimate"]
-    if found is None:
-        return f"worth: {entry['worth']}"
-    mean, ripple = found["mean_m"][-1] / UM, found["peak_to_peak_m"][-1] / UM
-    return (
-        f"without it mean {mean:+.2g} um ({100 * found['relative_mean']:+.2g} %), "
-        f"peak-to-peak {ripple:+.2g} um ({100 * found['relative_peak_to_peak']:+.2g} %)"
-    )
+    if trifles:
+        yield f"{trifles_title(trifles)}: {', '.join(entry['name'] for entry in trifles)}"
 
 
 def cost_words(entry: Mapping[str, Any]) -> str:
@@ -56,6 +49,10 @@ def run_lines(attributes: Mapping[str, Any]) -> Iterator[str]:
         for name, reason in again["turned_on"].items():
             since = f", from {again['since']:.6g} s on" if again.get("since") else ""
             yield f"repeated with {name}: {reason} (first run {again['seconds']:.2g} s{since})"
+    corrected = {**attributes, **attributes.get("receipt", {})}.get("base_radius_corrected", {})
+    for gear, radius in corrected.items():
+        given, used = (1e3 * radius[name] for name in ("given", "used"))
+        yield f"base radius of {gear} corrected from {given:.6g} to {used:.6g} mm: one base pitch per train"
     for one in attributes.get("effect_ledger", {}).get("checks", ()):
         if one["holds"] is False:
             part = one["part"] or one["effect"]

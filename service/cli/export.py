@@ -8,15 +8,16 @@ import numpy as np
 
 from fe_contact.analysis import DeformedPair, deformed_pairs
 from fe_contact.types import FloatArray
+from service.cli.judged_case import judged_case
 from service.cli.output import console, print_json, progress_bar, table
 from service.cli.ste import positions
 from service.convert.case import boundary_errors
 from service.convert.checks import check_case
-from service.convert.flanks import case_at, point_arguments
+from service.convert.flanks import point_arguments
 from service.convert.units import UM
 from service.directories import cache_home
 from service.problems import BadInput
-from service.schemas import Case, read_model, validated
+from service.schemas import validated
 from service.schemas.flank import FlankPoint
 
 _MOST_POSITIONS = 256
@@ -27,7 +28,7 @@ def run_export(
 ) -> None:
     """Solve, expand, write, print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
-    case = case_at(read_model(Case, file), chosen)
+    case = judged_case(file, chosen)
     where = positions(at)
     if len(where) > _MOST_POSITIONS:
         raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MOST_POSITIONS} positions")

@@ -6,22 +6,26 @@ from pathlib import Path
 from typing import Any
 
 from service.cli.effects import assumption_lines
+from service.cli.judged_case import judged_case
 from service.cli.output import check_netcdf_output, console, print_json, progress_bar
+from service.cli.warned import warn
 from service.convert.checks import check_case
-from service.convert.flanks import case_at, flank_json, flanks_of
+from service.convert.flanks import flank_json, flanks_of
+from service.convert.plausibility import phrased_flanks
 from service.directories import cache_home
-from service.schemas import Case, read_model, validated
+from service.schemas import validated
 from service.schemas.flank import FlankPoint
 
 
 def run_flank(file: Path, output: Path, point: dict[str, float | None], *, as_json: bool) -> None:
     """Compute, write, print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
-    case = case_at(read_model(Case, file), chosen)
+    case = judged_case(file, chosen)
     check_netcdf_output(output)
     check_case(case, whole_table=False)
     with progress_bar() as report:
-        found = flanks_of(case, cache_home() / "compliance", report)
+        found = phrased_flanks(flanks_of(case, cache_home() / "compliance", report), case)
+    warn(found.metadata.warnings)
     found.to_netcdf(output)
     figures = {"file": str(output), **flank_json(found)}
     if as_json:

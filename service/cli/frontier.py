@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from service.cli.output import Report, console, output_files, print_json, progress_bar, table
+from service.cli.warned import messages, warnings_so_far
+from service.convert.stamp import stamp
 from service.problems import BadInput
 from service.report.figure import Figure, Table
 from service.report.image import png
@@ -45,6 +47,7 @@ def run_frontier(
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _WRITERS[target.suffix](found, target)
+        stamp(target, warnings_so_far())
     if as_json:
         print_json({"written": [str(target) for target in targets], **found.facts})
     else:
@@ -60,11 +63,11 @@ def _named(rungs: str, *, of_scene: bool) -> list[str]:
 
 def _of_case(file: Path, names: list[str] | None, full_contact: int | None, report: Report) -> _Climbed:
     """Climb the ladder of transmission errors."""
-    from service.convert.frontier import frontier_of  # noqa: PLC0415 (start-up time)
+    from service.cli.judged_case import judged_case  # noqa: PLC0415 (start-up time)
+    from service.convert.frontier import frontier_of  # noqa: PLC0415
     from service.report.frontier import frontier_figure, frontier_page, frontier_table  # noqa: PLC0415
-    from service.schemas import Case, read_model  # noqa: PLC0415
 
-    found = frontier_of(read_model(Case, file), names, report, full_contact=full_contact)
+    found = frontier_of(judged_case(file), names, report, full_contact=full_contact)
     page = frontier_page(found, _TITLE)
     return _Climbed(found.to_json(), found.left_out, frontier_table(found), frontier_figure(found), page)
 
@@ -95,7 +98,7 @@ def _picture(found: _Climbed, target: Path) -> None:
 
 def _page(found: _Climbed, target: Path) -> None:
     """Write the report page."""
-    write_whole(found.page, target)
+    write_whole(found.page, target, warnings=messages())
 
 
 def _json(found: _Climbed, target: Path) -> None:

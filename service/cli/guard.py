@@ -4,19 +4,42 @@ from __future__ import annotations
 
 import functools
 import importlib
+import inspect
 import os
 import sys
 import traceback
 import uuid
 from collections.abc import Callable
-from typing import NoReturn, ParamSpec, TypeVar
+from typing import Annotated, Any, NoReturn, ParamSpec, TypeVar
 
 import typer
 
-from service.problems import EXIT_INTERRUPTED, ServiceError, Unexpected
+from service.cli.warned import begin, warnings_so_far
+from service.problems import EXIT_INTERRUPTED, EXIT_WARNINGS, ServiceError, Unexpected
 
 P = ParamSpec("P")
 R = TypeVar("R")
+Strict = Annotated[bool, typer.Option("--strict", help="End with exit code 3 if anything is implausible.")]
+
+
+def computing(verb: Callable[..., R]) -> Callable[..., R]:
+    """Give `verb` the option ``--strict``, by which its warnings decide its exit code; guard it."""
+    guard = guarded(verb)
+
+    @functools.wraps(verb)
+    def run(*args: Any, strict: bool = False, **kwargs: Any) -> R:
+        answer = guard(*args, **kwargs)
+        count = len(warnings_so_far())
+        if strict and count:
+            _leave(f"error: {count} warning{'s' if count > 1 else ''} under --strict", EXIT_WARNINGS)
+        return answer
+
+    option = inspect.Parameter("strict", inspect.Parameter.KEYWORD_ONLY, default=False, annotation=Strict)
+    own = inspect.signature(verb, eval_str=True)
+    signature = own.replace(parameters=[*own.parameters.values(), option])
+    run.__signature__ = signature  # type: ignore[attr-defined]
+    run.__annotations__ = {name: part.annotation for name, part in signature.parameters.items()}
+    return run
 
 
 def guarded(verb: Callable[P, R]) -> Callable[P, R]:
@@ -24,6 +47,7 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(verb)
     def run(*args: P.args, **kwargs: P.kwargs) -> R:
+        begin(next((name for name in ("json", "csv") if kwargs.get(name)), "text"))
         try:
             return verb(*args, **kwargs)
         except (typer.Exit, typer.Abort):

@@ -1,12 +1,15 @@
-"""Ctrl-C as a request: long work stops at its next safe place, and a second one stops it at once."""
+"""Requests to stop: long work ends at its next safe place, at a second request and in services at once."""
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import NoReturn
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
@@ -33,3 +36,14 @@ def until_interrupted() -> Iterator[Callable[[], bool]]:
     finally:
         for number, handler in zip(_SIGNALS, before, strict=True):
             signal.signal(number, handler)
+
+
+def leave() -> NoReturn:
+    """End a process with success whose work is done, without the interpreter's own end.
+
+    That frees module after module, for 0.7 CPU s once both libraries are loaded: several seconds beside
+    twenty busy processes, in which a supervisor waits.
+    """
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)

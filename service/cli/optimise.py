@@ -8,8 +8,11 @@ from pathlib import Path
 
 from fe_contact.microgeometry import Optimisation
 from service.cli.interrupt import until_interrupted
+from service.cli.judged_case import judged_case
 from service.cli.output import console, output_files, print_json, progress_bar, table
+from service.cli.warned import messages, warnings_so_far
 from service.convert.optimisation import boundary_values, optimisation_json, optimisation_of
+from service.convert.stamp import stamp
 from service.convert.task_workers import Hands, working_hands
 from service.directories import cache_home
 from service.report.image import png
@@ -20,13 +23,13 @@ from service.report.optimisation import (
     ripple_table,
 )
 from service.report.write import write_whole
-from service.schemas import Case, read_model
+from service.schemas import read_model
 from service.schemas.optimisation import OptimisationInput
 
 
 def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, as_json: bool) -> None:
     """Optimise, write, print."""
-    given, wanted = read_model(Case, case), read_model(OptimisationInput, study)
+    given, wanted = judged_case(case), read_model(OptimisationInput, study)
     targets = [] if output is None else output_files(output, "optimum", tuple(_WRITERS))
     with working_hands(hands) as workers, progress_bar() as report, until_interrupted() as cancel:
         home = cache_home()
@@ -36,6 +39,7 @@ def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, 
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _WRITERS[target.suffix](found, target)
+        stamp(target, warnings_so_far())
     if as_json:
         print_json({"written": [str(target) for target in targets], **optimisation_json(found)})
     else:
@@ -51,7 +55,7 @@ def _picture(found: Optimisation, target: Path) -> None:
 
 def _page(found: Optimisation, target: Path) -> None:
     """Write the report page."""
-    write_whole(optimisation_page(found), target)
+    write_whole(optimisation_page(found), target, warnings=messages())
 
 
 def _json(found: Optimisation, target: Path) -> None:

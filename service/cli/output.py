@@ -13,14 +13,15 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from service.cli.warned import warnings_so_far
 from service.problems import BadInput
 
 Report = Callable[[str, float], None]
 
 
 def print_json(facts: dict[str, Any]) -> None:
-    """Print one JSON object; a number that is none is an error, never null."""
-    sys.stdout.write(json.dumps(facts, allow_nan=False) + "\n")
+    """Print one JSON object, with what the verb warns of; a number that is none is an error, never null."""
+    sys.stdout.write(json.dumps({**facts, "warnings": warnings_so_far()}, allow_nan=False) + "\n")
     sys.stdout.flush()
 
 

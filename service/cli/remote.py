@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
+from service.cli.warned import warn
 from service.client import JobState, LineOfActionClient, Result
+from service.convert.stamp import stamped
 from service.problems import BadInput, NotFound, ResultNotReady
 from service.schemas import Case, read_table, validated
 from service.schemas.result_kinds import RESULT_KINDS
@@ -38,6 +40,7 @@ def run_submit(
     further = _further(wish)
     with LineOfActionClient(service) as client:
         state = _submitted(client, file, wish.process, further)
+        warn(state.warnings)
         facts: dict[str, object] = {"job": state.id, "process": state.process, "status": state.status}
         if wait or output is not None:
             result = _waited(client, state)
@@ -45,6 +48,7 @@ def run_submit(
         if output is not None:
             shutil.copyfile(client.fetch_file(result.key, result.kind), output)
             facts["file"] = str(output)
+            warn(stamped(output))
     _show(facts, as_json)
     if "hash" not in facts and not as_json:
         console().print(
@@ -113,6 +117,7 @@ def run_fetch(name: str, output: Path, service: str, *, as_json: bool) -> None:
             found = _ended(client, name)
             file, key, kind = client.fetch_file(found.key, found.kind), found.key, found.kind
     shutil.copyfile(file, output)
+    warn(stamped(output))
     _show({"hash": key, "kind": kind, "file": str(output)}, as_json)
 
 

@@ -11,7 +11,9 @@ from pydantic import ValidationError
 
 from fe_contact.analysis import LoadDistribution
 from service.cli.output import Report, check_writable, console, print_json, progress_bar
+from service.cli.warned import warn
 from service.convert.flanks import case_at, flanks_of
+from service.convert.stamp import stamped
 from service.directories import cache_home
 from service.problems import BadInput
 from service.report.aligned import aligned, headline_load
@@ -31,6 +33,7 @@ def run_report(
             raise BadInput.of("file", str(file), "an STE database, flank results or a run", "Check the path.")
     check_writable(output)
     read = read_inputs(files)
+    warn(warning for file in files for warning in stamped(file))
     if flank:
         with progress_bar() as report:
             read = replace(read, flanks=_flanks(read, report))

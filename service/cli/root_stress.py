@@ -8,14 +8,17 @@ from pathlib import Path
 from typing import Any
 
 from service.cli.effects import assumption_lines
+from service.cli.judged_case import judged_case
 from service.cli.output import check_writable, console, print_json, progress_bar, table
+from service.cli.warned import warn
 from service.convert.checks import check_case
-from service.convert.flanks import case_at
+from service.convert.plausibility import phrased
 from service.convert.root_stress import GEARS, root_stress_json, root_stress_of
+from service.convert.vocabulary import case_field
 from service.directories import cache_home
 from service.report.image import png
 from service.report.root_stress import root_stress_figure
-from service.schemas import Case, read_model, validated
+from service.schemas import validated
 from service.schemas.flank import FlankPoint
 
 _SERIES = ("tension_mpa", "compression_mpa", "at_tension_peak_mpa", "at_compression_peak_mpa")
@@ -26,7 +29,7 @@ def run_root_stress(
 ) -> None:
     """Compute, draw and print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
-    case = case_at(read_model(Case, file), chosen)
+    case = judged_case(file, chosen)
     if image is not None:
         check_writable(image)
     check_case(case)
@@ -34,6 +37,7 @@ def run_root_stress(
         stress = root_stress_of(case, cache_home() / "compliance", report)
     if image is not None:
         image.write_bytes(png(root_stress_figure(stress)))
+    warn(phrased(stress.warnings, case_field))
     found = root_stress_json(stress)
     if as_json:
         print_json(found)

@@ -8,15 +8,17 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fe_contact.microgeometry import ToleranceStudy
+from service.cli.judged_case import judged_case
 from service.cli.output import check_writable, console, print_json, progress_bar, table
+from service.cli.warned import messages, warnings_so_far
 from service.convert.scatter import Sampling, scatter_json, scatter_of_case
+from service.convert.stamp import stamp
 from service.convert.task_workers import Hands, working_hands
 from service.directories import cache_home
 from service.problems import BadInput
 from service.report.image import png
 from service.report.scatter import influence_table, quantile_table, scatter_figure, scatter_page
 from service.report.write import write_whole
-from service.schemas import Case, read_model
 
 
 @dataclass(frozen=True)
@@ -29,7 +31,7 @@ class Wanted:
 
 def run_scatter(case: Path, output: Path | None, wanted: Wanted, *, as_json: bool) -> None:
     """Sample, write, print."""
-    given = read_model(Case, case)
+    given = judged_case(case)
     if output is not None:
         if output.suffix not in _WRITERS:
             endings = ", ".join(_WRITERS)
@@ -39,6 +41,7 @@ def run_scatter(case: Path, output: Path | None, wanted: Wanted, *, as_json: boo
         found = scatter_of_case(given, wanted.sampling, cache_home() / "compliance", report, workers)
     if output is not None:
         _WRITERS[output.suffix](found, output)
+        stamp(output, warnings_so_far())
     if as_json:
         print_json({"written": None if output is None else str(output), **scatter_json(found)})
     else:
@@ -52,7 +55,7 @@ def _json(found: ToleranceStudy, target: Path) -> None:
 
 _WRITERS: dict[str, Callable[[ToleranceStudy, Path], object]] = {
     ".png": lambda found, target: target.write_bytes(png(scatter_figure(found))),
-    ".html": lambda found, target: write_whole(scatter_page(found), target),
+    ".html": lambda found, target: write_whole(scatter_page(found), target, warnings=messages()),
     ".json": _json,
 }
 

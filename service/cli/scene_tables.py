@@ -9,11 +9,13 @@ from fe_contact.ste import PairFacts, SteDatabase
 from service.cli.analyze import analyzed
 from service.cli.output import Report
 from service.cli.remote import watching
+from service.cli.warned import warn
 from service.client import LineOfActionClient
-from service.client.mesh_tables import MeshTables, TableSource, scene_on_tables
+from service.client.mesh_tables import MeshTables, TableSource
 from service.client.portable import case_of_mesh
 from service.convert.checks import check_case
-from service.convert.scene import check_scene
+from service.convert.plausibility import case_warnings, scene_warnings, within
+from service.convert.scene import check_scene, dynamic_scene
 from service.convert.topology import facts_of
 from service.problems import BadInput
 from service.schemas import Case
@@ -33,8 +35,12 @@ def scene_with_tables(scene: SceneInput, folder: Path, service: str | None, repo
 def _checked(scene: SceneInput, folder: Path, source: TableSource) -> Scene:
     """Check the scene before anything is computed for it, then gather its tables."""
     tables = MeshTables(folder, source)
-    check_scene(scene, {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in enumerate(scene.meshes)})
-    return scene_on_tables(scene, tables)
+    facts = {mesh.name: _facts(i, mesh, folder, tables) for i, mesh in enumerate(scene.meshes)}
+    warn(scene_warnings(scene, check_scene(scene, facts)))
+    databases = {mesh.name: tables.of(i, mesh) for i, mesh in enumerate(scene.meshes)}
+    found = dynamic_scene(scene, databases)
+    warn(scene_warnings(scene, found, {name: table.metadata.warnings for name, table in databases.items()}))
+    return found
 
 
 def _facts(index: int, mesh: MeshInput, folder: Path, tables: MeshTables) -> PairFacts:
@@ -44,6 +50,7 @@ def _facts(index: int, mesh: MeshInput, folder: Path, tables: MeshTables) -> Pai
     if case is None:
         return tables.of(index, mesh).facts
     try:
+        warn(within(warning, place) for warning in case_warnings(case))
         return facts_of(check_case(case))
     except BadInput as error:
         raise error.within(f"{place}.case") from None

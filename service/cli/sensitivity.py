@@ -10,9 +10,12 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
+from service.cli.judged_case import judged_case
 from service.cli.output import check_writable, console, print_json, progress_bar, table
+from service.cli.warned import messages, warnings_so_far
 from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
 from service.convert.sensitivity_file import write_studies
+from service.convert.stamp import stamp
 from service.convert.task_workers import Hands, working_hands
 from service.directories import cache_home
 from service.problems import BadInput
@@ -20,7 +23,6 @@ from service.report.image import png
 from service.report.inputs import Inputs
 from service.report.sensitivity import sensitivity_figure, sensitivity_table
 from service.report.write import write_page
-from service.schemas import Case, read_model
 
 _LARGEST_UM, _LARGEST_PERCENT = 10_000.0, 10.0
 
@@ -48,7 +50,7 @@ def run_sensitivity(
     """Study every case, write, print."""
     deviations = varied.deviations
     names = _names(files)
-    cases = [read_model(Case, file) for file in files]
+    cases = [judged_case(file) for file in files]
     targets = _targets(output)
     cache = cache_home() / "compliance"
     with working_hands(hands) as workers, progress_bar() as report:
@@ -59,6 +61,7 @@ def run_sensitivity(
     for target in targets:
         target.parent.mkdir(exist_ok=True)
         _WRITERS[target.suffix](studies, target)
+        stamp(target, warnings_so_far())
     if as_json:
         print_json({"written": [str(target) for target in targets], **studies_json(studies)})
     else:
@@ -111,7 +114,7 @@ def _picture(studies: Sequence[PairStudy], target: Path) -> None:
 
 def _page(studies: Sequence[PairStudy], target: Path) -> None:
     """Write the report page."""
-    write_page(Inputs(studies=tuple(studies)), target)
+    write_page(Inputs(studies=tuple(studies), warnings=tuple(messages())), target)
 
 
 def _csv(studies: Sequence[PairStudy], target: Path) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import signal
 import socket
-import sys
 from types import FrameType
 from typing import NoReturn
 
@@ -14,10 +13,12 @@ from fastapi import FastAPI
 
 from service.access import open_keyring
 from service.app import create_app
-from service.cli.bounded_http import MOST_CONNECTIONS, BoundedHttp
+from service.cli.bounded_http import BoundedHttp
+from service.cli.interrupt import leave
 from service.cli.log import log_to_standard_error
-from service.jobs.live_desk import LiveDesk
+from service.directories import keep_private
 from service.problems import BadInput
+from service.routes.context import Context
 from service.settings import Settings, load_settings
 
 _STOPPING_S = 2
@@ -29,6 +30,7 @@ first, a request that is on its way just then would be answered with a reset."""
 def run_serve(*, works: bool = True, **given: object) -> None:
     """Serve until stopped by SIGTERM or SIGINT; workers, if it `works`, end with it."""
     settings = load_settings(**given)
+    keep_private()
     log_to_standard_error()
     open_keyring(settings)  # refused before a socket is opened
     with _listener(settings) as listener:
@@ -47,24 +49,23 @@ def http_server(app: FastAPI) -> uvicorn.Server:
         ws="none",
         log_config=None,
         access_log=False,
-        limit_concurrency=MOST_CONNECTIONS,
         timeout_graceful_shutdown=_STOPPING_S,
         timeout_keep_alive=_KEPT_S,
         lifespan="on",
     )
-    return _Server(config, app.state.context.live)
+    return _Server(config, app.state.context)
 
 
 class _Server(uvicorn.Server):
     """Tells those who wait for a live answer at once that the service stops; the rest have time to end."""
 
-    def __init__(self, config: uvicorn.Config, live: LiveDesk) -> None:
+    def __init__(self, config: uvicorn.Config, context: Context) -> None:
         super().__init__(config)
-        self._live = live
+        self._context = context
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
-        """End the live worker, then what uvicorn ends."""
-        await asyncio.to_thread(self._live.stop)
+        """End the workers that somebody waits for, then what uvicorn ends."""
+        await asyncio.to_thread(self._context.stop_waiting)
         await super().shutdown(sockets)
 
 
@@ -78,7 +79,7 @@ def _announce(listener: socket.socket) -> None:
 
 def _stopped(_number: int, _frame: FrameType | None) -> NoReturn:
     """End with success: uvicorn raises the signal again after it has shut everything down."""
-    sys.exit(0)
+    leave()
 
 
 def _listener(settings: Settings) -> socket.socket:

@@ -12,8 +12,10 @@ from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar
 from service.cli.run_effects import effect_lines
 from service.cli.scene_tables import scene_with_tables
+from service.cli.warned import warnings_so_far
 from service.client.portable import scene_of
 from service.convert.runs import run_json, staged
+from service.convert.stamp import stamp
 from service.problems import BadInput, JobFailed
 
 
@@ -26,6 +28,7 @@ def run_simulate(file: Path, output: Path, service: str | None, *, resume: bool,
         raise BadInput.of("--resume", str(output), "the file of a run that was interrupted", advice)
     with progress_bar() as report:
         _run(scene_with_tables(scene, folder, service, report), output, report, resume=resume)
+    stamp(output, warnings_so_far())
     facts = {"file": str(output), **run_json(output)}
     if as_json:
         print_json(facts)

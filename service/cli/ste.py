@@ -11,6 +11,7 @@ from typing import Any
 
 from fe_contact.ste import SteDatabase
 from service.cli.output import console, print_json, table
+from service.cli.warned import warn
 from service.convert.answers import curve_json
 from service.problems import BadInput
 
@@ -31,7 +32,9 @@ class CurveRequest:
 
 def run_ste(file: Path, request: CurveRequest, *, as_csv: bool, as_json: bool) -> None:
     """Read, evaluate, print."""
-    curve = curve_json(open_ste(file), **_arguments(request))
+    database = open_ste(file)
+    warn(database.metadata.warnings)
+    curve = curve_json(database, **_arguments(request))
     if as_json:
         print_json(curve)
     elif as_csv:

@@ -10,12 +10,18 @@ from typing import Any
 import typer
 
 from service.cli.output import console, print_json, table
+from service.directories import keep_private
 from service.jobs.machinery import Machinery, job_machinery
 from service.jobs.process import Registry
 from service.jobs.retention import Retention
 from service.problems import EXIT_FAILED
 from service.settings import Settings, load_settings
+from service.store import DATABASE_FILE, ResultStore, open_database
+from service.store.deployment import Deployment
 from service.store.maintenance import Leftover, verify_store
+from service.store.places import result_files
+from service.store.quarantine import Quarantine
+from service.store.reindex import reindex
 
 
 def run_verify(*, as_json: bool, **given: object) -> None:
@@ -26,11 +32,11 @@ def run_verify(*, as_json: bool, **given: object) -> None:
     if as_json:
         print_json(asdict(found))
     else:
-        for why, names in (("damaged, set aside", found.damaged), ("missing", found.missing)):
-            for name in names:
-                typer.echo(f"{why}: {name}")
-        bad = len(found.damaged) + len(found.missing)
+        _list(("damaged, set aside", found.damaged), ("missing", found.missing), ("unknown", found.unknown))
+        bad, aside = len(found.damaged) + len(found.missing), len(found.unknown)
         typer.echo(f"{found.sound} files sound, {bad} damaged or missing")
+        if aside or found.quarantined:
+            typer.echo(f"{aside} not in the index (kept), {found.quarantined} in quarantine")
     if found.damaged or found.missing:
         raise typer.Exit(EXIT_FAILED)
 
@@ -40,16 +46,48 @@ def run_gc(*, as_json: bool, dry_run: bool, older_than: float | None, **given: o
     settings, parts = _opened(given)
     days = settings.retention_days if older_than is None else older_than
     with closing(parts):
-        retention = Retention(parts.engine, parts.store, settings.data_directory)
+        retention = Retention(parts.engine, parts.store, settings.data_directory, settings.quarantine_days)
         found = list(retention.collect(days, dry_run=dry_run))
     if as_json:
         facts: dict[str, Any] = {"dry_run": dry_run, "older_than_days": days}
+        facts["quarantine_days"] = settings.quarantine_days
         print_json(facts | {"bytes": sum(one.size for one in found), "removed": [asdict(o) for o in found]})
     else:
-        _show(found, dry_run=dry_run)
+        _show(found, settings.quarantine_days, dry_run=dry_run)
 
 
-def _show(found: Sequence[Leftover], *, dry_run: bool) -> None:
+def run_reindex(*, as_json: bool, quarantined: bool, **given: object) -> None:
+    """Rebuild the index, and fail if a file was damaged."""
+    settings = load_settings(**given)
+    keep_private()
+    engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
+    store = ResultStore(engine, result_files(settings.data_directory, settings.results_url))
+    deployment = Deployment(engine, store)
+    try:
+        if quarantined:
+            deployment.take_over()
+            Quarantine(store.files, deployment, settings.quarantine_days).release()
+        found = reindex(store, deployment)
+    finally:
+        engine.dispose()
+    if as_json:
+        print_json(asdict(found))
+    else:
+        _list(("damaged", found.damaged), ("of a result that has a file", found.doubled))
+        _list(("file gone, struck from the index", found.struck))
+        typer.echo(f"{found.entered} results entered, {found.known} known, {len(found.damaged)} damaged")
+    if found.damaged:
+        raise typer.Exit(EXIT_FAILED)
+
+
+def _list(*groups: tuple[str, Sequence[str]]) -> None:
+    """Print names with what is told of them."""
+    for why, names in groups:
+        for name in names:
+            typer.echo(f"{why}: {name}")
+
+
+def _show(found: Sequence[Leftover], quarantine_days: float, *, dry_run: bool) -> None:
     """Print a table of what was found by its reason."""
     reasons = sorted({one.why for one in found})
     rows = []
@@ -59,9 +97,12 @@ def _show(found: Sequence[Leftover], *, dry_run: bool) -> None:
     if rows:
         console().print(table(("left over", "number", "MB"), rows))
     typer.echo(f"{len(found)} {'to remove' if dry_run else 'removed'}")
+    if held := sum(one.quarantined for one in found):
+        typer.echo(f"of these {held} to quarantine for {quarantine_days:g} days")
 
 
 def _opened(given: dict[str, object]) -> tuple[Settings, Machinery]:
     """Open the database and the store of the settings."""
     settings = load_settings(**given)
+    keep_private()
     return settings, job_machinery(settings, Registry(), works=False)

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import signal
 import threading
+from contextlib import closing
 from types import FrameType
 
+from service.cli.interrupt import leave
 from service.cli.log import log_to_standard_error
+from service.directories import keep_private
 from service.jobs.catalogue import default_registry
 from service.jobs.machinery import job_machinery
-from service.settings import load_settings
+from service.settings import Settings, load_settings
 from service.store import DirectoryLock
 from service.store.schema import shown
 
@@ -17,6 +20,7 @@ from service.store.schema import shown
 def run_work(**given: object) -> None:
     """Run jobs until stopped by SIGTERM or SIGINT; workers end with the scheduler."""
     settings = load_settings(**given)
+    keep_private()
     log_to_standard_error()
     lock = DirectoryLock(settings.data_directory)
     lock.acquire()
@@ -27,12 +31,19 @@ def run_work(**given: object) -> None:
 
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, stop)
-    machinery = job_machinery(settings, default_registry())
-    machinery.scheduler.start()
     try:
-        print(f"lineofaction works for {shown(machinery.engine)}", flush=True)  # noqa: T201 (command line)
-        stopped.wait()
+        _work(settings, stopped)
     finally:
-        machinery.scheduler.stop()
-        machinery.engine.dispose()
         lock.release()
+    leave()
+
+
+def _work(settings: Settings, stopped: threading.Event) -> None:
+    """Run jobs until `stopped`."""
+    with closing(job_machinery(settings, default_registry())) as machinery:
+        machinery.scheduler.start()
+        try:
+            print(f"lineofaction works for {shown(machinery.engine)}", flush=True)  # noqa: T201 (command line)
+            stopped.wait()
+        finally:
+            machinery.scheduler.stop()

@@ -19,6 +19,8 @@ class JobState:
         Per cent of the whole job.
     stage_progress : int
         Per cent of the stage.
+    warnings : tuple of dict
+        What is implausible about its inputs: check, field, value, unit, message; empty in lists of jobs.
     """
 
     id: str
@@ -28,6 +30,7 @@ class JobState:
     stage: str
     progress: int
     stage_progress: int
+    warnings: tuple[dict[str, Any], ...] = ()
 
     @property
     def ended(self) -> bool:
@@ -38,7 +41,9 @@ class JobState:
     def from_json(cls, facts: dict[str, Any]) -> JobState:
         """Read a status document."""
         names = ("status", "message", "stage", "progress", "stage_progress")
-        return cls(facts["jobID"], facts["processID"], **{name: facts[name] for name in names})
+        warnings = tuple(facts.get("warnings") or ())
+        known = {name: facts[name] for name in names}
+        return cls(facts["jobID"], facts["processID"], **known, warnings=warnings)
 
 
 Watch = Callable[[JobState], None]

@@ -138,6 +138,7 @@ class Studies(JobClient):
         *,
         speed_rpm: Sequence[float] = (),
         orders: int = 10,
+        highest_frequency_hz: float | None = None,
     ) -> Path:
         """Return the file of a scene's modal analysis: submit, wait, fetch.
 
@@ -150,8 +151,11 @@ class Studies(JobClient):
         orders : int
             Multiples of the mesh frequencies. Read the file with
             `dynamics.linearize.ModalAnalysis.from_netcdf`.
+        highest_frequency_hz : float, optional
+            To which shafts are resolved; left out: the highest of the orders at the highest speed.
         """
-        return self._scene_study("modes", scene, progress, {"speed_rpm": list(speed_rpm), "orders": orders})
+        study = {"speed_rpm": list(speed_rpm), "orders": orders, "highest_frequency_hz": highest_frequency_hz}
+        return self._scene_study("modes", scene, progress, study)
 
     def response_file(
         self,

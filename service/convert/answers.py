@@ -114,6 +114,7 @@ def summary_json(database: SteDatabase) -> Json:
         ],
         "effect_ledger": database.metadata.effect_ledger,
         "receipt": database.metadata.receipt,
+        "warnings": database.metadata.warnings,
     }
 
 
@@ -125,6 +126,7 @@ def metadata_json(database: SteDatabase) -> Json:
         "case": database.metadata.case,
         "effect_ledger": database.metadata.effect_ledger,
         "receipt": database.metadata.receipt,
+        "warnings": database.metadata.warnings,
         "software_versions": database.metadata.software_versions,
         "failed_points": database.n_failed,
         "period": database.period,

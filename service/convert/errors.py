@@ -89,11 +89,16 @@ def _scaled(value: object, unit: float) -> object:
 def _in_boundary_units(text: str, unit: float) -> str:
     """Bound with its numbers in boundary units.
 
-    A number with a unit is converted by it. A bare one is the field's only where the bound is nothing but a
-    range; inside a sentence it may be anything, such as a contact ratio.
+    A number with a unit is converted by it, a length of the limit itself into the field's own. A bare one is
+    the field's only where the bound is nothing but a range; inside a sentence it may be anything, such as a
+    contact ratio.
     """
     if unit != 1.0 and _RANGE.fullmatch(text):
         return _PLAIN.sub(lambda match: boundary_text(float(match.group()) / unit), text)
+    if unit == MM:
+        limit, comma, reason = text.partition(",")
+        in_mm = _LENGTH.sub(lambda match: f"{boundary_text(float(match.group(1)) / MM)} mm", limit)
+        return in_mm + comma + _quantities(reason) if ":" not in limit else _quantities(text)
     return _quantities(text)
 
 

@@ -27,6 +27,7 @@ def modes_of(scene: Scene, asked: ModesInput, progress: Progress) -> ModalAnalys
             [value * RPM for value in asked.speed_rpm],
             asked.orders,
             progress=lambda fraction: progress("modes", fraction),
+            highest_frequency=asked.highest_frequency_hz,
         )
 
 
@@ -36,6 +37,7 @@ def modes_json(found: ModalAnalysis) -> Json:
     start = facts.pop("equilibrium")
     return {
         "leading_shaft": facts["leading_shaft"],
+        "highest_frequency_hz": facts["highest_frequency"],
         "equilibrium": {
             "status": start["status"].lower(),
             "residual_n": start["residual"],

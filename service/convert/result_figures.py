@@ -15,9 +15,10 @@ from service.convert.response import response_json
 from service.convert.runs import run_json
 from service.convert.sensitivity import studies_json
 from service.convert.sensitivity_file import read_studies
+from service.convert.stamp import WARNINGS, stamped
 from service.convert.steady import steady_json
 
-FIGURES: dict[str, Callable[[Path], dict[str, Any]]] = {
+_FIGURES: dict[str, Callable[[Path], dict[str, Any]]] = {
     "run": run_json,
     "flanks": lambda file: flank_json(LoadDistribution.from_netcdf(file)),
     "sensitivity": lambda file: studies_json(read_studies(file)),
@@ -26,3 +27,8 @@ FIGURES: dict[str, Callable[[Path], dict[str, Any]]] = {
     "steady": lambda file: steady_json(SteadyStates.from_netcdf(file)),
 }
 """Of the kinds kept as netCDF, but for databases, which stay open."""
+
+
+def figures_of(kind: str, file: Path) -> dict[str, Any]:
+    """Return what a stored file of a kind says, its warnings included."""
+    return _FIGURES[kind](file) | {WARNINGS: stamped(file)}

@@ -16,7 +16,6 @@ from dynamics.forces import (
 )
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
 from dynamics.system import Integration, Outputs, Scene, with_planets
-from dynamics.system.kinematics import solve_kinematics
 from dynamics.system.motion_check import check_load_flow, check_motion
 from fe_contact.ste import PairFacts, SteDatabase
 from service.convert.bearings import (
@@ -68,9 +67,15 @@ def dynamic_scene(scene: SceneInput, databases: Mapping[str, SteDatabase]) -> Sc
     return replace(moving, meshes=meshes)
 
 
-def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> None:
-    """Raise `BadInput` if no such system exists or moves, by the facts of the pairs (by name of the mesh)."""
-    _moving(scene, facts, dict.fromkeys(facts, straight_table(ANY_STIFFNESS)))
+def check_scene(scene: SceneInput, facts: Mapping[str, PairFacts]) -> Scene:
+    """Return the scene on tables that stand in for its own, by the facts of the pairs (by name of the mesh).
+
+    Raises
+    ------
+    BadInput
+        No such system exists or moves.
+    """
+    return _moving(scene, facts, dict.fromkeys(facts, straight_table(ANY_STIFFNESS)))
 
 
 def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[str, MeshTable]) -> Scene:
@@ -83,7 +88,7 @@ def _moving(scene: SceneInput, facts: Mapping[str, PairFacts], tables: Mapping[s
         check_motion(one_of_each)
     whole = _with_all_planets(scene, one_of_each)
     with named(""):
-        check_load_flow(whole, solve_kinematics(whole))
+        check_load_flow(whole)
     return whole
 
 
@@ -260,6 +265,8 @@ def _outputs(scene: SceneInput) -> Outputs:
             given.displacements,
             accelerations=given.accelerations,
             receipt=given.receipt,
+            mesh_orders=given.mesh_orders,
+            anti_alias=given.anti_alias,
         )
 
 

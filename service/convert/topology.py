@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from dynamics.system.base_pitches import PRINTED
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from service.convert.units import MM
@@ -55,7 +56,7 @@ def teeth_of(scene: SceneInput, facts: Mapping[str, PairFacts]) -> dict[str, Tee
             name, teeth = getattr(mesh, role), _side(facts[mesh.name], side)
             known = found.setdefault(name, teeth)
             if known.teeth != teeth.teeth or not math.isclose(
-                known.base_radius, teeth.base_radius, rel_tol=_SAME
+                known.base_radius, teeth.base_radius, rel_tol=PRINTED
             ):
                 bound = f"the gear of {known.teeth} teeth that its other mesh has ({teeth.teeth} teeth here)"
                 raise BadInput.of(f"meshes[{index}].{role}", name, bound, "Check the cases of both meshes.")

@@ -27,6 +27,25 @@ BY_SUFFIX: dict[str, float] = {
 }
 
 
+NAMES: dict[str, str] = {
+    "_mm": "mm",
+    "_n_per_um": "N/um",
+    "_n_per_mm3": "N/mm^3",
+    "_um": "um",
+    "_mrad": "mrad",
+    "_nm": "nm",
+    "_gpa": "GPa",
+    "_deg": "deg",
+    "_rpm": "rpm",
+}
+"""How the units of `BY_SUFFIX` are written."""
+
+
+def unit_name(name: str) -> str | None:
+    """Return how the unit of the boundary field `name` is written; None where it is SI's or none."""
+    return next((unit for suffix, unit in NAMES.items() if name.endswith(suffix)), None)
+
+
 def factor(name: str) -> float:
     """Return the SI value of one unit of the boundary field `name`, 1 for a name without such a unit."""
     return next((value for suffix, value in BY_SUFFIX.items() if name.endswith(suffix)), 1.0)
@@ -34,4 +53,4 @@ def factor(name: str) -> float:
 
 def boundary_text(value: float) -> str:
     """Return a number as users write it."""
-    return f"{value:.6g}"
+    return f"{value:.7g}"

@@ -83,9 +83,17 @@ _LAST = {
     "speed": "speed_rpm",
     "torque": "torque_n_m",
     "sample_rate": "sample_rate_hz",
+    "highest_frequency": "highest_frequency_hz",
     "fixed_step": "fixed_step_s",
     "smallest_step": "smallest_step_s",
     "largest_step": "largest_step_s",
+    "radial_clearance": "radial_clearance_um",
+    "backlash": "backlash_um",
+    "density": "density_kg_per_m3",
+    # results
+    "max_pressure": "max_pressure_gpa",
+    "root_stress": "root_stress_gpa",
+    "transmission_error": "transmission_error_um",
 }
 
 # What both gears share lies in [pair], whichever gear reports it.

@@ -9,65 +9,71 @@ import numpy as np
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import RunFigures
 from fe_contact.analysis.ablation import Ablation, EffectAblation
+from fe_contact.effects.worth.influence import TRIFLE, Influence, signed
 from service.report import palette
 from service.report.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.report.note_places import placed
 
 _CASE_HEAD = (
-    "effect", "case has it", "mean, µm", "mean, %", "estimated, %", "peak to peak, µm", "peak to peak, %",
-    "estimated, %", "first harmonic, µm", "cost, x",
+    "effect", "case has it", "mean, µm", "estimated", "mean, %", "estimated", "peak to peak, µm", "estimated",
+    "peak to peak, %", "estimated", "first harmonic, µm", "cost, x",
 )  # fmt: skip
 _SCENE_HEAD = (
     "effect", "scene has it", "worth, µm", "mean DTE, µm", "estimated", "peak to peak, µm", "estimated",
     "order 1, µm", "bearing force, order 1, N", "cost, x",
 )  # fmt: skip
-_SMALLEST = 1e-3  # per cent; smaller changes are nothing
+_SMALLEST = 1e-3  # um; smaller changes are nothing
 
 
 def case_ablation_table(found: Ablation) -> Table:
-    """Return the changes at the highest load, largest peak-to-peak change first."""
-    caption = (
-        f"What leaving an effect out changes at {number(float(found.torque[-1]))} N m, misalignment "
-        f"{number(1e6 * found.misalignment)} µm"
-    )
-    return Table(caption, _CASE_HEAD, tuple(_case_row(entry) for entry in _sorted(found)))
+    """Return the changes at the nominal load, largest peak-to-peak change first, trifles in one row."""
+    ordered = _sorted(found)
+    shown = [entry for entry in ordered if not _trifle(found, entry)]
+    rows = [_case_row(found, entry) for entry in shown]
+    if len(shown) < len(ordered):
+        names = ", ".join(entry.name for entry in ordered if entry not in shown)
+        folded = f"{len(ordered) - len(shown)} below {100 * TRIFLE:g} %: {names}"
+        rows.append((folded, *[""] * (len(_CASE_HEAD) - 1)))
+    caption = f"What leaving an effect out changes, computed and estimated, {_place(found)}"
+    return Table(caption, _CASE_HEAD, tuple(rows))
+
+
+def _place(found: Ablation) -> str:
+    """Say at which load and misalignment."""
+    return f"at {number(float(found.torque[-1]))} N m, misalignment {number(1e6 * found.misalignment)} µm"
+
+
+def _trifle(found: Ablation, entry: EffectAblation) -> bool:
+    """Whether an effect is computed and estimated to change next to nothing."""
+    return found.measured(entry).trifle and (entry.estimate is None or entry.estimate.trifle)
 
 
 def _sorted(found: Ablation) -> list[EffectAblation]:
-    """Largest relative change of peak-to-peak first."""
-    return sorted(found.effects, key=lambda one: -abs(_percent(one)[1]))
+    """Largest change of peak-to-peak first."""
+    return sorted(found.effects, key=lambda one: -abs(found.measured(one).peak_to_peak))
 
 
-def _percent(entry: EffectAblation) -> tuple[float, float]:
-    """Measured changes of mean and peak-to-peak at the highest load, %."""
-    whole = entry.with_effect
-    mean = 100.0 * entry.mean_change[-1] / whole.mean[-1]
-    return float(mean), float(100.0 * entry.peak_to_peak_change[-1] / whole.peak_to_peak[-1])
+def _cells(influence: Influence | None) -> tuple[str, ...]:
+    """Write the changes of mean and peak-to-peak in µm and %; no % of a vanishing ripple."""
+    if influence is None:
+        return ("",) * 4
+    ripple = influence.relative_peak_to_peak
+    return (
+        signed(1e6 * influence.mean),
+        signed(100.0 * influence.relative_mean),
+        signed(1e6 * influence.peak_to_peak),
+        "" if ripple is None else signed(100.0 * ripple),
+    )
 
 
-def _estimated(entry: EffectAblation) -> tuple[float, float] | None:
-    """Estimated changes in parts of the computed values, %."""
-    if entry.estimate is None:
-        return None
-    whole = entry.with_effect
-    mean = 100.0 * entry.estimate.mean[-1] / whole.mean[-1]
-    return float(mean), float(100.0 * entry.estimate.peak_to_peak[-1] / whole.peak_to_peak[-1])
-
-
-def _case_row(entry: EffectAblation) -> tuple[str, ...]:
+def _case_row(found: Ablation, entry: EffectAblation) -> tuple[str, ...]:
     """One effect."""
-    measured, estimated = _percent(entry), _estimated(entry)
-    told = ("", "") if estimated is None else tuple(_signed(value) for value in estimated)
+    pairs = zip(_cells(found.measured(entry)), _cells(entry.estimate), strict=True)
     return (
         entry.name,
         "on" if entry.on else "off",
-        _signed(1e6 * float(entry.mean_change[-1])),
-        _signed(measured[0]),
-        told[0],
-        _signed(1e6 * float(entry.peak_to_peak_change[-1])),
-        _signed(measured[1]),
-        told[1],
-        _signed(1e6 * float(entry.harmonic_change[-1, 0])),
+        *(cell for pair in pairs for cell in pair),
+        signed(1e6 * float(entry.harmonic_change[-1, 0])),
         number(entry.cost_ratio, 3),
     )
 
@@ -81,32 +87,32 @@ def case_ablation_figure(found: Ablation) -> Figure:
     """Draw estimated over measured changes, and the harmonics without each effect."""
     return Figure(
         key="ablation",
-        title="What every effect is worth on this case",
+        title="Influence of every effect on this case",
         caption="Each effect switched over by itself, all others as decided: change by leaving it out, in "
-        "size, at the highest load. Between the dotted lines estimates are within a factor 2; changes below "
-        f"{_SMALLEST:g} % are left out.",
+        f"size, {_place(found)}. Between the dotted lines estimates are within a factor 2; changes below "
+        f"{_SMALLEST:g} µm are left out.",
         alternative="; ".join(
-            f"{one.name} {_signed(_percent(one)[1])} % of peak to peak" for one in _sorted(found)
+            f"{one.name} {signed(1e6 * found.measured(one).peak_to_peak)} µm of peak to peak"
+            for one in _sorted(found)
         ),
         content=(
-            _scatter(found, "Mean", 0),
-            _scatter(found, "Peak to peak", 1),
+            _scatter(found, "Mean", "mean"),
+            _scatter(found, "Peak to peak", "peak_to_peak"),
             _harmonics(found),
         ),
         table=case_ablation_table(found),
     )
 
 
-def _scatter(found: Ablation, title: str, which: int) -> Panel:
-    """Estimated over measured change of one quantity, log-log."""
+def _scatter(found: Ablation, title: str, which: str) -> Panel:
+    """Estimated over computed change of one quantity, log-log."""
     points = []
     for entry in found.effects:
-        estimated = _estimated(entry)
-        if estimated is not None:
-            pair = abs(_percent(entry)[which]), abs(estimated[which])
-            points += [(*pair, entry.name)] if min(pair) > _SMALLEST else []
-    sizes = [value for point in points for value in point[:2]] or [0.1, 10.0]
-    ends = np.array([0.5 * min(sizes), 2.0 * max(sizes)])
+        if entry.estimate is not None:
+            sizes = [abs(1e6 * getattr(one, which)) for one in (found.measured(entry), entry.estimate)]
+            points += [(*sizes, entry.name)] if min(sizes) > _SMALLEST else []
+    reached = [value for point in points for value in point[:2]] or [0.1, 10.0]
+    ends = np.array([0.5 * min(reached), 2.0 * max(reached)])
     marks: tuple[tuple[str, float, Dash], ...] = (
         ("equal", 1.0, "dash"),
         ("factor 2", 2.0, "dot"),
@@ -114,11 +120,11 @@ def _scatter(found: Ablation, title: str, which: int) -> Panel:
     )
     lines = [Line(name, ends, factor * ends, palette.MUTED, dash, 1.0) for name, factor, dash in marks]
     if points:
-        measured, estimated_values = (np.array([point[k] for point in points]) for k in (0, 1))
-        lines.append(Line("effects", measured, estimated_values, palette.INK, width=0, markers=True))
+        measured, estimated = (np.array([point[k] for point in points]) for k in (0, 1))
+        lines.append(Line("effects", measured, estimated, palette.INK, width=0, markers=True))
     notes = [Note(x, y, name.replace("_", " ")) for x, y, name in points]
     reach = float(ends[0]), float(ends[1])
-    axes = Axis("measured change, %", "log", reach), Axis("estimated change, %", "log")
+    axes = Axis("computed change, µm", "log", reach), Axis("estimated change, µm", "log")
     beside = placed(notes, *axes, (0.5 * reach[0], 2.0 * reach[1]))
     return Panel(*axes, tuple(lines), title=title, notes=beside)
 
@@ -190,7 +196,7 @@ def scene_ablation_figure(found: SceneAblation) -> Figure:
         panels.append(panel("Bearing force", "amplitude, N", 1.0, lambda one: one.bearing_orders))
     return Figure(
         key="ablation",
-        title="What every effect is worth in this scene",
+        title="Influence of every effect in this scene",
         caption="Each effect switched over by itself in all its parts: largest amplitude of every mesh order "
         "over meshes, bearings and the second half of the run. States without any are not drawn.",
         alternative="; ".join(
@@ -206,6 +212,6 @@ def largest_change(found: Ablation | SceneAblation) -> tuple[str, str]:
     """Return the effect without which peak-to-peak changes most, and by how much."""
     if isinstance(found, Ablation):
         first = _sorted(found)[0]
-        return first.name, f"{_signed(_percent(first)[1])} %"
+        return first.name, f"{signed(1e6 * found.measured(first).peak_to_peak)} µm"
     one = max(found.effects, key=lambda each: abs(_most(each.peak_to_peak_change)))
     return one.name, f"{_signed(1e6 * _most(one.peak_to_peak_change))} µm"

@@ -10,10 +10,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from service.convert.stamp import WARNINGS
 from service.problems import NotFound
 from service.report.content import page_of
 from service.report.figure import Figure, Table
-from service.report.inputs import read_inputs
+from service.report.inputs import Inputs, read_inputs
 from service.report.interactive import plotly_figure
 from service.report.page import Page, Section
 from service.report.stored_study import PAGES
@@ -31,7 +32,9 @@ def stored_figures(inputs: Json) -> Json:
     """
     kind, file = inputs["kind"], Path(inputs["file"])
     if kind in PAGES:
-        return page_json(PAGES[kind](json.loads(file.read_text(encoding="utf-8"))))
+        content = json.loads(file.read_text(encoding="utf-8"))
+        warnings = tuple(one["message"] for one in content.get(WARNINGS, ()))
+        return page_json(page_of(Inputs(pages=(PAGES[kind](content),), warnings=warnings)))
     if file.suffix == ".nc":
         return page_json(page_of(read_inputs([file])))
     raise NotFound(f"There are no figures of this {kind}; its JSON has all numbers.")

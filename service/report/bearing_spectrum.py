@@ -7,7 +7,7 @@ import numpy as np
 from dynamics.orders import spectrum
 from service.report import palette
 from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
-from service.report.run_series import RunSeries
+from service.report.run_series import RunSeries, validity
 
 WINDOW = (0.9, 0.95)  # of the duration
 ORDERS = 8
@@ -24,10 +24,10 @@ def bearing_spectrum(run: RunSeries) -> Figure:
         title=f"Spectrum of the force on bearing {name}",
         caption=f"From {_moment(run, window.start)} to {_moment(run, window.stop - 1)} s, Hann window, "
         "amplitudes of the three components added in power. Dashed: the mesh frequency in the middle of the "
-        "window and its multiples.",
+        f"window and its multiples. {validity(run.valid_order, float(run.mesh_frequency.max()))}",
         alternative=_words(frequency, amplitude, mesh),
-        content=(_panel(frequency, amplitude, float(np.median(mesh))),),
-        table=_table(frequency, amplitude, mesh),
+        content=(_panel(frequency, amplitude, float(np.median(mesh)), run.valid_order),),
+        table=_table(frequency, amplitude, mesh, run.valid_order),
     )
 
 
@@ -60,11 +60,12 @@ def order_amplitudes(
     return found
 
 
-def _panel(frequency: FloatArray, amplitude: FloatArray, mesh: float) -> Panel:
-    """Draw up to a little beyond the last order marked."""
-    end = min((ORDERS + 0.5) * mesh, float(frequency[-1]))
+def _panel(frequency: FloatArray, amplitude: FloatArray, mesh: float, valid: int) -> Panel:
+    """Draw up to a little beyond the last order marked, as far as it is valid."""
+    last = max(min(ORDERS, valid), 1)
+    end = min((last + 0.5) * mesh, float(frequency[-1]))
     shown = frequency <= end
-    orders = [Reference(f"{k}×", k * mesh) for k in range(1, ORDERS + 1) if k * mesh < end]
+    orders = [Reference(f"{k}×", k * mesh) for k in range(1, last + 1) if k * mesh < end]
     line = Line("force", frequency[shown], np.maximum(amplitude[shown], 1e-12), palette.BLUE, width=1.2)
     top = float(amplitude[shown].max())
     y = Axis("amplitude, N", "log", (1e-5 * top, 3.0 * top))
@@ -81,11 +82,11 @@ def _words(frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray) -> st
     )
 
 
-def _table(frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray) -> Table:
-    """Largest line near every order."""
+def _table(frequency: FloatArray, amplitude: FloatArray, mesh: FloatArray, valid: int) -> Table:
+    """Largest line near every valid order."""
     rows = tuple(
         (str(order), number(where, 4), number(size, 3))
-        for order, (where, size) in enumerate(order_amplitudes(frequency, amplitude, mesh), start=1)
+        for order, (where, size) in enumerate(order_amplitudes(frequency, amplitude, mesh)[:valid], start=1)
     )
     return Table(
         "Largest line in the band of each mesh order", ("order", "frequency, Hz", "amplitude, N"), rows

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.orders import Waterfall, frequency_waterfall
+from dynamics.orders import Waterfall, frequency_waterfall, highest_valid_order
 from dynamics.results import RunResult
 from service.report.figure import (
     Axis,
@@ -18,6 +18,7 @@ from service.report.figure import (
     unit_of,
 )
 from service.report.mode_lines import CAPTION, ModeLine, mode_lines, mode_table, whirling
+from service.report.run_series import validity
 from service.report.run_signal import run_axis, shown_signal
 
 BLOCKS, LINES, ORDERS, DEPTH = 90, 220, 8, 60.0
@@ -30,13 +31,16 @@ def campbell(run: RunResult) -> Figure:
     made = frequency_waterfall(run, signal.series, 2.0 * float(run.time[-1]) / BLOCKS)
     amplitude = signal.of(made.amplitude)
     axis, place = run_axis(run, made.time)
-    top = min((ORDERS + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
+    valid = highest_valid_order(run)
+    last = max(min(ORDERS, valid), 1)
+    top = min((last + 0.5) * float(made.mesh_frequency.max()), float(made.line[-1]))
     modes = mode_lines(run, made.mesh_frequency, top)
     return Figure(
         key="campbell",
         title=f"Campbell diagram of the {signal.name}",
         caption="Colour: amplitude of each block's spectrum (Hann window), in dB below the largest. Dotted: "
-        f"multiples of the mesh frequency. {CAPTION[whirling(run)]}, one for those that lie together.",
+        f"multiples of the mesh frequency. {CAPTION[whirling(run)]}, one for those that lie together. "
+        f"{validity(valid, float(run.mesh_frequency[0].max()))}",
         alternative=_words(made, amplitude, place, axis, modes),
         content=(_panel(made, amplitude, axis, place, top, modes),),
         table=mode_table(run, top, ORDERS),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from fe_contact.ste import PairFacts
 from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
@@ -17,7 +18,16 @@ from service.report.steady import steady_figure
 
 
 def page_of(read: Inputs) -> Page:
-    """Put the page together: results first, then how they were made; a study alone has its own page."""
+    """Put the page together: what is implausible, results, how they were made.
+
+    A study alone has its own page.
+    """
+    page = _page_of(read)
+    return replace(page, alarms=(*(f"Implausible: {text}" for text in read.warnings), *page.alarms))
+
+
+def _page_of(read: Inputs) -> Page:
+    """Put the page together, without what the files warn of."""
     if read.only_page is not None:
         return read.only_page
     database, flanks, run = read.database, read.flanks, read.run
@@ -55,8 +65,8 @@ def page_of(read: Inputs) -> Page:
 
 
 def nominal_force(read: Inputs) -> float | None:
-    """Return the normal force in N that the run's load asks of the database's pair."""
-    if read.run is None or read.database is None:
+    """Return the normal force in N that the run's load asks of the database's pair; None where it idles."""
+    if read.run is None or read.database is None or read.run.nominal_force[0] <= 0.0:
         return None
     return float(read.run.nominal_force[0]) / math.cos(read.database.facts.base_helix_angle)
 

@@ -7,6 +7,7 @@ import numpy as np
 from fe_contact.ste import SteDatabase
 from service.report.aligned import aligned, ste_shown
 from service.report.figure import Axis, Figure, FloatArray, Surface, number
+from service.report.pairs_in_contact import pairs_in_words, steps_with_pairs
 
 _COLUMNS, _ROWS = 160, 60
 
@@ -15,14 +16,16 @@ def database_surface(database: SteDatabase) -> Figure:
     """Draw STE over position and normal force."""
     axes = (Axis("position, base pitches"), Axis("normal force, N"), Axis("STE, µm"))
     position, force, values = surface(database)
+    highest = database.force.size - 1
+    step = ", with a step at each change of their number" if steps_with_pairs(database, highest) else ""
     top, load = number(1e6 * float(np.nanmax(values)), 3), number(float(force[-1]), 5)
     return Figure(
         key="database",
         title="The STE database",
         caption="What passes to dynamics: transmission error over the driving gear's position and the "
         "tooth force. The mesh force at a deflection is read from this surface.",
-        alternative=f"A surface that rises with force, from zero to {top} µm at {load} N, "
-        "with a step at each change between single and double contact.",
+        alternative=f"A surface that rises with force, from zero to {top} µm at {load} N. "
+        f"There {pairs_in_words(database, highest)}{step}.",
         content=Surface(position, force, 1e6 * values, axes),
     )
 

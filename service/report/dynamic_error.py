@@ -53,8 +53,8 @@ def _table(run: RunSeries, speeds: tuple[float, ...], windows: list[slice]) -> T
     for speed, window in zip(speeds, windows, strict=True):
         errors = (run.dynamic_error[window], run.static_error[window])
         cells = [_um(value) for error in errors for value in (np.mean(error), np.ptp(error))]
-        force = run.mesh_force[window]
-        cells += [number(float(v), 4) for v in (force.min(), force.mean(), force.max())]
+        least, largest = run.least_force[window].min(), run.largest_force[window].max()
+        cells += [number(float(v), 4) for v in (least, run.mesh_force[window].mean(), largest)]
         rows.append((number(speed, 3), *cells))
     head = (
         "speed, rpm", "DTE mean, µm", "DTE peak to peak, µm", "STE mean, µm", "STE peak to peak, µm",

@@ -19,6 +19,7 @@ from service.report.order_cuts import order_cuts
 from service.report.page import Headline, Section
 from service.report.planet_sharing import planet_sharing
 from service.report.run_series import RunSeries, run_series
+from service.report.sampling import peak_table, sampling_table
 from service.report.sideband_table import sideband_tables
 
 LEAST_PITCHES = 64  # of a run whose orders are shown
@@ -45,10 +46,13 @@ def dynamic_headlines(run: RunResult) -> tuple[Headline, ...]:
 
 
 def dynamic_alarms(run: RunResult) -> tuple[str, ...]:
-    """Say loudly that a run ended early."""
-    if run.status.usable:
-        return ()
-    return (f"The run ended early at {run.time[-1]:g} s: {run.status.name.lower().replace('_', ' ')}.",)
+    """Say loudly that a run ended early, or what makes its result wrong."""
+    wrong = [check for check in run.effect_ledger.get("checks", ()) if check.get("valid") is False]
+    alarms = [f"Not valid: {check['assumption']} ({check['part']}); {check['reason']}." for check in wrong]
+    if not run.status.usable:
+        ended = run.status.name.lower().replace("_", " ")
+        alarms.insert(0, f"The run ended early at {run.time[-1]:g} s: {ended}.")
+    return tuple(alarms)
 
 
 def dynamic_results(run: RunResult) -> tuple[Section, ...]:
@@ -63,7 +67,7 @@ def dynamic_making(run: RunResult) -> tuple[Section, ...]:
     """Show how exact the run is, what it cost, and what it was made from."""
     accuracy = Section(
         "Accuracy and cost of the run",
-        tables=(_accuracy(run), _seconds(run)),
+        tables=(_accuracy(run), sampling_table(run), peak_table(run), _seconds(run)),
         folded=(facts("Step statistics", run.statistics.to_json()), _energy(run)),
     )
     scene = Section("Scene", "As it was resolved, in SI.", folded=(facts("Scene", run.case),))
@@ -89,7 +93,7 @@ def _orders(run: RunResult) -> tuple[Section, ...]:
 def _forces(run: RunResult) -> tuple[Section, ...]:
     """Show how dynamic the mesh force is, and how planets share it."""
     figures = [] if planet_sharing(run) is None else [planet_sharing(run)]
-    if np.ptp(np.unwrap(run.position[0], period=1.0)) >= LEAST_PITCHES:
+    if run.nominal_force[0] > 0.0 and np.ptp(np.unwrap(run.position[0], period=1.0)) >= LEAST_PITCHES:
         figures.insert(0, dynamic_factor_figure(run))
     shown = tuple(figure for figure in figures if figure is not None)
     return (Section("Mesh forces", figures=shown, tables=(_contact(run),)),)

@@ -12,12 +12,14 @@ from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Referen
 SHOWN = 4  # positions
 _FACE = "face position, mm (0 = mid-face of the pinion)"
 
+_VISIBLE_GAP = 0.01
+"""um; a plot of less shows nothing."""
 _ROUNDING = 1e-9
 """Part of the face width; a centroid nearer to mid-face is the rounding of a symmetric load."""
 
 
 def line_load_figure(found: LoadDistribution) -> Figure:
-    """Draw the load of all pairs per unit of face width, and the gap left on the pair that carries most."""
+    """Draw the load of all pairs per unit of face width, and the gap that the most loaded pair leaves."""
     chosen = np.unique(np.linspace(0, found.position.size, SHOWN, endpoint=False).astype(int))
     low, high = (1e3 * end for end in found.scene.common_face)
     face = Axis(_FACE, limits=(low, high))
@@ -29,26 +31,50 @@ def line_load_figure(found: LoadDistribution) -> Figure:
         Line(name, x, 1e-3 * found.face_load[k], colour)
         for name, k, colour in zip(names, chosen, colours, strict=True)
     ]
-    gaps = [
-        Line(name, x, _gap(found, int(k)), colour)
-        for name, k, colour in zip(names, chosen, colours, strict=True)
-    ]
     cycle = Line("mean over the positions", x, mean, palette.VERMILLION, width=3.0)
     factor = found.mean_face_load_factor
+    gaps = _gap_panel(found, face, dict(zip(names, chosen, strict=True)), colours)
     return Figure(
         key="line_load",
-        title="Load and gap over the face",
-        caption="Above: force of all pairs per unit of face width. Below: what is left between the loaded "
-        "flanks of the pair that carries most; 0 in contact. On helical gears a single position is uneven "
-        "because the number of pairs that touch changes along the face.",
+        title="Load and gap over the face" if gaps else "Load over the face",
+        caption=_line_load_caption(found, with_gap=bool(gaps)),
         alternative=f"Averaged over the positions the face carries {number(float(mean.min()), 4)} to "
         f"{number(float(mean.max()), 4)} N/mm: K_Hbeta {number(factor, 3)}.",
         content=(
             Panel(face, Axis("load per face width, N/mm"), (*loads, cycle)),
-            Panel(face, Axis("gap, µm"), tuple(gaps)),
+            *gaps,
         ),
         table=_table(found, mean),
     )
+
+
+def _gap_panel(
+    found: LoadDistribution, face: Axis, chosen: dict[str, int], colours: list[str]
+) -> tuple[Panel, ...]:
+    """Draw the gap left on the pair that carries most; nothing where its flanks touch all along the face."""
+    gaps = {name: _gap(found, int(k)) for name, k in chosen.items()}
+    if not any(np.nanmax(gap, initial=0.0) > _VISIBLE_GAP for gap in gaps.values()):
+        return ()
+    x = 1e3 * found.face_position
+    lines = tuple(
+        Line(name, x, gap, colour) for (name, gap), colour in zip(gaps.items(), colours, strict=True)
+    )
+    return (Panel(face, Axis("gap, µm"), lines),)
+
+
+def _line_load_caption(found: LoadDistribution, *, with_gap: bool) -> str:
+    """Say what the panels of the load over the face show of this pair."""
+    caption = "Force of all pairs per unit of face width."
+    if with_gap:
+        caption = (
+            f"Above: {caption[0].lower()}{caption[1:]} Below: what is left between the loaded flanks of the "
+            "pair that carries most; 0 in contact."
+        )
+    else:
+        caption += " The flanks of the pair that carries most touch wherever they can meet: there is no gap."
+    if found.base_helix_angle == 0.0:
+        return caption
+    return f"{caption} A single position is uneven: the number of pairs that touch changes along the face."
 
 
 def load_centroid_figure(found: LoadDistribution) -> Figure:

@@ -10,7 +10,7 @@ from service.report.face_distribution import line_load_figure, load_centroid_fig
 from service.report.facts import facts
 from service.report.figure import Figure, number
 from service.report.page import Headline, Section
-from service.report.static_part import case_tables, ledger_table
+from service.report.static_part import case_tables, effects_section
 
 
 def flank_headlines(found: LoadDistribution) -> tuple[Headline, ...]:
@@ -46,7 +46,7 @@ def flank_making(found: LoadDistribution, *, alone: bool) -> tuple[Section, ...]
     )
     if not alone:
         return (section,)
-    effects = Section("Effects", tables=(ledger_table(metadata.effect_ledger),))
+    effects = effects_section(metadata.effect_ledger)
     return section, effects, Section("Case", tables=case_tables(metadata.case))
 
 

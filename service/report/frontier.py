@@ -38,7 +38,7 @@ def frontier_figure(found: Frontier) -> Figure:
         title="What accuracy costs in time on this case",
         caption=f"Largest relative difference to the finest rung ({reference}) over all curves of the table "
         f"of {found.solves} positions x loads; the point of that rung is what its mesh leaves by its "
-        f"convergence, and nothing below it can be told apart. {full_contact.caption(found)}",
+        f"convergence, and nothing below it can be told apart. {full_contact.caption(found)}".strip(),
         alternative=_words(found),
         content=(
             _panel(found, "Mean", "error of the mean, %", lambda r: r.mean_error, with_peer=True),
@@ -49,7 +49,7 @@ def frontier_figure(found: Frontier) -> Figure:
 
 
 def frontier_table(found: Frontier) -> Table:
-    """Return every rung and the peer."""
+    """Return every rung, and full contact as far as it is known of this case."""
     rows = [
         (
             result.title,
@@ -84,7 +84,7 @@ def _panel(
                 Line(name, time, _percent([error(r) for r in points]), colour, width=0, markers=True)
             )
     if with_peer:
-        lines.append(full_contact.known_cost(found))
+        lines += full_contact.known_cost(found)
     judged = float("nan") if found.full_contact is None else error(found.full_contact)
     live, named = full_contact.live_point(found, judged)
     lines += live
@@ -98,9 +98,9 @@ def _panel(
 
 
 def _time_axis(found: Frontier) -> Axis:
-    """Return one axis for both panels, from the quickest rung to the slowest peer."""
-    first = min(result.cpu_seconds for result in found.results)
-    return Axis("CPU time of the table, s", "log", (0.5 * first, 3.0 * full_contact.slowest(found)))
+    """Return one axis for both panels, from the quickest rung to the slowest rung or peer."""
+    times = [*(result.cpu_seconds for result in found.results), *full_contact.times(found)]
+    return Axis("CPU time of the table, s", "log", (0.5 * min(times), 3.0 * max(times)))
 
 
 def _note(found: Frontier, result: RungResult) -> str:

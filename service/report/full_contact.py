@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.analysis.frontier import Frontier
-from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, ORIGIN
+from fe_contact.analysis.ladder.full_contact import ORIGIN
 from fe_contact.analysis.measured_full_contact import MeasuredFullContact
 from service.report import palette
 from service.report.figure import Line, Note, number
@@ -13,11 +13,13 @@ from service.report.figure import Line, Note, number
 LIVE = "full contact, run on this case"
 
 
-def known_cost(found: Frontier) -> Line:
-    """Return the known cost of the 20/20 pair for as many positions x loads, with its errors in per cent."""
-    time = np.array([level.seconds(found.solves) for level in FULL_CONTACT])
-    size = 100.0 * np.array([level.relative_error for level in FULL_CONTACT])
-    return Line("full contact, 2-D, 20/20 pair", time, size, palette.VERMILLION, markers=True)
+def known_cost(found: Frontier) -> list[Line]:
+    """Return the known cost of as many positions x loads, with its errors in per cent, if it is known."""
+    if not found.known_full_contact:
+        return []
+    time = np.array([level.seconds(found.solves) for level in found.known_full_contact])
+    size = 100.0 * np.array([level.relative_error for level in found.known_full_contact])
+    return [Line("full contact, 2-D", time, size, palette.VERMILLION, markers=True)]
 
 
 def live_point(found: Frontier, error: float) -> tuple[list[Line], list[Note]]:
@@ -30,24 +32,24 @@ def live_point(found: Frontier, error: float) -> tuple[list[Line], list[Note]]:
     return [line], [Note(time, 100.0 * error, "full contact")]
 
 
-def slowest(found: Frontier) -> float:
-    """Return the longest CPU time of any of them, s."""
+def times(found: Frontier) -> list[float]:
+    """Return the CPU times of all of them, s."""
     live = [] if found.full_contact is None else [found.full_contact.seconds(found.solves)]
-    return max([*(level.seconds(found.solves) for level in FULL_CONTACT), *live])
+    return [*(level.seconds(found.solves) for level in found.known_full_contact), *live]
 
 
 def rows(found: Frontier) -> list[tuple[str, ...]]:
     """Return the rows of the table, errors in per cent."""
     known: list[tuple[str, ...]] = [
         (
-            f"full contact of the 20/20 pair, {level.unknowns // 1000} k unknowns",
+            f"full contact, {level.unknowns // 1000} k unknowns",
             number(level.seconds(found.solves), 3),
             number(100.0 * level.relative_error, 2),
             "",
             "",
             "known cost",
         )
-        for level in FULL_CONTACT
+        for level in found.known_full_contact
     ]
     return known if found.full_contact is None else [*known, _live_row(found, found.full_contact)]
 
@@ -63,10 +65,11 @@ def _live_row(found: Frontier, measured: MeasuredFullContact) -> tuple[str, ...]
 
 def caption(found: Frontier) -> str:
     """Say where the points come from, and what was measured of them."""
-    known = f"Peer: {ORIGIN}; times for the same {found.solves} positions x loads."
+    times = f"Peer: {ORIGIN}; times for the same {found.solves} positions x loads."
+    known = f"{times} " if found.known_full_contact else ""
     measured = found.full_contact
     if measured is None:
-        return known
+        return known.strip()
     own = measured.plane_strain_mean
     beside = (
         f" Our plane strain differs from it by {number(100.0 * own, 2)} % of the mean."
@@ -74,7 +77,7 @@ def caption(found: Frontier) -> str:
         else ""
     )
     return (
-        f"{known} On this case {measured.program} ran {len(measured.points)} positions at "
+        f"{known}On this case {measured.program} ran {len(measured.points)} positions at "
         f"{measured.torque:.4g} N m in plane strain ({measured.unknowns // 1000} k unknowns, "
         f"{number(measured.cpu_seconds, 3)} CPU s): its errors are those of these positions at this load "
         f"and hold what plane strain leaves out; its time is extrapolated, the mean of a position times "

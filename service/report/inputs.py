@@ -21,6 +21,7 @@ from fe_contact.errors import FeContactError
 from fe_contact.ste import SteDatabase
 from service.convert.sensitivity import PairStudy
 from service.convert.sensitivity_file import read_studies
+from service.convert.stamp import stamped
 from service.problems import BadInput
 from service.report.page import Page
 from service.report.stored_study import PAGES, stored_study
@@ -60,7 +61,10 @@ _FIELDS = {
 
 @dataclass(frozen=True)
 class Inputs:
-    """What was read; at least one of them. `pages` are those of studies kept as JSON."""
+    """What was read; at least one of them.
+
+    `pages` are those of studies kept as JSON; `warnings` are those of all files, in words.
+    """
 
     database: SteDatabase | None = None
     flanks: LoadDistribution | None = None
@@ -70,6 +74,7 @@ class Inputs:
     response: ForcedResponse | None = None
     steady: SteadyStates | None = None
     pages: tuple[Page, ...] = ()
+    warnings: tuple[str, ...] = ()
 
     @property
     def only_page(self) -> Page | None:
@@ -100,8 +105,11 @@ def read_inputs(files: Sequence[Path]) -> Inputs:
             advice = "One page shows one file of each kind."
             raise BadInput.of("file", str(file), f"the only {kind}", advice)
         read[kind] = content
+    warnings = tuple(dict.fromkeys(one["message"] for file in files for one in stamped(file)))
     pages = tuple(read.pop(kind) for kind in PAGES if kind in read)
-    return Inputs(**{_FIELDS[kind]: content for kind, content in read.items()}, pages=pages)
+    return Inputs(
+        **{_FIELDS[kind]: content for kind, content in read.items()}, pages=pages, warnings=warnings
+    )
 
 
 def file_kind(file: Path) -> str:

@@ -16,6 +16,7 @@ from service.report.aligned import (
     shown_rows,
 )
 from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Table, number
+from service.report.pairs_in_contact import pair_range, pairs_in_words
 
 _CARRIES = 1e-6  # a pair with less than this share nowhere carries load
 
@@ -74,7 +75,12 @@ def _in_mesh(share: FloatArray) -> FloatArray:
 
 
 def _words(database: SteDatabase, loads: list[int]) -> str:
-    """Say for how much of a pitch one pair carries everything."""
+    """Say for how much of a pitch one pair carries everything, or how many share the load."""
+    if all(pair_range(database, load)[0] > 1 for load in loads):
+        return (
+            "; ".join(f"{pairs_in_words(database, load)} at {load_labels(database)[load]}" for load in loads)
+            + ": no pair is ever alone."
+        )
     m, d = aligned_index(database)
     parts = []
     for load in loads:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.orders import order_waterfall
+from dynamics.orders import highest_valid_order, order_waterfall
 from dynamics.results import RunResult
 from service.report import palette
 from service.report.figure import Axis, Figure, Line, Panel, Table, number
+from service.report.run_series import validity
 from service.report.run_signal import run_axis, shown_signal
 
 ORDERS, POINTS, SHORTEST = 5, 400, 16
@@ -17,9 +18,11 @@ def order_cuts(run: RunResult) -> Figure:
     """Draw the amplitudes of the first mesh orders over speed or time."""
     signal = shown_signal(run)
     travel = float(np.abs(np.ptp(np.unwrap(run.position[0], period=1.0))))
-    made = order_waterfall(run, signal.series, max(SHORTEST, int(travel / POINTS)), ORDERS)
+    valid = highest_valid_order(run)
+    last = max(min(ORDERS, valid), 1)
+    made = order_waterfall(run, signal.series, max(SHORTEST, int(travel / POINTS)), last)
     axis, place = run_axis(run, made.time)
-    cuts = [signal.of(made.cut(order)) for order in range(1, ORDERS + 1)]
+    cuts = [signal.of(made.cut(order)) for order in range(1, last + 1)]
     lines = tuple(
         Line(f"{order}×", place, cut, palette.category(order - 1), width=1.4)
         for order, cut in enumerate(cuts, start=1)
@@ -42,7 +45,7 @@ def order_cuts(run: RunResult) -> Figure:
         key="order_cuts",
         title=f"Mesh orders of the {signal.name}",
         caption="Resampled to equal steps of position, Hann window over blocks of whole base pitches; "
-        "components added in power.",
+        f"components added in power. {validity(valid, float(run.mesh_frequency[0].max()))}",
         alternative=f"Largest by order: {words} ({axis.label.rpartition(',')[2].strip()}).",
         content=(Panel(axis, Axis(f"amplitude, {made.unit}"), lines),),
         table=Table("Largest amplitude of each mesh order", head, rows),

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.orders import highest_valid_order
 from dynamics.results import RunResult
-from service.report.figure import FloatArray
+from service.report.figure import FloatArray, number
 
 
 @dataclass(frozen=True)
@@ -27,12 +28,14 @@ class RunSeries:
         Travel of the driving gear in base pitches, not wrapped.
     dynamic_error, static_error : (n,) arrays
         Transmission errors in m; the static one is the table's at the nominal force.
-    mesh_force : (n,) array
-        Transverse, N.
+    mesh_force, least_force, largest_force : (n,) arrays
+        Transverse, N; the extremes around each sample are those of the unfiltered force.
     nominal_force : float
         Transverse mesh force in N that the load asks for.
     bearings : mapping of str to (n, 3) array
         Force on each bearing in N, x, y, z in the fixed frame.
+    valid_order : int
+        Highest mesh order that the output holds at the highest speed.
     """
 
     time: FloatArray
@@ -42,8 +45,11 @@ class RunSeries:
     dynamic_error: FloatArray
     static_error: FloatArray
     mesh_force: FloatArray
+    least_force: FloatArray
+    largest_force: FloatArray
     nominal_force: float
     bearings: Mapping[str, FloatArray]
+    valid_order: int = 0
 
     @property
     def loudest_bearing(self) -> str:
@@ -63,9 +69,17 @@ def run_series(run: RunResult, mesh: int = 0) -> RunSeries:
         dynamic_error=run.dynamic_transmission_error[mesh],
         static_error=run.static_transmission_error[mesh],
         mesh_force=run.mesh_force[mesh],
+        least_force=run.least_mesh_force[mesh],
+        largest_force=run.largest_mesh_force[mesh],
         nominal_force=float(run.nominal_force[mesh]),
         bearings=bearings,
+        valid_order=highest_valid_order(run, mesh),
     )
+
+
+def validity(valid_order: int, top: float) -> str:
+    """Say up to which mesh order a picture holds at the highest mesh frequency `top`, Hz."""
+    return f"Valid to mesh order {valid_order} at the highest mesh frequency, {number(top, 4)} Hz."
 
 
 def driving_shaft(run: RunResult, mesh: int) -> str:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
+from service.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
 from service.report.aligned import headline_load, load_curve, load_labels
 from service.report.database_surface import database_surface
 from service.report.deviation_curves import deviation_curves, has_deviations
@@ -25,7 +27,7 @@ _LEDGER = (
     ("name", "effect"),
     ("on", "simulated"),
     ("reason", "because"),
-    ("worth", "worth"),
+    ("without", "without it"),
     ("cost", "cost"),
     ("decision", "decision"),
     ("price", "price of the choice"),
@@ -77,17 +79,34 @@ def static_making(database: SteDatabase) -> tuple[Section, ...]:
         tables=(_accuracy(database), _stages(metadata.receipt)),
         folded=(facts("Receipt", _without(metadata.receipt, "stages")), _software(database)),
     )
-    effects = Section("Effects", tables=(ledger_table(metadata.effect_ledger),))
+    effects = effects_section(metadata.effect_ledger)
     text = "With every default that was taken. Numbers without a unit are in SI."
     case = Section("Case", text, tables=case_tables(metadata.case))
     return accuracy, effects, case
 
 
-def ledger_table(ledger: Any) -> Table:
-    """Tabulate which effects were simulated, why, and what they are worth."""
+def effects_section(ledger: Any) -> Section:
+    """Tabulate which effects were simulated, why, and their influence; trifles are folded away."""
     entries = [{"name": k, **v} for k, v in ledger.items()] if isinstance(ledger, dict) else ledger
-    known = [{title: entry.get(field) for field, title in _LEDGER} for entry in entries]
-    return records("Effect ledger", known)
+    shown, trifles = by_size(entries)
+    place = influence_place(entries)
+    caption = f"Effect ledger; without an effect: change by leaving it out, estimated {place}"
+    main = _ledger_table(caption, shown) if place else records("Effect ledger", _columns(entries))
+    folded = (_ledger_table(trifles_title(trifles), trifles),) if trifles else ()
+    return Section("Effects", tables=(main,), folded=folded)
+
+
+def _ledger_table(caption: str, entries: Sequence[Mapping[str, Any]]) -> Table:
+    """Tabulate effects."""
+    return records(caption, _columns([{**entry, "without": influence_words(entry)} for entry in entries]))
+
+
+def _columns(entries: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+    """Return what is tabulated of a ledger; without estimates there is no column for them."""
+    fields = [
+        (field, title) for field, title in _LEDGER if field != "without" or any(field in e for e in entries)
+    ]
+    return [{title: entry.get(field) for field, title in fields} for entry in entries]
 
 
 def case_tables(case: dict[str, Any]) -> tuple[Table, ...]:

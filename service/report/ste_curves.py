@@ -16,6 +16,7 @@ from service.report.aligned import (
     ste_shown,
 )
 from service.report.figure import Axis, Figure, FloatArray, Panel, Table, number
+from service.report.pairs_in_contact import pairs_in_words, steps_with_pairs
 
 _TONES = 3
 _FAR = 0.7  # lowest over highest value
@@ -31,7 +32,7 @@ def ste_curves(database: SteDatabase) -> Figure:
         key="ste",
         title=f"Static transmission error over {_pitches(database)}",
         caption="Displacement on the transverse line of action by which the driven gear lags, relative to "
-        "conjugate motion. Low: more pairs share the load; high: fewer carry it." + _period(database),
+        f"conjugate motion. {_carriers(database)}" + _period(database),
         alternative=_words(database),
         content=(panel,),
         table=_table(database),
@@ -50,6 +51,17 @@ def _pitches(database: SteDatabase) -> str:
     """Say how many pitches are shown."""
     shown = pitches_shown(database)
     return "two base pitches" if shown == 2 else f"{shown} base pitches"
+
+
+def _carriers(database: SteDatabase) -> str:
+    """Say how many pairs carry the highest load, and whether the curve shows it."""
+    load = shown_loads(database)[-1]
+    carried = f"At {load_labels(database)[load]} {pairs_in_words(database, load)}"
+    return (
+        f"{carried}: low where more do, high where fewer."
+        if steps_with_pairs(database, load)
+        else f"{carried}."
+    )
 
 
 def _period(database: SteDatabase) -> str:

@@ -10,7 +10,7 @@ from dynamics.ablation import RunFigures
 from dynamics.worth import Worth as SceneWorth
 from dynamics.worth.linear_figures import LinearFigures
 from fe_contact.analysis.ablation import Ablation, EffectAblation, Figures
-from fe_contact.effects.worth import Worth
+from fe_contact.effects.worth import Influence
 from service.convert.units import UM
 from service.report.figure import FloatArray
 from service.report.stored_ladder import Json
@@ -54,19 +54,22 @@ def _case_figures(content: Json) -> Figures:
 
 def _case_effect(content: Json) -> EffectAblation:
     """Return one effect of a case."""
-    told = content["estimate"]
-    estimate = None if told is None else Worth(
-        _lengths(told["mean_um"]), _lengths(told["peak_to_peak_um"]),
-        told["relative_mean"], told["relative_peak_to_peak"],
-    )  # fmt: skip
     return EffectAblation(
         content["name"],
         content["on"],
         content["reason"],
         _case_figures(content["with"]),
         _case_figures(content["without"]),
-        estimate,
+        _case_estimate(content["estimate"]),
     )
+
+
+def _case_estimate(content: Json | None) -> Influence | None:
+    """Return what the ledger estimated; ablations of older versions hold estimates of another kind."""
+    if content is None or "whole_mean_um" not in content:
+        return None
+    names = ("misalignment", "mean", "peak_to_peak", "whole_mean", "whole_peak_to_peak")
+    return Influence(content["torque_n_m"], *(content[f"{name}_um"] * UM for name in names))
 
 
 def _of_scene(content: Json) -> SceneAblation:

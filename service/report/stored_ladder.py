@@ -12,6 +12,7 @@ from dynamics.ladder import RungResult as SceneRung
 from dynamics.ladder.frontier import FIGURES
 from dynamics.ladder.vibration import Vibration
 from fe_contact.analysis import Frontier
+from fe_contact.analysis.ladder.full_contact import FullContactLevel
 from fe_contact.analysis.rung_result import RungResult
 
 Json = dict[str, Any]
@@ -30,9 +31,12 @@ def stored_ladder(content: Json) -> Frontier | SceneFrontier:
 def _of_case(content: Json) -> Frontier:
     """Return that of a case."""
     names = ("left_out", "solves", "knee", "chosen")
-    return Frontier(
-        tuple(_rung(rung) for rung in content["rungs"]), **{name: content[name] for name in names}
+    known = tuple(
+        FullContactLevel(level["unknowns"], level["cpu_seconds"] / content["solves"], level["mean_error"])
+        for level in content.get("full_finite_element_contact", ())
     )
+    rungs = tuple(_rung(rung) for rung in content["rungs"])
+    return Frontier(rungs, **{name: content[name] for name in names}, known_full_contact=known)
 
 
 def _rung(content: Json) -> RungResult:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from service.report.content import page_of
@@ -43,8 +44,11 @@ def write_page(read: Inputs, output: Path, images: Path | None = None) -> list[P
     return write_whole(page_of(read), output, images)
 
 
-def write_whole(page: Page, output: Path, images: Path | None = None) -> list[Path]:
-    """Write a page put together elsewhere; parameters and result are those of `write_report`."""
+def write_whole(
+    page: Page, output: Path, images: Path | None = None, warnings: Sequence[str] = ()
+) -> list[Path]:
+    """Write a page put together elsewhere, under what is implausible; parameters as for `write_report`."""
+    page = replace(page, alarms=(*(f"Implausible: {text}" for text in warnings), *page.alarms))
     drawn = {figure.key: png(figure) for section in page.sections for figure in section.figures}
     _write(output, html(page, drawn).encode("utf-8"))
     written = [output]

@@ -71,7 +71,11 @@ def bench(directory: Path, registry: Registry, results: Path | None = None, **se
     """Return the machinery on a directory; its scheduler is not started."""
     chosen = Settings(data_directory=directory, **settings)
     engine = open_database(chosen.database_address or directory / "service.sqlite3")
-    store = result_store(engine, directory, results.as_uri() if results else chosen.results_url)
+    try:
+        store = result_store(engine, directory, results.as_uri() if results else chosen.results_url)
+    except BaseException:
+        engine.dispose()
+        raise
     claims = Claims(engine, identity_of(directory), chosen.lease_s)
     scheduler = Scheduler(chosen, registry, claims, store)
     return Bench(chosen, Submissions(engine, chosen.queue_limit), claims, store, scheduler, engine)

@@ -79,6 +79,8 @@ class _Handler(BaseHTTPRequestHandler):
             copied = f"<LastModified>{_date()}</LastModified><ETag>{tag}</ETag>"
             copied = f"<CopyObjectResult>{copied}</CopyObjectResult>"
             return self._answer(200, copied.encode(), ETag=tag)
+        elif self.headers.get("If-None-Match") == "*" and key in self.objects.kept:
+            return self._answer(412, b"<Error><Code>PreconditionFailed</Code></Error>")
         elif not self.objects.down:
             self.objects.kept[key] = body
         return self._answer(200, ETag=tag)

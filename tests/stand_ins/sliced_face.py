@@ -7,6 +7,7 @@ that is above zero: the load's centroid, and the potential of force and moment, 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +18,7 @@ FACE_WIDTH = 0.025
 EXPONENT = 1.1
 REACH = 10e-6  # m, deflection under REFERENCE_FORCE
 REFERENCE_FORCE = 2660.0
+ADDENDUM = 0.78  # tip contact ratios of both gears: contact from -0.78 to 0.78 pitches
 NODE, WEIGHT = np.polynomial.legendre.leggauss(24)
 
 
@@ -95,3 +97,14 @@ def sliced_database(
         ),
         metadata=Metadata(),
     )
+
+
+def rigid_share_database(positions=400):
+    """Equal shares of the pairs between the ends of the path of contact; a stiffness of its own."""
+    database = sliced_database((0.0,), (0.0,), positions=positions)
+    pair = np.array([-1, 0, 1])
+    y = database.position[:, None] + pair
+    touching = (np.abs(y) <= ADDENDUM).astype(float)
+    share = touching / touching.sum(axis=1, keepdims=True)
+    grid = database.static_transmission_error.shape
+    return replace(database, pair=pair, load_share=np.broadcast_to(share[:, None, None, None], (*grid, 3)))

@@ -22,7 +22,8 @@ def imposed(steps: int, method: str = "implicit") -> Scene:
     """Torsion alone, the drive at 955 rpm, `steps` fixed steps."""
     duration = steps * STEP
     scene = gear_pair_scene(spring_table(4e8), duration=duration, speed=TimeLaw.constant(955.0 * RPM))
-    outputs = Outputs(10.0 / duration, bearing_forces=False, energy_audit=False, receipt="minimal")
+    kept = {"anti_alias": False, "bearing_forces": False, "energy_audit": False, "receipt": "minimal"}
+    outputs = Outputs(10.0 / duration, **kept)
     scene = replace(scene, bushings=(), effects={}, outputs=outputs)
     return with_mesh(replace(scene, integration=Integration(method, fixed_step=STEP)), damping_ratio=0.1)
 

@@ -22,8 +22,12 @@ Change = Callable[[dict[str, Any]], object]
 
 
 def wind_turbine(change: Change = lambda _table: None) -> Scene:
-    """Return the scene, its deflections those of spur gears 20/20 at the normal force of each mesh."""
+    """Return the scene, its deflections those of spur gears 20/20 at the normal force of each mesh.
+
+    Loads are beyond the small table, so that runs only report it: torques hold whatever the tables.
+    """
     table = tomllib.loads((EXAMPLES / "wind_turbine_scene.toml").read_text(encoding="utf-8"))
+    table["run"]["on_violation"] = "report"
     change(table)
     small = small_table()
     fields = {name: getattr(small, name) for name in small.__dataclass_fields__}

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from service.cli.guard import guarded
+from service.cli.guard import computing
 from service.cli.verbs.options import AsJson, StudyFile, TableService
 
 verbs = typer.Typer()
@@ -15,7 +15,7 @@ _SPEEDS = "Speeds of the first driven shaft in rpm, 100:3000:50 or 300,600,900"
 
 
 @verbs.command(epilog="Example: loa simulate examples/palermo_scene.toml -o run.nc")
-@guarded
+@computing
 def simulate(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Run to write (netCDF).")],
@@ -32,11 +32,15 @@ def simulate(
 
 
 @verbs.command(epilog="Example: loa modes examples/palermo_scene.toml --speed-rpm 0:15000:250 -o modes.png")
-@guarded
+@computing
 def modes(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
     speed_rpm: Annotated[str | None, typer.Option(help=f"{_SPEEDS}; left out: modes at rest only.")] = None,
     orders: Annotated[int, typer.Option(help="Multiples of the mesh frequencies to cross with modes.")] = 10,
+    highest_frequency_hz: Annotated[
+        float | None,
+        typer.Option(help="To which shafts are resolved; left out: the highest order at the highest speed."),
+    ] = None,
     output: StudyFile = None,
     service: TableService = None,
     json: AsJson = False,
@@ -45,14 +49,18 @@ def modes(
     from service.cli.dynamic_studies import MODES, run_study  # noqa: PLC0415 (start-up time)
     from service.cli.speed_list import speed_list  # noqa: PLC0415
 
-    asked = {"speed_rpm": speed_list(speed_rpm), "orders": orders}
+    asked = {
+        "speed_rpm": speed_list(speed_rpm),
+        "orders": orders,
+        "highest_frequency_hz": highest_frequency_hz,
+    }
     run_study(MODES, scene, output, service, asked, as_json=json)
 
 
 @verbs.command(
     epilog="Example: loa response examples/palermo_scene.toml --speed-rpm 100:6000:25 -o response.png"
 )
-@guarded
+@computing
 def response(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
     speed_rpm: Annotated[str, typer.Option(help=f"{_SPEEDS}.")],
@@ -70,7 +78,7 @@ def response(
 
 
 @verbs.command(epilog="Example: loa steady scene.toml --speed-rpm 11000:13500:100 -o steady.png")
-@guarded
+@computing
 def steady(
     scene: Annotated[Path, typer.Argument(help="Scene file (TOML, or JSON of the same shape).")],
     speed_rpm: Annotated[str, typer.Option(help=f"{_SPEEDS}.")],

@@ -7,14 +7,14 @@ from typing import Annotated
 
 import typer
 
-from service.cli.guard import guarded
+from service.cli.guard import computing
 from service.cli.verbs.options import AsJson
 
 verbs = typer.Typer()
 
 
 @verbs.command(epilog="Example: loa report ste.nc run.nc -o report.html")
-@guarded
+@computing
 def report(
     files: Annotated[
         list[Path],

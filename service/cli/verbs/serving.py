@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from service.cli.guard import guarded
+from service.cli.guard import computing, guarded
 from service.cli.verbs.options import DEFAULT_SERVICE, AsJson, Service
 
 verbs = typer.Typer()
@@ -50,7 +50,7 @@ def work(
 
 
 @verbs.command(epilog="Example: loa submit examples/palermo_spur_20_20.toml --wait -o ste.nc")
-@guarded
+@computing
 def submit(
     file: Annotated[Path, typer.Argument(help="Case or scene file.")],
     service: Service = DEFAULT_SERVICE,
@@ -77,7 +77,7 @@ def submit(
 
 
 @verbs.command(epilog="Example: loa fetch 3f1c0e5a-6c3d-4c1e-9b1e-2f6f0a1b2c3d -o ste.nc")
-@guarded
+@computing
 def fetch(
     name: Annotated[str, typer.Argument(help="Identifier of a job, or content hash of a result.")],
     output: Annotated[

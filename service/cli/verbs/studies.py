@@ -7,14 +7,14 @@ from typing import Annotated, Literal
 
 import typer
 
-from service.cli.guard import guarded
+from service.cli.guard import computing, guarded
 from service.cli.verbs.options import AsJson, DaskScheduler, TaskWorkers
 
 verbs = typer.Typer()
 
 
 @verbs.command(epilog="Example: loa plan examples/palermo_spur_20_20.toml --time-budget-s 5")
-@guarded
+@computing
 def plan(
     case: Annotated[Path, typer.Argument(help="Case file.")],
     time_budget_s: Annotated[
@@ -29,7 +29,7 @@ def plan(
 
 
 @verbs.command(epilog="Example: loa frontier examples/palermo_spur_20_20.toml -o frontier")
-@guarded
+@computing
 def frontier(
     file: Annotated[Path, typer.Argument(help="Case or scene file.")],
     output: Annotated[
@@ -54,7 +54,7 @@ def frontier(
 
 
 @verbs.command(epilog="Example: loa ablate examples/palermo_spur_20_20.toml -o ablation.png")
-@guarded
+@computing
 def ablate(
     file: Annotated[Path, typer.Argument(help="Case or scene file.")],
     output: Annotated[
@@ -74,7 +74,7 @@ def ablate(
 @verbs.command(
     epilog="Example: loa optimise examples/palermo_spur_20_20.toml examples/optimise_tip_relief.toml -o best"
 )
-@guarded
+@computing
 def optimise(
     case: Annotated[Path, typer.Argument(help="Case file; its modifications are the start.")],
     study: Annotated[Path, typer.Argument(help="File of variables, scatter, objective, limits, search.")],
@@ -96,7 +96,7 @@ def optimise(
 @verbs.command(
     epilog="Example: loa scatter examples/sensitivity_automotive.toml --samples 400 -o scatter.png"
 )
-@guarded
+@computing
 def scatter(
     case: Annotated[Path, typer.Argument(help="Case file; its modifications are the design.")],
     output: Annotated[
@@ -128,7 +128,7 @@ def scatter(
 
 
 @verbs.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")
-@guarded
+@computing
 def sensitivity(
     cases: Annotated[list[Path], typer.Argument(help="Case files; each becomes a line in the picture.")],
     output: Annotated[

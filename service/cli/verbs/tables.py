@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from service.cli.guard import guarded
+from service.cli.guard import computing
 from service.cli.verbs.options import (
     AsJson,
     CenterDistanceChange,
@@ -23,7 +23,7 @@ verbs = typer.Typer()
 
 
 @verbs.command(epilog="Example: loa analyze examples/palermo_spur_20_20.toml -o ste.nc")
-@guarded
+@computing
 def analyze(
     case: Annotated[Path, typer.Argument(help="Case file (TOML, or JSON of the same shape).")],
     output: Annotated[Path, typer.Option("-o", "--output", help="STE database to write (netCDF).")],
@@ -39,7 +39,7 @@ def analyze(
 
 
 @verbs.command(epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")
-@guarded
+@computing
 def ste(
     database: Annotated[Path, typer.Argument(help="STE database (netCDF).")],
     torque: Annotated[float | None, typer.Option(help="Torque on the driving gear in N m.")] = None,
@@ -63,7 +63,7 @@ def ste(
 
 
 @verbs.command(epilog="Example: loa flank examples/palermo_spur_20_20.toml --torque 100 -o flank.nc")
-@guarded
+@computing
 def flank(
     case: Annotated[Path, typer.Argument(help="Case file.")],
     output: Annotated[Path, typer.Option("-o", "--output", help="Flank results to write (netCDF).")],
@@ -81,7 +81,7 @@ def flank(
 
 
 @verbs.command(epilog="Example: loa export examples/palermo_spur_20_20.toml --torque 100 -o deformed")
-@guarded
+@computing
 def export(
     case: Annotated[Path, typer.Argument(help="Case file; for an FMU an STE database, or a run.")],
     output: Annotated[
@@ -131,7 +131,7 @@ def export(
 @verbs.command(
     name="root-stress", epilog="Example: loa root-stress examples/palermo_spur_20_20.toml --torque 100"
 )
-@guarded
+@computing
 def root_stress(
     case: Annotated[Path, typer.Argument(help="Case file.")],
     torque: Torque = None,

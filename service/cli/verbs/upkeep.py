@@ -12,7 +12,7 @@ from service.cli.verbs.options import AsJson
 
 database = typer.Typer(help="The database of jobs: its schema.", no_args_is_help=True)
 
-store = typer.Typer(help="The store of results: verify, collect.", no_args_is_help=True)
+store = typer.Typer(help="The store of results: verify, collect, reindex.", no_args_is_help=True)
 
 DataDirectory = Annotated[
     Path | None, typer.Option(help="Directory of jobs and results [LOA_DATA_DIRECTORY].")
@@ -31,7 +31,7 @@ def upgrade(data_directory: DataDirectory = None, json: AsJson = False) -> None:
 @database.command(epilog="Example: loa database status --json")
 @guarded
 def status(data_directory: DataDirectory = None, json: AsJson = False) -> None:
-    """Tell the schema of the database and that of this program; exit code 3 if they differ."""
+    """Tell the schema of the database and that of this program; exit code 1 if they differ."""
     from service.cli.database import run_status  # noqa: PLC0415 (start-up time)
 
     run_status(as_json=json, data_directory=data_directory)
@@ -40,7 +40,7 @@ def status(data_directory: DataDirectory = None, json: AsJson = False) -> None:
 @store.command(epilog="Example: loa store verify --json")
 @guarded
 def verify(data_directory: DataDirectory = None, json: AsJson = False) -> None:
-    """Compare every file with its digest, set damaged ones aside; exit code 3 if one is damaged or gone."""
+    """Compare every file with its digest, set damaged ones aside; exit code 1 if one is damaged or gone."""
     from service.cli.store import run_verify  # noqa: PLC0415 (start-up time)
 
     run_verify(as_json=json, data_directory=data_directory)
@@ -59,7 +59,29 @@ def gc(
     ] = None,
     json: AsJson = False,
 ) -> None:
-    """Remove what is left over: files without index, lines without file, workspaces, logs, what expired."""
+    """Remove what is left over: files without index, lines without file, workspaces, logs, what expired.
+
+    Files of results go to quarantine, for LOA_QUARANTINE_DAYS.
+    """
     from service.cli.store import run_gc  # noqa: PLC0415 (start-up time)
 
     run_gc(as_json=json, dry_run=dry_run, older_than=older_than, data_directory=data_directory)
+
+
+@store.command(epilog="Example: loa store reindex --json")
+@guarded
+def reindex(
+    data_directory: DataDirectory = None,
+    quarantined: Annotated[
+        bool, typer.Option("--quarantined", help="First move back what is in quarantine.")
+    ] = False,
+    json: AsJson = False,
+) -> None:
+    """Rebuild the index from the files: after the loss of the database, or with one from before.
+
+    The files become those of this database: a service that had them removes none of them any more, and is
+    refused at its next start. Exit code 3 if a file is damaged.
+    """
+    from service.cli.store import run_reindex  # noqa: PLC0415 (start-up time)
+
+    run_reindex(as_json=json, quarantined=quarantined, data_directory=data_directory)

@@ -37,7 +37,7 @@ def taken_up_again() -> Sequence[Measured]:
             one, other = (RunResult.from_netcdf(path) for path in (whole, parts))
         extra = abs(one.statistics.accepted - other.statistics.accepted)
         changed = [name for name in _arrays(one) if _bits(one, name) != _bits(other, name)]
-        impacts = int(np.count_nonzero(np.diff((one.mesh_force[0] > 0.0).astype(int)) == 1))
+        impacts = int(np.count_nonzero(np.diff(one.contact[0] % 2.0) == 1.0))
         figures += [
             Measured(f"{method}: times it was taken up again", float(legs - 1), least=5.0),
             Measured(f"{method}: impacts on the driving flank", float(impacts), least=10.0),

@@ -37,8 +37,9 @@ class Runs:
 
 
 def run_both(scene: Scene) -> Runs:
-    """Run `scene` by both integrators, each at the tolerance of the scene."""
-    return Runs(*(simulate(by_method(scene, method)) for method in METHODS))
+    """Run `scene` by both integrators, each at the tolerance of the scene, and take points of the motion."""
+    points = replace(scene, outputs=replace(scene.outputs, anti_alias=False))
+    return Runs(*(simulate(by_method(points, method)) for method in METHODS))
 
 
 def by_method(scene: Scene, method: str) -> Scene:

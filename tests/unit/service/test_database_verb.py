@@ -24,7 +24,7 @@ def test_a_new_database_is_made_and_then_up_to_date(
         monkeypatch.setenv("LOA_DATABASE_URL", url)
     run = CliRunner()
     before = run.invoke(app, ["database", "status", "--json"])
-    assert (before.exit_code, json.loads(before.stdout)["schema"]) == (3, None)
+    assert (before.exit_code, json.loads(before.stdout)["schema"]) == (1, None)
     assert run.invoke(app, ["database", "upgrade"]).stdout.endswith(f"no tables -> {REVISIONS[-1]}\n")
     after = run.invoke(app, ["database", "status", "--json"])
     assert (after.exit_code, json.loads(after.stdout)["up_to_date"]) == (0, True)

@@ -41,7 +41,11 @@ def test_a_run_becomes_a_universal_file_or_a_table(tmp_path: Path) -> None:
     simulate(gear_pair_scene(duration=0.02)).to_netcdf(tmp_path / "run.nc")
     done = loa(tmp_path / "run.nc", "-o", tmp_path / "run.unv", "--function", "spectrum", "--json")
     assert done.exit_code == 0
-    assert json.loads(done.stdout) == {"written": [str(tmp_path / "run.unv")], "functions": 14}
+    assert json.loads(done.stdout) == {
+        "written": [str(tmp_path / "run.unv")],
+        "functions": 14,
+        "warnings": [],
+    }
     assert (tmp_path / "run.unv").read_text().count("\n    58\n") == 14
     assert loa(tmp_path / "run.nc", "-o", tmp_path / "run.csv").exit_code == 0
     assert (tmp_path / "run.csv").read_text().startswith("time (s),")

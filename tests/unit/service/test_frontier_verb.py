@@ -9,9 +9,11 @@ import pytest
 from typer.testing import CliRunner
 
 from fe_contact.analysis.frontier import Frontier
+from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, MEASURED_GEAR, known_full_contact
 from fe_contact.analysis.measured_full_contact import MeasuredFullContact
 from fe_contact.analysis.rung_result import RungResult
 from fe_contact.full_contact import FullContactPoint
+from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status
 from service.cli.commands import app
 from service.report.frontier import frontier_figure, frontier_page, frontier_table
@@ -46,13 +48,34 @@ def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
     ]
 
 
-def test_the_peer_costs_its_published_time_for_the_same_table(found: Frontier) -> None:
+def test_full_contact_costs_its_known_time_on_the_pair_that_was_measured(found: Frontier) -> None:
+    found = dataclasses.replace(found, known_full_contact=FULL_CONTACT)
     peer = next(
         line for line in frontier_figure(found).content[0].lines if line.name.startswith("full contact")
     )
     assert peer.x.tolist() == [12.0 * 64, 30.0 * 64, 75.0 * 64]
     np.testing.assert_allclose(peer.y, [0.06, 0.02, 0.02])
     assert "CalculiX 2.20" in frontier_figure(found).caption
+
+
+def test_no_point_of_another_pair_stands_on_a_case(found: Frontier) -> None:
+    figure = frontier_figure(found)
+    assert [line.name for line in figure.content[0].lines if "contact" in line.name] == []
+    assert "20/20" not in figure.caption and "Peer" not in figure.caption
+    assert len(frontier_table(found).rows) == len(found.results)
+    assert found.to_json()["full_finite_element_contact"] == []
+
+
+def test_full_contact_is_known_of_the_very_pair_alone() -> None:
+    pair = GearPair(MEASURED_GEAR, MEASURED_GEAR, 80e-3)
+    relieved = FlankModification(tip_relief=10e-6, tip_relief_length=1e-3)
+    others = (
+        dataclasses.replace(pair, wheel=dataclasses.replace(MEASURED_GEAR, teeth=21), center_distance=82e-3),
+        dataclasses.replace(pair, pinion=dataclasses.replace(MEASURED_GEAR, modification=relieved)),
+        dataclasses.replace(pair, center_distance=80.1e-3),
+    )
+    assert known_full_contact(pair) == FULL_CONTACT
+    assert [known_full_contact(other) for other in others] == [(), (), ()]
 
 
 def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) -> None:
@@ -82,7 +105,7 @@ def test_the_page_says_what_was_not_run(found: Frontier) -> None:
     page = frontier_page(found, "Ladder")
     text = html(page, {"frontier": b""})
     assert "no mesh" in text
-    assert len(frontier_table(found).rows) == 3 + 3
+    assert len(frontier_table(found).rows) == 3
 
 
 def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:

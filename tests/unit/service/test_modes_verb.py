@@ -19,7 +19,7 @@ from service.cli.speed_list import speed_list
 from service.client.portable import scene_of
 from service.convert.modal import modes_json
 from service.convert.scene import dynamic_scene
-from service.problems import BadInput
+from service.problems import EXIT_FAILED, BadInput
 from service.report import write_report
 
 
@@ -62,6 +62,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     found = ModalAnalysis.from_netcdf(files["nc"])
     written = json.loads(files["json"].read_text())
     written.pop("cpu_seconds")
+    assert written.pop("warnings") == []
     assert written == {k: v for k, v in modes_json(found).items() if k != "cpu_seconds"}
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 400
@@ -107,3 +108,16 @@ def test_ranges_hold_their_last_speed() -> None:
     assert speed_list(None) == []
     with pytest.raises(BadInput):
         speed_list("0:nan:1")
+
+
+def test_a_load_far_beyond_the_table_ends_the_study_or_is_told(scene: Path) -> None:
+    heavy = scene.read_text(encoding="utf-8").replace("torque_n_m = [100.0]", "torque_n_m = [100000.0]")
+    assert "100000.0" in heavy
+    scene.write_text(heavy, encoding="utf-8")
+    result = loa(scene)
+    assert result.exit_code == EXIT_FAILED
+    assert "the table's highest load" in " ".join(result.stderr.split())
+    scene.write_text(heavy.replace("[run]", '[run]\non_violation = "report"'), encoding="utf-8")
+    result = loa(scene)
+    assert result.exit_code == 0, result.stderr
+    assert "DOES NOT HOLD: force inside the table" in result.stdout

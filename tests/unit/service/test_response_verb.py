@@ -62,6 +62,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     assert "first-order theory" in result.stdout and str(files["html"]) in result.stdout
     written = json.loads(files["json"].read_text())
     written.pop("cpu_seconds")
+    assert written.pop("warnings") == []
     assert written == {k: v for k, v in response_json(found).items() if k != "cpu_seconds"}
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 1000

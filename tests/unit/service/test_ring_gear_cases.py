@@ -91,7 +91,7 @@ def test_the_echo_says_how_the_ring_is_made_and_is_its_own_fixed_point() -> None
         ({}, {"internal": None}, "bore_diameter_mm", "given"),
         ({}, {"internal": None, "bore_diameter_mm": 40.0}, "rim_diameter_mm", "left out, or given"),
         ({}, {"rim_diameter_mm": 190.0}, "rim_diameter_mm", "above the root diameter 197 mm"),
-        ({}, {"addendum_coefficient": 1.0}, "tip_diameter_mm", "at least 188.321 mm"),
+        ({}, {"addendum_coefficient": 1.0}, "tip_diameter_mm", "at least 188.3211 mm"),
         ({}, {"cutter_teeth": 96}, "cutter_teeth", "from 6 to 95"),
         ({}, {"teeth": 40}, "cutter_teeth", "trimming interference"),
         ({"center_distance_mm": 60.5}, {}, "center_distance_mm", "at most 60 mm, where the teeth jam"),

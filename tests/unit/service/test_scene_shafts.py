@@ -15,6 +15,7 @@ from small_table import small_table
 from dynamics.bodies import Inertia
 from dynamics.system import Scene
 from dynamics.system.assemble import assemble
+from fe_contact import STEEL
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput
 from service.schemas import validated
@@ -45,7 +46,9 @@ def test_sections_are_in_si_and_torques_act_at_their_places() -> None:
     assert [s.length for s in sections] == pytest.approx([0.06, 0.065, 0.055])
     assert [s.outer_diameter for s in sections] == pytest.approx([0.032, 0.045, 0.04])
     assert [s.bore_diameter for s in sections] == pytest.approx([0.0, 0.012, 0.0])
-    assert {(s.youngs_modulus, s.poisson_ratio, s.density) for s in sections} == {(206e9, 0.3, 7850.0)}
+    assert {(s.youngs_modulus, s.poisson_ratio, s.density) for s in sections} == {
+        (STEEL.youngs_modulus, STEEL.poissons_ratio, STEEL.density)
+    }
     assert (found.drives[0].position, found.loads[0].position) == pytest.approx((0.0, 0.26))
     assert on(found) == {"input": True, "output": True}
     fast = scene(lambda t: t["shafts"][0]["sections"][1].update(youngs_modulus_gpa=110.0, poissons_ratio=0.2))

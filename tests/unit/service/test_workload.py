@@ -112,7 +112,8 @@ def test_counts_outlive_what_they_count(machine: Bench) -> None:
         connection.execute(update(computations).values(updated=long_ago))
         connection.execute(update(jobs).values(created=long_ago))
     before = ended(machine)
-    removed = list(Retention(machine.engine, machine.store, machine.settings.data_directory).collect(1.0))
+    retention = Retention(machine.engine, machine.store, machine.settings.data_directory, 7.0)
+    removed = list(retention.collect(1.0))
     assert [one.name.split()[0] for one in removed] == ["job"]
     assert WorkloadReader(machine.engine).read().states == {}
     assert ended(machine) == before

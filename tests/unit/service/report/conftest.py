@@ -14,6 +14,7 @@ from dynamics.results import EnergyAudit, RunResult, StepStatistics
 from dynamics.types import RunStatus
 from fe_contact.analysis import LoadDistribution
 from fe_contact.analysis.flank_scene import flank_scene
+from fe_contact.effects.worth import Influence
 from fe_contact.geometry import Gear, GearPair
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
@@ -62,7 +63,18 @@ def closed_form(**changes: Any) -> SteDatabase:
         "facts": PairFacts((20, 20), (R_B, R_B), PITCH, 0.0, 0.08, math.radians(20), WIDTH, 0),
         "metadata": Metadata(
             case=CASE,
-            effect_ledger=[{"name": "corner_contact", "on": True, "reason": "tips touch", "worth": "2 %"}],
+            effect_ledger=[
+                {"name": name, "on": on, "reason": reason, "influence": influence.to_json()}
+                for name, on, reason, influence in (
+                    (
+                        "corner_contact",
+                        True,
+                        "tips touch",
+                        Influence(400.0, 0.0, 0.2e-6, -0.05e-6, 10e-6, 1e-6),
+                    ),
+                    ("misalignment", False, "aligned", Influence(400.0, 0.0, 0.0, 0.0, 10e-6, 1e-6)),
+                )
+            ],
             receipt={"stages": {"mesh": {"cpu_seconds": 1.0, "wall_seconds": 1.1}}, "cpu_seconds": 1.0},
             content_hash="0" * 64,
             software_versions={"numpy": "2.0"},
@@ -179,6 +191,9 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
         static_transmission_error=static[None],
         mesh_force=np.full((1, time.size), 2660.0),
         coast_force=np.empty((0, time.size)),
+        least_mesh_force=np.full((1, time.size), 2660.0),
+        largest_mesh_force=np.full((1, time.size), 2660.0),
+        contact=np.ones((1, time.size)),
         misalignment=np.empty((0, time.size)),
         center_distance_change=np.empty((0, time.size)),
         load_centroid=np.empty((0, time.size)),
@@ -201,6 +216,15 @@ def run_up(rate: float = 5000.0, duration: float = 2.0, top_rpm: float = 900.0) 
         receipt={
             "seconds": {"integration": 0.5},
             "error": {"time_step": {"rms": 1e-9, "source": "step control"}},
+            "sampling": {
+                "rate": rate,
+                "chosen": "sample_rate of the scene",
+                "pass_frequency": rate / 2.56,
+                "stop_frequency": rate - rate / 2.56,
+                "stop_band": 80.0,
+                "edge": 12.0 / rate,
+            },
+            "peaks": {"mesh_force": {"mesh": {"peak": 2660.0, "rms": 2660.0}}},
         },
         case=case,
     )

@@ -77,7 +77,7 @@ def test_mesh_orders_are_found_where_they_are(run: RunResult) -> None:
 def test_orders_are_marked_at_multiples_of_the_mesh_frequency(run: RunResult) -> None:
     (panel,) = bearing_spectrum(run_series(run)).content  # type: ignore[misc]
     marks = [reference.value for reference in panel.references]
-    np.testing.assert_allclose(marks, np.arange(1, 9) * marks[0])
+    np.testing.assert_allclose(marks, np.arange(1, 7) * marks[0])  # what the rate holds
     assert marks[0] == pytest.approx(20 * 900 * 0.925 / 60, rel=1e-3)
     assert panel.y.scale == "log"
 

@@ -7,7 +7,7 @@ from service.report.facts import facts, side_by_side
 from service.report.page import _is_number
 from service.report.static_part import (
     case_tables,
-    ledger_table,
+    effects_section,
     static_alarms,
     static_headlines,
     static_making,
@@ -42,10 +42,20 @@ def test_the_case_is_told_in_full(database: SteDatabase) -> None:
 
 
 def test_the_ledger_says_what_is_simulated_and_why(database: SteDatabase) -> None:
-    table = ledger_table(database.metadata.effect_ledger)
-    assert table.head[:5] == ("effect", "simulated", "because", "worth", "cost")
+    section = effects_section(database.metadata.effect_ledger)
+    (table,), (trifles,) = section.tables, section.folded
+    assert table.caption.endswith("estimated at 400 N m, misalignment 0 um")
+    assert table.head[:5] == ("effect", "simulated", "because", "without it", "cost")
     assert table.head[5:] == ("decision", "price of the choice", "checked")
-    assert table.rows == (("corner_contact", "yes", "tips touch", "2 %", *["none"] * 4),)
+    words = "mean +0.2 um (+2 %), peak-to-peak -0.05 um (-5 %)"
+    assert table.rows == (("corner_contact", "yes", "tips touch", words, *["none"] * 4),)
+    assert trifles.caption == "1 effect below 0.1 %"
+    assert [row[0] for row in trifles.rows] == ["misalignment"]
+
+
+def test_a_ledger_without_estimates_has_no_column_for_them() -> None:
+    (table,) = effects_section([{"name": "misalignment", "on": False, "reason": "aligned"}]).tables
+    assert "without it" not in table.head
 
 
 def test_headlines_are_those_of_the_load_asked_for(database: SteDatabase) -> None:

@@ -1,0 +1,26 @@
+"""Case files on the command line: read, and judged for plausibility."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from service.cli.warned import warn
+from service.convert.flanks import case_at
+from service.convert.plausibility import case_warnings
+from service.schemas import Case, read_model
+from service.schemas.flank import FlankPoint
+
+
+def judged_case(file: Path, point: FlankPoint | None = None) -> Case:
+    """Return the case in a file, at one load and alignment if asked; warn of what is implausible about it.
+
+    Raises
+    ------
+    BadInput
+        The file holds no case, or no such pair exists.
+    """
+    case = read_model(Case, file)
+    if point is not None:
+        case = case_at(case, point)
+    warn(case_warnings(case))
+    return case

@@ -1,0 +1,144 @@
+"""Plausibility at the boundary: findings of the libraries in its fields and units."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from dynamics.plausibility import scene_findings
+from dynamics.system import Scene
+from fe_contact.analysis import LoadDistribution
+from fe_contact.plausibility import Unit, finding_of, pair_findings
+from fe_contact.ste import SteDatabase
+from service.convert.case import analysis_arguments, gear_pair
+from service.convert.errors import named
+from service.convert.units import DEGREE, GPA, MM, UM, factor, unit_name
+from service.convert.vocabulary import case_field, scene_field
+from service.schemas import Case
+from service.schemas.scene import SceneInput
+
+Json = dict[str, Any]
+MPA = 1e6
+
+
+def case_warnings(case: Case) -> list[Json]:
+    """Return what is implausible about a case, before anything is computed.
+
+    Raises
+    ------
+    BadInput
+        No such pair.
+    """
+    pair, asked = gear_pair(case), analysis_arguments(case)
+    by_torque = asked["torques"] is not None
+    forces = pair.normal_force(asked["torques"]) if by_torque else np.asarray(asked["normal_forces"])
+    axes = asked["misalignments"], asked["center_distance_changes"]
+    found = pair_findings(pair, forces, *axes, loads_as="torques" if by_torque else "normal_forces")
+    return phrased([finding.to_json() for finding in found], _field_in(case))
+
+
+def scene_warnings(
+    given: SceneInput, scene: Scene, tables: Mapping[str, Iterable[Json]] = MappingProxyType({})
+) -> list[Json]:
+    """Return what is implausible about a scene, and about the tables of its meshes.
+
+    Parameters
+    ----------
+    given : SceneInput
+        The scene file.
+    scene : Scene
+        The same with all its planets.
+    tables : mapping of str to list of dict
+        Warnings of the table of each mesh, by the name of the mesh.
+
+    Raises
+    ------
+    BadInput
+        The parts of the scene do not fit each other.
+    """
+    with named(""):
+        findings = [finding.to_json() for finding in scene_findings(scene)]
+    found = phrased([one for one in findings if _in_file(given, one["field"])], scene_field)
+    for index, mesh in enumerate(given.meshes):
+        found += [within(warning, f"meshes[{index}]") for warning in tables.get(mesh.name, ())]
+    return unique(found)
+
+
+def _in_file(given: SceneInput, field: str) -> bool:
+    """Whether a field is of a part in the file, and not of a further planet, which is its copy."""
+    part = re.match(r"(\w+)\[(\d+)\]", field)
+    return part is None or int(part.group(2)) < len(getattr(given, part.group(1)))
+
+
+def within(warning: Json, place: str) -> Json:
+    """Return a warning of a case as one of what the case is part of."""
+    field = f"{place}.case.{warning['field']}"
+    return warning | {"field": field, "message": warning["message"].replace(warning["field"], field, 1)}
+
+
+def phrased_flanks(found: LoadDistribution, case: Case) -> LoadDistribution:
+    """Return flank results whose warnings are in the fields and units of their case."""
+    warnings = phrased(found.metadata.warnings, _field_in(case))
+    return replace(found, metadata=replace(found.metadata, warnings=warnings))
+
+
+def phrased_database(database: SteDatabase, case: Case) -> SteDatabase:
+    """Return a database whose warnings are in the fields and units of its case."""
+    warnings = phrased(database.metadata.warnings, _field_in(case))
+    return replace(database, metadata=replace(database.metadata, warnings=warnings))
+
+
+def phrased(findings: Iterable[Json], name: Callable[[str], str]) -> list[Json]:
+    """Return findings of a library, as plain JSON in SI, in the fields and units of the boundary."""
+    return unique(_phrased(content, name) for content in findings)
+
+
+def unique(warnings: Iterable[Json]) -> list[Json]:
+    """Return warnings without repetitions, as of two gears of the case's one material."""
+    return list({warning["message"]: warning for warning in warnings}.values())
+
+
+def _phrased(content: Json, name: Callable[[str], str]) -> Json:
+    """Return one finding."""
+    finding, field = finding_of(content), name(content["field"])
+    bare = re.sub(r"\[\d+\]$", "", field)
+    unit = Unit(unit_name(bare) or finding.unit, factor(bare))
+    scaled = {
+        key: None if content[key] is None else float(f"{content[key] / unit.factor:.12g}")
+        for key in ("value", "low", "high")
+    }
+    return {**content, **scaled, "field": field, "unit": unit.name, "message": finding.message(field, unit)}
+
+
+def _field_in(case: Case) -> Callable[[str], str]:
+    """Return what names fields as this case has them: a material may be that of both gears."""
+
+    def field(name: str) -> str:
+        boundary = case_field(name)
+        for gear in ("pinion", "wheel"):
+            own, shared = f"pair.{gear}.material.", "material."
+            if boundary.startswith(own) and getattr(case.pair, gear).material is None:
+                return shared + boundary.removeprefix(own)
+        return boundary
+
+    return field
+
+
+def limit_text(limit: float | None, unit: str) -> str:
+    """Return a limit of a check as people read it; empty for none."""
+    if limit is None:
+        return ""
+    small, soft = limit < 1e-3, limit < 1e9
+    scales = {
+        "m": (UM, "um") if small else (MM, "mm"),
+        "Pa": (MPA, "MPa") if soft else (GPA, "GPa"),
+        "rad": (DEGREE, "deg"),
+        "1": (1.0, ""),
+    }
+    scale, name = scales.get(unit, (1.0, unit))
+    return f"{limit / scale:.3g} {name}".strip()

@@ -1,0 +1,33 @@
+"""Warnings in the files of results: an attribute of netCDF files, a member of JSON files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import h5netcdf
+
+Json = dict[str, Any]
+WARNINGS = "warnings"
+
+
+def stamp(file: Path, warnings: Sequence[Json]) -> None:
+    """Write warnings into a file that this program has just made; other kinds of files stay as they are."""
+    if file.suffix == ".nc":
+        with h5netcdf.File(file, "r+") as content:
+            content.attrs[WARNINGS] = json.dumps(list(warnings))
+    elif file.suffix == ".json":
+        text = json.dumps(json.loads(file.read_text(encoding="utf-8")) | {WARNINGS: list(warnings)})
+        file.write_text(f"{text}\n", encoding="utf-8")
+
+
+def stamped(file: Path) -> list[Json]:
+    """Return the warnings of a file of a result, netCDF or JSON; none of an older one."""
+    with file.open("rb") as stream:
+        is_json = stream.read(1) == b"{"
+    if is_json:
+        return list(json.loads(file.read_text(encoding="utf-8")).get(WARNINGS, ()))
+    with h5netcdf.File(file, "r") as content:
+        return list(json.loads(content.attrs.get(WARNINGS, "[]")))

@@ -1,0 +1,180 @@
+"""The size of an effect is one number: in the plan, on the command line, in the report, on the page, in an
+ablation."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from fe_contact.analysis import ablation
+from fe_contact.analysis.ablation import Figures
+from fe_contact.ste import SteDatabase
+from service.cli.commands import app
+from service.convert.ablation import ablation_json, ablation_of_case
+from service.jobs.live_work import live_plan
+from service.report.ablation import case_ablation_table
+from service.report.as_json import stored_figures
+from service.report.content import page_of
+from service.report.inputs import read_inputs
+from service.report.page import html
+from service.schemas import Case
+
+Json = dict[str, Any]
+SPUR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
+RING = {
+    "internal": True,
+    "teeth": 60,
+    "face_width_mm": 10.0,
+    "rim_diameter_mm": 280.0,
+    "addendum_coefficient": 0.8,
+}
+HELICAL = {"teeth": 18, "face_width_mm": 8.0, "bore_diameter_mm": 36.0}
+RELIEF = {"tip_relief_um": 15.0, "tip_relief_length_mm": 1.2}
+
+
+def pair(pinion: Json, wheel: Json, **more: Any) -> Json:
+    """Gears of module 4 mm, 80 mm apart if nothing else is said."""
+    return {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": pinion, "wheel": wheel, **more}
+
+
+PLAIN = pair(SPUR, SPUR)
+RELIEVED = pair(SPUR | RELIEF, SPUR | RELIEF)
+INTERNAL = pair(SPUR, RING)
+SLANT = {"helix_angle_deg": 20.0, "center_distance_mm": 76.63}
+SHORT = {"tip_relief_um": 12.0, "tip_relief_length_mm": 0.3}
+SLANTED = pair(HELICAL, HELICAL, **SLANT)
+QUIET = pair(HELICAL | RELIEF | {"helix_crowning_um": 6.0}, HELICAL | RELIEF, **SLANT)
+CASES: dict[str, tuple[Json, list[float], Json]] = {
+    "spur": (PLAIN, [10.0, 50.0, 160.0], {}),
+    "spur, relieved": (RELIEVED, [20.0, 100.0], {}),
+    "spur, coupling off": (PLAIN, [10.0, 160.0], {"effects": {"tooth_coupling": "off"}}),
+    "spur, a relief too small for the tolerance": (
+        pair(SPUR | RELIEF | {"tip_relief_um": 0.3}, SPUR), [20.0, 100.0], {"tolerance": 0.08},
+    ),
+    "internal": (INTERNAL, [20.0, 100.0], {}),
+    "internal, profile crowning": (
+        pair(SPUR | {"profile_crowning_um": 8.0}, RING), [50.0, 100.0], {},
+    ),
+    "helical": (SLANTED, [20.0, 60.0], {}),
+    "helical, quiet": (QUIET, [20.0, 60.0], {}),
+    "helical, misaligned": (SLANTED, [60.0], {"misalignment_um": [-10.0, 10.0]}),
+    "spur, misaligned, repeated with corner contact": (
+        pair(SPUR | SHORT, SPUR | SHORT), [22.0], {"misalignment_um": [150.0]},
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _one_cache(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+def boundary_case(name: str) -> Json:
+    """The case as users write it."""
+    made, torques, more = CASES[name]
+    more = dict(more)
+    accuracy = {"tolerance": more.pop("tolerance")} if "tolerance" in more else {"level": "draft"}
+    errors = {"errors": {"misalignment_um": more.pop("misalignment_um")}} if "misalignment_um" in more else {}
+    load = {"torque_n_m": torques}
+    return {"pair": made, "load": load, "accuracy": {**accuracy, "positions": 8}, **errors, **more}
+
+
+def invoked(*words: object) -> str:
+    """Output of the command line."""
+    run = CliRunner().invoke(app, [str(word) for word in words])
+    assert run.exit_code == 0, run.output
+    return run.stdout
+
+
+def told_lines(text: str) -> dict[str, str]:
+    """Words of every effect that has a line of its own on the command line."""
+    return dict(
+        re.findall(r"^effect (\w+): .*\n(?: +(?:left off|on after).*\n)? +without it (.*?); cost", text, re.M)
+    )
+
+
+def table_words(tables: list[Json]) -> dict[str, str]:
+    """Words of every effect that a report tabulates."""
+    (table,) = [one for one in tables if one["caption"].startswith("Effect ledger")]
+    column = table["head"].index("without it")
+    return {row[0]: row[column] for row in table["rows"]}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = boundary_case(name)
+    file, table = tmp_path / "case.json", tmp_path / "ste.nc"
+    file.write_text(json.dumps(case), encoding="utf-8")
+    plan = json.loads(invoked("plan", file, "--json"))["effect_ledger"]
+    page_plan = live_plan({"case": case, "time_budget_s": None, "cache": str(tmp_path)})["effect_ledger"]
+    lines = told_lines(invoked("analyze", file, "-o", table))
+    assert bool(SteDatabase.from_netcdf(table).metadata.receipt["repeated"]) == ("repeated" in name)
+    report = page_of(read_inputs([table]))
+    page = next(
+        s
+        for s in stored_figures({"kind": "database", "file": str(table)})["sections"]
+        if s["title"] == "Effects"
+    )
+    estimated = {entry["name"]: entry for entry in ablated(case, monkeypatch)["effects"]}
+
+    text = html(report, {figure.key: b"" for section in report.sections for figure in section.figures})
+    shown = table_words(page["tables"])
+    place = f"at {case['load']['torque_n_m'][-1]:g} N m"
+    assert place in page["tables"][0]["caption"]
+    sized = 0
+    for entry, on_page in zip(plan, page_plan, strict=True):
+        influence = entry["influence"]
+        assert on_page["influence"] == influence
+        if influence is None:
+            continue
+        assert influence["torque_n_m"] == pytest.approx(case["load"]["torque_n_m"][-1], rel=1e-12)
+        if entry["name"] in estimated:
+            check_ablation(estimated[entry["name"]]["estimate"], influence)
+        if influence["trifle"]:
+            assert entry["name"] not in {**lines, **shown}
+            continue
+        sized += 1
+        words = influence["words"]
+        assert shown[entry["name"]] == words
+        assert lines.get(entry["name"], words) == words
+        assert words in text
+        assert entry["name"] in lines or not (entry["on"] or entry["called_for"])
+        for key, unit in (("mean_m", 1e6), ("relative_mean", 100.0), ("peak_to_peak_m", 1e6)):
+            assert any(np.isclose(unit * influence[key], value, rtol=0.06) for value in numbers(words))
+    assert sized >= 2
+
+
+def ablated(case: Json, monkeypatch: pytest.MonkeyPatch) -> Json:
+    """The JSON of an ablation of all effects; what it computes is not of interest here, and is not."""
+    one = np.ones(len(case["load"]["torque_n_m"]))
+    figures = Figures(1e-5 * one, 1e-6 * one, np.ones((one.size, 5)), 1.0, 1.0)
+    monkeypatch.setattr(ablation, "_figures", lambda *_: figures)
+    found = ablation_of_case(Case.model_validate_json(json.dumps(case)), None, None, lambda *_: None)
+    rows = {row[0]: row for row in case_ablation_table(found).rows}
+    content = ablation_json(found)
+    for entry in content["effects"]:
+        if entry["estimate"] is not None and not entry["estimate"]["trifle"]:
+            assert rows[entry["name"]][3] in entry["estimate"]["words"]
+    return content
+
+
+def check_ablation(estimate: Json, influence: Json) -> None:
+    """The same numbers, with lengths in um."""
+    for key, value in influence.items():
+        if key.endswith("_m") and key != "torque_n_m":
+            assert estimate[f"{key.removesuffix('_m')}_um"] == pytest.approx(1e6 * value, rel=1e-12)
+        else:
+            assert estimate[key] == value
+
+
+def numbers(words: str) -> list[float]:
+    """All numbers in a text."""
+    return [float(text) for text in re.findall(r"[+-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?", words)]

@@ -1,0 +1,161 @@
+"""A database that has to be mended: said at the start and at every request, and nobody waits for it."""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import structlog
+from fastapi.testclient import TestClient
+from running_service import until
+from service_stand_ins import REGISTRY
+from sqlalchemy import event
+from structlog.testing import LogCapture
+from typer.testing import CliRunner
+
+from service.app import create_app
+from service.cli.commands import app as loa
+from service.problems import EXIT_FAILED, DatabaseDamaged
+from service.settings import Settings
+from service.store.deployment import NOTE
+
+EXECUTION = "/v1/processes/standin/execution"
+PAGE = 4096
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data directory with some jobs."""
+    directory = tmp_path_factory.mktemp("sound")
+    with TestClient(create_app(Settings(data_directory=directory), REGISTRY, works=False)) as client:
+        for number in range(8):
+            job = client.post(EXECUTION, json={"inputs": {"wish": {"text": f"no more wanted {number}"}}})
+            client.delete(job.headers["location"])
+    return directory
+
+
+@pytest.fixture
+def directory(tmp_path: Path, sound: Path) -> Path:
+    """A copy of it."""
+    return shutil.copytree(sound, tmp_path / "data")
+
+
+@pytest.fixture
+def client(directory: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TestClient]:
+    """A client of an app on it, which tries at each question whether it can write."""
+    monkeypatch.setattr("service.store.write_check.KEPT_S", 0.0)
+    with TestClient(create_app(Settings(data_directory=directory), REGISTRY)) as found:
+        yield found
+
+
+def damage(file: Path, kind: str) -> None:
+    """Harm the file of a database."""
+    content = file.read_bytes()
+    harmed = {
+        "garbage": b"garbage!" * (len(content) // 8),
+        "cut off": content[: 3 * PAGE],
+        "bad pages": content[: 2 * PAGE] + b"\xa5" * (len(content) - 2 * PAGE),
+        "one bad page": content[: -3 * PAGE] + b"\xa5" * PAGE + content[-2 * PAGE :],
+    }
+    file.write_bytes(harmed[kind])
+
+
+def writable(client: TestClient) -> dict[str, float]:
+    """Return the figures of what can be written."""
+    lines = client.get("/metrics").text.splitlines()
+    return {line.split('"')[1]: float(line.split()[-1]) for line in lines if line.startswith("loa_writable{")}
+
+
+def refused(client: TestClient, what: str) -> None:
+    """See that a submission is refused for what the database has, at once and without a second attempt."""
+    structlog.configure(processors=[log := LogCapture()])
+    answer = client.post(EXECUTION, json={"inputs": {"wish": {"text": "new"}}})
+    assert answer.headers["content-type"] == "application/problem+json"
+    assert (answer.status_code, answer.json()["type"]) == (503, "urn:lineofaction:problem:database-damaged")
+    assert what in answer.json()["detail"] and "retry-after" not in answer.headers
+    assert "sqlite3" not in answer.text  # where it is, is for the log
+    events = [entry["event"] for entry in log.entries]
+    assert "database damaged" in events and "database lost" not in events
+    ready = client.get("/ready")
+    assert ready.status_code == 503 and what in ready.json()["detail"]
+    assert writable(client) == {"database": 0.0, "results": writable(client)["results"]}
+
+
+@pytest.mark.parametrize("kind", ["garbage", "cut off", "bad pages", "one bad page"])
+def test_the_start_names_the_damage_and_the_way_to_restore(directory: Path, kind: str) -> None:
+    file = directory / "service.sqlite3"
+    damage(file, kind)
+    with pytest.raises(DatabaseDamaged, match="cannot be used") as caught:
+        create_app(Settings(data_directory=directory), REGISTRY)
+    (note,) = caught.value.__notes__
+    assert str(file) in note and "backup" in note and "loa store reindex" in note
+    assert create_app(Settings(data_directory=directory / "other"), REGISTRY)
+
+
+def test_the_verb_says_so_and_fails(directory: Path) -> None:
+    damage(directory / "service.sqlite3", "garbage")
+    done = CliRunner().invoke(loa, ["serve", "--port", "0", "--data-directory", str(directory)])
+    assert done.exit_code == EXIT_FAILED
+    assert "file is not a database" in done.stderr and "loa store reindex" in done.stderr
+    assert done.stderr.count("error: ") == 1
+
+
+@pytest.mark.parametrize(
+    ("kind", "what"),
+    [("garbage", "file is not a database"), ("bad pages", "malformed"), ("gone", "no such table")],
+)
+def test_damage_beneath_a_running_service_is_said_at_once(
+    client: TestClient, directory: Path, kind: str, what: str
+) -> None:
+    """Reading went on where the pages were sound, and /ready said 200."""
+    assert client.get("/ready").status_code == 200
+    assert writable(client) == {"database": 1.0, "results": 1.0}
+    file = directory / "service.sqlite3"
+    if kind == "gone":
+        file.unlink()
+    else:
+        damage(file, kind)
+    refused(client, what)
+    assert client.get("/health").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("pragma", "what"), [("query_only=ON", "readonly"), ("max_page_count=1", "database or disk is full")]
+)
+def test_a_database_that_takes_nothing_is_said_and_taken_up_again(
+    client: TestClient, pragma: str, what: str
+) -> None:
+    """Read-only, and full: when that is mended the service goes on."""
+    engine = client.app.state.context.engine  # type: ignore[attr-defined]
+
+    def harm(connection: sqlite3.Connection, _record: object) -> None:
+        connection.execute(f"PRAGMA {pragma}")
+
+    event.listen(engine, "connect", harm)
+    try:
+        text = "x" * 100_000  # more than the free room of its pages
+        answer = client.post(EXECUTION, json={"inputs": {"wish": {"text": text}}})
+    finally:
+        event.remove(engine, "connect", harm)
+    assert (answer.status_code, answer.json()["type"]) == (503, "urn:lineofaction:problem:database-damaged")
+    assert what in answer.json()["detail"]
+    until(lambda: client.get("/ready").status_code == 200)
+    assert client.post(EXECUTION, json={"inputs": {"wish": {"text": "after"}}}).status_code == 201
+
+
+def test_a_place_of_results_that_takes_nothing_is_not_ready(client: TestClient, directory: Path) -> None:
+    """Its volume is gone, say: the folder is there and the note is not."""
+    (directory / "results" / NOTE).rename(directory / "note")
+    assert client.get("/ready").status_code == 503
+    assert writable(client) == {"database": 1.0, "results": 0.0}
+    (directory / "note").rename(directory / "results" / NOTE)
+    (directory / "results").rename(directory / "kept")
+    (directory / "results").write_text("a file where the folder was")
+    ready = client.get("/ready")
+    assert ready.status_code == 503 and "results cannot be written: Not a directory" in ready.json()["detail"]
+    (directory / "results").unlink()
+    (directory / "kept").rename(directory / "results")
+    assert client.get("/ready").status_code == 200

@@ -1,0 +1,100 @@
+"""What is implausible comes before the numbers, into JSON and files, and decides the exit code if asked."""
+
+from __future__ import annotations
+
+import inspect
+import json
+from pathlib import Path
+
+import h5netcdf
+import pytest
+from typer.testing import CliRunner, Result
+
+from fe_contact import SteDatabase
+from service.cli.commands import app
+from service.problems import EXIT_BAD_INPUT, EXIT_WARNINGS
+
+NOT_COMPUTING = {"hardcases", "serve", "work"}
+CASE = """
+[pair]
+normal_module_mm = 4.0
+center_distance_mm = 80.0
+[pair.pinion]
+teeth = 20
+face_width_mm = 25.0
+bore_diameter_mm = 40.0
+{relief}
+[pair.wheel]
+teeth = 20
+face_width_mm = 25.0
+bore_diameter_mm = 40.0
+[load]
+torque_n_m = [100.0]
+[accuracy]
+level = "draft"
+model = "plane_strain"
+receipt = "minimal"
+positions = 8
+"""
+MESSAGE = "pair.pinion.tip_relief_um = 0.02 um: "
+
+
+def loa(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+@pytest.fixture
+def case(tmp_path: Path) -> Path:
+    """A case whose tip relief is in millimetres."""
+    file = tmp_path / "case.toml"
+    file.write_text(CASE.format(relief="tip_relief_um = 0.02\ntip_relief_length_mm = 1.5"))
+    return file
+
+
+def test_a_plan_says_it_first_and_keeps_its_exit_code(case: Path) -> None:
+    done = loa("plan", case)
+    assert done.exit_code == 0
+    assert done.stdout.startswith(f"warning (relief_amount): {MESSAGE}")
+
+
+def test_strict_ends_with_its_own_code(case: Path) -> None:
+    done = loa("plan", case, "--strict")
+    assert done.exit_code == EXIT_WARNINGS == 3
+    assert done.stderr == "error: 1 warning under --strict\n"
+    assert "Predicted" in done.stdout
+
+
+def test_strict_without_warnings_is_done(case: Path) -> None:
+    case.write_text(CASE.format(relief=""))
+    done = loa("plan", case, "--strict", "--json")
+    assert done.exit_code == 0
+    assert json.loads(done.stdout)["warnings"] == []
+
+
+def test_bad_input_stays_bad_input_under_strict(case: Path) -> None:
+    case.write_text(CASE.format(relief="teth = 3"))
+    assert loa("plan", case, "--strict").exit_code == EXIT_BAD_INPUT
+
+
+def test_table_report_and_json_carry_it(case: Path, tmp_path: Path) -> None:
+    """The file says it to whoever reads it: curve, report, Python."""
+    table, page = tmp_path / "ste.nc", tmp_path / "page.html"
+    done = loa("analyze", case, "-o", table, "--json")
+    (warning,) = json.loads(done.stdout)["warnings"]
+    assert (warning["check"], warning["value"], warning["unit"]) == ("relief_amount", 0.02, "um")
+    with h5netcdf.File(table, "r") as content:
+        assert json.loads(content.attrs["warnings"]) == [warning]
+    assert SteDatabase.from_netcdf(table).warnings == (warning["message"],)
+    curve = loa("ste", table, "--torque", 100, "--csv", "--strict")
+    assert curve.exit_code == EXIT_WARNINGS
+    assert curve.stdout.startswith("position") and MESSAGE in curve.stderr
+    assert loa("report", table, "-o", page, "--strict").exit_code == EXIT_WARNINGS
+    text = page.read_text(encoding="utf-8")
+    assert text.index(f"Implausible: {MESSAGE}") < text.index('class="headline"')
+
+
+@pytest.mark.parametrize("command", app.registered_commands, ids=lambda c: c.name or c.callback.__name__)
+def test_every_verb_that_computes_can_be_strict(command: object) -> None:
+    callback = command.callback  # type: ignore[attr-defined]
+    name = command.name or callback.__name__  # type: ignore[attr-defined]
+    assert ("strict" in inspect.signature(callback).parameters) == (name not in NOT_COMPUTING)
