@@ -32,8 +32,6 @@ class ContactBlock:
         Of plain involutes at the positions of the block.
     models : tuple of ContactModel
         Of the misalignments; they share one compliance.
-    largest : tuple of float
-        `largest_modification` of each model at the positions of the whole line, m.
     pitches : ndarray of int, shape (T,), or None
         Whole base pitches to put the positions into, as `PairContact.solve` takes them.
     loads : tuple of ndarray
@@ -46,7 +44,6 @@ class ContactBlock:
     plan: Plan
     candidates: Candidates
     models: tuple[ContactModel, ...]
-    largest: tuple[float, ...]
     pitches: IntArray | None
     loads: tuple[FloatArray, ...]
     conditioned: bool = False
@@ -81,10 +78,7 @@ def solve_block(bodies: Bodies, block: ContactBlock) -> SolvedBlock:
     contact = PairContact.of_bodies(block.pair, block.plan, bodies)
     contact.assemble(block.models[0], block.candidates)
     where, pitch = block.candidates.position, block.pitch
-    problems = tuple(
-        contact.problem(model, where, pitch, largest)
-        for model, largest in zip(block.models, block.largest, strict=True)
-    )
+    problems = tuple(contact.problem(model, where, pitch) for model in block.models)
     solutions = tuple(tuple(solve_contact(problem, load) for load in block.loads) for problem in problems)
     condition = condition_numbers(problems[0].compliance) if block.conditioned else None
     return SolvedBlock(problems, solutions, condition)

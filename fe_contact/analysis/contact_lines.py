@@ -23,7 +23,6 @@ from fe_contact.contact import (
     ContactModel,
     ContactProblem,
     ContactSolution,
-    largest_modification,
 )
 from fe_contact.planning.contact_cost import unit_work
 from fe_contact.types import FloatArray, IntArray
@@ -71,9 +70,8 @@ class Line:
     def blocks(self, *, conditioned: bool) -> Iterator[ContactBlock]:
         """Cut it."""
         pair, everything = self.contact.pair, self.candidates
-        largest = tuple(largest_modification(pair, everything, model) for model in self.models)
         whole = ContactBlock(
-            pair, self.contact.plan, everything, self.models, largest, self.pitches, self.loads, conditioned
+            pair, self.contact.plan, everything, self.models, self.pitches, self.loads, conditioned
         )
         count = everything.position.size
         parts = min(math.ceil(count * self.seconds_a_position / TASK_SECONDS), count // FEWEST_ROWS)
@@ -192,6 +190,6 @@ def _joined_arrays(parts: list[Arrays], line: Line, same: tuple[str, ...] = ()) 
 def _rows(parts: list[NDArray[Any]], line: Line) -> NDArray[Any]:
     """Put rows together that go through the positions of a block pitch by pitch."""
     pitches = 1 if line.pitches is None else line.pitches.size
-    by_pitch = [part.reshape(pitches, -1, *part.shape[1:]) for part in parts]
+    by_pitch = [part.reshape(pitches, len(part) // pitches, *part.shape[1:]) for part in parts]
     joined = np.concatenate(by_pitch, axis=1)
-    return joined.reshape(-1, *joined.shape[2:])
+    return joined.reshape(len(joined) * joined.shape[1], *joined.shape[2:])

@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fe_contact.analysis.flank_scene import FlankScene, flank_scene
-from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
 from fe_contact.contact.touch import rolls_at
 from fe_contact.geometry import ParallelAxes
-from fe_contact.hertz import peak_pressure
 from fe_contact.ste import Metadata
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
@@ -176,7 +175,7 @@ def load_distribution(
     face = candidates.face_position[candidates.pair == candidates.pair[0]]
     shape = (candidates.position.size, -1, face.size)
     force = solution.force[:, load]
-    pressure = peak_pressure(force / candidates.width, candidates.radius, problem.modulus)
+    pressure = contact_pressure(problem, force[:, None])[:, 0]
     gap = _loaded_gap(problem, force, solution.deflection[:, load])
     phase = candidates.position - np.floor(candidates.position)
     nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)

@@ -99,15 +99,11 @@ class PairContact:
         return problem, solve_contact(problem, load, start)
 
     def problem(
-        self,
-        model: ContactModel,
-        position: FloatArray,
-        pitch: IntArray | None = None,
-        largest: float | None = None,
+        self, model: ContactModel, position: FloatArray, pitch: IntArray | None = None
     ) -> ContactProblem:
-        """Assemble what `solve` solves; `largest` as in `with_gaps`."""
+        """Assemble what `solve` solves."""
         problem = self._problem(model, position)
-        problem = problem.touching(with_gaps(self.pair, problem.candidates, model, largest))
+        problem = problem.touching(with_gaps(self.pair, problem.candidates, model))
         if pitch is None and not model.tooth_gaps:
             return problem
         first = np.zeros(position.size, dtype=np.int64)

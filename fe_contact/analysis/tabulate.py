@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.analysis.table_places import Places
-from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
 from fe_contact.geometry import ParallelAxes
-from fe_contact.hertz import peak_pressure
 from fe_contact.ste import PairFacts
 from fe_contact.types import BoolArray, FloatArray, IntArray, Status
 
@@ -57,8 +56,7 @@ def contact_fields(
 ) -> dict[str, NDArray[Any]]:
     """Arrays (P, F, ...) of one place of the table, by name in the database.
 
-    The peak pressure is Hertz's for the load and curvature of each contact; at a tip edge the true pressure
-    is singular.
+    Pressure is that of `contact_pressure`.
 
     Parameters
     ----------
@@ -71,9 +69,7 @@ def contact_fields(
     good = solution.status == Status.CONVERGED
     loaded = solution.force * candidates.torque_share[:, None, :]
     total = np.where(good, loaded.sum(axis=2), 1.0)
-    pressure = peak_pressure(
-        solution.force / candidates.width, candidates.radius[:, None, :], problem.modulus
-    )
+    pressure = contact_pressure(problem, solution.force)
     of_pair = candidates.pair[:, None] == pairs
     return {
         "static_transmission_error": solution.deflection,

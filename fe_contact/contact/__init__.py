@@ -5,21 +5,23 @@ from fe_contact.contact.assembly import contact_problem
 from fe_contact.contact.candidates import (
     PatchRule,
     contact_candidates,
-    largest_modification,
     teeth_in_reach,
     with_gaps,
 )
 from fe_contact.contact.face_assembly import face_contact_problem
 from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_forces
-from fe_contact.contact.model import ComplianceTerm, ContactModel, GapTerm, ToothGap
+from fe_contact.contact.model import Break, ComplianceTerm, ContactModel, GapTerm, ToothGap
 from fe_contact.contact.pitches import in_pitches
+from fe_contact.contact.pressure import contact_pressure
 from fe_contact.contact.problem import Candidates, ContactProblem
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution import ContactSolution
 from fe_contact.contact.start import Start
 from fe_contact.contact.sweep import solve_contact
+from fe_contact.contact.touch import flank_coordinate
 
 __all__ = [
+    "Break",
     "Candidates",
     "ComplianceTerm",
     "ContactModel",
@@ -31,11 +33,12 @@ __all__ = [
     "Start",
     "ToothGap",
     "contact_candidates",
+    "contact_pressure",
     "contact_problem",
     "face_contact_problem",
     "face_flank_forces",
+    "flank_coordinate",
     "in_pitches",
-    "largest_modification",
     "plane_flank_forces",
     "solve_contact",
     "teeth_in_reach",

@@ -11,7 +11,7 @@ from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates
 from fe_contact.contact.slices import Slices
-from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, largest_gap, modified_touch
+from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray
 
@@ -63,24 +63,16 @@ def contact_candidates(
     return _candidates(pair, position, pairs[keep], face[keep], touch.columns(keep), rule, slices.width)
 
 
-def with_gaps(
-    pair: ParallelAxes, candidates: Candidates, model: ContactModel, largest: float | None = None
-) -> Candidates:
-    """Add the gaps of the model: how far apart the rigid flanks are, and how they open at a tip edge.
+def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> Candidates:
+    """Add the gaps of the model: how far apart the rigid flanks are, and their course about that place.
 
     The load patches stay where plain involutes touch, so that the compliance between the candidates depends
-    on the macro geometry alone and serves every modification, misalignment and load. Of candidates that are
-    rows of others, `largest` is the `largest_modification` of those.
+    on the macro geometry alone and serves every modification, misalignment and load.
     """
     if not model.gaps:
         return candidates
-    touch = modified_touch(pair, candidates.touch, candidates.face_position, model.gaps, largest)
+    touch = modified_touch(pair, candidates.touch, candidates.face_position, model.gaps)
     return candidates.touching(touch)
-
-
-def largest_modification(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> float:
-    """Return the largest modification along the profile at the candidates, m: by it ties are told."""
-    return largest_gap(pair, candidates.touch, candidates.face_position, model.gaps)
 
 
 def teeth_in_reach(pair: ParallelAxes) -> int:

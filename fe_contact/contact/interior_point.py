@@ -7,13 +7,15 @@ For n contacts it finds forces F >= 0 and the deflection d with
 by following F_i s_i = mu from large mu to zero with damped Newton steps (a monotone complementarity
 problem; S. J. Wright, Primal-Dual Interior-Point Methods, SIAM 1997, chapter 7). No active set is kept, no
 contact is ever dropped. The local law is written down here from the formulas of K. L. Johnson, Contact
-Mechanics, 1985, section 4.2 and 5.6, and from the one-sided contact of a half-plane; its slope is taken
-analytically from its own expression and not from any identity. Nothing of fe_contact is imported.
+Mechanics, 1985, sections 2.7 and 5.5, for a gap of parabolas from break to break; its slope is taken by
+differences and not from any identity. Nothing of fe_contact is imported.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,15 +24,30 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
+class GapAbout:
+    """Gaps s x + q x^2/2 + sum of a d + b d^2/2 between edges low and high (n,); breaks (n, B).
+
+    d is the distance beyond the break, away from x = 0.
+    """
+
+    slope: Array
+    curvature: Array
+    low: Array
+    high: Array
+    place: Array
+    jump: Array
+    bend: Array
+
+
+@dataclass(frozen=True)
 class Problem:
-    """n contacts; SI units; arrays (n,), compliance (n, n); an edge slope of NaN means no edge."""
+    """n contacts; SI units; arrays (n,), compliance (n, n)."""
 
     compliance: Array
     gap: Array
     motion_arm: Array
     torque_arm: Array
-    radius: Array
-    edge_slope: Array
+    gap_about: GapAbout
     width: Array
     patch_1: Array
     patch_2: Array
@@ -49,72 +66,137 @@ class Answer:
     iterations: int
 
 
-def raw_approach(problem: Problem, p: Array) -> tuple[Array, Array]:
-    """Approach and its slope in the line load for p > 0, without guards."""
-    radius, modulus, phi = problem.radius, problem.modulus, np.nan_to_num(problem.edge_slope, nan=-np.inf)
-    b = np.sqrt(4.0 * p * radius / (np.pi * modulus))
-    log_b, dlog_b, rigid = np.log(b), 0.5 / p, np.zeros_like(p)
-    at_edge = b > -phi * radius
-    if at_edge.any():
-        r, f, q = radius[at_edge], phi[at_edge], p[at_edge]
-        # p = (pi E/4)(phi c + 3c^2/(4R)): the positive root, written so that nothing cancels
-        root = np.sqrt(f**2 + 12.0 * q / (np.pi * modulus * r))
-        c = np.where(f > 0.0, 8.0 * q / (np.pi * modulus * (root + np.abs(f))), 2.0 * r / 3.0 * (root - f))
-        dc = 4.0 / (np.pi * modulus * (f + 1.5 * c / r))
-        singular, regular = f + c / (2.0 * r), c / (4.0 * r)
-        # mean logarithm of the pressure sqrt((c-x)/x)*singular + sqrt(x(c-x))/R, split by resultants
-        mean_log = np.log(c) - 2.0 * np.log(2.0) + (-singular + 0.5 * regular) / (singular + regular)
-        top, bottom = -singular + 0.5 * regular, singular + regular
-        dmean = 1.0 / c + (-0.375 / r * bottom - 0.75 / r * top) / bottom**2
-        log_b[at_edge] = mean_log + 0.5 + np.log(2.0)
-        dlog_b[at_edge] = dmean * dc
-        rigid[at_edge] = np.where(f < 0.0, 0.5 * f**2 * r, 0.0)
-    value = np.zeros_like(p)
-    for k, a in ((problem.k1, problem.patch_1), (problem.k2, problem.patch_2)):
-        value += k * p * (np.log(a) - log_b + 0.25)
-    return value + rigid, value / p - (problem.k1 + problem.k2) * p * dlog_b
+def pieces(about: GapAbout, centre: Array, half: Array) -> tuple[Array, Array, Array]:
+    """Means of g', g' sin t and g over the angle of strips, from break to break; shapes (n, ...).
+
+    Between two breaks g is a parabola through its values at the ends and the middle, g' the straight line
+    that belongs to it; their integrals against 1 and sin t are elementary.
+    """
+    extra = (1,) * (centre.ndim - 1)
+    angle = [np.full(centre.shape, -0.5 * np.pi), np.full(centre.shape, 0.5 * np.pi)]
+    for k in range(about.place.shape[1]):
+        place = about.place[:, k].reshape(-1, *extra)
+        angle.append(np.arcsin(np.clip((place - centre) / half, -1.0, 1.0)))
+    bounds = np.sort(np.stack(angle), axis=0)
+    slope, first, mean = np.zeros((3, *centre.shape))
+    for left, right in pairwise(bounds):
+        sine = np.stack([np.sin(left), 0.5 * (np.sin(left) + np.sin(right)), np.sin(right)])
+        g = gap_at(about, centre + half * sine)
+        width = np.where(sine[2] > sine[0], sine[2] - sine[0], 1.0)
+        bend = 2.0 * (g[2] - 2.0 * g[1] + g[0]) / width**2  # g = bend/1 (u - u1)^2 + tilt (u - u1) + g1
+        tilt = (g[2] - g[0]) / width
+        one, two = right - left, np.cos(left) - np.cos(right)
+        three = 0.5 * (one - 0.5 * (np.sin(2.0 * right) - np.sin(2.0 * left)))
+        there = sine[2] > sine[0]
+        a, b = tilt - 2.0 * bend * sine[1], 2.0 * bend  # dg/du = a + b u
+        slope += np.where(there, a * one + b * two, 0.0)
+        first += np.where(there, a * two + b * three, 0.0)
+        constant = g[1] - tilt * sine[1] + bend * sine[1] ** 2
+        mean += np.where(there, constant * one + a * two + bend * three, 0.0)
+    return slope / np.pi / half, first / np.pi / half, mean / np.pi
 
 
-def strip_load(problem: Problem, share: float) -> Array:
-    """Line load at which half the strip is `share` of the k-weighted mean patch, by bisection."""
-    k = problem.k1 + problem.k2
-    patch = problem.patch_1 ** (problem.k1 / k) * problem.patch_2 ** (problem.k2 / k)
-    low, high = np.full(patch.size, -60.0), np.full(patch.size, 60.0)
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        wide = half_strip(problem, np.exp(middle)) > share * patch
-        low, high = np.where(wide, low, middle), np.where(wide, middle, high)
-    return np.asarray(np.exp(0.5 * (low + high)))
+def gap_at(about: GapAbout, x: Array) -> Array:
+    """Gap in m at x (..., n, ...), the contacts along axis 1."""
+    lift = (1, -1) + (1,) * (x.ndim - 2)
+    value = about.slope.reshape(lift) * x + 0.5 * about.curvature.reshape(lift) * x**2
+    for k in range(about.place.shape[1]):
+        place = about.place[:, k].reshape(lift)
+        depth = np.maximum(np.where(place >= 0.0, x - place, place - x), 0.0)
+        value += about.jump[:, k].reshape(lift) * depth + 0.5 * about.bend[:, k].reshape(lift) * depth**2
+    return value
 
 
-def half_strip(problem: Problem, p: Array) -> Array:
-    """Half of the contact length: Hertz, or one-sided where the edge cuts the strip off."""
-    radius, modulus = problem.radius, problem.modulus
-    phi = np.nan_to_num(problem.edge_slope, nan=-1e300)
-    b = np.sqrt(4.0 * p * radius / (np.pi * modulus))
-    root = np.sqrt(np.where(phi > -1e200, phi, 0.0) ** 2 + 12.0 * p / (np.pi * modulus * radius))
-    c = 8.0 * p / (np.pi * modulus) / (root + np.abs(phi))
-    c = np.where(phi < 0.0, 2.0 * radius / 3.0 * (root - np.where(phi > -1e200, phi, 0.0)), c)
-    return np.asarray(np.where(b > -phi * radius, 0.5 * c, b))
+def root(function: Callable[[Array], Array], low: Array, high: Array, tolerance: Array) -> Array:
+    """Zeros between bounds of rising functions, by false position (Illinois); a bound where there is none."""
+    at_low, at_high = function(low), function(high)
+    held = (at_low >= 0.0) | (at_high <= 0.0)
+    middle = np.where(at_low >= 0.0, low, high)
+    side = np.zeros(low.shape)
+    for _ in range(100):
+        change = np.where(at_high > at_low, at_high - at_low, 1.0)
+        following = np.where(held, middle, np.clip(high - at_high * (high - low) / change, low, high))
+        value = function(following)
+        rising = value > 0.0
+        at_low = np.where(rising, np.where(side > 0.0, 0.5 * at_low, at_low), value)
+        at_high = np.where(rising, value, np.where(side < 0.0, 0.5 * at_high, at_high))
+        low, high = np.where(rising, low, following), np.where(rising, following, high)
+        settled = held | (np.abs(following - middle) <= tolerance) | (value == 0.0)
+        side, middle = np.where(rising, 1.0, -1.0), following
+        if np.all(settled):
+            break
+    return middle
+
+
+def strips(problem: Problem, half: Array) -> tuple[Array, Array]:
+    """Line load in N/m and mean gap in m of strips of half lengths (n, ...)."""
+    about = problem.gap_about
+    extra = (1,) * (half.ndim - 1)
+    low = np.maximum(-half, about.low.reshape(-1, *extra) + half)
+    high = np.maximum(np.minimum(half, about.high.reshape(-1, *extra) - half), low)
+    middle = root(lambda at: pieces(about, at, half)[0], low, high, 1e-8 * half)
+    slope, tilted, mean = pieces(about, middle, half)
+    singular = np.where((middle == low) | (middle == high), np.abs(slope), 0.0)
+    return 0.5 * np.pi * problem.modulus * half * (tilted + singular), mean
 
 
 class GuardedLaw:
-    """The law with its secant below a strip of 1e-4 patches and straight on above a strip of 0.66 patches."""
+    """The law with its secant below a strip of 1e-4 patches and straight on above a strip of 0.66 patches.
+
+    Strips are tabulated over their length; between the entries the length is found by the secant method.
+    """
 
     def __init__(self, problem: Problem) -> None:
-        self.problem = problem
-        self.low, self.high = strip_load(problem, 1e-4), strip_load(problem, 0.66)
-        self.low_value, _ = raw_approach(problem, self.low)
-        self.high_value, self.high_slope = raw_approach(problem, self.high)
+        k = problem.k1 + problem.k2
+        self.problem, self.k = problem, k
+        self.patch = problem.patch_1 ** (problem.k1 / k) * problem.patch_2 ** (problem.k2 / k)
+        widest = 0.5 * (problem.gap_about.high - problem.gap_about.low)
+        first, last = np.log(1e-4 * self.patch), np.log(np.minimum(0.66 * self.patch, widest))
+        self.half = np.exp(first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 129))
+        self.load, mean = strips(problem, self.half)
+        self.value = mean + self.k * self.load * (np.log(self.patch[:, None] / self.half) - 0.25)
+        self.slope = np.stack([np.gradient(v, p) for v, p in zip(self.value, self.load, strict=True)])
+        self.beyond = self.k * (np.log(self.patch / self.half[:, -1]) - 0.25)
+
+    def rough(self, force: Array) -> tuple[Array, Array]:
+        """Approach in m and slope in m/N between the entries of the table."""
+        return self._guarded(force, self._tabulated)
 
     def __call__(self, force: Array) -> tuple[Array, Array]:
         """Approach in m and slope in m/N under the forces."""
+        return self._guarded(force, self._exact)
+
+    def _guarded(self, force: Array, between: Callable[[Array], tuple[Array, Array]]) -> tuple[Array, Array]:
+        """Go on straight below and above the table."""
         p = force / self.problem.width
-        value, slope = raw_approach(self.problem, np.clip(p, self.low, self.high))
-        value = np.where(p < self.low, self.low_value * p / self.low, value)
-        slope = np.where(p < self.low, self.low_value / self.low, slope)
-        value = np.where(p > self.high, self.high_value + self.high_slope * (p - self.high), value)
-        return value, slope / self.problem.width
+        low, high = self.load[:, 0], self.load[:, -1]
+        value, slope = between(np.clip(p, low, high))
+        secant = self.value[:, 0] / low
+        value, slope = np.where(p < low, secant * p, value), np.where(p < low, secant, slope)
+        value = np.where(p > high, self.value[:, -1] + self.beyond * (p - high), value)
+        return value, np.where(p > high, self.beyond, slope) / self.problem.width
+
+    def _tabulated(self, p: Array) -> tuple[Array, Array]:
+        """Interpolate."""
+        return self._entry(p, self.value), self._entry(p, self.slope)
+
+    def _entry(self, p: Array, values: Array) -> Array:
+        """Interpolate one quantity of the table at line loads (n,)."""
+        rows = zip(p, self.load, values, strict=True)
+        return np.array([np.interp(at, load, row) for at, load, row in rows])
+
+    def _exact(self, p: Array) -> tuple[Array, Array]:
+        """Find the strips between two entries of the table."""
+        wanted, rows = np.log(p), np.arange(p.size)
+        above = np.array([np.searchsorted(load, at) for at, load in zip(p, self.load, strict=True)])
+        above = np.clip(above, 1, self.half.shape[1] - 1)
+        low, high = np.log(self.half[rows, above - 1]), np.log(self.half[rows, above])
+        x = root(
+            lambda at: np.log(strips(self.problem, np.exp(at))[0]) - wanted, low, high, np.full(p.size, 1e-7)
+        )
+        _, mean = strips(self.problem, np.exp(x))
+        value = mean + self.k * p * (np.log(self.patch / np.exp(x)) - 0.25)
+        return value, self._entry(p, self.slope)
 
 
 def solve(problem: Problem, total: float) -> Answer:
@@ -124,13 +206,13 @@ def solve(problem: Problem, total: float) -> Answer:
     touch = float(np.min(problem.gap / motion))
     gap = problem.gap - touch * motion
     force = np.full(n, total / torque.sum())
-    value, _ = law(force)
-    unit = float(np.max(problem.compliance @ force + value))  # lengths are measured by it, forces by `total`
+    value, _ = law.rough(force)
+    unit = float(np.max(problem.compliance @ force + value))  # of lengths; `total` is that of forces
     slack, d = np.full(n, unit), unit
     iterations = 0
     for step in range(1, 401):
         iterations = step
-        value, slope = law(force)
+        value, slope = law.rough(force)
         defect = problem.compliance @ force + value + gap - motion * d - slack
         equilibrium = torque @ force - total
         mu = float(force @ slack) / n
@@ -153,6 +235,32 @@ def solve(problem: Problem, total: float) -> Answer:
     return polished(problem, law, total, touch, gap, force, slack, unit, iterations)
 
 
+def balanced(
+    problem: Problem,
+    law: GuardedLaw,
+    total: float,
+    gap: Array,
+    force: Array,
+    loaded: NDArray[np.bool_],
+) -> tuple[Array, float]:
+    """Return forces of the loaded contacts that carry the total, and the deflection: Newton's method."""
+    motion, torque = problem.motion_arm[loaded], problem.torque_arm[loaded]
+    block = problem.compliance[np.ix_(loaded, loaded)]
+    force, d = force.copy(), 0.0
+    for _ in range(30):
+        value, slope = law(force)
+        right = -(problem.compliance @ force + value + gap)[loaded]
+        by_motion, by_rest = np.linalg.solve(
+            block + np.diag(slope[loaded]), np.stack([motion, right], axis=1)
+        ).T
+        d = (total - torque @ (force[loaded] + by_rest)) / (torque @ by_motion)
+        change = by_motion * d + by_rest
+        force[loaded] += change
+        if np.abs(change).max() < 1e-14 * total:
+            break
+    return force, float(d)
+
+
 def polished(
     problem: Problem,
     law: GuardedLaw,
@@ -164,20 +272,19 @@ def polished(
     unit: float,
     iterations: int,
 ) -> Answer:
-    """Solve the equations of the contacts left loaded, and measure every condition on the result."""
+    """Solve the equations of the contacts left loaded, and measure every condition on the result.
+
+    The table of the law is good to a few digits: a contact that just touches may be on the wrong side.
+    """
     loaded = force / total > slack / unit
-    force = np.where(loaded, force, 0.0)
-    motion, torque = problem.motion_arm[loaded], problem.torque_arm[loaded]
-    block = problem.compliance[np.ix_(loaded, loaded)]
-    d = 0.0
-    for _ in range(30):
-        value, slope = law(force)
-        right = -(problem.compliance @ force + value + gap)[loaded]
-        by_motion, by_rest = np.linalg.solve(
-            block + np.diag(slope[loaded]), np.stack([motion, right], axis=1)
-        ).T
-        d = (total - torque @ (force[loaded] + by_rest)) / (torque @ by_motion)
-        force[loaded] += by_motion * d + by_rest
+    for _ in range(10):
+        force, d = balanced(problem, law, total, gap, np.where(loaded, force, 0.0), loaded)
+        value, _ = law(np.maximum(force, 0.0))
+        slack = problem.compliance @ force + value + gap - problem.motion_arm * d
+        sides = np.where(loaded, force > 0.0, slack < -1e-14 * unit)
+        if np.array_equal(sides, loaded):
+            break
+        loaded = sides
     value, _ = law(force)
     slack = problem.compliance @ force + value + gap - problem.motion_arm * d
     violation = max(

@@ -1,15 +1,15 @@
 r"""Local approach of the contacts as the compiled solver uses it: increasing and concave in the load.
 
-The formulas are those of `fe_contact.hertz`. Two guards make Newton's method safe, both fixed by the contact
-strip alone, so that the law is one and the same for every load and scales with the lengths:
+The formulas are those of `fe_contact.contact.strip`. Two guards make Newton's method safe, both fixed by the
+contact strip alone, so that the law is one and the same for every load and scales with the lengths:
 
 - k p ln(1/p) has infinite slope at zero; below a strip of `SMALLEST_STRIP` patches the law is its secant.
 - Where the strip outgrows the patch the slope would fall below zero; from `LARGEST_STRIP` patches on the law
   goes on straight with the slope it has there, and the contact is flagged, because a wider patch is then the
   right answer.
 
-The slope needs no derivative of the edge law. A contact that grows adds the pressure of a rigid punch as wide
-as itself, whose mean logarithm is the same at every point of the strip: at an edge or not,
+A contact that grows adds the pressure of a rigid punch as wide as itself, whose mean logarithm is the same at
+every point of the strip, whatever the gap:
 
     d(approach)/dp = sum_i k_i [ln(a_i/h) - 1/4],    h = half the length of the strip.
 """
@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from fe_contact.contact.strip import Gap, half_strip, strip_load
 from fe_contact.types import FloatArray
 
 SMALLEST_STRIP = 1e-4
@@ -35,11 +36,10 @@ class LocalLaw(NamedTuple):
 
     Attributes
     ----------
-    width, radius : ndarray
-        Slice width and relative radius of curvature, m.
-    edge_slope : ndarray
-        Angle phi between the flanks at a tip edge in rad; NaN = no edge near. On the line of action -t/R,
-        with t the arc distance to the edge.
+    width : ndarray
+        Slice width, m.
+    gap : Gap
+        About the touching points.
     log_patch : ndarray
         Logarithm of the patch half-width in m, the mean of both gears weighted by their k.
     low, low_slope : ndarray
@@ -51,8 +51,7 @@ class LocalLaw(NamedTuple):
     """
 
     width: FloatArray
-    radius: FloatArray
-    edge_slope: FloatArray
+    gap: Gap
     log_patch: FloatArray
     low: FloatArray
     low_slope: FloatArray
@@ -64,8 +63,7 @@ class LocalLaw(NamedTuple):
 
 @njit(cache=True)
 def local_law(
-    radius: FloatArray,
-    edge_slope: FloatArray,
+    gap: Gap,
     width: FloatArray,
     patch_1: FloatArray,
     patch_2: FloatArray,
@@ -77,7 +75,7 @@ def local_law(
 
     Parameters
     ----------
-    radius, edge_slope, width : ndarray, shape (n,)
+    gap, width
         See `LocalLaw`.
     patch_1, patch_2 : ndarray, shape (n,)
         Patch half-widths of both gears, m.
@@ -86,17 +84,17 @@ def local_law(
     """
     half_plane = k1 + k2
     log_patch = (k1 * np.log(patch_1) + k2 * np.log(patch_2)) / half_plane
-    low, low_slope, high, high_value = np.empty((4, radius.size))
-    for i in range(radius.size):
+    low, low_slope, high, high_value = np.empty((4, width.size))
+    for i in range(width.size):
         patch = math.exp(log_patch[i])
-        low[i] = _line_load(SMALLEST_STRIP * patch, radius[i], edge_slope[i], modulus)
-        high[i] = _line_load(LARGEST_STRIP * patch, radius[i], edge_slope[i], modulus)
-        value, _ = _unguarded(low[i], radius[i], edge_slope[i], log_patch[i], modulus, half_plane)
-        low_slope[i] = value / low[i]
-        high_value[i], _ = _unguarded(high[i], radius[i], edge_slope[i], log_patch[i], modulus, half_plane)
-    return LocalLaw(
-        width, radius, edge_slope, log_patch, low, low_slope, high, high_value, modulus, half_plane
-    )
+        low[i], rigid = strip_load(gap, i, SMALLEST_STRIP * patch, modulus)
+        low_slope[i] = rigid / low[i] + half_plane * (-math.log(SMALLEST_STRIP) - 0.25)
+        if 0.5 * (gap.high[i] - gap.low[i]) <= LARGEST_STRIP * patch:  # the edges keep the strip narrow
+            high[i], high_value[i] = math.inf, math.inf
+            continue
+        high[i], rigid = strip_load(gap, i, LARGEST_STRIP * patch, modulus)
+        high_value[i] = rigid + half_plane * high[i] * (-math.log(LARGEST_STRIP) - 0.25)
+    return LocalLaw(width, gap, log_patch, low, low_slope, high, high_value, modulus, half_plane)
 
 
 @njit(cache=True)
@@ -117,42 +115,6 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     if p > law.high[i]:
         slope = law.half_plane * (-math.log(LARGEST_STRIP) - 0.25)
         return law.high_value[i] + slope * (p - law.high[i]), slope / width, True
-    value, slope = _unguarded(
-        p, law.radius[i], law.edge_slope[i], law.log_patch[i], law.modulus, law.half_plane
-    )
-    return value, slope / width, False
-
-
-@njit(cache=True)
-def _line_load(half_length: float, radius: float, edge_slope: float, modulus: float) -> float:
-    """Line load whose strip has the given half length."""
-    if math.isnan(edge_slope) or half_length <= -edge_slope * radius:
-        return math.pi * modulus * half_length * half_length / (4.0 * radius)
-    return 0.5 * math.pi * modulus * half_length * (edge_slope + 1.5 * half_length / radius)
-
-
-@njit(cache=True)
-def _edge_length(hertz: float, offset: float) -> float:
-    """Contact length from the edge; `offset` is phi R, `hertz` the half-width without an edge."""
-    root = math.sqrt(offset * offset + 3.0 * hertz * hertz)
-    if offset > 0.0:  # the same without cancellation
-        return 2.0 * hertz * hertz / (root + offset)
-    return 2.0 / 3.0 * (root - offset)
-
-
-@njit(cache=True)
-def _unguarded(
-    p: float, radius: float, edge_slope: float, log_patch: float, modulus: float, half_plane: float
-) -> tuple[float, float]:
-    """Approach of both bodies in m and its slope in the line load."""
-    hertz = math.sqrt(4.0 * p * radius / (math.pi * modulus))
-    if math.isnan(edge_slope) or hertz <= -edge_slope * radius:
-        logarithm = log_patch - math.log(hertz)
-        return half_plane * p * (logarithm + 0.25), half_plane * (logarithm - 0.25)
-    length = _edge_length(hertz, edge_slope * radius)
-    singular, regular = edge_slope * radius + 0.5 * length, 0.25 * length
-    logarithm = log_patch - math.log(0.5 * length)
-    value = half_plane * p * (logarithm - 0.25 - (0.5 * regular - singular) / (singular + regular))
-    if edge_slope < 0.0:
-        value += 0.5 * edge_slope * edge_slope * radius  # rigid gap t^2/(2R) at the edge
-    return value, half_plane * (logarithm - 0.25)
+    half, rigid = half_strip(law.gap, i, p, law.modulus)
+    slope = law.half_plane * (law.log_patch[i] - math.log(half) - 0.25)
+    return rigid + slope * p, slope / width, False

@@ -6,8 +6,42 @@ import math
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class Break:
+    """Where a modification of one gear begins along its profile; to a depth of jump d + bend d^2/2.
+
+    Attributes
+    ----------
+    gear : int
+        0 is the pinion, 1 the wheel.
+    place : float
+        Flank coordinate on that gear, m.
+    side : int
+        +1 where it runs towards the pinion's tip (the wheel's root), else -1.
+    jump, bend : float
+        1 and 1/m.
+    """
+
+    gear: int
+    place: float
+    side: int
+    jump: float
+    bend: float
+
+    def distance(self, s_1: FloatArray, s_2: FloatArray) -> FloatArray:
+        """Return how far it is from touching points at these coordinates, m towards the pinion's tip."""
+        return self.place - s_1 if self.gear == 0 else s_2 - self.place
+
+    def height(self, beyond: FloatArray) -> FloatArray:
+        """Return what it removes in m at distances from it in m towards the pinion's tip."""
+        depth = np.maximum(self.side * beyond, 0.0)
+        return np.asarray(depth * (self.jump + 0.5 * self.bend * depth))
 
 
 class GapTerm(Protocol):
@@ -19,6 +53,10 @@ class GapTerm(Protocol):
     @property
     def along_profile(self) -> bool:
         """Whether the gap depends on the roll lengths."""
+        ...
+
+    def breaks(self, pair: ParallelAxes) -> tuple[Break, ...]:
+        """Return where the gap's slope or curvature along the profile jumps."""
         ...
 
     def __call__(

@@ -56,8 +56,8 @@ def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) ->
 
 
 def _repeated(arrays: Arrays, times: int) -> Arrays:
-    """Write arrays (P, n) out so many times, one below the other."""
+    """Write arrays (P, n) or (P, n, B) out so many times, one below the other."""
     tiled: dict[str, FloatArray] = {
-        name: np.tile(values, (times, 1)) for name, values in vars(arrays).items()
+        name: np.concatenate([values] * times) for name, values in vars(arrays).items()
     }
     return type(arrays)(**tiled)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from fe_contact.contact.patch import Patches
+from fe_contact.contact.strip import Gap
 from fe_contact.contact.touch import Touch
 from fe_contact.types import FloatArray, IntArray
 
@@ -62,9 +61,19 @@ class Candidates:
         return self.touch.radius / math.cos(self.base_helix_angle)
 
     @property
-    def edge_slope(self) -> FloatArray:
-        """Angle (P, n) between the flanks at the nearer tip edge, rad (see `hertz.edge_contact`)."""
-        return -np.minimum(self.touch.offset_1, self.touch.offset_2) / self.radius
+    def gap_about(self) -> Gap:
+        """Gap about the touching points in the normal section, arrays (P, n) and (P, n, B)."""
+        normal = math.cos(self.base_helix_angle)
+        touch = self.touch
+        return Gap(
+            touch.slope * normal,
+            touch.curvature * normal,
+            touch.low,
+            touch.high,
+            touch.place,
+            touch.jump * normal,
+            touch.bend * normal,
+        )
 
     @property
     def motion_arm(self) -> FloatArray:

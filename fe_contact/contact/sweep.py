@@ -10,6 +10,7 @@ from fe_contact.contact.newton import CONVERGED, PointProblem, solve_point
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.solution import ContactSolution
 from fe_contact.contact.start import Start
+from fe_contact.contact.strip import Gap
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 
@@ -41,7 +42,7 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
     first = np.zeros((0, 0, n)) if start is None else np.ascontiguousarray(start.on(c))
     _sweep(
         problem.compliance, normal_gap, c.motion_arm, c.torque_share,
-        c.radius, c.edge_slope, np.full(n, c.width), c.patch_1.law_width, c.patch_2.law_width,
+        c.gap_about, np.full(n, c.width), c.patch_1.law_width, c.patch_2.law_width,
         problem.modulus, problem.half_plane_1, problem.half_plane_2, loads, first,
         deflection, tangent, force, status, iterations, residuals, beyond,
     )  # fmt: skip
@@ -56,8 +57,7 @@ def _sweep(
     gap: FloatArray,
     motion_arm: FloatArray,
     torque_arm: FloatArray,
-    radius: FloatArray,
-    edge_slope: FloatArray,
+    about: Gap,
     width: FloatArray,
     patch_1: FloatArray,
     patch_2: FloatArray,
@@ -76,7 +76,11 @@ def _sweep(
 ) -> None:
     """Fill the result arrays, started from the `first` forces, or each load from the one below it."""
     for p in range(gap.shape[0]):
-        law = local_law(radius[p], edge_slope[p], width, patch_1[p], patch_2[p], modulus, k1, k2)
+        here = Gap(
+            about.slope[p], about.curvature[p], about.low[p], about.high[p],
+            about.place[p], about.jump[p], about.bend[p],
+        )  # fmt: skip
+        law = local_law(here, width, patch_1[p], patch_2[p], modulus, k1, k2)
         point = PointProblem(compliance[p % compliance.shape[0]], gap[p], motion_arm[p], torque_arm[p], law)
         start = np.zeros(gap.shape[1])
         for k in range(loads.size):

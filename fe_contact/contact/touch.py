@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fe_contact.contact.model import GapTerm
+from fe_contact.contact.strip import Gap, moved_gap, rounded, touching_places
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
-_SAMPLES = 65
 _FLATTEST = 100.0
-_TIE = 1e-15
-"""Gaps that differ by less, over the largest modification, are equal: a few times their rounding."""
+_SAMPLES = 17
+_PASSES = 2
+"""How often the touching point is looked for, from the lowest sample on."""
+_STEP = 0.01
+"""Step of differences along the flank over the relative radius: about half a contact strip."""
+_REACH = 0.5
+"""How far a touching point may move, over the flanks' lengths from the base circle."""
+_ROUNDEST = 0.25
+"""Least curvature of the gap over that of plain involutes."""
 
 
 @dataclass(frozen=True)
@@ -26,26 +32,41 @@ class Touch:
     ----------
     s_1, s_2 : ndarray
         Flank coordinates, m.
-    offset_1, offset_2 : ndarray
-        Arc distance to the gear's tip edge in m; negative at an edge that touches while the flanks open by
-        phi:
-        -phi R.
     gap : ndarray
         On the line of action, m; infinite = the pair cannot touch.
     radius : ndarray
         Relative radius of curvature in the transverse section, m.
     lever_1, lever_2 : ndarray
         Lever arms of the common normal over the base radii.
+    slope, curvature, low, high : ndarray
+        Gap about the touching points in the transverse section, towards tip 1; see `strip.Gap`.
+    place, jump, bend : ndarray, shape (P, n, B)
+        Its breaks.
     """
 
     s_1: FloatArray
     s_2: FloatArray
-    offset_1: FloatArray
-    offset_2: FloatArray
     gap: FloatArray
     radius: FloatArray
     lever_1: FloatArray
     lever_2: FloatArray
+    slope: FloatArray
+    curvature: FloatArray
+    low: FloatArray
+    high: FloatArray
+    place: FloatArray
+    jump: FloatArray
+    bend: FloatArray
+
+    @property
+    def offset_1(self) -> FloatArray:
+        """Arc distance to the tip edge of gear 1, m; -phi R at an edge that touches as flanks open by phi."""
+        return np.where(self.high > 0.0, self.high, np.minimum(self.slope, 0.0) / self.curvature)
+
+    @property
+    def offset_2(self) -> FloatArray:
+        """The same at the tip edge of gear 2."""
+        return np.where(self.low < 0.0, -self.low, -np.maximum(self.slope, 0.0) / self.curvature)
 
     def rows(self, keep: IntArray) -> Touch:
         """Keep some positions."""
@@ -89,9 +110,13 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
         lever_2[found] = corner.lever_arm_ratio_wheel[corner.valid]
     radius = _relative_radius(pair, touched_1, touched_2)
     s_1, s_2 = flank_coordinate(pair.pinion, touched_1), flank_coordinate(pair.wheel, touched_2)
-    offset_1 = flank_coordinate(pair.pinion, tip_1) - s_1 - opening_1 * radius
-    offset_2 = flank_coordinate(pair.wheel, tip_2) - s_2 - opening_2 * radius
-    return Touch(s_1, s_2, offset_1, offset_2, gap, radius, lever_1, lever_2)
+    high = flank_coordinate(pair.pinion, tip_1) - s_1
+    low = s_2 - flank_coordinate(pair.wheel, tip_2)
+    none = np.zeros((*gap.shape, 0))
+    return Touch(
+        s_1, s_2, gap, radius, lever_1, lever_2,
+        opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0), none, none, none,
+    )  # fmt: skip
 
 
 def _relative_radius(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray) -> FloatArray:
@@ -110,18 +135,13 @@ def flank_coordinate(gear: Toothing, roll: FloatArray | float) -> FloatArray:
     return np.asarray(gear.sign * np.square(roll) / (2.0 * gear.base_radius))
 
 
-def modified_touch(
-    pair: ParallelAxes,
-    touch: Touch,
-    face: FloatArray,
-    gaps: tuple[GapTerm, ...],
-    largest: float | None = None,
-) -> Touch:
-    """Touching points of modified flanks.
+def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
+    """Touching points of modified flanks, and the gap about them.
 
     Sloping modifications move the touching point off the line of action: over the distance x along the flank
-    the gap is (x - x0)^2/(2R) plus the modifications, and its least value counts. On a relief of slope m' it
-    is less than the modification on the line of action by R m'^2/2, some tenths of a micrometre.
+    the gap is x^2/(2R) plus the modifications, and its least value counts. On a relief of slope m' it is less
+    than the modification on the line of action by R m'^2/2, some tenths of a micrometre. About the touching
+    point of plain involutes the modifications are parabolas, from one break of theirs to the next.
 
     Parameters
     ----------
@@ -132,61 +152,94 @@ def modified_touch(
         Distance of each candidate from the pinion's mid-face, m.
     gaps : tuple of GapTerm
         At least one.
-    largest : float, optional
-        `largest_gap` in m where `touch` are some of the positions that are solved: what counts as a
-        tie must not depend on which. Default: theirs.
     """
     moving = tuple(term for term in gaps if term.along_profile)
     steady = tuple(term for term in gaps if not term.along_profile)
-    if largest is None:
-        largest = largest_gap(pair, touch, face, gaps)
-    found = _shifted(pair, touch, face, moving, largest) if largest != 0.0 else touch
+    found = _moved(pair, touch, face, moving) if moving else touch
     roll_1, roll_2 = rolls_at(pair, found.s_1, found.s_2)
     return replace(found, gap=found.gap + sum(term(pair, roll_1, roll_2, face) for term in steady))
 
 
-def largest_gap(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> float:
-    """Return the largest gap that varies along the profile, at the touching points of plain involutes, m."""
-    moving = tuple(term for term in gaps if term.along_profile)
-    if not moving:
-        return 0.0
+def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> Touch:
+    """Move the touching points to where conjugate gap and `gaps` together are least."""
     possible = np.isfinite(touch.gap)
     here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
-    along = np.broadcast_to(face, possible.shape)[possible][:, None]
-    return float(np.abs(_gap_beside(pair, here, along, moving, np.zeros((here.gap.size, 1)))).max())
-
-
-def _shifted(
-    pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...], largest: float
-) -> Touch:
-    """Move the touching points to where conjugate gap and `gaps`, `largest` at most, together are least."""
-    possible = np.isfinite(touch.gap)
-    here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
-    along = np.broadcast_to(face, possible.shape)[possible][:, None]
-    low = here.s_2 - flank_coordinate(pair.wheel, pair.wheel.tip_roll_length)
-    high = flank_coordinate(pair.pinion, pair.pinion.tip_roll_length) - here.s_1
-
-    def gap(shift: FloatArray) -> FloatArray:
-        return _gap_beside(pair, here, along, gaps, shift)
-
-    reach = np.sqrt(4.0 * here.radius * largest)
-    shift = _least(gap, np.maximum(low, -reach), np.minimum(high, reach), _TIE * largest)
-    step = 1e-3 * reach
-    at = gap(np.stack([shift, np.minimum(shift + step, high), np.maximum(shift - step, low)], axis=1))
-    # at an edge the flanks open by the slope of the gap there; elsewhere the distance to it is what matters
-    opening_1 = np.maximum(at[:, 2] - at[:, 0], 0.0) / step * here.radius
-    opening_2 = np.maximum(at[:, 1] - at[:, 0], 0.0) / step * here.radius
-    moved = {
-        "s_1": here.s_1 + shift,
-        "s_2": here.s_2 - shift,
-        "offset_1": np.where(shift < high, high - shift, -opening_1),
-        "offset_2": np.where(shift > low, shift - low, -opening_2),
-        "gap": here.gap + at[:, 0],
-    }
-    result = {name: getattr(touch, name).copy() for name in moved}
+    flanks = _Flanks(pair, here, np.broadcast_to(face, possible.shape)[possible], gaps)
+    shift = flanks.lowest_sample()
+    for _ in range(_PASSES):
+        about = flanks.about(shift)
+        step = touching_places(about, flanks.first - shift, flanks.last - shift)
+        # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
+        down = (flanks.gap(shift + step) <= flanks.gap(shift)) | (np.abs(step) < 1e-3 * flanks.step)
+        step = np.where(down, step, 0.0)
+        least, there = moved_gap(about, step)
+        gap, shift = flanks.gap(shift) + least, shift + step
+    moved = {"s_1": here.s_1 + shift, "s_2": here.s_2 - shift, "gap": here.gap + gap, **there._asdict()}
+    result = {}
     for name, values in moved.items():
+        result[name] = np.zeros((*possible.shape, *values.shape[1:]))
+        plain = getattr(touch, name)
+        if plain.shape == result[name].shape:
+            result[name][:] = plain
         result[name][possible] = values
     return replace(touch, **result)
+
+
+class _Flanks:
+    """Gaps over the conjugate ones of n touching points, functions of the way x (n,) in m along the flank."""
+
+    def __init__(self, pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> None:
+        self._pair, self._touch, self._face, self._gaps = pair, touch, face, gaps
+        self._breaks = [each for term in gaps for each in term.breaks(pair)]
+        # towards a base circle; away from both on the flank of a ring gear
+        inwards = np.minimum(touch.s_1, np.where(touch.s_2 < 0.0, -touch.s_2, np.inf))
+        self.first = np.maximum(touch.low, -_REACH * inwards)
+        self.last = np.minimum(touch.high, np.where(touch.s_2 < 0.0, np.inf, _REACH * touch.s_2))
+        self.step = np.minimum(_STEP / touch.curvature, 0.2 * (self.last - self.first))
+
+    def gap(self, x: FloatArray) -> FloatArray:
+        """Return the gap at x, m."""
+        removed = sum(self._removed(term, x) for term in self._gaps)
+        return np.asarray(x * (self._touch.slope + 0.5 * self._touch.curvature * x) + removed)
+
+    def lowest_sample(self) -> FloatArray:
+        """Return where the gap is least among samples all over the reach."""
+        samples = self.first + (self.last - self.first) * np.linspace(0.0, 1.0, _SAMPLES)[:, None]
+        samples = np.concatenate([np.zeros((1, self.step.size)), samples])
+        lowest = np.argmin([self.gap(x) for x in samples], axis=0)
+        return np.asarray(np.take_along_axis(samples, lowest[None], axis=0)[0])
+
+    def about(self, x: FloatArray) -> Gap:
+        """Return the gap about x.
+
+        Between their breaks modifications are smooth: slope and curvature by differences of what is left
+        without the breaks, over the length of a strip within the flanks.
+        """
+        touch, step = self._touch, self.step
+        breaks = [(each, each.distance(touch.s_1, touch.s_2) - x) for each in self._breaks]
+        middle = np.clip(x, self.first + step, self.last - step)
+        at = []
+        for place in (middle - step, middle, middle + step):
+            rest = sum(self._removed(term, place) for term in self._gaps)
+            at.append(rest - sum(each.height(place - x - distance) for each, distance in breaks))
+        bend = (at[2] - 2.0 * at[1] + at[0]) / step**2
+        slope = touch.slope + touch.curvature * x + (at[2] - at[0]) / (2.0 * step) + bend * (x - middle)
+        curvature = touch.curvature + bend
+        place, jump, bends = np.zeros((3, x.size, len(breaks)))
+        for k, (each, distance) in enumerate(breaks):
+            inside = distance < 0.0 if each.side > 0 else distance >= 0.0
+            depth = np.where(inside, np.abs(distance), 0.0)
+            slope = slope + np.where(inside, each.side * (each.jump + each.bend * depth), 0.0)
+            curvature = curvature + np.where(inside, each.bend, 0.0)
+            place[:, k], jump[:, k] = distance, each.jump
+            bends[:, k] = np.where(inside, -each.bend, each.bend)
+        ends = touch.low - x, touch.high - x
+        # flanks hollowed out more than they are round would touch at several places
+        return rounded(Gap(slope, curvature, *ends, place, jump, bends), _ROUNDEST * touch.curvature)
+
+    def _removed(self, term: GapTerm, x: FloatArray) -> FloatArray:
+        """Return what one term removes at x, m."""
+        return term(self._pair, *rolls_at(self._pair, self._touch.s_1 + x, self._touch.s_2 - x), self._face)
 
 
 def rolls_at(pair: ParallelAxes, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -195,33 +248,3 @@ def rolls_at(pair: ParallelAxes, s_1: FloatArray, s_2: FloatArray) -> tuple[Floa
         np.sqrt(2.0 * pair.pinion.base_radius * np.maximum(s_1, 0.0)),
         np.sqrt(2.0 * pair.wheel.base_radius * np.maximum(pair.wheel.sign * s_2, 0.0)),
     )
-
-
-def _gap_beside(
-    pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...], shift: FloatArray
-) -> FloatArray:
-    """Gap in m over the conjugate one at `shift` (n, k) from the touching points (n,) towards tip 1."""
-    roll_1, roll_2 = rolls_at(pair, touch.s_1[:, None] + shift, touch.s_2[:, None] - shift)
-    # beside an edge the flanks open by phi = -offset/R
-    opening = np.maximum(-touch.offset_1, 0.0)[:, None] * np.maximum(-shift, 0.0)
-    opening += np.maximum(-touch.offset_2, 0.0)[:, None] * np.maximum(shift, 0.0)
-    rigid = (0.5 * shift**2 + opening) / touch.radius[:, None]
-    return np.asarray(rigid + sum(term(pair, roll_1, roll_2, face) for term in gaps))
-
-
-def _least(
-    gap: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray, tie: float
-) -> FloatArray:
-    """Where the gap is least between `low` and `high` (n,): nested searches.
-
-    A tie, gaps that differ by less than `tie` in m, goes to the middle. It must be in proportion to the gaps:
-    a fixed one takes the contact off the tip edge wherever flanks open by less.
-    """
-    fraction = np.linspace(0.0, 1.0, _SAMPLES)
-    for _ in range(3):
-        shift = low[:, None] + (high - low)[:, None] * fraction
-        best = np.argmin(gap(shift) + tie * np.abs(fraction - 0.5), axis=1)[:, None]
-        low, high = (
-            np.take_along_axis(shift, np.clip(best + k, 0, _SAMPLES - 1), axis=1)[:, 0] for k in (-1, 1)
-        )
-    return np.asarray(np.take_along_axis(shift, best, axis=1)[:, 0])

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from fe_contact.contact.model import ContactModel
+from fe_contact.contact.model import Break, ContactModel
 from fe_contact.effects.effect import ContactScene, Verdict
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
@@ -19,6 +19,10 @@ class MisalignmentGap:
 
     growth: float
     along_profile: ClassVar[bool] = False
+
+    def breaks(self, pair: ParallelAxes) -> tuple[Break, ...]:
+        """None: it is the same all along the profile."""
+        return ()
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fe_contact.contact import Break, flank_coordinate
 from fe_contact.geometry import FlankModification, ParallelAxes
 from fe_contact.types import FloatArray
 
@@ -25,6 +26,21 @@ class ModificationGap:
     def along_profile(self) -> bool:
         """Whether the gap depends on the roll lengths."""
         return self.pinion.varies_along_profile or self.wheel.varies_along_profile
+
+    def breaks(self, pair: ParallelAxes) -> tuple[Break, ...]:
+        """Where reliefs begin on either flank."""
+        sides = ((pair.pinion, self.pinion), (pair.wheel, self.wheel))
+        return tuple(
+            Break(
+                index,
+                float(flank_coordinate(gear, start.roll_length)),
+                1 if start.towards_tip == (index == 0) else -1,
+                start.jump,
+                start.bend,
+            )
+            for index, (gear, modification) in enumerate(sides)
+            for start in modification.relief_starts(gear)
+        )
 
     def __call__(
         self, pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, face: FloatArray

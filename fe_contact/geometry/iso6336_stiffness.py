@@ -9,7 +9,6 @@ from fe_contact.checks import positive
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.toothing import Toothing
-from fe_contact.material import STEEL
 
 MEASURED_OVER_THEORY = 0.8
 """C_M: measured gears against the theoretical stiffness."""
@@ -17,6 +16,9 @@ _PER_MM_UM = 1e9  # N/(mm um) in N/m per m of face width
 _THINNEST_WEB = 0.2  # b_s/b
 _THINNEST_RIM = 1.0  # s_R/m_n
 _LOW_LINE_LOAD = 1e5  # N/m (100 N/mm): below it the stiffness falls with the load
+_LOW_LOAD_EXPONENT = 0.25
+_STEEL_MODULUS = 206e9
+"""Young's modulus of the steel pairs of the series, Pa; others scale."""
 _SERIES = (0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182)
 
 
@@ -50,7 +52,8 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
     pair : GearPair
         External gears. The series was fitted for -0.5 <= x_1 + x_2 <= 2 and x_1 >= x_2.
     line_load : float, optional
-        Specific load F_t K_A / b in N/m; below 1e5 N/m the stiffness falls in proportion. Default: above.
+        Specific load F_t K_A / b in N/m; below 1e5 N/m the stiffness falls with its fourth root. Default:
+        above.
 
     Returns
     -------
@@ -69,7 +72,7 @@ def iso6336_stiffness(pair: GearPair, line_load: float | None = None) -> Iso6336
         * _modulus_ratio(pair)
     )
     if line_load is not None:
-        single *= min(1.0, positive("line_load", line_load) / _LOW_LINE_LOAD)
+        single *= min(1.0, positive("line_load", line_load) / _LOW_LINE_LOAD) ** _LOW_LOAD_EXPONENT
     mesh = single * (0.75 * pair.transverse_contact_ratio + 0.25)
     return Iso6336Stiffness(theoretical, single, mesh, 0.85 * mesh)
 
@@ -110,4 +113,4 @@ def _modulus_ratio(pair: GearPair) -> float:
     """Harmonic mean of both moduli over steel's (the series is for steel pairs)."""
     moduli = pair.pinion.material.youngs_modulus, pair.wheel.material.youngs_modulus
     mean = 2.0 * moduli[0] * moduli[1] / sum(moduli)
-    return mean / STEEL.youngs_modulus
+    return mean / _STEEL_MODULUS

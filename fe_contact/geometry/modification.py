@@ -6,6 +6,7 @@ action).
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -31,6 +32,26 @@ _ACROSS_FACE = (
     "flank_twist",
 )
 _LARGEST = 0.01  # m; catches micrometres given as metres
+
+
+@dataclass(frozen=True)
+class ReliefStart:
+    """Where a relief begins along the profile, and how: its depth is jump d + bend d^2/2 a distance d inside.
+
+    Attributes
+    ----------
+    roll_length : float
+        m.
+    towards_tip : bool
+        Whether the relief runs to the tip; else to the root.
+    jump, bend : float
+        Slope and curvature with which it begins, over the arc length of the flank; 1 and 1/m.
+    """
+
+    roll_length: float
+    towards_tip: bool
+    jump: float
+    bend: float
 
 
 @dataclass(frozen=True)
@@ -172,18 +193,29 @@ class FlankModification:
             removed += grid.material_removed(roll, face)
         return removed
 
+    def relief_starts(self, gear: Toothing) -> tuple[ReliefStart, ...]:
+        """Return where reliefs begin along the profile."""
+        return tuple(
+            ReliefStart(start, end == gear.tip_roll_length, *_beginning(gear, amount, shape, start, end))
+            for amount, shape, start, end in self._reliefs(gear)
+        )
+
     def _along_profile(self, gear: Toothing, roll: FloatArray) -> FloatArray:
         """Reliefs, crowning and slope over the roll length."""
-        form, tip = gear.form_roll_length, gear.tip_roll_length
         across = _across_profile(gear, roll)
         removed = self.profile_crowning * across**2 + 0.5 * self.profile_slope * across
+        for amount, shape, start, end in self._reliefs(gear):
+            removed += amount * _course(shape, (roll - start) / (end - start))
+        return np.asarray(removed, dtype=float)
+
+    def _reliefs(self, gear: Toothing) -> Iterator[tuple[float, Shape, float, float]]:
+        """Give amount, shape and the roll lengths of beginning and end of each relief along the profile."""
         if self.tip_relief:
             start = gear.roll_length(gear.tip_radius - gear.sign * self.tip_relief_length)
-            removed += self.tip_relief * _course(self.tip_relief_shape, (roll - start) / (tip - start))
+            yield self.tip_relief, self.tip_relief_shape, start, gear.tip_roll_length
         if self.root_relief:
             start = gear.roll_length(gear.form_radius + gear.sign * self.root_relief_length)
-            removed += self.root_relief * _course(self.root_relief_shape, (start - roll) / (start - form))
-        return np.asarray(removed, dtype=float)
+            yield self.root_relief, self.root_relief_shape, start, gear.form_roll_length
 
     def _along_face(self, gear: Toothing, face: FloatArray) -> FloatArray:
         """End relief, crowning and slope over the face."""
@@ -216,6 +248,17 @@ def _course(shape: Shape, fraction: FloatArray) -> FloatArray:
     """Relative depth of a relief at `fraction` of its length: 0 before it starts, 1 from its end on."""
     inside = np.clip(fraction, 0.0, 1.0)
     return inside if shape == "linear" else inside**2
+
+
+def _beginning(gear: Toothing, amount: float, shape: Shape, start: float, end: float) -> tuple[float, float]:
+    """Return slope and curvature of a relief where it begins, over the arc length of the flank.
+
+    The fraction u of its length grows with the arc d as du/dd = r_b/(l |end - start|), and l l' = +-r_b.
+    """
+    slope = gear.base_radius / (start * abs(end - start))
+    if shape == "parabolic":
+        return 0.0, 2.0 * amount * slope**2
+    return amount * slope, -amount * gear.base_radius**2 / (start**3 * (end - start))
 
 
 def _check_relief(modification: FlankModification, kind: str) -> None:

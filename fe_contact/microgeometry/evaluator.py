@@ -8,11 +8,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.analysis.pair_contact import PairContact
-from fe_contact.contact import ContactModel, ContactProblem, ContactSolution, in_pitches, solve_contact
+from fe_contact.contact import (
+    ContactModel,
+    ContactProblem,
+    ContactSolution,
+    contact_pressure,
+    in_pitches,
+    solve_contact,
+)
 from fe_contact.contact.touch import Touch, modified_touch
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.geometry import ParallelAxes
-from fe_contact.hertz import peak_pressure
 from fe_contact.microgeometry.objective import Limits
 from fe_contact.microgeometry.scatter import ScatterNodes
 from fe_contact.microgeometry.variables import LENGTHS, SLOPES, modified
@@ -150,12 +156,11 @@ def _figures(
     """Return STE (P, L), and pressure, face load factor and load share of the edges (L,)."""
     candidates = problem.candidates
     ste = np.where(solution.status == Status.CONVERGED, solution.deflection, np.nan)
-    line_load = solution.force / candidates.width
-    pressure = peak_pressure(line_load, candidates.radius[:, None, :], problem.modulus)
+    pressure = contact_pressure(problem, solution.force)
     pairs = np.unique(candidates.pair).size
     face_load = solution.force.reshape(*ste.shape, pairs, -1).sum(axis=2).mean(axis=0)
     loaded = solution.force * candidates.torque_share[:, None, :]
-    at_edge = np.minimum(candidates.touch.offset_1, candidates.touch.offset_2) <= 0.0
+    at_edge = (candidates.touch.low >= 0.0) | (candidates.touch.high <= 0.0)
     share = (loaded * at_edge[:, None, :]).sum(axis=2) / loaded.sum(axis=2)
     factor = face_load.max(axis=1) / face_load.mean(axis=1)
     return ste, pressure.max(axis=(0, 2)), factor, share.max(axis=0)

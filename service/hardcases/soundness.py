@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.contact.interior_point import Problem, solve
+from fe_contact.contact.interior_point import GapAbout, Problem, solve
 from service.hardcases.scene import Measured
 
 LARGEST_RESIDUAL = 1e-9
@@ -52,8 +52,7 @@ def _plain(problem: ContactProblem, position: int) -> Problem:
         gap=c.gap[position, real] * motion,
         motion_arm=motion,
         torque_arm=c.torque_share[position, real],
-        radius=c.radius[position, real],
-        edge_slope=c.edge_slope[position, real],
+        gap_about=GapAbout(*(part[position, real] for part in c.gap_about)),
         width=np.full(int(real.sum()), c.width),
         patch_1=c.patch_1.law_width[position, real],
         patch_2=c.patch_2.law_width[position, real],

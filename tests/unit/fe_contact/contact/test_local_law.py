@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact.contact.local_law import LARGEST_STRIP, SMALLEST_STRIP, LocalLaw, approach, local_law
+from fe_contact.contact.strip import Gap
 from fe_contact.hertz import (
     contact_modulus,
     edge_contact_length,
@@ -27,10 +28,17 @@ LINE_LOADS = np.geomspace(1e1, 8e4, 25)
 
 def law_of(slope: float, first: Material = STEEL, second: Material = STEEL, scale: float = 1.0) -> LocalLaw:
     k1, k2 = (2.0 / (math.pi * m.plane_strain_modulus) for m in (first, second))
-    radius, edge, width, a1, a2 = (
-        np.array([v]) for v in (scale * RADIUS, slope, scale * WIDTH, scale * PATCH_1, scale * PATCH_2)
-    )
-    return local_law(radius, edge, width, a1, a2, contact_modulus(first, second), k1, k2)
+    width, a1, a2 = (np.array([scale * v]) for v in (WIDTH, PATCH_1, PATCH_2))
+    return local_law(gap_of(slope, scale * RADIUS), width, a1, a2, contact_modulus(first, second), k1, k2)
+
+
+def gap_of(slope: float, radius: float) -> Gap:
+    """Gap beside an edge: flanks open by a slope > 0; one < 0 is -t/R at a distance t; NaN is no edge."""
+    edge = math.inf if math.isnan(slope) else max(-slope, 0.0) * radius
+    opening = slope if slope > 0.0 else 0.0
+    slopes, curvatures, low, high = (np.array([v]) for v in (opening, 1.0 / radius, -edge, math.inf))
+    none = np.zeros((1, 0))
+    return Gap(slopes, curvatures, low, high, none, none, none)
 
 
 def hertz_room(p: float, slope: float, first: Material, second: Material) -> float:
@@ -155,7 +163,7 @@ def test_blunt_wedge_keeps_its_digits():
     modulus, wedge, radius, patch = contact_modulus(STEEL, STEEL), 0.3, 2e4, 3e-4
     k = 1.0 / (math.pi * modulus)
     one = np.ones(1)
-    law = local_law(radius * one, wedge * one, WIDTH * one, patch * one, patch * one, modulus, k, k)
+    law = local_law(gap_of(wedge, radius), WIDTH * one, patch * one, patch * one, modulus, k, k)
     p = 1.5 * law.low[0]
     half_width_at_edge = 2.0 * p / (math.pi * modulus * wedge) * math.exp(-0.5)
     expected = 2.0 * k * p * (math.log(patch / half_width_at_edge) + 0.25)

@@ -14,6 +14,7 @@ from fe_contact.contact.cholesky import factorize, substitute
 from fe_contact.contact.local_law import approach, local_law
 from fe_contact.contact.newton import PointProblem, _residuals, solve_point
 from fe_contact.contact.patch import Patches
+from fe_contact.contact.strip import Gap
 from fe_contact.types import Status
 
 MODULUS = 115e9
@@ -26,8 +27,7 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
     n = len(gap)
     ones = np.ones(n)
     law = local_law(
-        RADIUS * ones,
-        edge_slope * ones,
+        beside_an_edge(edge_slope, n),
         WIDTH * ones,
         PATCH * ones,
         PATCH * ones,
@@ -38,6 +38,14 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
     motion = ones if motion_arm is None else np.asarray(motion_arm)
     torque = motion if torque_arm is None else np.asarray(torque_arm)
     return PointProblem(np.asarray(compliance, float), np.asarray(gap, float), motion, torque, law)
+
+
+def beside_an_edge(slope, *shape) -> Gap:
+    """Gap of flanks that open by a slope > 0 at an edge, or are -slope R away from one; NaN is no edge."""
+    ones = np.ones(shape)
+    edge = math.inf if math.isnan(slope) else max(-slope, 0.0) * RADIUS
+    opening, none = max(np.nan_to_num(slope), 0.0), np.zeros((*shape, 0))
+    return Gap(opening * ones, ones / RADIUS, -edge * ones, math.inf * ones, none, none, none)
 
 
 def solve(problem, load, force=None):
@@ -171,8 +179,7 @@ def two_position_problem() -> ContactProblem:
         gap=np.array([[1e-6, math.inf], [0.0, 0.0]]),
         motion_arm=ARM * full,
         torque_share=full,
-        radius=RADIUS * full,
-        edge_slope=math.nan * full,
+        gap_about=beside_an_edge(math.nan, 2, 2),
         width=np.full(2, WIDTH),
     )
     compliance = np.broadcast_to(STIFF * np.array([[1.0, 0.2], [0.2, 1.0]]), (2, 2, 2)).copy()

@@ -8,6 +8,7 @@ from scipy.optimize import minimize_scalar
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.contact.touch import conjugate_touch, flank_coordinate, modified_touch
+from fe_contact.effects.modification_gap import ModificationGap
 from fe_contact.geometry import InternalGearPair, RingGear
 
 
@@ -27,11 +28,17 @@ class Removed:
 
     along_profile = True
 
+    def breaks(self, gears):
+        return ModificationGap(gears.pinion.modification, gears.wheel.modification).breaks(gears)
+
     def __call__(self, gears, roll_1, roll_2, face):
         return material_removed(gears, roll_1, roll_2)
 
 
 class Constant(Removed):
+    def breaks(self, gears):
+        return ()
+
     def __call__(self, gears, roll_1, roll_2, face):
         return np.full(roll_1.shape, 3e-6)
 

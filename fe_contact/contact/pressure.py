@@ -1,0 +1,47 @@
+"""Peak pressure of the contacts, from their loads and strips."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+from fe_contact.contact.problem import ContactProblem
+from fe_contact.contact.strip import Gap, half_strip
+from fe_contact.types import FloatArray
+
+
+def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
+    """Return the peak pressure of each contact in Pa, shape (P, L, n).
+
+    It is 2 p/(pi h), the peak of an elliptic pressure over the strip 2 h as it is: Hertz's on a plain flank.
+    Beside the beginning of a relief and at a tip edge, where the pressure of a sharp kink is infinite at a
+    point, it is a mean over the strip, times 4/pi.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    force : ndarray, shape (P, L, n)
+        Normal forces, N.
+    """
+    pressure = np.zeros(force.shape)
+    candidates = problem.candidates
+    _fill(candidates.gap_about, np.ascontiguousarray(force) / candidates.width, problem.modulus, pressure)
+    return pressure
+
+
+@njit(cache=True)
+def _fill(about: Gap, line_load: FloatArray, modulus: float, out: FloatArray) -> None:
+    """Fill in where there is load."""
+    positions, loads, contacts = line_load.shape
+    for p in range(positions):
+        here = Gap(
+            about.slope[p], about.curvature[p], about.low[p], about.high[p],
+            about.place[p], about.jump[p], about.bend[p],
+        )  # fmt: skip
+        for k in range(loads):
+            for i in range(contacts):
+                load = line_load[p, k, i]
+                if load > 0.0:
+                    out[p, k, i] = 2.0 * load / (math.pi * half_strip(here, i, load, modulus)[0])
