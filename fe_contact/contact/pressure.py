@@ -16,8 +16,8 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
     """Return the peak pressure of each contact in Pa, shape (P, L, n).
 
     It is 2 p/(pi h), the peak of an elliptic pressure over the strip 2 h as it is: Hertz's on a plain flank.
-    Beside the beginning of a relief and at a tip edge, where the pressure of a sharp kink is infinite at a
-    point, it is a mean over the strip, times 4/pi.
+    Where a relief begins the pressure of a sharp kink is infinite at a point; this is the mean over the
+    strip, times 4/pi. At a tip edge, which is never sharp, it is Hertz's as if the flank went on.
 
     Parameters
     ----------
@@ -27,7 +27,10 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
     """
     pressure = np.zeros(force.shape)
     candidates = problem.candidates
-    _fill(candidates.gap_about, np.ascontiguousarray(force) / candidates.width, problem.modulus, pressure)
+    here = candidates.gap_about
+    at_edge, none = (here.low >= 0.0) | (here.high <= 0.0), np.full(here.low.shape, np.inf)
+    endless = here._replace(slope=np.where(at_edge, 0.0, here.slope), low=-none, high=none)
+    _fill(endless, np.ascontiguousarray(force) / candidates.width, problem.modulus, pressure)
     return pressure
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from fe_contact.full_contact.meshing import FullContactMesh
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
@@ -12,6 +13,8 @@ from fe_contact.mesh import GearMesh
 from fe_contact.mesh.quadratic import SIDES, rotated
 from fe_contact.types import FloatArray, IntArray
 
+_DEPTH = 0.25
+"""Modules below a flank to which its modification moves the nodes."""
 ORIGIN = np.zeros(2)
 
 
@@ -106,11 +109,17 @@ def _turn(gear: Toothing, roll_length: float, outward: FloatArray) -> float:
 def _placed(
     gear: Toothing, mesh: GearMesh, turn: float, reach: int, center: FloatArray = ORIGIN
 ) -> PlacedGear:
-    """Remove the modification from the flanks, turn, move."""
+    """Remove the modification from the flanks, turn, move.
+
+    What lies below a flank moves with it, less and less to a depth of `_DEPTH`: elements at the tip are no
+    larger than a relief.
+    """
     points = mesh.points.copy()
     for flank in mesh.flanks:
         removed = _removed_at(gear, np.sqrt(2.0 * gear.base_radius * np.maximum(flank.s, 0.0)))
-        points[flank.nodes] -= flank.normals * removed[:, None]
+        away, nearest = cKDTree(mesh.points[flank.nodes]).query(mesh.points)
+        share = np.maximum(1.0 - away / (_DEPTH * gear.normal_module), 0.0)
+        points -= (flank.normals * removed[:, None])[nearest] * share[:, None]
     touching = [flank for flank in mesh.flanks if abs(flank.tooth) <= reach]
     flanks = {flank.tooth: _sides(mesh.triangles, flank.nodes) for flank in touching}
     return PlacedGear(rotated(points, turn) + center, mesh.triangles, mesh.bore_nodes, center, flanks)

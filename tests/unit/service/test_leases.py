@@ -113,7 +113,7 @@ from running_service import bench
 from service_stand_ins import REGISTRY
 from sqlalchemy import select, update
 directory, database, results = sys.argv[1:]
-machine = bench(Path(directory), REGISTRY, results=Path(results), database_url=database, lease_s=4.0)
+machine = bench(Path(directory), REGISTRY, results=Path(results), database_url=database, lease_s=8.0)
 machine.scheduler.start()
 machine.scheduler._thread.join()
 """

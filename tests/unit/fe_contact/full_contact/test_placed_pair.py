@@ -14,6 +14,7 @@ from fe_contact.full_contact.validity import refusal
 from fe_contact.geometry import GearBlank
 from fe_contact.mesh import MeshRecipe, mesh_gear
 from fe_contact.mesh.quadratic import SIDES
+from fe_contact.mesh.quality import scaled_jacobian
 from fe_contact.types import FloatArray
 
 PINION = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -106,3 +107,15 @@ def test_what_plane_strain_does_not_hold_is_refused_by_reason() -> None:
     assert "rim" in str(refusal(replace(PAIR, pinion=web)))
     crowned = replace(WHEEL, modification=FlankModification(helix_crowning=5e-6))
     assert "across the face" in str(refusal(replace(PAIR, wheel=crowned)))
+
+
+def test_no_element_is_turned_over_by_a_relief_as_deep_as_it_is_large() -> None:
+    relieved = replace(PINION, modification=FlankModification(tip_relief=60e-6, tip_relief_length=1.7e-3))
+    recipe = replace(
+        MeshRecipe.standard(PINION), flank_size=0.1e-3, tip_size=0.04e-3, growth=0.5, real_teeth=3
+    )
+    made = mesh_gear(PINION, recipe)
+    pair = GearPair(relieved, PINION, center_distance=80e-3)
+    placed = placed_pair(pair, FullContactMesh((made, made), reach=1), 0.0)
+    for gear in placed.gears:
+        assert scaled_jacobian(gear.points[gear.triangles]).min() > 0.1

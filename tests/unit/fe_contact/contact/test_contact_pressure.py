@@ -1,0 +1,45 @@
+"""Peak pressure: Hertz's on plain flanks and at edges, more where a relief narrows the strip."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fe_contact.contact import contact_pressure
+from fe_contact.contact.strip import Gap
+from fe_contact.hertz import half_width, peak_pressure
+
+MODULUS, RADIUS, WIDTH = 115e9, 6e-3, 25e-3
+LOAD = 4000.0
+B = float(half_width(LOAD / WIDTH, RADIUS, MODULUS))
+
+
+def pressure(slope=0.0, low=-math.inf, high=math.inf, place=math.inf, jump=0.0) -> float:
+    one = [np.array([[value]]) for value in (slope, 1.0 / RADIUS, low, high)]
+    breaks = [np.array([[[value]]]) for value in (place, jump, 0.0)]
+    candidates = SimpleNamespace(gap_about=Gap(*one, *breaks), width=WIDTH)
+    problem = SimpleNamespace(candidates=candidates, modulus=MODULUS)
+    return float(contact_pressure(problem, np.array([[[LOAD]]]))[0, 0, 0])
+
+
+HERTZ = float(peak_pressure(LOAD / WIDTH, RADIUS, MODULUS))
+
+
+def test_a_plain_flank_has_the_pressure_of_hertz():
+    assert pressure() == pytest.approx(HERTZ, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "edge", [{"low": 0.0, "slope": 0.1}, {"low": -0.3 * B}, {"high": 0.0, "slope": -0.01}]
+)
+def test_an_edge_does_not_count(edge):
+    assert pressure(**edge) == pytest.approx(HERTZ, rel=1e-9)
+
+
+def test_a_relief_that_begins_within_the_strip_raises_it():
+    beside = [pressure(place=share * B, jump=0.01) for share in (1.01, 0.5, 0.0)]
+    assert beside[0] == pytest.approx(HERTZ, rel=1e-12)
+    assert beside[0] < beside[1] < beside[2] < 2.0 * HERTZ
