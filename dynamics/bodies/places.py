@@ -2,8 +2,21 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 SAME_PLACE = 1e-9
 """Of the shaft's length: places nearer than this are one. n added lengths round by n eps of their sum."""
+
+
+class Placed(Protocol):
+    """A part at a place of a shaft, m from its left end."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def shaft(self) -> str: ...
+    @property
+    def position(self) -> float: ...
 
 
 def on_length(place: float, length: float) -> bool:

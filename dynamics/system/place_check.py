@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 from dynamics.bodies import Shaft
-from dynamics.bodies.places import on_length
+from dynamics.bodies.places import Placed, on_length
 from dynamics.errors import InputError
 
 
-class _Placed(Protocol):
-    """A part at a place of a shaft."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def shaft(self) -> str: ...
-    @property
-    def position(self) -> float: ...
-
-
-def check_places(shafts: Sequence[Shaft], kind: str, parts: Sequence[_Placed]) -> None:
+def check_places(shafts: Sequence[Shaft], kind: str, parts: Sequence[Placed]) -> None:
     """Refuse a part of a `kind` ("gears", "bushings", "planet_bearings") that is off its shaft.
 
     Raises

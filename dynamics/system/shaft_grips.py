@@ -3,26 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
 
 from dynamics.bodies import Disc, ElasticShaft, Grip, elastic_shaft
-from dynamics.bodies.places import on_length
+from dynamics.bodies.places import Placed, on_length
 from dynamics.system.mechanism import Mechanism
 from dynamics.system.rotor import Rotor
 from dynamics.system.sampling import order_rate
 from dynamics.system.scene import Scene
 from dynamics.system.seats import seated
-
-
-class _Placed(Protocol):
-    """A part at a place of a shaft."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def shaft(self) -> str: ...
-    @property
-    def position(self) -> float: ...
 
 
 def why_rigid(mechanism: Mechanism, index: int) -> str:
@@ -104,7 +92,7 @@ def _grips(scene: Scene, rotor: Rotor, bends: bool, stretches: bool) -> tuple[Gr
     for place, full in _couplings(scene, rotor):
         whole = bends and full
         found.append(Grip(rotor.on_shaft(place), whole, whole, stretches and full, True))
-    torques: list[_Placed] = [*scene.drives, *scene.loads, *scene.speed_torques]
+    torques: list[Placed] = [*scene.drives, *scene.loads, *scene.speed_torques]
     found += [Grip(rotor.on_shaft(part.position), turn=True) for part in torques if part.shaft == name]
     return tuple(found)
 
@@ -122,8 +110,8 @@ def _couplings(scene: Scene, rotor: Rotor) -> list[tuple[float, bool]]:
 def _places(scene: Scene, rotor: Rotor) -> list[tuple[str, float]]:
     """Names and places of what must lie on the shaft; torsional couplings act at its nearer end."""
     name = rotor.shaft.name
-    torques: list[_Placed] = [*scene.drives, *scene.loads, *scene.speed_torques]
-    parts: list[_Placed] = [*scene.gears, *scene.bushings, *torques]
+    torques: list[Placed] = [*scene.drives, *scene.loads, *scene.speed_torques]
+    parts: list[Placed] = [*scene.gears, *scene.bushings, *torques]
     return [(part.name, part.position) for part in parts if part.shaft == name]
 
 

@@ -48,7 +48,7 @@ def _service() -> WholeService:
 
 service = _service()
 schema = schemathesis.openapi.from_asgi("/openapi.json", service.app, headers=service.headers)
-FEW = 12
+FEW = 8
 sent: Counter[str] = Counter()
 
 if BODIES:
