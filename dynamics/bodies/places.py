@@ -12,11 +12,19 @@ class Placed(Protocol):
     """A part at a place of a shaft, m from its left end."""
 
     @property
-    def name(self) -> str: ...
+    def name(self) -> str:
+        """What it is called."""
+        ...
+
     @property
-    def shaft(self) -> str: ...
+    def shaft(self) -> str:
+        """Name of the shaft."""
+        ...
+
     @property
-    def position(self) -> float: ...
+    def position(self) -> float:
+        """Place along the shaft."""
+        ...
 
 
 def on_length(place: float, length: float) -> bool:

@@ -8,7 +8,6 @@ import pytest
 
 from service.hardcases import HARD_SCENES, HardScene
 
-
 LONG = () if os.environ.get("LOA_LONG_SCENES") else ("ten_million_",)
 """Scenes of the nightly run alone, by how their names begin."""
 
