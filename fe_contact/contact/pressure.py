@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from fe_contact.contact.problem import ContactProblem
-from fe_contact.contact.strip import Gap, half_strip
+from fe_contact.contact.strip import Gap, gap_at, half_strip
 from fe_contact.types import FloatArray
 
 
@@ -39,10 +39,7 @@ def _fill(about: Gap, line_load: FloatArray, modulus: float, out: FloatArray) ->
     """Fill in where there is load."""
     positions, loads, contacts = line_load.shape
     for p in range(positions):
-        here = Gap(
-            about.slope[p], about.curvature[p], about.low[p], about.high[p],
-            about.place[p], about.jump[p], about.bend[p],
-        )  # fmt: skip
+        here = gap_at(about, p)
         for k in range(loads):
             for i in range(contacts):
                 load = line_load[p, k, i]

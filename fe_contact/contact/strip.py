@@ -63,6 +63,20 @@ class Gap(NamedTuple):
 
 
 @njit(cache=True)
+def gap_at(about: Gap, position: int) -> Gap:
+    """Return the gaps (n,) at one of the positions of arrays (P, n) and (P, n, B)."""
+    return Gap(
+        about.slope[position],
+        about.curvature[position],
+        about.low[position],
+        about.high[position],
+        about.place[position],
+        about.jump[position],
+        about.bend[position],
+    )
+
+
+@njit(cache=True)
 def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[float, float]:
     """Return half the length of the strip in m and the mean gap over it in m, from the touching point's on.
 

@@ -10,7 +10,7 @@ from fe_contact.contact.newton import CONVERGED, PointProblem, solve_point
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.solution import ContactSolution
 from fe_contact.contact.start import Start
-from fe_contact.contact.strip import Gap
+from fe_contact.contact.strip import Gap, gap_at
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 
@@ -76,11 +76,7 @@ def _sweep(
 ) -> None:
     """Fill the result arrays, started from the `first` forces, or each load from the one below it."""
     for p in range(gap.shape[0]):
-        here = Gap(
-            about.slope[p], about.curvature[p], about.low[p], about.high[p],
-            about.place[p], about.jump[p], about.bend[p],
-        )  # fmt: skip
-        law = local_law(here, width, patch_1[p], patch_2[p], modulus, k1, k2)
+        law = local_law(gap_at(about, p), width, patch_1[p], patch_2[p], modulus, k1, k2)
         point = PointProblem(compliance[p % compliance.shape[0]], gap[p], motion_arm[p], torque_arm[p], law)
         start = np.zeros(gap.shape[1])
         for k in range(loads.size):

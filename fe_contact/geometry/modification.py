@@ -23,6 +23,17 @@ if TYPE_CHECKING:
 
 Shape = Literal["linear", "parabolic"]
 SHAPES: tuple[Shape, ...] = ("linear", "parabolic")
+AMOUNTS = (
+    "tip_relief",
+    "root_relief",
+    "end_relief",
+    "profile_crowning",
+    "profile_slope",
+    "helix_crowning",
+    "helix_slope",
+    "flank_twist",
+)
+"""Fields of a modification that are depths, m."""
 _ACROSS_FACE = (
     "helix_crowning",
     "helix_slope",

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from fe_contact.geometry import ParallelAxes, Shaft
+from fe_contact.geometry.modification import AMOUNTS
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import Material
 from fe_contact.plausibility.check import CHECKS
@@ -22,16 +23,6 @@ from fe_contact.types import FloatArray
 
 _RATED = 20.0
 """Rated loads over the lightest that is plausible."""
-_AMOUNTS = (
-    "tip_relief",
-    "root_relief",
-    "end_relief",
-    "profile_crowning",
-    "profile_slope",
-    "helix_crowning",
-    "helix_slope",
-    "flank_twist",
-)
 
 
 def pair_findings(
@@ -110,7 +101,7 @@ def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
         for finding in judged("bore", f"{name}.bore_diameter", bore, "m", scale=root, reason=reason):
             yield replace(finding, high=root)
     shape = gear.modification
-    amounts = {field: float(getattr(shape, field)) for field in _AMOUNTS}
+    amounts = {field: float(getattr(shape, field)) for field in AMOUNTS}
     amounts["thickness_allowance"] = gear.thickness_allowance
     amounts["pitch_deviation"] = max((abs(value) for value in gear.pitch_deviation.cumulative), default=0.0)
     if shape.flank_grid is not None:

@@ -22,6 +22,7 @@ from fe_contact.geometry import (
     RingGear,
     Shaft,
 )
+from fe_contact.geometry.modification import AMOUNTS
 from fe_contact.material import Material
 from service.convert.errors import translated
 from service.convert.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, UM
@@ -30,16 +31,6 @@ from service.schemas import BoreSeatInput, Case, MaterialInput, PairInput, Tooth
 
 Json = dict[str, Any]
 
-_AMOUNTS = (
-    "tip_relief",
-    "root_relief",
-    "end_relief",
-    "profile_crowning",
-    "profile_slope",
-    "helix_crowning",
-    "helix_slope",
-    "flank_twist",
-)
 _RELIEFS = ("tip_relief", "root_relief", "end_relief")
 _COEFFICIENTS = (
     "profile_shift_coefficient",
@@ -185,7 +176,7 @@ def _shaft(name: str, gear: ToothingInput) -> Shaft | None:
 
 def _modification(given: ToothingInput) -> FlankModification:
     """Return the flank modification of a gear."""
-    facts: Json = {name: getattr(given, f"{name}_um") * UM for name in _AMOUNTS}
+    facts: Json = {name: getattr(given, f"{name}_um") * UM for name in AMOUNTS}
     for name in _RELIEFS:
         facts[f"{name}_length"] = getattr(given, f"{name}_length_mm") * MM
         facts[f"{name}_shape"] = getattr(given, f"{name}_shape")
