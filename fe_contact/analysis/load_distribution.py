@@ -194,7 +194,7 @@ def load_distribution(
         lever=candidates.torque_share.reshape(shape),
         pressure=pressure.reshape(shape),
         gap=gap.reshape(shape),
-        slice_width=candidates.slice_width,
+        slice_width=candidates.point_width,
         base_helix_angle=candidates.base_helix_angle,
         scene=flank_scene(pair, solution.load[load], misalignment, center_distance_change),
         metadata=metadata or Metadata(),
@@ -204,7 +204,7 @@ def load_distribution(
 def _loaded_gap(problem: ContactProblem, force: FloatArray, deflection: FloatArray) -> FloatArray:
     """Gap (P, n) left along the normal: bending apart, less the approach of the rigid flanks."""
     candidates = problem.candidates
-    bent = np.einsum("pij,pj->pi", problem.compliance, force)
+    bent = problem.moved(force[:, None])[:, 0]
     approach = candidates.motion_arm * (deflection[:, None] - candidates.gap)
     return np.where(force > 0.0, 0.0, bent - approach)
 

@@ -49,11 +49,8 @@ class Problem:
     torque_arm: Array
     gap_about: GapAbout
     width: Array
-    patch_1: Array
-    patch_2: Array
+    length: float
     modulus: float
-    k1: float
-    k2: float
 
 
 @dataclass(frozen=True)
@@ -141,22 +138,21 @@ def strips(problem: Problem, half: Array) -> tuple[Array, Array]:
 
 
 class GuardedLaw:
-    """The law with its secant below a strip of 1e-4 patches and straight on above a strip of 0.66 patches.
+    """The law with its secant below a strip of 1e-4 reference lengths and straight on above one of 0.66.
 
     Strips are tabulated over their length; between the entries the length is found by the secant method.
     """
 
     def __init__(self, problem: Problem) -> None:
-        k = problem.k1 + problem.k2
-        self.problem, self.k = problem, k
-        self.patch = problem.patch_1 ** (problem.k1 / k) * problem.patch_2 ** (problem.k2 / k)
+        self.problem, self.k = problem, 2.0 / (np.pi * problem.modulus)
         widest = 0.5 * (problem.gap_about.high - problem.gap_about.low)
-        first, last = np.log(1e-4 * self.patch), np.log(np.minimum(0.66 * self.patch, widest))
+        first = np.full(widest.size, np.log(1e-4 * problem.length))
+        last = np.log(np.minimum(0.66 * problem.length, widest))
         self.half = np.exp(first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 129))
         self.load, mean = strips(problem, self.half)
-        self.value = mean + self.k * self.load * (np.log(self.patch[:, None] / self.half) - 0.25)
+        self.value = mean + self.k * self.load * (np.log(problem.length / self.half) - 0.25)
         self.slope = np.stack([np.gradient(v, p) for v, p in zip(self.value, self.load, strict=True)])
-        self.beyond = self.k * (np.log(self.patch / self.half[:, -1]) - 0.25)
+        self.beyond = self.k * (np.log(problem.length / self.half[:, -1]) - 0.25)
 
     def rough(self, force: Array) -> tuple[Array, Array]:
         """Approach in m and slope in m/N between the entries of the table."""
@@ -195,7 +191,7 @@ class GuardedLaw:
             lambda at: np.log(strips(self.problem, np.exp(at))[0]) - wanted, low, high, np.full(p.size, 1e-7)
         )
         _, mean = strips(self.problem, np.exp(x))
-        value = mean + self.k * p * (np.log(self.patch / np.exp(x)) - 0.25)
+        value = mean + self.k * p * (np.log(self.problem.length / np.exp(x)) - 0.25)
         return value, self._entry(p, self.slope)
 
 

@@ -28,7 +28,7 @@ GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(13)
 
 @dataclass(frozen=True)
 class Patches:
-    """Patches of one gear; arrays (P, n).
+    """Patches of one gear; arrays (P, n Q), Q side by side on each of n slices.
 
     Attributes
     ----------
@@ -36,15 +36,24 @@ class Patches:
         Flank coordinate of the middle and half the length, m.
     edge_share : ndarray
         Share of the load that is singular at the tip edge, 0 to 1.
+    count : int
+        Q.
     """
 
     center: FloatArray
     half_width: FloatArray
     edge_share: FloatArray
+    count: int = 1
 
     def rows(self, keep: IntArray) -> Patches:
         """Keep some positions."""
-        return Patches(self.center[keep], self.half_width[keep], self.edge_share[keep])
+        return Patches(self.center[keep], self.half_width[keep], self.edge_share[keep], self.count)
+
+    def by_slice(self, position: int, slices: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return centres, half-widths and edge shares (k, Q) on some slices at one position."""
+        arrays = (self.center, self.half_width, self.edge_share)
+        first, second, third = (each[position].reshape(-1, self.count)[slices] for each in arrays)
+        return first, second, third
 
     @property
     def centroid(self) -> FloatArray:

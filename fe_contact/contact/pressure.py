@@ -30,7 +30,7 @@ def contact_pressure(problem: ContactProblem, force: FloatArray) -> FloatArray:
     here = candidates.gap_about
     at_edge, none = (here.low >= 0.0) | (here.high <= 0.0), np.full(here.low.shape, np.inf)
     endless = here._replace(slope=np.where(at_edge, 0.0, here.slope), low=-none, high=none)
-    _fill(endless, np.ascontiguousarray(force) / candidates.width, problem.modulus, pressure)
+    _fill(endless, np.ascontiguousarray(force) / candidates.width[:, None], problem.modulus, pressure)
     return pressure
 
 

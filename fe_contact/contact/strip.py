@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 _TOLERANCE = 1e-9
 """Of strip and middle over the strip; the approach is stationary in both."""
@@ -62,7 +62,7 @@ class Gap(NamedTuple):
     bend: FloatArray
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def gap_at(about: Gap, position: int) -> Gap:
     """Return the gaps (n,) at one of the positions of arrays (P, n) and (P, n, B)."""
     return Gap(
@@ -76,7 +76,21 @@ def gap_at(about: Gap, position: int) -> Gap:
     )
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
+def some_gaps(gap: Gap, keep: IntArray) -> Gap:
+    """Return some of n gaps."""
+    return Gap(
+        gap.slope[keep],
+        gap.curvature[keep],
+        gap.low[keep],
+        gap.high[keep],
+        gap.place[keep],
+        gap.jump[keep],
+        gap.bend[keep],
+    )
+
+
+@njit(cache=True, error_model="numpy")
 def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[float, float]:
     """Return half the length of the strip in m and the mean gap over it in m, from the touching point's on.
 
@@ -91,7 +105,7 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
         Contact modulus E* in Pa.
     """
     hertz = math.sqrt(4.0 * line_load / (math.pi * modulus * gap.curvature[i]))
-    if gap.slope[i] == 0.0 and _plain(gap, i, hertz):
+    if gap.slope[i] == 0.0 and is_plain(gap, i, hertz):
         return hertz, 0.25 * gap.curvature[i] * hertz * hertz
     widest = 0.5 * (gap.high[i] - gap.low[i])
     below, above = 0.0, math.inf
@@ -118,16 +132,19 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
     return half, rigid
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, float]:
     """Return the line load in N/m under a strip of this half length, and the mean gap over it in m."""
+    if gap.slope[i] == 0.0 and is_plain(gap, i, half):
+        rise = 0.25 * gap.curvature[i] * half * half
+        return math.pi * modulus * rise, rise
     centre = _centre(gap, i, half)
     slope, first, mean, _ = _means(gap, i, centre, half)
     return 0.5 * math.pi * modulus * half * (first + abs(slope)), mean
 
 
-@njit(cache=True)
-def _plain(gap: Gap, i: int, half: float) -> bool:
+@njit(cache=True, error_model="numpy")
+def is_plain(gap: Gap, i: int, half: float) -> bool:
     """Whether neither an edge nor a break is within `half` of the touching point."""
     if -gap.low[i] < half or gap.high[i] < half:
         return False
@@ -137,7 +154,7 @@ def _plain(gap: Gap, i: int, half: float) -> bool:
     return nearest >= half
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _centre(gap: Gap, i: int, half: float) -> float:
     """Return the middle of the strip: where pressure vanishes at both ends, or one end is at an edge."""
     low: float = max(-half, gap.low[i] + half)
@@ -166,7 +183,7 @@ def _centre(gap: Gap, i: int, half: float) -> float:
     return centre
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _means(gap: Gap, i: int, centre: float, half: float) -> tuple[float, float, float, float]:
     """Return the means of g', g' sin t, g and g'' over the angle t of the strip."""
     s, q = float(gap.slope[i]), float(gap.curvature[i])
@@ -194,7 +211,7 @@ def _means(gap: Gap, i: int, centre: float, half: float) -> tuple[float, float, 
     return slope, first, mean, bend
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def rounded(gap: Gap, least: FloatArray) -> Gap:
     """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""
     curvature, bend = np.maximum(gap.curvature, least), gap.bend.copy()
@@ -211,7 +228,7 @@ def rounded(gap: Gap, least: FloatArray) -> Gap:
     return Gap(gap.slope, curvature, gap.low, gap.high, gap.place, gap.jump, bend)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
     """Return where gaps that grow to both sides are least between `low` and `high` (n,), m."""
     found = np.empty(gap.slope.size)
@@ -239,7 +256,7 @@ def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
     return found
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _slope(gap: Gap, i: int, x: float) -> float:
     """Return the slope of the gap, the side to which it falls if there is one; zero at a break that holds."""
     left, right = _slope_beside(gap, i, x, -1.0), _slope_beside(gap, i, x, 1.0)
@@ -248,7 +265,7 @@ def _slope(gap: Gap, i: int, x: float) -> float:
     return right if right < 0.0 else 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
     """Return the slope of the gap just to one side of x."""
     slope: float = gap.slope[i] + gap.curvature[i] * x
@@ -262,7 +279,7 @@ def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
     return slope
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _curvature(gap: Gap, i: int, x: float) -> float:
     """Return the curvature of the gap between breaks."""
     curvature: float = gap.curvature[i]
@@ -273,7 +290,7 @@ def _curvature(gap: Gap, i: int, x: float) -> float:
     return curvature
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
     """Return the gap (n,) in m at `shift` (n,) in m, and that about there."""
     n, breaks = gap.place.shape

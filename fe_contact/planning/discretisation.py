@@ -49,6 +49,7 @@ class PlaneDiscretisation:
     """Error left over the difference of the two meshes: ratio two, second order or better."""
     coarse_slices = 1
     remaining_slices = 0.0
+    least_edge = 0.0
 
     @property
     def least_patch(self) -> float:
@@ -100,6 +101,11 @@ class FaceDiscretisation:
             return 0.0
         order = next(order for most, order in SLICE_ORDERS if self.slices <= most)
         return 1.0 / (float((self.slices / self.coarse_slices) ** order) - 1.0)
+
+    @property
+    def least_edge(self) -> float:
+        """Length in m of a patch at a tip edge that the mesh resolves: two elements."""
+        return 2.0 * max(recipe.tip_size for recipe in self.recipes)
 
     @property
     def least_patch(self) -> float:

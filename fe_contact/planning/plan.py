@@ -149,7 +149,9 @@ def make_plan(
         stress = accuracy.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
         discretisation = plane_discretisation(pair, level, hypothesis, model.finite_width)
-    patch = _patch_rule(pair, LARGEST_SUPPORT * levels[-1], discretisation.least_patch)
+    patch = _patch_rule(
+        pair, LARGEST_SUPPORT * levels[-1], discretisation.least_patch, discretisation.least_edge
+    )
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     support = _support_loads(levels)
     return Plan(
@@ -172,9 +174,11 @@ def _support_loads(levels: FloatArray) -> FloatArray:
     return np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
 
 
-def _patch_rule(pair: ParallelAxes, force: float, least: float) -> PatchRule:
+def _patch_rule(pair: ParallelAxes, force: float, least: float, least_edge: float) -> PatchRule:
     """Return patches wider than any contact strip, within reason, and than the meshes ask for."""
-    return PatchRule(max(least, wanted_patch(pair, force)), EDGE_PATCH * pair.pinion.normal_module)
+    return PatchRule(
+        max(least, wanted_patch(pair, force)), max(least_edge, EDGE_PATCH * pair.pinion.normal_module)
+    )
 
 
 def wanted_patch(pair: ParallelAxes, force: float) -> float:

@@ -83,7 +83,7 @@ class Springs:
         key = (model.corner_contact, model.across_face, *bodies)
         if key not in self._known:
             plain = self._candidates(model)
-            compliance = slice_compliance(self.pair, plain, model)
+            compliance = slice_compliance(self.pair, plain.slices, model)
             modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
             planes = half_plane(self.pair.pinion), half_plane(self.pair.wheel)
             self._known[key] = ContactProblem(plain, compliance, modulus, *planes)
