@@ -52,8 +52,9 @@ def _refuse_short_distance(pair: InternalGearPair) -> None:
 
 def _refuse_contact_ratio(pair: InternalGearPair) -> None:
     """Refuse a pair that loses contact between one tooth pair and the next."""
-    if pair.total_contact_ratio < 1.0:
-        bound = f"larger: the contact ratio is {pair.total_contact_ratio:.6g}, below 1"
+    value = pair.active_contact_ratio + pair.overlap_ratio
+    if value < 1.0:
+        bound = f"larger: the contact ratio is {value:.6g}, below 1"
         advice = "Raise the centre distance or the pinion's tip diameter, or lower the ring's tip diameter."
         raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, advice)
 

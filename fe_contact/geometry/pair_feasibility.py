@@ -98,12 +98,10 @@ def _beyond_rounding(pair: ParallelAxes) -> str:
 
 def _refuse_contact_ratio(pair: GearPair) -> None:
     """Refuse a pair that loses contact between one tooth pair and the next."""
-    if pair.total_contact_ratio < 1.0:
-        value = pair.total_contact_ratio
-        if pair.overlap_ratio == 0.0:
-            value = pair.transverse_contact_ratio
+    value = pair.active_contact_ratio + pair.overlap_ratio
+    if value < 1.0:
         bound = f"smaller: the contact ratio is {value:.6g}, below 1"
-        advice = "Lower the centre distance, or raise the tip diameters or the number of teeth."
+        advice = "Lower the centre distance, or raise the tip (form) diameters or the number of teeth."
         raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, advice)
 
 
