@@ -17,7 +17,14 @@ from numpy.typing import ArrayLike
 from fe_contact.checks import finite, positive, within
 from fe_contact.errors import InputError
 from fe_contact.geometry.flank_grid import FlankGrid
-from fe_contact.geometry.tip_edge import chamfer_start, check_chamfer, check_rounding, rounding_start
+from fe_contact.geometry.tip_edge import (
+    FLATTEST,
+    STEEPEST,
+    chamfer_start,
+    check_chamfer,
+    check_rounding,
+    rounding_start,
+)
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
@@ -46,7 +53,6 @@ _ACROSS_FACE = (
 )
 _LARGEST = 0.01  # m; catches micrometres given as metres
 _LARGEST_EDGE = 0.1  # m; of a tip rounding or chamfer
-_FLATTEST, _STEEPEST = math.radians(5.0), math.radians(85.0)  # chamfers; a flatter one is a relief
 
 
 @dataclass(frozen=True)
@@ -342,7 +348,7 @@ def _check_tip_edge(modification: FlankModification) -> None:
     for field in ("tip_rounding", "tip_chamfer"):
         within(field, getattr(modification, field), 0.0, _LARGEST_EDGE, "In m: 0.2 mm is 2e-4.")
     angle = "In rad, between flank and chamfer: 30 deg is 0.524."
-    within("tip_chamfer_angle", modification.tip_chamfer_angle, _FLATTEST, _STEEPEST, angle)
+    within("tip_chamfer_angle", modification.tip_chamfer_angle, FLATTEST, STEEPEST, angle)
     if modification.tip_rounding and modification.tip_chamfer:
         advice = "The tip has a rounding or a chamfer: give one of them."
         raise InputError("tip_chamfer", modification.tip_chamfer, "0 where tip_rounding is given", advice)

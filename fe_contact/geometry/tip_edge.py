@@ -19,6 +19,8 @@ from fe_contact.geometry.involute import involute_normal, involute_point
 if TYPE_CHECKING:
     from fe_contact.geometry.toothing import Toothing
 
+FLATTEST, STEEPEST = math.radians(5.0), math.radians(85.0)
+"""Angles between flank and chamfer, rad; a flatter one is a relief."""
 _HALVINGS = 50
 _LOWEST = 1e-3  # of the normal module: a chamfer so low fits at any angle at which it reaches the tip circle
 _ROUNDING = "It must leave an involute and some of the tip. In m: 0.2 mm is 2e-4."
@@ -51,7 +53,7 @@ def check_rounding(gear: Toothing, radius: float) -> None:
         roll = rounding_start(gear, trial)
         return _above_form_point(gear, roll) and _rounding_angle(gear, roll, trial) >= 0.0
 
-    _check("modification.tip_rounding", radius, fits, _ROUNDING)
+    _check("modification.tip_rounding", radius, 0.0, fits, _ROUNDING)
 
 
 def check_chamfer(gear: Toothing, height: float, angle: float) -> None:
@@ -64,19 +66,19 @@ def check_chamfer(gear: Toothing, height: float, angle: float) -> None:
     def rises(trial: float) -> bool:
         return _chamfer_reaches(gear, chamfer_start(gear, _LOWEST * gear.normal_module), trial)
 
-    _check("modification.tip_chamfer_angle", angle, rises, _ANGLE)
-    _check("modification.tip_chamfer", height, fits, _CHAMFER)
+    _check("modification.tip_chamfer_angle", angle, FLATTEST, rises, _ANGLE)
+    _check("modification.tip_chamfer", height, 0.0, fits, _CHAMFER)
 
 
-def _check(field: str, length: float, fits: Callable[[float], bool], advice: str) -> None:
-    """Refuse a length that does not fit, naming the largest that does."""
-    if fits(length):
+def _check(field: str, value: float, least: float, fits: Callable[[float], bool], advice: str) -> None:
+    """Refuse a value that does not fit, naming the largest that does."""
+    if fits(value):
         return
-    low, high = 0.0, length
+    low, high = least, value
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if fits(middle) else (low, middle)
-    within(field, length, 0.0, low, advice)
+    within(field, value, least, low, advice)
 
 
 def _above_form_point(gear: Toothing, roll: float) -> bool:

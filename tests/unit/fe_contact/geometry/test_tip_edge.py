@@ -126,7 +126,13 @@ def test_contact_ends_at_the_tip_form_circles(make_gear: Callable[..., Gear]) ->
 def test_flanks_that_end_too_early_make_no_pair(make_gear: Callable[..., Gear]) -> None:
     shape = FlankModification(tip_chamfer=1.8e-3, tip_chamfer_angle=math.radians(10.0))
     gear = make_gear(modification=shape)
-    with pytest.raises(InfeasibleGeometry, match="contact ratio"):
+    for pair, name in (((make_gear(), gear), "wheel"), ((gear, make_gear()), "pinion")):
+        assert GearPair(*pair, 80e-3).active_contact_ratio > 1.0
+        deeper = replace(shape, tip_chamfer=3.6e-3)
+        with pytest.raises(InfeasibleGeometry, match="contact ratio") as caught:
+            GearPair(*(replace(each, modification=deeper) if each is gear else each for each in pair), 80e-3)
+        assert caught.value.field == f"{name}.modification.tip_chamfer"
+    with pytest.raises(InfeasibleGeometry, match="between the tip form circles the contact ratio is"):
         GearPair(gear, gear, 80e-3)
 
 
