@@ -12,7 +12,8 @@ from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
-from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.hertz import wedge_softness
 from fe_contact.types import FloatArray, IntArray
 
 
@@ -25,11 +26,27 @@ class PatchRule:
     half_width : float
         Away from the tip edges, m.
     edge_length : float
-        Length of the patch at a tip edge, m.
+        Least length of the patch at a tip edge, m.
+    edge_load : float
+        4 p/(pi E*) of the line load p whose strip the patch at a tip edge follows, m.
     """
 
     half_width: float
     edge_length: float
+    edge_load: float = 0.0
+
+    def lengths(self, offset: FloatArray, radius: FloatArray) -> FloatArray:
+        """Return the lengths of patches at a tip edge, m: those of the strip, (4) of docs/theory/hertz.md.
+
+        Parameters
+        ----------
+        offset : ndarray
+            Distance t of the contact from the edge, m; negative = -phi R off the line of action.
+        radius : ndarray
+            Relative radius R in the normal section, m.
+        """
+        strip = (2.0 / 3.0) * (offset + np.sqrt(np.square(offset) + 3.0 * self.edge_load * radius))
+        return np.clip(strip, self.edge_length, 2.0 * self.half_width)
 
 
 def contact_candidates(
@@ -113,25 +130,40 @@ def _candidates(
     """Turn touching points into patches."""
     tip_1 = float(flank_coordinate(pair.pinion, pair.pinion.tip_roll_length))
     tip_2 = float(flank_coordinate(pair.wheel, pair.wheel.tip_roll_length))
-    shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, rule)
-    shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, rule)
+    radius = touch.radius / math.cos(pair.base_helix_angle)
+    shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, radius, rule)
+    shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, radius, rule)
     return Candidates(
         position=position,
         pair=pairs,
         face_position=face,
         touch=touch,
-        patch_1=_patches(touch.s_1, touch.offset_1, tip_1, shift_1, rule),
-        patch_2=_patches(touch.s_2, touch.offset_2, tip_2, shift_2, rule),
+        patch_1=_patches(touch.s_1, touch.offset_1, tip_1, shift_1, radius, rule),
+        patch_2=_patches(touch.s_2, touch.offset_2, tip_2, shift_2, radius, rule),
         slice_width=slice_width,
         base_helix_angle=pair.base_helix_angle,
+        corner_1=corner_softness(pair.pinion),
+        corner_2=corner_softness(pair.wheel),
     )
 
 
-def _shift(s: FloatArray, offset: FloatArray, tip: float, rule: PatchRule) -> FloatArray:
+def _shift(s: FloatArray, offset: FloatArray, tip: float, radius: FloatArray, rule: PatchRule) -> FloatArray:
     """How far the partner's edge moves the load's centroid to its root, m: both forces must be in line."""
-    return np.maximum(s - tip_patches(s, offset, tip, rule.half_width, rule.edge_length).centroid, 0.0)
+    patches = tip_patches(s, offset, tip, rule.half_width, rule.lengths(offset, radius))
+    return np.maximum(s - patches.centroid, 0.0)
 
 
-def _patches(s: FloatArray, offset: FloatArray, tip: float, shift: FloatArray, rule: PatchRule) -> Patches:
+def _patches(
+    s: FloatArray, offset: FloatArray, tip: float, shift: FloatArray, radius: FloatArray, rule: PatchRule
+) -> Patches:
     """Patches of one gear; beside the partner's edge they follow its load towards the own tip."""
-    return tip_patches(s + shift, offset - shift, tip, rule.half_width, rule.edge_length)
+    offset = offset - shift
+    return tip_patches(s + shift, offset, tip, rule.half_width, rule.lengths(offset, radius))
+
+
+def corner_softness(gear: Toothing) -> float:
+    """Return what the corner at a gear's tip edge yields over a half plane; see `wedge_softness`.
+
+    Flank and tip circle meet at a right angle and the pressure angle at the tip.
+    """
+    return wedge_softness(0.5 * math.pi + math.acos(gear.base_radius / gear.tip_radius))

@@ -41,7 +41,7 @@ class GapAbout:
 
 @dataclass(frozen=True)
 class Problem:
-    """n contacts; SI units; arrays (n,), compliance (n, n)."""
+    """n contacts; SI units; arrays (n,), compliance (n, n); the last three one for all or (n,)."""
 
     compliance: Array
     gap: Array
@@ -51,9 +51,9 @@ class Problem:
     width: Array
     patch_1: Array
     patch_2: Array
-    modulus: float
-    k1: float
-    k2: float
+    modulus: Array | float
+    k1: Array | float
+    k2: Array | float
 
 
 @dataclass(frozen=True)
@@ -137,7 +137,8 @@ def strips(problem: Problem, half: Array) -> tuple[Array, Array]:
     middle = root(lambda at: pieces(about, at, half)[0], low, high, 1e-8 * half)
     slope, tilted, mean = pieces(about, middle, half)
     singular = np.where((middle == low) | (middle == high), np.abs(slope), 0.0)
-    return 0.5 * np.pi * problem.modulus * half * (tilted + singular), mean
+    modulus = np.broadcast_to(problem.modulus, len(half)).reshape(-1, *extra)
+    return 0.5 * np.pi * modulus * half * (tilted + singular), mean
 
 
 class GuardedLaw:
@@ -147,14 +148,14 @@ class GuardedLaw:
     """
 
     def __init__(self, problem: Problem) -> None:
-        k = problem.k1 + problem.k2
+        k = np.broadcast_to(np.asarray(problem.k1 + problem.k2), problem.gap.shape)
         self.problem, self.k = problem, k
         self.patch = problem.patch_1 ** (problem.k1 / k) * problem.patch_2 ** (problem.k2 / k)
         widest = 0.5 * (problem.gap_about.high - problem.gap_about.low)
         first, last = np.log(1e-4 * self.patch), np.log(np.minimum(0.66 * self.patch, widest))
         self.half = np.exp(first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 129))
         self.load, mean = strips(problem, self.half)
-        self.value = mean + self.k * self.load * (np.log(self.patch[:, None] / self.half) - 0.25)
+        self.value = mean + self.k[:, None] * self.load * (np.log(self.patch[:, None] / self.half) - 0.25)
         self.slope = np.stack([np.gradient(v, p) for v, p in zip(self.value, self.load, strict=True)])
         self.beyond = self.k * (np.log(self.patch / self.half[:, -1]) - 0.25)
 

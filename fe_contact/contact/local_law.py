@@ -46,7 +46,7 @@ class LocalLaw(NamedTuple):
         Line load in N/m up to which the law is its secant, and the secant's slope in m/(N/m).
     high, high_value : ndarray
         Line load above which the law goes on straight, and the approach in m there.
-    modulus, half_plane : float
+    modulus, half_plane : ndarray
         Contact modulus E* in Pa; k_1 + k_2 in 1/Pa.
     """
 
@@ -57,8 +57,8 @@ class LocalLaw(NamedTuple):
     low_slope: FloatArray
     high: FloatArray
     high_value: FloatArray
-    modulus: float
-    half_plane: float
+    modulus: FloatArray
+    half_plane: FloatArray
 
 
 @njit(cache=True)
@@ -67,9 +67,9 @@ def local_law(
     width: FloatArray,
     patch_1: FloatArray,
     patch_2: FloatArray,
-    modulus: float,
-    k1: float,
-    k2: float,
+    modulus: FloatArray | float,
+    k1: FloatArray | float,
+    k2: FloatArray | float,
 ) -> LocalLaw:
     """Prepare the law of the contacts of one position.
 
@@ -79,22 +79,22 @@ def local_law(
         See `LocalLaw`.
     patch_1, patch_2 : ndarray, shape (n,)
         Patch half-widths of both gears, m.
-    modulus, k1, k2 : float
+    modulus, k1, k2 : float, or ndarray of shape (n,)
         E* in Pa; 2 (1 - nu^2)/(pi E) of the gears in 1/Pa.
     """
-    half_plane = k1 + k2
+    moduli, half_plane = np.zeros(width.size) + modulus, np.zeros(width.size) + k1 + k2
     log_patch = (k1 * np.log(patch_1) + k2 * np.log(patch_2)) / half_plane
     low, low_slope, high, high_value = np.empty((4, width.size))
     for i in range(width.size):
         patch = math.exp(log_patch[i])
-        low[i], rigid = strip_load(gap, i, SMALLEST_STRIP * patch, modulus)
-        low_slope[i] = rigid / low[i] + half_plane * (-math.log(SMALLEST_STRIP) - 0.25)
+        low[i], rigid = strip_load(gap, i, SMALLEST_STRIP * patch, moduli[i])
+        low_slope[i] = rigid / low[i] + half_plane[i] * (-math.log(SMALLEST_STRIP) - 0.25)
         if 0.5 * (gap.high[i] - gap.low[i]) <= LARGEST_STRIP * patch:  # the edges keep the strip narrow
             high[i], high_value[i] = math.inf, math.inf
             continue
-        high[i], rigid = strip_load(gap, i, LARGEST_STRIP * patch, modulus)
-        high_value[i] = rigid + half_plane * high[i] * (-math.log(LARGEST_STRIP) - 0.25)
-    return LocalLaw(width, gap, log_patch, low, low_slope, high, high_value, modulus, half_plane)
+        high[i], rigid = strip_load(gap, i, LARGEST_STRIP * patch, moduli[i])
+        high_value[i] = rigid + half_plane[i] * high[i] * (-math.log(LARGEST_STRIP) - 0.25)
+    return LocalLaw(width, gap, log_patch, low, low_slope, high, high_value, moduli, half_plane)
 
 
 @njit(cache=True)
@@ -113,8 +113,8 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     if p <= law.low[i]:
         return law.low_slope[i] * p, law.low_slope[i] / width, False
     if p > law.high[i]:
-        slope = law.half_plane * (-math.log(LARGEST_STRIP) - 0.25)
+        slope = law.half_plane[i] * (-math.log(LARGEST_STRIP) - 0.25)
         return law.high_value[i] + slope * (p - law.high[i]), slope / width, True
-    half, rigid = half_strip(law.gap, i, p, law.modulus)
-    slope = law.half_plane * (law.log_patch[i] - math.log(half) - 0.25)
+    half, rigid = half_strip(law.gap, i, p, law.modulus[i])
+    slope = law.half_plane[i] * (law.log_patch[i] - math.log(half) - 0.25)
     return rigid + slope * p, slope / width, False

@@ -34,6 +34,8 @@ class Candidates:
         Along the face, m.
     base_helix_angle : float
         beta_b of gear 1 in rad, > 0 right hand.
+    corner_1, corner_2 : float
+        What the tip corner of either gear yields over a half plane; see `fe_contact.hertz.wedge_softness`.
     """
 
     position: FloatArray
@@ -44,6 +46,8 @@ class Candidates:
     patch_2: Patches
     slice_width: float
     base_helix_angle: float = 0.0
+    corner_1: float = 1.0
+    corner_2: float = 1.0
 
     @property
     def gap(self) -> FloatArray:
@@ -124,6 +128,15 @@ class ContactProblem:
     modulus: float
     half_plane_1: float
     half_plane_2: float
+
+    @property
+    def half_planes(self) -> tuple[FloatArray, FloatArray]:
+        """`half_plane_1` and `half_plane_2` at each candidate (P, n), 1/Pa: more at the own tip edge."""
+        c = self.candidates
+        return (
+            self.half_plane_1 * (1.0 + (c.corner_1 - 1.0) * c.patch_1.at_edge),
+            self.half_plane_2 * (1.0 + (c.corner_2 - 1.0) * c.patch_2.at_edge),
+        )
 
     def rows(self, keep: IntArray) -> ContactProblem:
         """Return the problem of some positions, one row of compliance each."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -43,7 +45,7 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
     _sweep(
         problem.compliance, normal_gap, c.motion_arm, c.torque_share,
         c.gap_about, np.full(n, c.width), c.patch_1.law_width, c.patch_2.law_width,
-        problem.modulus, problem.half_plane_1, problem.half_plane_2, loads, first,
+        *problem.half_planes, loads, first,
         deflection, tangent, force, status, iterations, residuals, beyond,
     )  # fmt: skip
     return ContactSolution(
@@ -61,9 +63,8 @@ def _sweep(
     width: FloatArray,
     patch_1: FloatArray,
     patch_2: FloatArray,
-    modulus: float,
-    k1: float,
-    k2: float,
+    half_plane_1: FloatArray,
+    half_plane_2: FloatArray,
     loads: FloatArray,
     first: FloatArray,
     deflection: FloatArray,
@@ -76,6 +77,8 @@ def _sweep(
 ) -> None:
     """Fill the result arrays, started from the `first` forces, or each load from the one below it."""
     for p in range(gap.shape[0]):
+        k1, k2 = half_plane_1[p], half_plane_2[p]
+        modulus = 2.0 / (math.pi * (k1 + k2))
         law = local_law(gap_at(about, p), width, patch_1[p], patch_2[p], modulus, k1, k2)
         point = PointProblem(compliance[p % compliance.shape[0]], gap[p], motion_arm[p], torque_arm[p], law)
         start = np.zeros(gap.shape[1])

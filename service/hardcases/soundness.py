@@ -47,6 +47,7 @@ def _plain(problem: ContactProblem, position: int) -> Problem:
     c = problem.candidates
     real = np.isfinite(c.gap[position])
     motion = c.motion_arm[position, real]
+    k1, k2 = (k[position, real] for k in problem.half_planes)
     return Problem(
         compliance=problem.compliance[position % problem.compliance.shape[0]][np.ix_(real, real)],
         gap=c.gap[position, real] * motion,
@@ -56,7 +57,7 @@ def _plain(problem: ContactProblem, position: int) -> Problem:
         width=np.full(int(real.sum()), c.width),
         patch_1=c.patch_1.law_width[position, real],
         patch_2=c.patch_2.law_width[position, real],
-        modulus=problem.modulus,
-        k1=problem.half_plane_1,
-        k2=problem.half_plane_2,
+        modulus=2.0 / (np.pi * (k1 + k2)),
+        k1=k1,
+        k2=k2,
     )

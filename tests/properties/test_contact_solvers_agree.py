@@ -46,6 +46,7 @@ def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: b
     rng = np.random.default_rng(seed)
     size = {"none": [0.0], "mixed": [0.0, 1e-8, 1e-6, 1e-5, 1e-4], "wide": [1e-3]}[gaps]
     motion = rng.uniform(0.97, 1.0, n) if arms else np.ones(n)
+    k1, k2 = HALF_PLANE * rng.choice([1.0, 1.4, 2.0], (2, n))  # softer at the corner of a tip edge
     problem = Problem(
         compliance=compliance(rng, kind, n),
         gap=rng.choice(size, n) * rng.uniform(size=n),
@@ -55,9 +56,9 @@ def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: b
         width=np.full(n, 25e-3 / max(1, n // 5)),
         patch_1=rng.uniform(1e-4, 4e-4, n),
         patch_2=rng.uniform(1e-4, 4e-4, n),
-        modulus=MODULUS,
-        k1=HALF_PLANE,
-        k2=HALF_PLANE,
+        modulus=2.0 / (math.pi * (k1 + k2)),
+        k1=k1,
+        k2=k2,
     )
     return with_twins(problem) if twins and n > 1 else problem
 
@@ -86,7 +87,7 @@ def with_twins(problem: Problem) -> Problem:
 
 def picked(problem: Problem, index: np.ndarray) -> Problem:
     """Return the contacts of these indices."""
-    names = ("gap", "motion_arm", "torque_arm", "width", "patch_1", "patch_2")
+    names = ("gap", "motion_arm", "torque_arm", "width", "patch_1", "patch_2", "modulus", "k1", "k2")
     arrays = {name: getattr(problem, name)[index] for name in names}
     arrays["gap_about"] = GapAbout(*(part[index] for part in vars(problem.gap_about).values()))
     return replace(problem, compliance=problem.compliance[np.ix_(index, index)], **arrays)

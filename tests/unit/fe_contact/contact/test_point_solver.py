@@ -180,6 +180,8 @@ def two_position_problem() -> ContactProblem:
         motion_arm=ARM * full,
         torque_share=full,
         gap_about=beside_an_edge(math.nan, 2, 2),
+        corner_1=1.0,
+        corner_2=1.0,
         width=np.full(2, WIDTH),
     )
     compliance = np.broadcast_to(STIFF * np.array([[1.0, 0.2], [0.2, 1.0]]), (2, 2, 2)).copy()
