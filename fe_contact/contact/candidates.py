@@ -12,7 +12,8 @@ from fe_contact.contact.patch import Patches, tip_patches
 from fe_contact.contact.problem import Candidates, LoadedSlices
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
-from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.hertz import wedge_softness
 from fe_contact.types import FloatArray, IntArray
 
 LAW_LENGTH = 0.45
@@ -34,11 +35,27 @@ class PatchRule:
     half_width : float
         Away from the tip edges, m.
     edge_length : float
-        Length of the patch at a tip edge, m.
+        Least length of the patch at a tip edge, m.
+    edge_load : float
+        4 p/(pi E*) of the line load p whose strip the patch at a tip edge follows, m.
     """
 
     half_width: float
     edge_length: float
+    edge_load: float = 0.0
+
+    def lengths(self, offset: FloatArray, radius: FloatArray) -> FloatArray:
+        """Return the lengths of patches at a tip edge, m: those of the strip, (4) of docs/theory/hertz.md.
+
+        Parameters
+        ----------
+        offset : ndarray
+            Distance t of the contact from the edge, m; negative = -phi R off the line of action.
+        radius : ndarray
+            Relative radius R in the normal section, m.
+        """
+        strip = (2.0 / 3.0) * (offset + np.sqrt(np.square(offset) + 3.0 * self.edge_load * radius))
+        return np.clip(strip, self.edge_length, 2.0 * self.half_width)
 
 
 def contact_candidates(
@@ -87,7 +104,7 @@ def _touching(
     face: FloatArray,
     width: float,
 ) -> tuple[Touch, FloatArray]:
-    """Return where plain involutes touch at places `face` (f,) of pairs (J,), and how much of each is on line.
+    """Return where plain involutes touch at places `face` (f,) of pairs (J,), and what part is on line.
 
     Arrays (P, J f). A place stands for `width` of the face. Without corner contact it counts as far as that
     is on the path of contact, so that nothing jumps as the contact line moves on.
@@ -156,13 +173,14 @@ def _loaded_slices(
     """Lay load patches where the points of the slices of all pairs touch; `middle` is that of the slices."""
     tip_1 = float(flank_coordinate(pair.pinion, pair.pinion.tip_roll_length))
     tip_2 = float(flank_coordinate(pair.wheel, pair.wheel.tip_roll_length))
-    shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, rule)
-    shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, rule)
+    radius = touch.radius / math.cos(pair.base_helix_angle)
+    shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, radius, rule)
+    shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, radius, rule)
     meets = np.isfinite(touch.gap).reshape(len(touch.gap), index.size, -1).any(axis=2)
     width = slices.width / math.cos(pair.base_helix_angle)
     module = pair.pinion.normal_module
-    patch_1 = _patches(touch.s_1, touch.offset_1, tip_1, shift_1, rule)
-    patch_2 = _patches(touch.s_2, touch.offset_2, tip_2, shift_2, rule)
+    patch_1 = _patches(touch.s_1, touch.offset_1, tip_1, shift_1, radius, rule)
+    patch_2 = _patches(touch.s_2, touch.offset_2, tip_2, shift_2, radius, rule)
     return LoadedSlices(
         pair=np.repeat(index, slices.center.size),
         face_position=np.tile(slices.center, index.size),
@@ -172,15 +190,29 @@ def _loaded_slices(
         patch_2=replace(patch_2, count=slices.points),
         slice_width=slices.width,
         base_helix_angle=pair.base_helix_angle,
+        corner_1=corner_softness(pair.pinion),
+        corner_2=corner_softness(pair.wheel),
         law_length=max(rule.half_width, min(LAW_LENGTH * width, LONGEST_LAW * module)),
     )
 
 
-def _shift(s: FloatArray, offset: FloatArray, tip: float, rule: PatchRule) -> FloatArray:
+def _shift(s: FloatArray, offset: FloatArray, tip: float, radius: FloatArray, rule: PatchRule) -> FloatArray:
     """How far the partner's edge moves the load's centroid to its root, m: both forces must be in line."""
-    return np.maximum(s - tip_patches(s, offset, tip, rule.half_width, rule.edge_length).centroid, 0.0)
+    patches = tip_patches(s, offset, tip, rule.half_width, rule.lengths(offset, radius))
+    return np.maximum(s - patches.centroid, 0.0)
 
 
-def _patches(s: FloatArray, offset: FloatArray, tip: float, shift: FloatArray, rule: PatchRule) -> Patches:
+def _patches(
+    s: FloatArray, offset: FloatArray, tip: float, shift: FloatArray, radius: FloatArray, rule: PatchRule
+) -> Patches:
     """Patches of one gear; beside the partner's edge they follow its load towards the own tip."""
-    return tip_patches(s + shift, offset - shift, tip, rule.half_width, rule.edge_length)
+    offset = offset - shift
+    return tip_patches(s + shift, offset, tip, rule.half_width, rule.lengths(offset, radius))
+
+
+def corner_softness(gear: Toothing) -> float:
+    """Return what the corner at a gear's tip edge yields over a half plane; see `wedge_softness`.
+
+    Flank and tip circle meet at a right angle and the pressure angle at the tip.
+    """
+    return wedge_softness(0.5 * math.pi + math.acos(gear.base_radius / gear.tip_radius))

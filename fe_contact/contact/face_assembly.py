@@ -20,7 +20,7 @@ def face_contact_problem(
     axial_offset: float = 0.0,
     couple_teeth: bool = True,
 ) -> ContactProblem:
-    """Assemble the compliance between slices from the condensed flanks; pairs and teeth as in `contact_problem`.
+    """Assemble the compliance between slices from condensed flanks; pairs, teeth as in `contact_problem`.
 
     Parameters
     ----------

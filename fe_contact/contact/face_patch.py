@@ -1,8 +1,9 @@
 """Loads on slices of a flank of finite width: their nodal forces, and the compliance between them.
 
 The load of a slice follows the contact line: patches side by side, each the plane patch of
-`fe_contact.contact.patch` along the profile times a box along the face. The flank is a grid of 8-node faces whose shape functions are sums of products of one-dimensional terms, so their
-integrals come from three moments of either factor.
+`fe_contact.contact.patch` along the profile times a box along the face. The flank is a grid of 8-node
+faces whose shape functions are sums of products of one-dimensional terms, so their integrals come from
+three moments of either factor.
 """
 
 from __future__ import annotations

@@ -41,7 +41,7 @@ class GapAbout:
 
 @dataclass(frozen=True)
 class Problem:
-    """n contacts; SI units; arrays (n,), compliance (n, n)."""
+    """n contacts; SI units; arrays (n,), compliance (n, n), one reference length of the local law."""
 
     compliance: Array
     gap: Array
@@ -50,7 +50,7 @@ class Problem:
     gap_about: GapAbout
     width: Array
     length: float
-    modulus: float
+    modulus: Array
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ def strips(problem: Problem, half: Array) -> tuple[Array, Array]:
     middle = root(lambda at: pieces(about, at, half)[0], low, high, 1e-8 * half)
     slope, tilted, mean = pieces(about, middle, half)
     singular = np.where((middle == low) | (middle == high), np.abs(slope), 0.0)
-    return 0.5 * np.pi * problem.modulus * half * (tilted + singular), mean
+    return 0.5 * np.pi * problem.modulus.reshape(-1, *extra) * half * (tilted + singular), mean
 
 
 class GuardedLaw:
@@ -150,7 +150,7 @@ class GuardedLaw:
         last = np.log(np.minimum(0.66 * problem.length, widest))
         self.half = np.exp(first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 129))
         self.load, mean = strips(problem, self.half)
-        self.value = mean + self.k * self.load * (np.log(problem.length / self.half) - 0.25)
+        self.value = mean + self.k[:, None] * self.load * (np.log(problem.length / self.half) - 0.25)
         self.slope = np.stack([np.gradient(v, p) for v, p in zip(self.value, self.load, strict=True)])
         self.beyond = self.k * (np.log(problem.length / self.half[:, -1]) - 0.25)
 

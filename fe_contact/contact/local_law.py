@@ -48,15 +48,15 @@ class LocalLaw(NamedTuple):
         Half strip in m up to which that is a parabola alone; see `free_strips`.
     length : float
         Reference length, m.
-    modulus : float
-        Contact modulus E* in Pa.
+    modulus : ndarray, shape (n,)
+        Contact modulus E* in Pa: less where a tip corner yields.
     """
 
     width: FloatArray
     gap: Gap
     free: FloatArray
     length: float
-    modulus: float
+    modulus: FloatArray
 
 
 @njit(cache=True, error_model="numpy")
@@ -71,15 +71,15 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
         Whether the strip has outgrown the reference length.
     """
     p, width = force / law.width[i], law.width[i]
-    k, least, most = _limits(law)
-    half, rigid = half_strip(law.gap, i, p, law.modulus) if p > 0.0 else (0.0, 0.0)
+    k, least, most = _limits(law, i)
+    half, rigid = half_strip(law.gap, i, p, law.modulus[i]) if p > 0.0 else (0.0, 0.0)
     if half <= least:
-        load, rigid = strip_load(law.gap, i, least, law.modulus)
+        load, rigid = strip_load(law.gap, i, least, law.modulus[i])
         slope = rigid / load + k * (-math.log(SMALLEST_STRIP) - 0.25)
         return slope * p, slope / width, False
     beyond = half > most
     if beyond:
-        half, (_, rigid) = most, strip_load(law.gap, i, most, law.modulus)
+        half, (_, rigid) = most, strip_load(law.gap, i, most, law.modulus[i])
     slope = k * (math.log(law.length / half) - 0.25)
     return rigid + slope * p, slope / width, beyond
 
@@ -93,11 +93,11 @@ def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     """
     if value <= 0.0:
         return 0.0, 0.0
-    k, least, most = _limits(law)
+    k, least, most = _limits(law, i)
     half = min(max(plain_strip(law.gap.curvature[i], law.length, value), least), most)
     if half >= law.free[i]:
         half = _strip_at(law, i, value, half)
-    load, rigid = strip_load(law.gap, i, half, law.modulus)
+    load, rigid = strip_load(law.gap, i, half, law.modulus[i])
     slope = k * (math.log(law.length / half) - 0.25)
     if half <= least and value < rigid + slope * load:
         secant = load / (rigid + slope * load)
@@ -106,9 +106,9 @@ def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
 
 
 @njit(cache=True, error_model="numpy")
-def _limits(law: LocalLaw) -> tuple[float, float, float]:
+def _limits(law: LocalLaw, i: int) -> tuple[float, float, float]:
     """Return k = 2/(pi E*) in 1/Pa, and the least and the largest half strip that the formulas take, m."""
-    return 2.0 / (math.pi * law.modulus), SMALLEST_STRIP * law.length, LARGEST_STRIP * law.length
+    return 2.0 / (math.pi * law.modulus[i]), SMALLEST_STRIP * law.length, LARGEST_STRIP * law.length
 
 
 @njit(cache=True, error_model="numpy")
@@ -135,7 +135,7 @@ def plain_strip(curvature: float, length: float, value: float) -> float:
 def plain_load(
     curvature: float, length: float, modulus: float, half: float, value: float
 ) -> tuple[float, float]:
-    """Line load in N/m of a parabola at an approach in m, and its derivative in N/m^2; `half` is its strip."""
+    """Line load in N/m of a parabola at an approach in m, its derivative in N/m^2; `half` is its strip."""
     k = 2.0 / (math.pi * modulus)
     rise = 0.25 * curvature * half * half
     if half < SMALLEST_STRIP * length:
@@ -162,15 +162,15 @@ def free_strips(gap: Gap) -> FloatArray:
 @njit(cache=True, error_model="numpy")
 def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
     """Half strip in m at an approach in m, from a guess on; at the limits where it would be beyond them."""
-    k, low, high = _limits(law)
+    k, low, high = _limits(law, i)
     high = min(high, 0.5 * (law.gap.high[i] - law.gap.low[i]))
     if high <= low:
-        return high
+        return float(high)
     half = min(half, high)
     below, above, power = low, high, 2.0
     last_half, last_error = 0.0, math.inf
     for _ in range(_STEPS):
-        load, rigid = strip_load(law.gap, i, half, law.modulus)
+        load, rigid = strip_load(law.gap, i, half, law.modulus[i])
         error = math.log((rigid + k * load * (math.log(law.length / half) - 0.25)) / value)
         if error < 0.0:
             below = half

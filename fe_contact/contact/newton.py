@@ -25,7 +25,8 @@ import numpy as np
 from numba import njit
 
 from fe_contact.contact.elimination import dot, eliminate
-from fe_contact.contact.local_law import LocalLaw, approach, force_at, plain_load, plain_strip
+from fe_contact.contact.local_law import approach
+from fe_contact.contact.point import PointProblem, State, evaluate, motion_at, move, press, stiffness
 from fe_contact.types import FloatArray, IntArray
 
 CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
@@ -37,56 +38,6 @@ STEP_TOLERANCE = 1e-11
 _CUTS = 30
 _LEVEL = 0.3
 """Slope of the energy at the end of a step over its fall at the beginning, from which on the step is cut."""
-
-
-class PointProblem(NamedTuple):
-    """One position: m contacts that can carry force, on n = J K slices of J pairs.
-
-    Attributes
-    ----------
-    bodies : ndarray, shape (n, n)
-        Normal approach of slice i per unit normal force on j, without what is in the local law, m/N.
-    blend : ndarray, shape (points of a pair, K)
-        Parts of the force of each point on the slices of its pair.
-    place : ndarray of int, shape (m,)
-        Each contact among the points of all pairs.
-    gap : ndarray, shape (m,)
-        Normal rigid gap in m.
-    motion_arm, torque_arm : ndarray, shape (m,)
-        Normal approach per unit deflection, and share of the load per unit force; > 0.
-    law : LocalLaw
-        Of all points of all pairs.
-    """
-
-    bodies: FloatArray
-    blend: FloatArray
-    place: IntArray
-    gap: FloatArray
-    motion_arm: FloatArray
-    torque_arm: FloatArray
-    law: LocalLaw
-
-
-class _State(NamedTuple):
-    """Where an iteration is.
-
-    Attributes
-    ----------
-    held : ndarray, shape (n,)
-        Forces on the slices h, N.
-    moved : ndarray, shape (n,)
-        What they move, K h, m.
-    force, slope : ndarray, shape (m,)
-        Of the contacts under these motions: N, N/m.
-    pressed : ndarray, shape (n,)
-        Those forces on the slices N'F, N.
-    """
-
-    held: FloatArray
-    moved: FloatArray
-    force: FloatArray
-    slope: FloatArray
-    pressed: FloatArray
 
 
 class _System(NamedTuple):
@@ -149,7 +100,7 @@ def solve_point(
     if math.isnan(touch) or not 0.0 < np.trace(problem.bodies) < math.inf:
         force[:] = 0.0
         return math.nan, math.nan, SINGULAR, 0, False
-    state = _State(np.zeros(n), np.zeros(n), force, np.zeros(m), np.zeros(n))
+    state = State(np.zeros(n), np.zeros(n), force, np.zeros(m), np.zeros(n))
     elastic = _start(problem, total, gap, state)
     elastic, tangent, status, iterations = _iterate(problem, total, gap, elastic, state)
     if status == SINGULAR:
@@ -159,21 +110,21 @@ def solve_point(
 
 
 @njit(cache=True, error_model="numpy")
-def _start(problem: PointProblem, total: float, gap: FloatArray, state: _State) -> float:
+def _start(problem: PointProblem, total: float, gap: FloatArray, state: State) -> float:
     """Fill the state by the given forces, or a guess of them; return the elastic deflection they ask for."""
     state.force[:] = np.maximum(state.force, 0.0)
     if not state.force.any():
         _guess(problem, total, gap, state.force)
-    _press(problem, state.force, state.held)
-    _move(problem, state.held, state.moved)
+    press(problem, state.force, state.held)
+    move(problem, state.held, state.moved)
     needed, arm = 0.0, 0.0
     for q in range(gap.size):
         if state.force[q] > 0.0:
             value, _, _ = approach(problem.law, problem.place[q], state.force[q])
-            needed += state.force[q] * (gap[q] + value + _at(problem, q, state.moved))
+            needed += state.force[q] * (gap[q] + value + motion_at(problem, q, state.moved))
             arm += state.force[q] * problem.motion_arm[q]
     elastic = needed / arm
-    _evaluate(problem, gap, elastic, state)
+    evaluate(problem, gap, elastic, state)
     return float(elastic)
 
 
@@ -190,14 +141,14 @@ def _guess(problem: PointProblem, total: float, gap: FloatArray, force: FloatArr
 
 @njit(cache=True, error_model="numpy")
 def _iterate(
-    problem: PointProblem, total: float, gap: FloatArray, elastic: float, state: _State
+    problem: PointProblem, total: float, gap: FloatArray, elastic: float, state: State
 ) -> tuple[float, float, int, int]:
     """Iterate to the solution; return elastic deflection, tangent, status and iterations."""
-    n, m = state.held.size, gap.size
+    n = state.held.size
     system = _System(
         np.empty(n, dtype=np.int64), np.empty((n, n)), np.empty((n, n)), np.empty((2, n)), np.empty(n)
     )
-    held, moved, change, motion = np.empty((4, n))
+    change, motion = np.empty((2, n))
     tangent = math.nan
     for iteration in range(1, MAX_ITERATIONS + 1):
         if not state.slope.any():  # a step too far has parted all flanks
@@ -205,160 +156,120 @@ def _iterate(
         size = _newton_system(problem, state, system)
         if not eliminate(system.matrix, system.right, size):
             return math.nan, math.nan, SINGULAR, iteration
-        excess = dot(problem.torque_arm, state.force, m) - total
-        stiffness, missed = _stiffness(problem, state), excess
-        for r in range(n):  # what the slices give way, by the deflection and by what their forces miss
-            share = system.shares[r]
-            if share != 0.0:
-                for s in range(size):
-                    k = share * problem.bodies[r, system.member[s]]
-                    stiffness -= k * system.right[0, s]
-                    missed -= k * system.right[1, s]
-        if not 0.0 < stiffness < math.inf:
+        excess = dot(problem.torque_arm, state.force, gap.size) - total
+        stiff, missed = _condensed(problem, state, system, size)
+        if not 0.0 < stiff < math.inf:
             return math.nan, math.nan, SINGULAR, iteration
-        tangent = 1.0 / stiffness
-        step = -missed * tangent
+        tangent = 1.0 / stiff
+        step = -(excess + missed) * tangent
         change[:] = state.pressed - state.held  # of pairs that do not touch: their forces go
         for r in range(size):
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
-        _move(problem, change, motion)
-        held[:], moved[:] = state.held, state.moved
-        fall = excess * step + dot(motion, state.held - state.pressed, n)
-        before, length = elastic, 1.0
-        low, high, at_low, at_high = 0.0, math.inf, fall, math.inf
-        for _ in range(_CUTS):
-            elastic = before + length * step
-            state.held[:] = held + length * change
-            state.moved[:] = moved + length * motion
-            _evaluate(problem, gap, elastic, state)
-            rise = (dot(problem.torque_arm, state.force, m) - total) * step
-            rise += dot(motion, state.held - state.pressed, n)
-            if not fall < 0.0 or abs(rise) <= -_LEVEL * fall or (rise < 0.0 and high == math.inf):
-                break
-            if rise > 0.0:
-                high, at_high = length, rise
-            else:
-                low, at_low = length, rise
-            part = min(max(at_low / (at_low - at_high), 0.1), 0.9)
-            length = low + part * (high - low)
-        _move(problem, state.held, state.moved)  # as they are, after many steps too
+        move(problem, change, motion)
+        elastic = _advance(problem, total, gap, elastic, step, change, motion, state)
         if max(abs(step), np.abs(motion).max()) <= STEP_TOLERANCE * elastic:
             return elastic, tangent, CONVERGED, iteration
     return elastic, tangent, ITERATION_LIMIT, MAX_ITERATIONS
 
 
 @njit(cache=True, error_model="numpy")
-def _newton_system(problem: PointProblem, state: _State, system: _System) -> int:
+def _condensed(problem: PointProblem, state: State, system: _System, size: int) -> tuple[float, float]:
+    """Return the stiffness of the position in N/m, and what the slices miss of the load in N."""
+    stiff, missed = stiffness(problem, state), 0.0
+    for r in range(state.held.size):
+        if system.shares[r] != 0.0:
+            for s in range(size):
+                yielding = system.shares[r] * problem.bodies[r, system.member[s]]
+                stiff -= yielding * system.right[0, s]
+                missed -= yielding * system.right[1, s]
+    return stiff, missed
+
+
+@njit(cache=True, error_model="numpy")
+def _advance(
+    problem: PointProblem,
+    total: float,
+    gap: FloatArray,
+    elastic: float,
+    step: float,
+    change: FloatArray,
+    motion: FloatArray,
+    state: State,
+) -> float:
+    """Take a step, or the part of it to where the energy is level; return the elastic deflection."""
+    held, moved, before = state.held.copy(), state.moved.copy(), elastic
+    fall = (dot(problem.torque_arm, state.force, gap.size) - total) * step
+    fall += dot(motion, state.held - state.pressed, motion.size)
+    low, high, at_low, at_high, length = 0.0, math.inf, fall, math.inf, 1.0
+    for _ in range(_CUTS):
+        elastic = before + length * step
+        state.held[:] = held + length * change
+        state.moved[:] = moved + length * motion
+        evaluate(problem, gap, elastic, state)
+        rise = (dot(problem.torque_arm, state.force, gap.size) - total) * step
+        rise += dot(motion, state.held - state.pressed, motion.size)
+        if not fall < 0.0 or abs(rise) <= -_LEVEL * fall or (rise < 0.0 and high == math.inf):
+            break
+        if rise > 0.0:
+            high, at_high = length, rise
+        else:
+            low, at_low = length, rise
+        length = low + min(max(at_low / (at_low - at_high), 0.1), 0.9) * (high - low)
+    move(problem, state.held, state.moved)  # as they are, after many steps too
+    return elastic
+
+
+@njit(cache=True, error_model="numpy")
+def _newton_system(problem: PointProblem, state: State, system: _System) -> int:
     """Fill in Newton's equations; return the number of slices of pairs that touch."""
-    points, count = problem.blend.shape
-    n = state.held.size
-    touching, right, shares, member = system.touching, system.right, system.shares, system.member
-    touching[:], shares[:] = 0.0, 0.0
-    motion = np.zeros(n)
-    carries = np.zeros(n // count, dtype=np.bool_)
-    for q in range(state.force.size):
-        if state.slope[q] == 0.0:
-            continue
-        pair, row = problem.place[q] // points, problem.place[q] % points
-        first, slope = pair * count, state.slope[q]
-        carries[pair] = True
-        for a in range(count):
-            part = slope * problem.blend[row, a]
-            motion[first + a] += part * problem.motion_arm[q]
-            shares[first + a] += part * problem.torque_arm[q]
-            for b in range(a + 1):
-                touching[first + a, first + b] += part * problem.blend[row, b]
-    size = 0
-    for j in range(n):
-        if carries[j // count]:
-            member[size] = j
-            size += 1
+    count = problem.blend.shape[1]
+    motion = np.zeros(state.held.size)
+    _touching(problem, state, system, motion)
+    size, missing = 0, np.zeros(state.held.size)
+    for j in range(0, state.held.size, count):
+        carries = 0.0
+        for k in range(j, j + count):
+            carries += system.touching[k, k]
+        if carries > 0.0:
+            for k in range(j, j + count):
+                system.member[size] = k
+                size += 1
+        else:  # forces left on pairs that do not touch any more
+            missing[j : j + count] = state.held[j : j + count] - state.pressed[j : j + count]
+    gone = missing.any()
     for r in range(size):
-        i = member[r]
+        i = system.member[r]
         first = i // count * count
-        right[0, r], right[1, r] = motion[i], state.pressed[i] - state.held[i]
+        system.right[0, r], system.right[1, r] = motion[i], state.pressed[i] - state.held[i]
         system.matrix[r, :size] = 0.0
         for j in range(first, first + count):
-            part = touching[max(i, j), min(i, j)]
+            part = system.touching[max(i, j), min(i, j)]
             for s in range(0, size, count):
-                block = member[s]
+                block = system.member[s]
                 for b in range(count):
                     system.matrix[r, s + b] += part * problem.bodies[j, block + b]
+            if gone:
+                system.right[1, r] += part * dot(problem.bodies[j], missing, missing.size)
         system.matrix[r, r] += 1.0
-    for j in range(n):  # forces left on pairs that do not touch any more
-        if not carries[j // count] and state.held[j] != state.pressed[j]:
-            for r in range(size):
-                i = member[r]
-                first = i // count * count
-                for k in range(first, first + count):
-                    part = touching[max(i, k), min(i, k)] * problem.bodies[k, j]
-                    right[1, r] += part * (state.held[j] - state.pressed[j])
     return size
 
 
 @njit(cache=True, error_model="numpy")
-def _evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: _State) -> None:
-    """Fill in forces and slopes of the contacts, and the forces on the slices, under the motions."""
+def _touching(problem: PointProblem, state: State, system: _System, motion: FloatArray) -> None:
+    """Fill in the lower triangle of N'DN, N'D m and N'D n of all slices."""
     points, count = problem.blend.shape
-    place, blend, moved, arm = problem.place, problem.blend, state.moved, problem.motion_arm
-    width, curvature, free = problem.law.width, problem.law.gap.curvature, problem.law.free
-    length, modulus = problem.law.length, problem.law.modulus
-    for q in range(gap.size):
-        closer = arm[q] * elastic - gap[q]
-        state.force[q], state.slope[q] = 0.0, 0.0
-        i = place[q]
-        first, row = i // points * count, i % points
-        for a in range(count):
-            closer -= blend[row, a] * moved[first + a]
-        if closer <= 0.0:
-            continue
-        half = plain_strip(curvature[i], length, closer)
-        if half < free[i]:
-            line_load, stiffness = plain_load(curvature[i], length, modulus, half, closer)
-            state.force[q], state.slope[q] = width[i] * line_load, width[i] * stiffness
-        else:
-            state.force[q], state.slope[q] = force_at(problem.law, i, closer)
-    _press(problem, state.force, state.pressed)
-
-
-@njit(cache=True, error_model="numpy")
-def _press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
-    """Fill in the forces of the contacts on the slices."""
-    points, count = problem.blend.shape
-    place, blend = problem.place, problem.blend
-    out[:] = 0.0
-    for q in range(force.size):
-        if force[q] != 0.0:
-            first, row = place[q] // points * count, place[q] % points
+    touching, shares = system.touching, system.shares
+    touching[:], shares[:] = 0.0, 0.0
+    for q in range(state.force.size):
+        slope = state.slope[q]
+        if slope != 0.0:
+            first, row = problem.place[q] // points * count, problem.place[q] % points
             for a in range(count):
-                out[first + a] += blend[row, a] * force[q]
-
-
-@njit(cache=True, error_model="numpy")
-def _move(problem: PointProblem, held: FloatArray, out: FloatArray) -> None:
-    """Fill in the motions of the slices under forces on them."""
-    for j in range(held.size):
-        out[j] = dot(problem.bodies[j], held, held.size)
-
-
-@njit(cache=True, error_model="numpy")
-def _at(problem: PointProblem, q: int, moved: FloatArray) -> float:
-    """Return the motion of the bodies at a contact, m."""
-    points, count = problem.blend.shape
-    first, row = problem.place[q] // points * count, problem.place[q] % points
-    value = 0.0
-    for a in range(count):
-        value += problem.blend[row, a] * moved[first + a]
-    return value
-
-
-@njit(cache=True, error_model="numpy")
-def _stiffness(problem: PointProblem, state: _State) -> float:
-    """Return how fast the contacts take load as the gear moves, N/m."""
-    value = 0.0
-    for q in range(state.slope.size):
-        value += problem.torque_arm[q] * state.slope[q] * problem.motion_arm[q]
-    return value
+                part = slope * problem.blend[row, a]
+                motion[first + a] += part * problem.motion_arm[q]
+                shares[first + a] += part * problem.torque_arm[q]
+                for b in range(a + 1):
+                    touching[first + a, first + b] += part * problem.blend[row, b]
 
 
 @njit(cache=True, error_model="numpy")
@@ -367,19 +278,19 @@ def _residuals(
     total: float,
     elastic: float,
     gap: FloatArray,
-    state: _State,
+    state: State,
     residual: FloatArray,
 ) -> bool:
     """Measure the four residuals of the forces found, and whether any strip outgrew the reference length."""
     residual[:] = 0.0
     any_beyond = False
-    _move(problem, state.pressed, state.moved)
+    move(problem, state.pressed, state.moved)
     for q in range(gap.size):
         value, beyond = 0.0, False
         if state.force[q] > 0.0:
             value, _, beyond = approach(problem.law, problem.place[q], state.force[q])
         any_beyond = any_beyond or beyond
-        slack = gap[q] + value + _at(problem, q, state.moved) - problem.motion_arm[q] * elastic
+        slack = gap[q] + value + motion_at(problem, q, state.moved) - problem.motion_arm[q] * elastic
         residual[1] = max(residual[1], -slack / elastic)
         residual[2] = max(residual[2], -state.force[q] / total)
         residual[3] = max(residual[3], abs(state.force[q] * slack / elastic) / total)

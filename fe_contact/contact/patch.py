@@ -61,6 +61,11 @@ class Patches:
         return self.center + 0.5 * self.edge_share * self.half_width
 
     @property
+    def at_edge(self) -> FloatArray:
+        """How far the strip hangs on the edge: 0 before it reaches it, 1 where rigid flanks touch there."""
+        return np.minimum(1.5 * self.edge_share, 1.0)
+
+    @property
     def law_width(self) -> FloatArray:
         """Half-width in m of the semi-elliptic patch that moves as much on a half plane under its own weight.
 
@@ -77,7 +82,7 @@ class Patches:
 
 
 def tip_patches(
-    s: FloatArray, offset: FloatArray, tip: float, half_width: float, edge_length: float
+    s: FloatArray, offset: FloatArray, tip: float, half_width: float, edge_length: FloatArray | float
 ) -> Patches:
     """Patches on a flank for contacts at `s`.
 
@@ -91,7 +96,7 @@ def tip_patches(
         Flank coordinate of the tip edge, m.
     half_width : float
         Half-width away from the edge, m.
-    edge_length : float
+    edge_length : ndarray or float
         Length c of the patch at the edge, m, at most 2 `half_width`.
     """
     half = np.clip(offset, 0.5 * edge_length, half_width)

@@ -34,6 +34,8 @@ class LoadedSlices:
         Along the face, m.
     base_helix_angle : float
         beta_b of gear 1 in rad, > 0 right hand.
+    corner_1, corner_2 : float
+        What the tip corner of either gear yields over a half plane; see `fe_contact.hertz.wedge_softness`.
     law_length : float
         Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
         local law, what is further in the finite elements.
@@ -47,6 +49,8 @@ class LoadedSlices:
     patch_2: Patches
     slice_width: float
     base_helix_angle: float
+    corner_1: float
+    corner_2: float
     law_length: float
 
     @property
@@ -54,14 +58,16 @@ class LoadedSlices:
         """Width of a slice along the contact line, m."""
         return self.slice_width / math.cos(self.base_helix_angle)
 
-    @property
-    def log_widths(self) -> tuple[FloatArray, FloatArray]:
-        """Mean logarithm (P, n) of the patch half-widths in m that enter the local law, of both gears."""
-        shape = (*self.present.shape, -1)
-        first, second = (
-            np.log(patch.law_width).reshape(shape).mean(axis=2) for patch in (self.patch_1, self.patch_2)
+    def half_planes(self, first: float, second: float) -> tuple[FloatArray, FloatArray]:
+        """Return 2 (1 - nu^2)/(pi E) of both gears under each patch (P, m): more at the own tip edge."""
+        return (
+            first * (1.0 + (self.corner_1 - 1.0) * self.patch_1.at_edge),
+            second * (1.0 + (self.corner_2 - 1.0) * self.patch_2.at_edge),
         )
-        return first, second
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Return the mean over the patches (P, m) of each slice (P, n)."""
+        return np.asarray(values.reshape(*self.present.shape, -1).mean(axis=2))
 
     def rows(self, keep: IntArray) -> LoadedSlices:
         """Keep some positions."""
@@ -202,14 +208,21 @@ class ContactProblem:
     half_plane_2: float
 
     @property
+    def half_planes(self) -> tuple[FloatArray, FloatArray]:
+        """`half_plane_1` and `half_plane_2` at each candidate (Q, m), 1/Pa: more at the own tip edge."""
+        return self.candidates.slices.half_planes(self.half_plane_1, self.half_plane_2)
+
+    @property
     def bodies(self) -> FloatArray:
         """The compliance (Q, n, n) without what load patches move within the reference length, m/N.
 
         That is k ln(l/a)/w of each gear on slices of the width w: in the local law instead.
         """
         slices = self.candidates.slices
-        sides = zip((self.half_plane_1, self.half_plane_2), slices.log_widths, strict=True)
-        near = sum(k * (math.log(slices.law_length) - width) for k, width in sides) / slices.width
+        k_1, k_2 = self.half_planes
+        near = k_1 * np.log(slices.law_length / slices.patch_1.law_width)
+        near = near + k_2 * np.log(slices.law_length / slices.patch_2.law_width)
+        near = slices.mean(near) / slices.width
         found, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
         found[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
         return found

@@ -31,7 +31,8 @@ class Start:
     def on(self, candidates: Candidates) -> FloatArray:
         """Carry the forces over to other candidates (m,) of the same pairs: (P, L, m) in N.
 
-        A candidate takes the line load of the nearest one of its pair; a pair that was not there starts unloaded.
+        A candidate takes the line load of the nearest one of its pair; a pair that was not there starts
+        unloaded.
         """
         here = self.candidates
         if np.array_equal(here.pair, candidates.pair) and np.array_equal(

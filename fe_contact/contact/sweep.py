@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 
 from fe_contact.contact.local_law import LocalLaw, free_strips
-from fe_contact.contact.newton import CONVERGED, PointProblem, solve_point
+from fe_contact.contact.newton import CONVERGED, solve_point
+from fe_contact.contact.point import PointProblem
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.solution import ContactSolution
 from fe_contact.contact.start import Start
@@ -38,10 +41,12 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
     status, iterations = np.zeros((2, p, levels), dtype=np.int64)
     residuals = np.zeros((p, levels, 4))
     beyond = np.zeros((p, levels), dtype=np.bool_)
+    first_plane, second_plane = problem.half_planes
+    modulus = 2.0 / (math.pi * (first_plane + second_plane))
     first = np.zeros((0, 0, m)) if start is None else np.ascontiguousarray(start.on(c))
     _sweep(
         problem.bodies, c.slices.present, c.blend, c.gap * c.motion_arm, c.motion_arm,
-        c.torque_share, c.width, c.gap_about, c.slices.law_length, problem.modulus, loads, first,
+        c.torque_share, c.width, c.gap_about, c.slices.law_length, modulus, loads, first,
         deflection, tangent, force, status, iterations, residuals, beyond,
     )  # fmt: skip
     return ContactSolution(
@@ -60,7 +65,7 @@ def _sweep(
     width: FloatArray,
     about: Gap,
     length: float,
-    modulus: float,
+    modulus: FloatArray,
     loads: FloatArray,
     first: FloatArray,
     deflection: FloatArray,
@@ -80,7 +85,7 @@ def _sweep(
         points = np.flatnonzero(np.repeat(present[row][:: blend.shape[1]], len(blend)))
         inner = np.ascontiguousarray(bodies[row][slices][:, slices])
         gaps = some_gaps(gap_at(about, p), points)
-        local = LocalLaw(width[p][points], gaps, free_strips(gaps), length, modulus)
+        local = LocalLaw(width[p][points], gaps, free_strips(gaps), length, modulus[row][points])
         place = pairs[here // len(blend)] * len(blend) + here % len(blend)
         point = PointProblem(
             inner, blend, place, gap[p][here], motion_arm[p][here], torque_arm[p][here], local

@@ -47,8 +47,8 @@ def _plain(problem: ContactProblem, position: int) -> Problem:
     c = problem.candidates
     real = np.isfinite(c.gap[position])
     motion = c.motion_arm[position, real]
-    slices = problem.bodies[position % len(problem.compliance)]
-    everywhere = c.at_points(c.at_points(slices).T)
+    row = position % len(problem.compliance)
+    everywhere = c.at_points(c.at_points(problem.bodies[row]).T)
     return Problem(
         compliance=everywhere[np.ix_(real, real)],
         gap=c.gap[position, real] * motion,
@@ -57,5 +57,5 @@ def _plain(problem: ContactProblem, position: int) -> Problem:
         gap_about=GapAbout(*(part[position, real] for part in c.gap_about)),
         width=c.width[position, real],
         length=c.slices.law_length,
-        modulus=problem.modulus,
+        modulus=2.0 / (np.pi * sum(k[row, real] for k in problem.half_planes)),
     )

@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 
 from fe_contact.contact.interior_point import GapAbout, Problem, solve
 from fe_contact.contact.local_law import LocalLaw, free_strips
-from fe_contact.contact.newton import CONVERGED, PointProblem, solve_point
+from fe_contact.contact.newton import CONVERGED, solve_point
+from fe_contact.contact.point import PointProblem
 from fe_contact.contact.strip import Gap
 
 MODULUS = 115e9
@@ -52,7 +53,7 @@ def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: b
         gap_about=random_gaps(rng, n),
         width=np.full(n, 25e-3 / max(1, n // 5)),
         length=rng.uniform(1e-4, 4e-4),
-        modulus=MODULUS,
+        modulus=MODULUS / rng.choice([1.0, 1.44], n),
     )
     return with_twins(problem) if twins and n > 1 else problem
 
@@ -81,7 +82,7 @@ def with_twins(problem: Problem) -> Problem:
 
 def picked(problem: Problem, index: np.ndarray) -> Problem:
     """Return the contacts of these indices."""
-    names = ("gap", "motion_arm", "torque_arm", "width")
+    names = ("gap", "motion_arm", "torque_arm", "width", "modulus")
     arrays = {name: getattr(problem, name)[index] for name in names}
     arrays["gap_about"] = GapAbout(*(part[index] for part in vars(problem.gap_about).values()))
     return replace(problem, compliance=problem.compliance[np.ix_(index, index)], **arrays)

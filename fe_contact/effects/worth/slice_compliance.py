@@ -49,8 +49,8 @@ def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactMod
     """
     touch = slices.touch
     sides = (
-        (pair.pinion, touch.s_1, touch.lever_1, np.exp(slices.log_widths[0])),
-        (pair.wheel, touch.s_2, touch.lever_2, np.exp(slices.log_widths[1])),
+        (pair.pinion, touch.s_1, touch.lever_1, slices.mean(slices.patch_1.law_width)),
+        (pair.wheel, touch.s_2, touch.lever_2, slices.mean(slices.patch_2.law_width)),
     )
     total = np.zeros((*touch.gap.shape, slices.pair.size))
     for gear, s, lever, patch in sides:

@@ -37,17 +37,17 @@ LINE_LOADS = np.geomspace(1e1, 8e4, 25)
 
 def law_of(slope: float, first: Material = STEEL, second: Material = STEEL, scale: float = 1.0) -> LocalLaw:
     gap, width = gap_of(slope, scale * RADIUS), np.array([scale * WIDTH])
-    return LocalLaw(width, gap, free_strips(gap), scale * LENGTH, contact_modulus(first, second))
+    return LocalLaw(width, gap, free_strips(gap), scale * LENGTH, np.array([contact_modulus(first, second)]))
 
 
 def low(law: LocalLaw) -> float:
     """Line load up to which the law is its secant."""
-    return strip_load(law.gap, 0, SMALLEST_STRIP * law.length, law.modulus)[0]
+    return strip_load(law.gap, 0, SMALLEST_STRIP * law.length, law.modulus[0])[0]
 
 
 def high(law: LocalLaw) -> float:
     """Line load above which the law goes on straight."""
-    return strip_load(law.gap, 0, LARGEST_STRIP * law.length, law.modulus)[0]
+    return strip_load(law.gap, 0, LARGEST_STRIP * law.length, law.modulus[0])[0]
 
 
 def gap_of(slope: float, radius: float) -> Gap:
@@ -172,7 +172,7 @@ def test_a_parabola_needs_no_search():
     for p in np.geomspace(1e-3 * low(law), 1e2 * high(law), 200):
         value = approach(law, 0, p * WIDTH)[0]
         half = plain_strip(curvature, LENGTH, value)
-        load, stiffness = plain_load(curvature, LENGTH, law.modulus, half, value)
+        load, stiffness = plain_load(curvature, LENGTH, law.modulus[0], half, value)
         assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(force_at(law, 0, value), rel=1e-12)
     assert free_strips(gap)[0] == math.inf
     assert free_strips(gap._replace(slope=np.array([0.01])))[0] == 0.0
@@ -203,7 +203,7 @@ def test_blunt_wedge_keeps_its_digits():
     # phi R is far beyond the strip; c = 4 p/(pi E* phi) there and b_eff = c exp(-1/2)/2
     modulus, wedge, radius, patch = contact_modulus(STEEL, STEEL), 0.3, 2e4, 3e-4
     k, gap = 1.0 / (math.pi * modulus), gap_of(wedge, radius)
-    law = LocalLaw(np.array([WIDTH]), gap, free_strips(gap), patch, modulus)
+    law = LocalLaw(np.array([WIDTH]), gap, free_strips(gap), patch, np.array([modulus]))
     p = 1.5 * low(law)
     half_width_at_edge = 2.0 * p / (math.pi * modulus * wedge) * math.exp(-0.5)
     expected = 2.0 * k * p * (math.log(patch / half_width_at_edge) + 0.25)

@@ -12,8 +12,9 @@ import pytest
 from fe_contact.contact import ContactProblem, LoadedSlices, solve_contact
 from fe_contact.contact.elimination import eliminate
 from fe_contact.contact.local_law import LocalLaw, approach, free_strips
-from fe_contact.contact.newton import PointProblem, _residuals, _State, solve_point
+from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
+from fe_contact.contact.point import PointProblem, State
 from fe_contact.contact.strip import Gap
 from fe_contact.types import Status
 
@@ -27,7 +28,7 @@ def point(compliance, gap, motion_arm=None, torque_arm=None, edge_slope=math.nan
     n = len(gap)
     ones = np.ones(n)
     gap_about = beside_an_edge(edge_slope, n)
-    law = LocalLaw(WIDTH * ones, gap_about, free_strips(gap_about), LENGTH, MODULUS)
+    law = LocalLaw(WIDTH * ones, gap_about, free_strips(gap_about), LENGTH, MODULUS * ones)
     motion = ones if motion_arm is None else np.asarray(motion_arm)
     torque = motion if torque_arm is None else np.asarray(torque_arm)
     there = np.flatnonzero(np.asarray(gap) != math.inf)
@@ -135,7 +136,7 @@ def test_residuals_measure_what_they_say():
     force, elastic, total = np.array([2000.0, -20.0]), 4e-6, 2200.0
     residual, zeros = np.full(4, np.nan), np.zeros(2)
     _residuals(
-        problem, total, elastic, problem.gap, _State(zeros, zeros.copy(), force, zeros, force), residual
+        problem, total, elastic, problem.gap, State(zeros, zeros.copy(), force, zeros, force), residual
     )
     moved = [STIFF * f + (approach(problem.law, i, f)[0] if f > 0.0 else 0.0) for i, f in enumerate(force)]
     slack = [(problem.gap[i] - elastic + moved[i]) / elastic for i in range(2)]
@@ -176,6 +177,8 @@ def two_position_problem() -> ContactProblem:
         patch_2=patches,
         slice_width=WIDTH,
         base_helix_angle=0.0,
+        corner_1=1.0,
+        corner_2=1.0,
         law_length=LENGTH,
     )
     candidates = SimpleNamespace(  # what the sweep reads of its candidates
