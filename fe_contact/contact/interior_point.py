@@ -133,8 +133,13 @@ def strips(problem: Problem, half: Array) -> tuple[Array, Array]:
     high = np.maximum(np.minimum(half, about.high.reshape(-1, *extra) - half), low)
     middle = root(lambda at: pieces(about, at, half)[0], low, high, 1e-8 * half)
     slope, tilted, mean = pieces(about, middle, half)
-    singular = np.where((middle == low) | (middle == high), np.abs(slope), 0.0)
-    return 0.5 * np.pi * problem.modulus.reshape(-1, *extra) * half * (tilted + singular), mean
+    at_edge = (middle == low) | (middle == high)
+    # at a break at the end of the strip both means go with the root of the distance: straight to each other
+    below, above = (np.clip(middle + side * 1e-8 * half, low, high) for side in (-1.0, 1.0))
+    (under, left, _), (over, right, _) = pieces(about, below, half), pieces(about, above, half)
+    between = np.where(over > under, over - under, np.inf)
+    tilted = np.where(at_edge, tilted + np.abs(slope), left - under * (right - left) / between)
+    return 0.5 * np.pi * problem.modulus.reshape(-1, *extra) * half * tilted, mean
 
 
 class GuardedLaw:

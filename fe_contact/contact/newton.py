@@ -35,6 +35,8 @@ CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
 MAX_ITERATIONS = 100
 STEP_TOLERANCE = 1e-11
 """Largest last change of the motions over the deflection; Newton squares it, so they are good to rounding."""
+ROUNDING = 1e-7
+"""The same, below which steps that do not fall any more are rounding: of bodies that turn by much."""
 _CUTS = 30
 _LEVEL = 0.3
 """Slope of the energy at the end of a step over its fall at the beginning, from which on the step is cut."""
@@ -55,6 +57,8 @@ class _System(NamedTuple):
         N'D m in N/m, and what the forces on the slices miss in N.
     shares : ndarray, shape (n,)
         N'D n of all slices, N/m.
+    left : ndarray, shape (n,)
+        Forces on slices of pairs that do not touch any more, N.
     """
 
     member: IntArray
@@ -62,6 +66,7 @@ class _System(NamedTuple):
     matrix: FloatArray
     right: FloatArray
     shares: FloatArray
+    left: FloatArray
 
 
 @njit(cache=True, error_model="numpy")
@@ -146,10 +151,15 @@ def _iterate(
     """Iterate to the solution; return elastic deflection, tangent, status and iterations."""
     n = state.held.size
     system = _System(
-        np.empty(n, dtype=np.int64), np.empty((n, n)), np.empty((n, n)), np.empty((2, n)), np.empty(n)
+        np.empty(n, dtype=np.int64),
+        np.empty((n, n)),
+        np.empty((n, n)),
+        np.empty((2, n)),
+        np.empty(n),
+        np.empty(n),
     )
     change, motion = np.empty((2, n))
-    tangent = math.nan
+    tangent, last = math.nan, math.inf
     for iteration in range(1, MAX_ITERATIONS + 1):
         if not state.slope.any():  # a step too far has parted all flanks
             elastic = _start(problem, total, gap, state)
@@ -167,7 +177,9 @@ def _iterate(
             change[system.member[r]] = step * system.right[0, r] + system.right[1, r]
         move(problem, change, motion)
         elastic = _advance(problem, total, gap, elastic, step, change, motion, state)
-        if max(abs(step), np.abs(motion).max()) <= STEP_TOLERANCE * elastic:
+        before, last = last, max(abs(step), np.abs(motion).max())
+        rounding = before <= ROUNDING * elastic and last > 0.1 * before
+        if last <= STEP_TOLERANCE * elastic or rounding:
             return elastic, tangent, CONVERGED, iteration
     return elastic, tangent, ITERATION_LIMIT, MAX_ITERATIONS
 
@@ -182,6 +194,7 @@ def _condensed(problem: PointProblem, state: State, system: _System, size: int) 
                 yielding = system.shares[r] * problem.bodies[r, system.member[s]]
                 stiff -= yielding * system.right[0, s]
                 missed -= yielding * system.right[1, s]
+            missed += system.shares[r] * dot(problem.bodies[r], system.left, system.left.size)
     return stiff, missed
 
 
@@ -225,7 +238,8 @@ def _newton_system(problem: PointProblem, state: State, system: _System) -> int:
     count = problem.blend.shape[1]
     motion = np.zeros(state.held.size)
     _touching(problem, state, system, motion)
-    size, missing = 0, np.zeros(state.held.size)
+    size, left = 0, system.left
+    left[:] = 0.0
     for j in range(0, state.held.size, count):
         carries = 0.0
         for k in range(j, j + count):
@@ -234,9 +248,9 @@ def _newton_system(problem: PointProblem, state: State, system: _System) -> int:
             for k in range(j, j + count):
                 system.member[size] = k
                 size += 1
-        else:  # forces left on pairs that do not touch any more
-            missing[j : j + count] = state.held[j : j + count] - state.pressed[j : j + count]
-    gone = missing.any()
+        else:
+            left[j : j + count] = state.held[j : j + count] - state.pressed[j : j + count]
+    any_left = left.any()
     for r in range(size):
         i = system.member[r]
         first = i // count * count
@@ -248,8 +262,8 @@ def _newton_system(problem: PointProblem, state: State, system: _System) -> int:
                 block = system.member[s]
                 for b in range(count):
                     system.matrix[r, s + b] += part * problem.bodies[j, block + b]
-            if gone:
-                system.right[1, r] += part * dot(problem.bodies[j], missing, missing.size)
+            if any_left:
+                system.right[1, r] += part * dot(problem.bodies[j], left, left.size)
         system.matrix[r, r] += 1.0
     return size
 

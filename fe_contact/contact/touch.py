@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.contact.least_gap import moved_gap, rounded, touching_places
 from fe_contact.contact.model import GapTerm
-from fe_contact.contact.strip import Gap, moved_gap, rounded, touching_places
+from fe_contact.contact.strip import Gap
 from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, edge_gap
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray

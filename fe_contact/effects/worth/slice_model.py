@@ -26,7 +26,7 @@ from fe_contact.hertz import contact_modulus
 from fe_contact.types import FloatArray
 
 PLANE_POSITIONS, FACE_POSITIONS = 64, 32
-FACE_SLICES = 21
+FACE_SLICES = 11
 MOST_PITCHES = 96
 """Base pitches looked at where teeth differ: several turns of usual gears."""
 _PATCH, _EDGE = 0.15, 0.0125
