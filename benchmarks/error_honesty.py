@@ -78,7 +78,7 @@ def _judged(case: HonestyCase) -> Iterator[Judged]:
 def judged_rungs(case: HonestyCase) -> list[RungOf]:
     """Return the rungs of a case whose estimates are judged."""
     if needs_face(case):
-        return [RungOf("3d", "draft", 15), RungOf("3d", "draft", 61), RungOf("3d", "standard", 31)]
+        return [RungOf("3d", "draft"), RungOf("3d", "standard"), RungOf("3d", "standard", 23)]
     return [RungOf("corrected", "draft"), RungOf("corrected", "standard")]
 
 

@@ -20,7 +20,7 @@ from fe_contact.planning.discretisation import Discretisation
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 
-PLANE_FACTOR, SLICES = 1.5, 91
+PLANE_FACTOR, SLICES = 1.5, 31
 PLANE_POSITIONS, FACE_POSITIONS = 512, 256
 _SAMPLES = 4096
 
@@ -76,7 +76,7 @@ def solved_finely(checked: Checked, contact: PairContact) -> Quantities:
 def _finer(made: Discretisation, bodies: tuple[Toothing, Toothing]) -> Discretisation:
     """Return a discretisation beyond "fine"."""
     if isinstance(made, FaceDiscretisation):
-        return replace(made, slices=SLICES)
+        return made.in_slices(SLICES)
     one, two = (recipe.refined(PLANE_FACTOR) for recipe in made.recipes)
     solids = None
     if made.finite_width is not None:

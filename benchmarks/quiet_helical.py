@@ -27,7 +27,7 @@ from fe_contact.effects.worth.influence import RIPPLE_FLOOR, signed
 
 SECTION = "quiet helical"
 SUBJECT = "influence of effects on quiet helical pairs"
-SLICES, POSITIONS = 31, 32
+SLICES, POSITIONS = 15, 32
 EFFECTS = ("tooth_coupling", "corner_contact", "profile_modification", "lead_modification", "misalignment")
 
 
@@ -79,7 +79,7 @@ def judged() -> tuple[JudgedInfluence, ...]:
 
 
 def judged_pair(quiet: QuietPair, folder: Path) -> list[JudgedInfluence]:
-    """Switch the effects of one pair over at its nominal load, on draft meshes in 31 slices."""
+    """Switch the effects of one pair over at its nominal load, on draft meshes in 15 slices."""
     sys.stderr.write(f"  {quiet.name}\n")
     checked = check_request(
         quiet.pair,

@@ -93,7 +93,7 @@ def judge(case: HonestyCase, *, held_out: bool) -> Kept:
     across_face = needs_face(case)
     exact = truth(case) if across_face else measured(case, REFERENCE).value
     rung = rung_of(chosen)
-    beside = [RungOf("3d", "standard", 91), RungOf("3d", "fine", 61)] if rung.level == "fine" else []
+    beside = [RungOf("3d", "standard", 23), RungOf("3d", "fine")] if rung.level == "fine" else []
     wanted = dict.fromkeys([*rungs_of(across_face=across_face), *beside, rung])
     tried = {one: measured(case, one) for one in wanted}
     errors = {one: relative_error(found, exact) for one, found in tried.items()}

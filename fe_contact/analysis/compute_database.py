@@ -27,7 +27,7 @@ from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 from fe_contact.workers import InProcess, Workers
 
-SOLVER_VERSION = "9"
+SOLVER_VERSION = "10"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from itertools import groupby
 from typing import Any, TypeVar
 
@@ -124,29 +124,28 @@ def _by_line(
             yield [next(results) for _ in blocks]
 
 
-def _laid_out_alike(part: Candidates, whole: Candidates) -> Candidates:
-    """Return candidates whose arrays lie in memory as those they are rows of.
+def _laid_out_alike(part: Arrays, whole: Arrays) -> Arrays:
+    """Return a dataclass of arrays and of such, its arrays in memory as those they are rows of.
 
     Compiled sums along a row round otherwise where its numbers stand apart.
     """
-    return replace(
+    alike: Arrays = replace(
         part,
-        touch=_alike(part.touch, whole.touch),
-        patch_1=_alike(part.patch_1, whole.patch_1),
-        patch_2=_alike(part.patch_2, whole.patch_2),
+        **{
+            field.name: _alike(getattr(part, field.name), getattr(whole, field.name))
+            for field in fields(part)
+        },
     )
-
-
-def _alike(part: Arrays, whole: Arrays) -> Arrays:
-    """Lay out a dataclass of arrays as another."""
-    laid_out = {
-        name: np.ascontiguousarray(vars(part)[name])
-        if values.flags.c_contiguous
-        else np.asfortranarray(vars(part)[name])
-        for name, values in vars(whole).items()
-    }
-    alike: Arrays = type(part)(**laid_out)
     return alike
+
+
+def _alike(part: Any, whole: Any) -> Any:
+    """Lay out one value as another."""
+    if is_dataclass(part):
+        return _laid_out_alike(part, whole)
+    if not isinstance(part, np.ndarray):
+        return part
+    return np.ascontiguousarray(part) if whole.flags.c_contiguous else np.asfortranarray(part)
 
 
 def _joined(line: Line, blocks: list[SolvedBlock]) -> SolvedLine:
@@ -164,13 +163,21 @@ def _joined(line: Line, blocks: list[SolvedBlock]) -> SolvedLine:
 
 
 def _joined_candidates(parts: list[Candidates], line: Line) -> Candidates:
-    """Put candidates together."""
+    """Put candidates together; their slices do not go through pitches."""
+    slices = [part.slices for part in parts]
+    once = replace(line, pitches=None)
     return replace(
         parts[0],
         position=_rows([part.position for part in parts], line),
         touch=_joined_arrays([part.touch for part in parts], line),
-        patch_1=_joined_arrays([part.patch_1 for part in parts], line),
-        patch_2=_joined_arrays([part.patch_2 for part in parts], line),
+        width=_rows([part.width for part in parts], line),
+        slices=replace(
+            slices[0],
+            present=_rows([part.present for part in slices], once),
+            touch=_joined_arrays([part.touch for part in slices], once),
+            patch_1=_joined_arrays([part.patch_1 for part in slices], once),
+            patch_2=_joined_arrays([part.patch_2 for part in slices], once),
+        ),
     )
 
 
@@ -181,7 +188,7 @@ def _joined_arrays(parts: list[Arrays], line: Line, same: tuple[str, ...] = ()) 
         **{
             field.name: _rows([getattr(part, field.name) for part in parts], line)
             for field in fields(parts[0])
-            if field.name not in same
+            if field.name not in same and isinstance(getattr(parts[0], field.name), np.ndarray)
         },
     )
     return joined

@@ -229,8 +229,7 @@ def chosen_rung(checked: Checked) -> str | None:
     decided = decide(checked)
     level, model = decided.mesh.level, decided.checked.model
     if model.across_face:
-        named = f"3d_{level}_{decided.mesh.slices}"
-        return named if any(rung.name == named for rung in RUNGS) else f"3d_{level}"
+        return f"3d_{level}"
     if model.finite_width:
         return "corrected" if level == "standard" else f"corrected_{level}"
     return None if checked.request.accuracy.model == "plane_stress" else "plane_strain"

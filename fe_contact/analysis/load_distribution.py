@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LoadDistribution:
-    """One load on P positions, N tooth pairs and K slices of the common face.
+    """One load on P positions, N tooth pairs and K stretches of the common face, several a slice.
 
     Attributes
     ----------
@@ -31,15 +31,15 @@ class LoadDistribution:
     pair : ndarray of int, shape (N,)
         Pair indices; +1 is ahead.
     face_position : ndarray, shape (K,)
-        Middles of the slices, as distances from the pinion's mid-face, m.
+        Middles of the stretches, as distances from the pinion's mid-face, m.
     deflection : ndarray, shape (P,)
         Static transmission error, m.
     roll_length_1, roll_length_2 : ndarray, shape (P, N, K)
         Where the flanks touch or come closest, on either gear, m.
     on_path : ndarray of bool, shape (P, N, K)
-        Whether the slice lies between A and E, where plain involutes touch.
+        Whether any part of the stretch lies between A and E, where plain involutes touch.
     force : ndarray, shape (P, N, K)
-        Normal force of each slice, N.
+        Normal force of each stretch, N.
     lever : ndarray, shape (P, N, K)
         Lever arm of that force about gear 1 over the base radius: 1, and about 1 at a tip edge.
     pressure : ndarray, shape (P, N, K)
@@ -48,7 +48,7 @@ class LoadDistribution:
         What is left between the loaded flanks, along their normal, m: 0 in contact, infinite where they
         cannot touch.
     slice_width : float
-        Along the face, m.
+        Of a stretch along the face, m.
     base_helix_angle : float
         beta_b of gear 1, rad.
     scene : FlankScene
@@ -75,7 +75,7 @@ class LoadDistribution:
 
     @property
     def line_load(self) -> FloatArray:
-        """Force per length of contact line (P, N, K), N/m."""
+        """Force per length of contact line (P, N, K), N/m: of the whole stretch, where it ends there too."""
         return self.force * (math.cos(self.base_helix_angle) / self.slice_width)
 
     @property
@@ -141,7 +141,7 @@ class LoadDistribution:
 
     @property
     def _meshing(self) -> BoolArray:
-        """Slices that belong to a contact line: on the path of contact, or loaded at a tip edge."""
+        """Stretches that belong to a contact line: on the path of contact, or loaded at a tip edge."""
         return np.asarray(self.on_path | (self.force > 0.0))
 
 
@@ -155,7 +155,7 @@ def load_distribution(
     center_distance_change: float = 0.0,
     metadata: Metadata | None = None,
 ) -> LoadDistribution:
-    """Lay out a contact solution by pair and slice.
+    """Lay out a contact solution by pair and place along the face.
 
     Parameters
     ----------
@@ -181,6 +181,7 @@ def load_distribution(
     nominal, _ = pair.roll_lengths(phase[:, None], candidates.pair)
     nominal = nominal - candidates.face_position * math.tan(candidates.base_helix_angle)
     path = pair.path_of_contact
+    reach = 0.5 * candidates.point_width * abs(math.tan(candidates.base_helix_angle))
     roll_1, roll_2 = rolls_at(pair, candidates.touch.s_1, candidates.touch.s_2)
     return LoadDistribution(
         position=candidates.position,
@@ -189,12 +190,12 @@ def load_distribution(
         deflection=solution.deflection[:, load],
         roll_length_1=roll_1.reshape(shape),
         roll_length_2=roll_2.reshape(shape),
-        on_path=((nominal >= path.start) & (nominal <= path.end)).reshape(shape),
+        on_path=((nominal + reach >= path.start) & (nominal - reach <= path.end)).reshape(shape),
         force=force.reshape(shape),
         lever=candidates.torque_share.reshape(shape),
         pressure=pressure.reshape(shape),
         gap=gap.reshape(shape),
-        slice_width=candidates.slice_width,
+        slice_width=candidates.point_width,
         base_helix_angle=candidates.base_helix_angle,
         scene=flank_scene(pair, solution.load[load], misalignment, center_distance_change),
         metadata=metadata or Metadata(),
@@ -204,7 +205,7 @@ def load_distribution(
 def _loaded_gap(problem: ContactProblem, force: FloatArray, deflection: FloatArray) -> FloatArray:
     """Gap (P, n) left along the normal: bending apart, less the approach of the rigid flanks."""
     candidates = problem.candidates
-    bent = np.einsum("pij,pj->pi", problem.compliance, force)
+    bent = problem.moved(force[:, None])[:, 0]
     approach = candidates.motion_arm * (deflection[:, None] - candidates.gap)
     return np.where(force > 0.0, 0.0, bent - approach)
 

@@ -46,8 +46,8 @@ class Decided:
         """Return the same model and mesh in another number of slices; itself in the plane."""
         if not isinstance(self.plan.discretisation, FaceDiscretisation):
             return self
-        made = replace(self.plan.discretisation, slices=count)
-        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=count))
+        made = self.plan.discretisation.in_slices(count)
+        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=made.slices))
         return replace(self, mesh=mesh, plan=replace(self.plan, discretisation=made))
 
     def to_json(self) -> Json:

@@ -143,7 +143,7 @@ class PairContact:
         made = self.plan.discretisation
         if not isinstance(made, FaceDiscretisation):
             return self
-        plan = replace(self.plan, discretisation=replace(made, slices=count))
+        plan = replace(self.plan, discretisation=made.in_slices(count))
         return replace(self, plan=plan, _problems={})
 
     def in_patches(self, wider: float) -> PairContact:

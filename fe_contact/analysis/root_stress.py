@@ -209,7 +209,7 @@ def pair_histories(found: SolvedPlace, units: UnitStresses) -> tuple[RootStressH
             (-1, 1),
             (pair.pinion, pair.wheel),
             (0.0, pair.axial_offset),
-            (candidates.patch_1, candidates.patch_2),
+            (candidates.slices.patch_1, candidates.slices.patch_2),
             strict=True,
         )
     )
@@ -240,10 +240,11 @@ def _near_load(
     near = np.zeros((len(force), stressed.size, unit.station_s.size, face.size), dtype=bool)
     tooth = np.searchsorted(stressed, candidates.pair)
     for p, i in np.argwhere(force > 0.0):
-        half = patches.half_width[p, i]
-        along = np.abs(unit.station_s - patches.center[p, i]) < 2.0 * half
+        row = p % len(patches.center)
+        half = patches.half_width[row, i]
+        along = np.abs(unit.station_s - patches.center[row, i]) < 2.0 * half
         if along.any():
-            across = np.abs(face - candidates.face_position[i]) < 0.5 * candidates.slice_width + half
+            across = np.abs(face - candidates.face_position[i]) < 0.5 * candidates.point_width + half
             near[p, tooth[i]] |= along[:, None] & (across | (not unit.across_face))
     return near
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -72,11 +72,9 @@ class SpringContact(PairContact):
         Uncoupled slices need no start.
         """
         seen = model if self.law.with_gaps else ContactModel()
-        slices = Slices.of_pair(self.pair, SLICES)
+        slices = Slices.of_pair(self.pair, SLICES, 1)
         plain = contact_candidates(self.pair, seen, position, self.plan.patch, slices)
         touching = with_gaps(self.pair, plain, seen)
-        if not self.law.with_gaps:
-            touching = _partly_touching(self.pair, touching)
         modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
         problem = ContactProblem(touching, np.zeros((position.size, 0, 0)), modulus, 0.0, 0.0)
         if pitch is not None or seen.tooth_gaps:
@@ -85,35 +83,15 @@ class SpringContact(PairContact):
         return problem, solve_springs(problem.candidates, stiffness, load)
 
 
-def _partly_touching(pair: ParallelAxes, candidates: Candidates) -> Candidates:
-    """Close the gap of every slice of which any part lies on the path of contact."""
-    gap = np.where(touching_part(pair, candidates) > 0.0, 0.0, np.inf)
-    return candidates.touching(replace(candidates.touch, gap=gap))
-
-
 def slice_stiffness(pair: ParallelAxes, candidates: Candidates, law: SliceLaw) -> FloatArray:
     """Return the normal force per normal approach (P, n) of each slice, N/m.
 
     c b_slice relates forces and approaches in the transverse plane; both are 1/cos(beta_b) and cos(beta_b)
-    times as large along the normal.
+    times as large along the normal. A slice counts as far as it is on the path of contact.
     """
-    part = 1.0 if law.with_gaps else touching_part(pair, candidates)
-    per_width = law.line_stiffness(pair, candidates) * part
-    return np.asarray(per_width * candidates.slice_width / math.cos(pair.base_helix_angle) ** 2)
-
-
-def touching_part(pair: ParallelAxes, candidates: Candidates) -> FloatArray:
-    """Part (P, n) of each slice that lies on the path of contact, 0 to 1."""
-    path = pair.path_of_contact
-    phase = candidates.position - np.floor(candidates.position)
-    lead = math.tan(pair.base_helix_angle)
-    middle, _ = pair.roll_lengths(phase[:, None], candidates.pair)
-    middle = middle - candidates.face_position * lead
-    half = 0.5 * abs(lead) * candidates.slice_width
-    if half == 0.0:
-        return np.asarray((middle >= path.start) & (middle <= path.end), dtype=float)
-    inside = np.minimum(middle + half, path.end) - np.maximum(middle - half, path.start)
-    return np.asarray(np.clip(inside / (2.0 * half), 0.0, 1.0))
+    return np.asarray(
+        law.line_stiffness(pair, candidates) * candidates.width / math.cos(pair.base_helix_angle)
+    )
 
 
 def solve_springs(candidates: Candidates, stiffness: FloatArray, load: FloatArray) -> ContactSolution:

@@ -55,8 +55,7 @@ def edge_depth(place: Place, problem: ContactProblem, solution: ContactSolution)
     touch = edges.candidates.touch
     off_line = (touch.lever_1 != 1.0) | (touch.lever_2 != 1.0)
     force = _carried(problem.candidates, edges.candidates, np.nan_to_num(solution.force))
-    rows = np.arange(where.size) % len(edges.compliance)
-    moved = np.einsum("pij,plj->pli", edges.compliance[rows], force)
+    moved = edges.moved(force)
     closing = edges.candidates.motion_arm[:, None, :] * np.nan_to_num(solution.deflection)[:, :, None]
     gap = np.where(off_line, touch.gap, np.inf) * edges.candidates.motion_arm
     return np.asarray(np.max(closing - moved - gap[:, None, :], axis=(0, 2), initial=0.0))

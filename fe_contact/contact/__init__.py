@@ -13,7 +13,7 @@ from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_force
 from fe_contact.contact.model import Break, ComplianceTerm, ContactModel, GapTerm, ToothGap
 from fe_contact.contact.pitches import in_pitches
 from fe_contact.contact.pressure import contact_pressure
-from fe_contact.contact.problem import Candidates, ContactProblem
+from fe_contact.contact.problem import Candidates, ContactProblem, LoadedSlices
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.solution import ContactSolution
 from fe_contact.contact.start import Start
@@ -28,6 +28,7 @@ __all__ = [
     "ContactProblem",
     "ContactSolution",
     "GapTerm",
+    "LoadedSlices",
     "PatchRule",
     "Slices",
     "Start",

@@ -1,4 +1,4 @@
-"""Compliance between the contact candidates: C_ij = b_i' S_1 b_j + b_i' S_2 b_j."""
+"""Compliance between the loaded slices: C_ij = b_i' S_1 b_j + b_i' S_2 b_j."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numba import njit
 from fe_contact.compliance import FlankCompliance
 from fe_contact.contact.patch import load_vector
 from fe_contact.contact.problem import Candidates, ContactProblem
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import BoolArray, FloatArray, IntArray
 
 
 def contact_problem(
@@ -40,11 +40,12 @@ def contact_problem(
     driving gear turns against its load and the driven one with it, so pair j lies on tooth -j of gear 1 and
     on tooth +j of gear 2.
     """
-    compliance = np.zeros((*candidates.gap.shape, candidates.pair.size))
-    touch = candidates.touch
-    sides = ((candidates.patch_1, touch.lever_1), (candidates.patch_2, touch.lever_2))
+    slices = candidates.slices
+    compliance = np.zeros((*slices.present.shape, slices.pair.size))
+    touch = slices.touch
+    sides = ((slices.patch_1, touch.lever_1), (slices.patch_2, touch.lever_2))
     for flank, (patch, lever), direction in zip(compliances, sides, (-1, 1), strict=True):
-        blocks = _tooth_blocks(flank, direction * candidates.pair)
+        blocks = _tooth_blocks(flank, direction * slices.pair)
         _add_gear(
             flank.s,
             blocks,
@@ -52,11 +53,11 @@ def contact_problem(
             patch.half_width,
             patch.edge_share,
             lever,
-            candidates.gap,
+            slices.present,
             couple_teeth,
             compliance,
         )
-    compliance /= candidates.width
+    compliance /= slices.width
     first, second = (flank.contact_modulus for flank in compliances)
     contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
     return ContactProblem(
@@ -82,12 +83,12 @@ def _add_gear(
     half_width: FloatArray,
     edge_share: FloatArray,
     lever: FloatArray,
-    gap: FloatArray,
+    present: BoolArray,
     couple_teeth: bool,
     out: FloatArray,
 ) -> None:
     """Add b_i' S b_j of one gear for all positions."""
-    positions, n = gap.shape
+    positions, n = present.shape
     load = np.zeros((n, nodes.size))
     moved = np.zeros(nodes.size)
     first = np.zeros(n, dtype=np.int64)
@@ -95,7 +96,7 @@ def _add_gear(
     for p in range(positions):
         for i in range(n):
             last[i] = first[i] = 0
-            if math.isfinite(gap[p, i]):
+            if present[p, i]:
                 first[i], last[i] = load_vector(
                     nodes, center[p, i], half_width[p, i], edge_share[p, i], load[i]
                 )

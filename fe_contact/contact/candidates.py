@@ -1,19 +1,29 @@
-"""Contact candidates: one per tooth pair and slice, on the line of action or at a tip edge."""
+"""Contact candidates: points of the contact lines of tooth pairs, on the line of action or at a tip edge."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fe_contact.contact.model import ContactModel
 from fe_contact.contact.patch import Patches, tip_patches
-from fe_contact.contact.problem import Candidates
+from fe_contact.contact.problem import Candidates, LoadedSlices
 from fe_contact.contact.slices import Slices
 from fe_contact.contact.touch import Touch, conjugate_touch, flank_coordinate, modified_touch
-from fe_contact.geometry import ParallelAxes
+from fe_contact.geometry import ParallelAxes, Toothing
+from fe_contact.hertz import wedge_softness
 from fe_contact.types import FloatArray, IntArray
+
+LAW_LENGTH = 0.45
+"""Reference length of the local law over the width of a slice.
+
+Line loads that vary within a slice are felt that far: waves of a slice and shorter, 0.3 to 0.6 widths. Waves
+of two slices, the shortest ones that the bodies carry, move them as patches of 0.72 slices would.
+"""
+LONGEST_LAW = 0.5
+"""The same at most, in modules: about half the thickness of a tooth."""
 
 
 @dataclass(frozen=True)
@@ -25,11 +35,27 @@ class PatchRule:
     half_width : float
         Away from the tip edges, m.
     edge_length : float
-        Length of the patch at a tip edge, m.
+        Least length of the patch at a tip edge, m.
+    edge_load : float
+        4 p/(pi E*) of the line load p whose strip the patch at a tip edge follows, m.
     """
 
     half_width: float
     edge_length: float
+    edge_load: float = 0.0
+
+    def lengths(self, offset: FloatArray, radius: FloatArray) -> FloatArray:
+        """Return the lengths of patches at a tip edge, m: those of the strip, (4) of docs/theory/hertz.md.
+
+        Parameters
+        ----------
+        offset : ndarray
+            Distance t of the contact from the edge, m; negative = -phi R off the line of action.
+        radius : ndarray
+            Relative radius R in the normal section, m.
+        """
+        strip = (2.0 / 3.0) * (offset + np.sqrt(np.square(offset) + 3.0 * self.edge_load * radius))
+        return np.clip(strip, self.edge_length, 2.0 * self.half_width)
 
 
 def contact_candidates(
@@ -50,17 +76,52 @@ def contact_candidates(
     Returns
     -------
     Candidates
-        Of plain involutes: n = pairs x slices, pairs that touch nowhere left out.
+        Of plain involutes: m = pairs x slices x points, pairs that touch nowhere left out.
     """
     index = _pair_indices(pair, position, slices)
-    pairs, face = np.repeat(index, slices.center.size), np.tile(slices.center, index.size)
-    roll_1, _ = pair.roll_lengths(position[:, None], pairs)
+    touch, part = _touching(pair, model, position, index, slices.point_center, slices.point_width)
+    meets = np.isfinite(touch.gap).any(axis=0).reshape(index.size, -1).any(axis=1)
+    index, keep = index[meets], np.repeat(meets, slices.point_center.size)
+    touch, part = touch.columns(keep), part[:, keep]
+    middle, _ = _touching(pair, model, position, index, slices.center, 0.0)
+    return Candidates(
+        position=position,
+        pair=np.repeat(index, slices.point_center.size),
+        face_position=np.tile(slices.point_center, index.size),
+        touch=touch,
+        width=part * (slices.point_width / math.cos(pair.base_helix_angle)),
+        point_width=slices.point_width,
+        slices=_loaded_slices(pair, touch, middle, index, rule, slices),
+        blend=slices.blend,
+    )
+
+
+def _touching(
+    pair: ParallelAxes,
+    model: ContactModel,
+    position: FloatArray,
+    index: IntArray,
+    face: FloatArray,
+    width: float,
+) -> tuple[Touch, FloatArray]:
+    """Return where plain involutes touch at places `face` (f,) of pairs (J,), and what part is on line.
+
+    Arrays (P, J f). A place stands for `width` of the face. Without corner contact it counts as far as that
+    is on the path of contact, so that nothing jumps as the contact line moves on.
+    """
+    pairs, along = np.repeat(index, face.size), np.tile(face, index.size)
+    roll, _ = pair.roll_lengths(position[:, None], pairs)
     # on a right-hand driving gear the contact line runs towards the root as the face position grows
-    roll_1 = roll_1 - face * math.tan(pair.base_helix_angle)
-    touch = conjugate_touch(pair, roll_1, pair.mating_roll_length(roll_1), model.corner_contact)
-    touching = np.any(np.isfinite(touch.gap), axis=0).reshape(index.size, -1).any(axis=1)
-    keep = np.repeat(touching, slices.center.size)
-    return _candidates(pair, position, pairs[keep], face[keep], touch.columns(keep), rule, slices.width)
+    lead = math.tan(pair.base_helix_angle)
+    roll = roll - along * lead
+    touch = conjugate_touch(pair, roll, pair.mating_roll_length(roll), model.corner_contact)
+    half = 0.5 * width * abs(lead)
+    if model.corner_contact or half == 0.0:
+        return touch, np.ones(roll.shape)
+    path = pair.path_of_contact
+    inside = np.minimum(roll + half, path.end) - np.maximum(roll - half, path.start)
+    part = np.clip(inside / (2.0 * half), 0.0, 1.0)
+    return replace(touch, gap=np.where(part > 0.0, 0.0, np.inf)), np.where(part > 0.0, part, 1.0)
 
 
 def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> Candidates:
@@ -101,37 +162,57 @@ def _pair_range(pair: ParallelAxes, low: float, high: float, lead: tuple[float, 
     return int(first), int(last)
 
 
-def _candidates(
+def _loaded_slices(
     pair: ParallelAxes,
-    position: FloatArray,
-    pairs: IntArray,
-    face: FloatArray,
     touch: Touch,
+    middle: Touch,
+    index: IntArray,
     rule: PatchRule,
-    slice_width: float,
-) -> Candidates:
-    """Turn touching points into patches."""
+    slices: Slices,
+) -> LoadedSlices:
+    """Lay load patches where the points of the slices of all pairs touch; `middle` is that of the slices."""
     tip_1 = float(flank_coordinate(pair.pinion, pair.pinion.tip_roll_length))
     tip_2 = float(flank_coordinate(pair.wheel, pair.wheel.tip_roll_length))
-    shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, rule)
-    shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, rule)
-    return Candidates(
-        position=position,
-        pair=pairs,
-        face_position=face,
-        touch=touch,
-        patch_1=_patches(touch.s_1, touch.offset_1, tip_1, shift_1, rule),
-        patch_2=_patches(touch.s_2, touch.offset_2, tip_2, shift_2, rule),
-        slice_width=slice_width,
+    radius = touch.radius / math.cos(pair.base_helix_angle)
+    shift_1 = _shift(touch.s_2, touch.offset_2, tip_2, radius, rule)
+    shift_2 = _shift(touch.s_1, touch.offset_1, tip_1, radius, rule)
+    meets = np.isfinite(touch.gap).reshape(len(touch.gap), index.size, -1).any(axis=2)
+    width = slices.width / math.cos(pair.base_helix_angle)
+    module = pair.pinion.normal_module
+    patch_1 = _patches(touch.s_1, touch.offset_1, tip_1, shift_1, radius, rule)
+    patch_2 = _patches(touch.s_2, touch.offset_2, tip_2, shift_2, radius, rule)
+    return LoadedSlices(
+        pair=np.repeat(index, slices.center.size),
+        face_position=np.tile(slices.center, index.size),
+        present=np.repeat(meets, slices.center.size, axis=1),
+        touch=middle,
+        patch_1=replace(patch_1, count=slices.points),
+        patch_2=replace(patch_2, count=slices.points),
+        slice_width=slices.width,
         base_helix_angle=pair.base_helix_angle,
+        corner_1=corner_softness(pair.pinion),
+        corner_2=corner_softness(pair.wheel),
+        law_length=max(rule.half_width, min(LAW_LENGTH * width, LONGEST_LAW * module)),
     )
 
 
-def _shift(s: FloatArray, offset: FloatArray, tip: float, rule: PatchRule) -> FloatArray:
+def _shift(s: FloatArray, offset: FloatArray, tip: float, radius: FloatArray, rule: PatchRule) -> FloatArray:
     """How far the partner's edge moves the load's centroid to its root, m: both forces must be in line."""
-    return np.maximum(s - tip_patches(s, offset, tip, rule.half_width, rule.edge_length).centroid, 0.0)
+    patches = tip_patches(s, offset, tip, rule.half_width, rule.lengths(offset, radius))
+    return np.maximum(s - patches.centroid, 0.0)
 
 
-def _patches(s: FloatArray, offset: FloatArray, tip: float, shift: FloatArray, rule: PatchRule) -> Patches:
+def _patches(
+    s: FloatArray, offset: FloatArray, tip: float, shift: FloatArray, radius: FloatArray, rule: PatchRule
+) -> Patches:
     """Patches of one gear; beside the partner's edge they follow its load towards the own tip."""
-    return tip_patches(s + shift, offset - shift, tip, rule.half_width, rule.edge_length)
+    offset = offset - shift
+    return tip_patches(s + shift, offset, tip, rule.half_width, rule.lengths(offset, radius))
+
+
+def corner_softness(gear: Toothing) -> float:
+    """Return what the corner at a gear's tip edge yields over a half plane; see `wedge_softness`.
+
+    Flank and tip circle meet at a right angle and the pressure angle at the tip.
+    """
+    return wedge_softness(0.5 * math.pi + math.acos(gear.base_radius / gear.tip_radius))

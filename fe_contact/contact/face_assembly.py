@@ -11,7 +11,7 @@ from fe_contact.compliance import FlankCompliance3D
 from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads, responses
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.problem import Candidates, ContactProblem
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import BoolArray, FloatArray, IntArray
 
 
 def face_contact_problem(
@@ -20,12 +20,12 @@ def face_contact_problem(
     axial_offset: float = 0.0,
     couple_teeth: bool = True,
 ) -> ContactProblem:
-    """Assemble the compliance of slices from the condensed flanks; pairs and teeth as in `contact_problem`.
+    """Assemble the compliance between slices from condensed flanks; pairs, teeth as in `contact_problem`.
 
     Parameters
     ----------
     candidates : Candidates
-        n candidates, one per tooth pair and slice.
+        Pressing on n slices of the tooth pairs.
     compliances : (FlankCompliance3D, FlankCompliance3D)
         Driving and driven gear.
     axial_offset : float
@@ -33,19 +33,20 @@ def face_contact_problem(
     couple_teeth : bool
         False drops what the load on one tooth moves on another.
     """
-    compliance = np.zeros((*candidates.gap.shape, candidates.pair.size))
-    touch, face = candidates.touch, candidates.face_position
+    slices = candidates.slices
+    compliance = np.zeros((*slices.present.shape, slices.pair.size))
+    touch, face = slices.touch, slices.face_position
     sides = (
-        (candidates.patch_1, touch.lever_1, -candidates.pair, face),
-        (candidates.patch_2, touch.lever_2, candidates.pair, face - axial_offset),
+        (slices.patch_1, touch.lever_1, -slices.pair, face),
+        (slices.patch_2, touch.lever_2, slices.pair, face - axial_offset),
     )
     for flank, (patches, lever, teeth, along) in zip(compliances, sides, strict=True):
         reach = flank.blocks if couple_teeth else flank.blocks[:1]
         grid = FaceGrid(flank.s, flank.z, flank.index)
-        low, high = along - 0.5 * candidates.slice_width, along + 0.5 * candidates.slice_width
+        low, high = along - 0.5 * slices.slice_width, along + 0.5 * slices.slice_width
         bounds = (np.maximum(low, flank.z[0]), np.minimum(high, flank.z[-1]))
         key = KeyedFlanks(flank.key_rows, flank.key_core, couple_teeth)
-        _add_gear(grid, responses(reach), key, patches, lever, teeth, bounds, candidates.gap, compliance)
+        _add_gear(grid, responses(reach), key, patches, lever, teeth, bounds, slices.present, compliance)
     first, second = (flank.contact_modulus for flank in compliances)
     contact_modulus = 1.0 / (1.0 / first + 1.0 / second)
     return ContactProblem(
@@ -80,23 +81,21 @@ def _add_gear(
     lever: FloatArray,
     teeth: IntArray,
     bounds: tuple[FloatArray, FloatArray],
-    gap: FloatArray,
+    present: BoolArray,
     out: FloatArray,
 ) -> None:
     """Add the compliance of one gear at every position."""
     low, high = bounds
-    for p in range(len(gap)):
-        present = np.flatnonzero(np.isfinite(gap[p]))
+    for p in range(len(present)):
+        here = np.flatnonzero(present[p])
         loads = face_loads(
             grid,
-            patches.center[p, present],
-            patches.half_width[p, present],
-            patches.edge_share[p, present],
-            low[present],
-            high[present],
+            *patches.by_slice(p, here),
+            low[here],
+            high[here],
         )
-        local = np.zeros((present.size, present.size))
-        add_compliance(response, teeth[present], loads, lever[p, present], local)
+        local = np.zeros((here.size, here.size))
+        add_compliance(response, teeth[here], loads, lever[p, here], local)
         if len(key.rows):
-            local += key.compliance(teeth[present], loads) * np.outer(lever[p, present], lever[p, present])
-        out[p][np.ix_(present, present)] += local
+            local += key.compliance(teeth[here], loads) * np.outer(lever[p, here], lever[p, here])
+        out[p][np.ix_(here, here)] += local

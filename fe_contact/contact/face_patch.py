@@ -1,8 +1,9 @@
-"""Load patches on a flank of finite width: their nodal forces, and the compliance between them.
+"""Loads on slices of a flank of finite width: their nodal forces, and the compliance between them.
 
-A patch is the plane patch of `fe_contact.contact.patch` along the profile times a box along the face. The
-flank is a grid of 8-node faces whose shape functions are sums of products of one-dimensional terms, so their
-integrals come from three moments of either factor.
+The load of a slice follows the contact line: patches side by side, each the plane patch of
+`fe_contact.contact.patch` along the profile times a box along the face. The flank is a grid of 8-node
+faces whose shape functions are sums of products of one-dimensional terms, so their integrals come from
+three moments of either factor.
 """
 
 from __future__ import annotations
@@ -52,49 +53,65 @@ def face_loads(
     low: FloatArray,
     high: FloatArray,
 ) -> FaceLoads:
-    """Nodal forces of unit patches.
+    """Nodal forces of unit loads on slices, each of Q equal patches side by side along its contact line.
 
     Parameters
     ----------
     grid : FaceGrid
-    center, half_width, edge_share : ndarray, shape (n,)
+    center, half_width, edge_share : ndarray, shape (n, Q)
         See `fe_contact.contact.patch.Patches`.
     low, high : ndarray, shape (n,)
-        Range along the face, m, within `grid.z`.
+        Range of each slice along the face, m, within `grid.z`.
     """
-    n = center.size
+    n, count = center.shape
     width = 0
     for p in range(n):
-        along = _touched(grid.s[::2], center[p] - half_width[p], center[p] + half_width[p])
-        across = _touched(grid.z, low[p], high[p])
-        width = max(width, (2 * along + 1) * (2 * across + 1))
+        needed = 0
+        for q in range(count):
+            along = _touched(grid.s[::2], center[p, q] - half_width[p, q], center[p, q] + half_width[p, q])
+            across = _touched(grid.z, *_part(low[p], high[p], q, count))
+            needed += (2 * along + 1) * (2 * across + 1)
+        width = max(width, needed)
     nodes = np.full((n, width), -1, dtype=np.int64)
     forces = np.zeros((n, width))
-    count = np.zeros(n, dtype=np.int64)
+    used = np.zeros(n, dtype=np.int64)
+    place = np.full(grid.freedom.max() + 1, -1, dtype=np.int64)
     along_moments, across_moments = np.zeros(3), np.zeros(3)
     for p in range(n):
-        for e in range((grid.s.size - 1) // 2):
-            if not _overlaps(
-                grid.s[2 * e], grid.s[2 * e + 2], center[p] - half_width[p], center[p] + half_width[p]
-            ):
-                continue
-            _profile_moments(
-                grid.s[2 * e], grid.s[2 * e + 2], center[p], half_width[p], edge_share[p], along_moments
-            )
-            for k in range(grid.z.size - 1):
-                if _overlaps(grid.z[k], grid.z[k + 1], low[p], high[p]):
-                    _box_moments(grid.z[k], grid.z[k + 1], low[p], high[p], across_moments)
-                    _add_face(
-                        grid.freedom,
-                        e,
-                        k,
-                        along_moments,
-                        across_moments,
-                        nodes[p],
-                        forces[p],
-                        count[p : p + 1],
-                    )
-    return FaceLoads(nodes, forces, count)
+        for q in range(count):
+            middle, half = center[p, q], half_width[p, q]
+            left, right = _part(low[p], high[p], q, count)
+            for e in range((grid.s.size - 1) // 2):
+                if not _overlaps(grid.s[2 * e], grid.s[2 * e + 2], middle - half, middle + half):
+                    continue
+                _profile_moments(
+                    grid.s[2 * e], grid.s[2 * e + 2], middle, half, edge_share[p, q], along_moments
+                )
+                along_moments /= count
+                for k in range(grid.z.size - 1):
+                    if _overlaps(grid.z[k], grid.z[k + 1], left, right):
+                        _box_moments(grid.z[k], grid.z[k + 1], left, right, across_moments)
+                        used[p] = _add_face(
+                            grid.freedom,
+                            e,
+                            k,
+                            along_moments,
+                            across_moments,
+                            nodes[p],
+                            forces[p],
+                            place,
+                            used[p],
+                        )
+        for i in range(used[p]):
+            place[nodes[p, i]] = -1
+    return FaceLoads(nodes, forces, used)
+
+
+@njit(cache=True)
+def _part(low: float, high: float, q: int, count: int) -> tuple[float, float]:
+    """Return one of the equal parts of a range."""
+    step = (high - low) / count
+    return low + q * step, low + (q + 1) * step
 
 
 @njit(cache=True)
@@ -150,9 +167,10 @@ def _add_face(
     y: FloatArray,
     nodes: IntArray,
     forces: FloatArray,
-    count: IntArray,
-) -> None:
-    """Add the eight nodal forces of one face, joining nodes already there."""
+    place: IntArray,
+    count: int,
+) -> int:
+    """Add the eight nodal forces of one face; `place` knows the nodes already there, return how many are."""
     for i in range(3):
         for j in range(3):
             if i == 1 and j == 1:
@@ -172,13 +190,12 @@ def _add_face(
             else:  # (1 + a x)(1 - y^2)/2
                 force = 0.5 * (x[0] + a * x[1]) * (y[0] - y[2])
             node = index[2 * k + j, 2 * e + i]
-            place = 0
-            while place < count[0] and nodes[place] != node:
-                place += 1
-            if place == count[0]:
-                nodes[place] = node
-                count[0] += 1
-            forces[place] += force
+            if place[node] < 0:
+                place[node] = count
+                nodes[count] = node
+                count += 1
+            forces[place[node]] += force
+    return count
 
 
 def responses(blocks: FloatArray) -> FloatArray:

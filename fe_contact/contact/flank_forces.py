@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import Patches, load_vector
-from fe_contact.contact.problem import Candidates
+from fe_contact.contact.problem import Candidates, LoadedSlices
 from fe_contact.types import FloatArray, IntArray
 
 ByTooth = dict[int, FloatArray]
@@ -46,8 +46,8 @@ def plane_flank_forces(
     Parameters
     ----------
     candidates : Candidates
-    force : ndarray, shape (P, n)
-        N.
+    force : ndarray, shape (P, m)
+        Of the candidates, N.
     position : int
         Index of the position.
     flanks : (ProfileNodes, ProfileNodes)
@@ -60,14 +60,15 @@ def plane_flank_forces(
         the mating flank's normal, so it counts by its lever (see `contact_problem`).
     """
     found: list[ByTooth] = []
-    for flank, (patches, lever, direction) in zip(flanks, _sides(candidates), strict=True):
+    slices, pressed, row = _pressed(candidates, force, position)
+    for flank, (patches, lever, direction) in zip(flanks, _sides(slices), strict=True):
         by_tooth: ByTooth = {}
-        for i in np.flatnonzero(force[position]):
+        for i in np.flatnonzero(pressed):
             unit = np.zeros(flank.s.size)
-            at = (patches.center[position, i], patches.half_width[position, i])
-            load_vector(flank.s, *at, patches.edge_share[position, i], unit)
-            share = force[position, i] * lever[position, i] / candidates.width
-            _add(by_tooth, int(direction * candidates.pair[i]), share * unit)
+            at = (patches.center[row, i], patches.half_width[row, i])
+            load_vector(flank.s, *at, patches.edge_share[row, i], unit)
+            share = pressed[i] * lever[row, i] / slices.width
+            _add(by_tooth, int(direction * slices.pair[i]), share * unit)
         found.append(by_tooth)
     return found[0], found[1]
 
@@ -90,33 +91,40 @@ def face_flank_forces(
         Tooth number to nodal forces (nf,) against the outward normal, in the freedoms of the compliance, N.
     """
     found: list[ByTooth] = []
-    sides = zip(flanks, _sides(candidates), (0.0, axial_offset), strict=True)
+    slices, pressed, row = _pressed(candidates, force, position)
+    carrying = np.flatnonzero(pressed)
+    sides = zip(flanks, _sides(slices), (0.0, axial_offset), strict=True)
     for flank, (patches, lever, direction), offset in sides:
-        carrying = np.flatnonzero(force[position])
-        along = candidates.face_position[carrying] - offset
+        along = slices.face_position[carrying] - offset
         loads = face_loads(
             FaceGrid(flank.s, flank.z, flank.index),
-            patches.center[position, carrying],
-            patches.half_width[position, carrying],
-            patches.edge_share[position, carrying],
-            np.maximum(along - 0.5 * candidates.slice_width, flank.z[0]),
-            np.minimum(along + 0.5 * candidates.slice_width, flank.z[-1]),
+            *patches.by_slice(row, carrying),
+            np.maximum(along - 0.5 * slices.slice_width, flank.z[0]),
+            np.minimum(along + 0.5 * slices.slice_width, flank.z[-1]),
         )
         by_tooth: ByTooth = {}
-        for row, i in enumerate(carrying):
-            used = loads.used[row]
+        for k, i in enumerate(carrying):
+            used = loads.used[k]
             nodal = np.zeros(int(flank.index.max()) + 1)
-            nodal[loads.nodes[row, :used]] = loads.forces[row, :used]
-            share = force[position, i] * lever[position, i]
-            _add(by_tooth, int(direction * candidates.pair[i]), -share * nodal)
+            nodal[loads.nodes[k, :used]] = loads.forces[k, :used]
+            share = pressed[i] * lever[row, i]
+            _add(by_tooth, int(direction * slices.pair[i]), -share * nodal)
         found.append(by_tooth)
     return found[0], found[1]
 
 
-def _sides(candidates: Candidates) -> tuple[Side, Side]:
+def _pressed(
+    candidates: Candidates, force: FloatArray, position: int
+) -> tuple[LoadedSlices, FloatArray, int]:
+    """Return the slices, the forces (n,) on them in N, and the row of the position in their arrays."""
+    slices = candidates.slices
+    return slices, candidates.on_slices(force[position]), position % len(slices.present)
+
+
+def _sides(slices: LoadedSlices) -> tuple[Side, Side]:
     """Return patches, lever and direction of counting of both gears: pair j is tooth -j of gear 1."""
-    touch = candidates.touch
-    return (candidates.patch_1, touch.lever_1, -1), (candidates.patch_2, touch.lever_2, 1)
+    touch = slices.touch
+    return (slices.patch_1, touch.lever_1, -1), (slices.patch_2, touch.lever_2, 1)
 
 
 def _add(by_tooth: ByTooth, tooth: int, forces: FloatArray) -> None:

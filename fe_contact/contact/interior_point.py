@@ -41,7 +41,7 @@ class GapAbout:
 
 @dataclass(frozen=True)
 class Problem:
-    """n contacts; SI units; arrays (n,), compliance (n, n)."""
+    """n contacts; SI units; arrays (n,), compliance (n, n), one reference length of the local law."""
 
     compliance: Array
     gap: Array
@@ -49,11 +49,8 @@ class Problem:
     torque_arm: Array
     gap_about: GapAbout
     width: Array
-    patch_1: Array
-    patch_2: Array
-    modulus: float
-    k1: float
-    k2: float
+    length: float
+    modulus: Array
 
 
 @dataclass(frozen=True)
@@ -136,27 +133,31 @@ def strips(problem: Problem, half: Array) -> tuple[Array, Array]:
     high = np.maximum(np.minimum(half, about.high.reshape(-1, *extra) - half), low)
     middle = root(lambda at: pieces(about, at, half)[0], low, high, 1e-8 * half)
     slope, tilted, mean = pieces(about, middle, half)
-    singular = np.where((middle == low) | (middle == high), np.abs(slope), 0.0)
-    return 0.5 * np.pi * problem.modulus * half * (tilted + singular), mean
+    at_edge = (middle == low) | (middle == high)
+    # at a break at the end of the strip both means go with the root of the distance: straight to each other
+    below, above = (np.clip(middle + side * 1e-8 * half, low, high) for side in (-1.0, 1.0))
+    (under, left, _), (over, right, _) = pieces(about, below, half), pieces(about, above, half)
+    between = np.where(over > under, over - under, np.inf)
+    tilted = np.where(at_edge, tilted + np.abs(slope), left - under * (right - left) / between)
+    return 0.5 * np.pi * problem.modulus.reshape(-1, *extra) * half * tilted, mean
 
 
 class GuardedLaw:
-    """The law with its secant below a strip of 1e-4 patches and straight on above a strip of 0.66 patches.
+    """The law with its secant below a strip of 1e-4 reference lengths and straight on above one of 0.66.
 
     Strips are tabulated over their length; between the entries the length is found by the secant method.
     """
 
     def __init__(self, problem: Problem) -> None:
-        k = problem.k1 + problem.k2
-        self.problem, self.k = problem, k
-        self.patch = problem.patch_1 ** (problem.k1 / k) * problem.patch_2 ** (problem.k2 / k)
+        self.problem, self.k = problem, 2.0 / (np.pi * problem.modulus)
         widest = 0.5 * (problem.gap_about.high - problem.gap_about.low)
-        first, last = np.log(1e-4 * self.patch), np.log(np.minimum(0.66 * self.patch, widest))
+        first = np.full(widest.size, np.log(1e-4 * problem.length))
+        last = np.log(np.minimum(0.66 * problem.length, widest))
         self.half = np.exp(first[:, None] + (last - first)[:, None] * np.linspace(0.0, 1.0, 129))
         self.load, mean = strips(problem, self.half)
-        self.value = mean + self.k * self.load * (np.log(self.patch[:, None] / self.half) - 0.25)
+        self.value = mean + self.k[:, None] * self.load * (np.log(problem.length / self.half) - 0.25)
         self.slope = np.stack([np.gradient(v, p) for v, p in zip(self.value, self.load, strict=True)])
-        self.beyond = self.k * (np.log(self.patch / self.half[:, -1]) - 0.25)
+        self.beyond = self.k * (np.log(problem.length / self.half[:, -1]) - 0.25)
 
     def rough(self, force: Array) -> tuple[Array, Array]:
         """Approach in m and slope in m/N between the entries of the table."""
@@ -195,7 +196,7 @@ class GuardedLaw:
             lambda at: np.log(strips(self.problem, np.exp(at))[0]) - wanted, low, high, np.full(p.size, 1e-7)
         )
         _, mean = strips(self.problem, np.exp(x))
-        value = mean + self.k * p * (np.log(self.patch / np.exp(x)) - 0.25)
+        value = mean + self.k * p * (np.log(self.problem.length / np.exp(x)) - 0.25)
         return value, self._entry(p, self.slope)
 
 

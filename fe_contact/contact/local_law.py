@@ -1,17 +1,19 @@
 r"""Local approach of the contacts as the compiled solver uses it: increasing and concave in the load.
 
-The formulas are those of `fe_contact.contact.strip`. Two guards make Newton's method safe, both fixed by the
-contact strip alone, so that the law is one and the same for every load and scales with the lengths:
+The formulas are those of `fe_contact.contact.strip`, beyond the reference length of the problem (see
+`fe_contact.contact.problem`). Two guards make Newton's method safe, both fixed by the contact strip alone, so
+that the law is one and the same for every load and scales with the lengths:
 
-- k p ln(1/p) has infinite slope at zero; below a strip of `SMALLEST_STRIP` patches the law is its secant.
-- Where the strip outgrows the patch the slope would fall below zero; from `LARGEST_STRIP` patches on the law
-  goes on straight with the slope it has there, and the contact is flagged, because a wider patch is then the
-  right answer.
+- k p ln(1/p) has infinite slope at zero; below a strip of `SMALLEST_STRIP` reference lengths the law is its
+  secant.
+- Where the strip outgrows the reference length the slope would fall below zero; from `LARGEST_STRIP` of them
+  on the law goes on straight with the slope it has there, and the contact is flagged: its strip is as wide as
+  the tooth or as the slice.
 
 A contact that grows adds the pressure of a rigid punch as wide as itself, whose mean logarithm is the same at
 every point of the strip, whatever the gap:
 
-    d(approach)/dp = sum_i k_i [ln(a_i/h) - 1/4],    h = half the length of the strip.
+    d(approach)/dp = k [ln(l/h) - 1/4],    h = half the length of the strip, l = the reference length.
 """
 
 from __future__ import annotations
@@ -26,78 +28,38 @@ from fe_contact.contact.strip import Gap, half_strip, strip_load
 from fe_contact.types import FloatArray
 
 SMALLEST_STRIP = 1e-4
-"""Half length of the contact strip over patch half-width below which the law is straight."""
+"""Half length of the contact strip over the reference length below which the law is straight."""
 LARGEST_STRIP = 0.66
-"""Half length of the contact strip over patch half-width above which the law goes on straight."""
+"""Half length of the contact strip over the reference length above which the law goes on straight."""
+_TOLERANCE = 1e-9
+_STEPS = 100
 
 
 class LocalLaw(NamedTuple):
-    """The law of n contacts at one position; arrays of shape (n,).
+    """The law of n contacts at one position.
 
     Attributes
     ----------
-    width : ndarray
-        Slice width, m.
+    width : ndarray, shape (n,)
+        Length of contact line of each, m.
     gap : Gap
         About the touching points.
-    log_patch : ndarray
-        Logarithm of the patch half-width in m, the mean of both gears weighted by their k.
-    low, low_slope : ndarray
-        Line load in N/m up to which the law is its secant, and the secant's slope in m/(N/m).
-    high, high_value : ndarray
-        Line load above which the law goes on straight, and the approach in m there.
-    modulus, half_plane : float
-        Contact modulus E* in Pa; k_1 + k_2 in 1/Pa.
+    free : ndarray, shape (n,)
+        Half strip in m up to which that is a parabola alone; see `free_strips`.
+    length : float
+        Reference length, m.
+    modulus : ndarray, shape (n,)
+        Contact modulus E* in Pa: less where a tip corner yields.
     """
 
     width: FloatArray
     gap: Gap
-    log_patch: FloatArray
-    low: FloatArray
-    low_slope: FloatArray
-    high: FloatArray
-    high_value: FloatArray
-    modulus: float
-    half_plane: float
+    free: FloatArray
+    length: float
+    modulus: FloatArray
 
 
-@njit(cache=True)
-def local_law(
-    gap: Gap,
-    width: FloatArray,
-    patch_1: FloatArray,
-    patch_2: FloatArray,
-    modulus: float,
-    k1: float,
-    k2: float,
-) -> LocalLaw:
-    """Prepare the law of the contacts of one position.
-
-    Parameters
-    ----------
-    gap, width
-        See `LocalLaw`.
-    patch_1, patch_2 : ndarray, shape (n,)
-        Patch half-widths of both gears, m.
-    modulus, k1, k2 : float
-        E* in Pa; 2 (1 - nu^2)/(pi E) of the gears in 1/Pa.
-    """
-    half_plane = k1 + k2
-    log_patch = (k1 * np.log(patch_1) + k2 * np.log(patch_2)) / half_plane
-    low, low_slope, high, high_value = np.empty((4, width.size))
-    for i in range(width.size):
-        patch = math.exp(log_patch[i])
-        low[i], rigid = strip_load(gap, i, SMALLEST_STRIP * patch, modulus)
-        low_slope[i] = rigid / low[i] + half_plane * (-math.log(SMALLEST_STRIP) - 0.25)
-        if 0.5 * (gap.high[i] - gap.low[i]) <= LARGEST_STRIP * patch:  # the edges keep the strip narrow
-            high[i], high_value[i] = math.inf, math.inf
-            continue
-        high[i], rigid = strip_load(gap, i, LARGEST_STRIP * patch, modulus)
-        high_value[i] = rigid + half_plane * high[i] * (-math.log(LARGEST_STRIP) - 0.25)
-    return LocalLaw(width, gap, log_patch, low, low_slope, high, high_value, modulus, half_plane)
-
-
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     """Local approach of contact `i` under `force` in N.
 
@@ -106,15 +68,126 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
     value, slope : float
         Approach in m and its derivative in m/N; both straight on below zero force.
     beyond : bool
-        Whether the strip has outgrown its patch.
+        Whether the strip has outgrown the reference length.
     """
-    width = law.width[i]
-    p = force / width
-    if p <= law.low[i]:
-        return law.low_slope[i] * p, law.low_slope[i] / width, False
-    if p > law.high[i]:
-        slope = law.half_plane * (-math.log(LARGEST_STRIP) - 0.25)
-        return law.high_value[i] + slope * (p - law.high[i]), slope / width, True
-    half, rigid = half_strip(law.gap, i, p, law.modulus)
-    slope = law.half_plane * (law.log_patch[i] - math.log(half) - 0.25)
-    return rigid + slope * p, slope / width, False
+    p, width = force / law.width[i], law.width[i]
+    k, least, most = _limits(law, i)
+    half, rigid = half_strip(law.gap, i, p, law.modulus[i]) if p > 0.0 else (0.0, 0.0)
+    if half <= least:
+        load, rigid = strip_load(law.gap, i, least, law.modulus[i])
+        slope = rigid / load + k * (-math.log(SMALLEST_STRIP) - 0.25)
+        return slope * p, slope / width, False
+    beyond = half > most
+    if beyond:
+        half, (_, rigid) = most, strip_load(law.gap, i, most, law.modulus[i])
+    slope = k * (math.log(law.length / half) - 0.25)
+    return rigid + slope * p, slope / width, beyond
+
+
+@njit(cache=True, error_model="numpy")
+def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
+    """Force of contact `i` in N at a local approach in m, and its derivative in N/m; zero where flanks part.
+
+    The inverse of `approach`. At a given strip the load follows from the approach, which is stationary in the
+    strip, so that an error of the strip enters squared.
+    """
+    if value <= 0.0:
+        return 0.0, 0.0
+    k, least, most = _limits(law, i)
+    half = min(max(plain_strip(law.gap.curvature[i], law.length, value), least), most)
+    if half >= law.free[i]:
+        half = _strip_at(law, i, value, half)
+    load, rigid = strip_load(law.gap, i, half, law.modulus[i])
+    slope = k * (math.log(law.length / half) - 0.25)
+    if half <= least and value < rigid + slope * load:
+        secant = load / (rigid + slope * load)
+        return law.width[i] * secant * value, law.width[i] * secant
+    return law.width[i] * (value - rigid) / slope, law.width[i] / slope
+
+
+@njit(cache=True, error_model="numpy")
+def _limits(law: LocalLaw, i: int) -> tuple[float, float, float]:
+    """Return k = 2/(pi E*) in 1/Pa, and the least and the largest half strip that the formulas take, m."""
+    return 2.0 / (math.pi * law.modulus[i]), SMALLEST_STRIP * law.length, LARGEST_STRIP * law.length
+
+
+@njit(cache=True, error_model="numpy")
+def plain_strip(curvature: float, length: float, value: float) -> float:
+    """Half strip in m of a parabola at an approach in m: y (1/4 - ln(y)/2) = 2 approach/(q l^2), y = (h/l)^2.
+
+    Not above `LARGEST_STRIP` reference lengths.
+    """
+    scaled = 2.0 * value / (curvature * length * length)
+    most = LARGEST_STRIP * LARGEST_STRIP
+    if scaled >= most * (0.25 - 0.5 * math.log(most)):
+        return LARGEST_STRIP * length
+    y = scaled / (0.25 - 0.4 * math.log(0.5 * scaled))
+    for _ in range(_STEPS):
+        following = (scaled - 0.5 * y) / (-0.25 - 0.5 * math.log(y))  # Newton's step, written out
+        following = min(max(following, 0.1 * y), most)
+        if abs(following - y) <= 1e-9 * y:
+            return length * math.sqrt(following)
+        y = following
+    return length * math.sqrt(y)
+
+
+@njit(cache=True, error_model="numpy")
+def plain_load(
+    curvature: float, length: float, modulus: float, half: float, value: float
+) -> tuple[float, float]:
+    """Line load in N/m of a parabola at an approach in m, its derivative in N/m^2; `half` is its strip."""
+    k = 2.0 / (math.pi * modulus)
+    rise = 0.25 * curvature * half * half
+    if half < SMALLEST_STRIP * length:
+        half = SMALLEST_STRIP * length
+        rise = 0.25 * curvature * half * half
+        load = math.pi * modulus * rise
+        secant = load / (rise + k * load * (math.log(length / half) - 0.25))
+        return secant * value, secant
+    slope = k * (math.log(length / half) - 0.25)
+    return (value - rise) / slope, 1.0 / slope
+
+
+@njit(cache=True, error_model="numpy")
+def free_strips(gap: Gap) -> FloatArray:
+    """Half strips (n,) in m up to which gaps are parabolas: to the nearest edge or break, 0 if none is."""
+    free = np.empty(gap.slope.size)
+    for i in range(free.size):
+        free[i] = 0.0 if gap.slope[i] != 0.0 else min(-gap.low[i], gap.high[i])
+        for k in range(gap.place.shape[1]):
+            free[i] = min(free[i], abs(gap.place[i, k]))
+    return free
+
+
+@njit(cache=True, error_model="numpy")
+def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
+    """Half strip in m at an approach in m, from a guess on; at the limits where it would be beyond them."""
+    k, low, high = _limits(law, i)
+    high = min(high, 0.5 * (law.gap.high[i] - law.gap.low[i]))
+    if high <= low:
+        return float(high)
+    half = min(half, high)
+    below, above, power = low, high, 2.0
+    last_half, last_error = 0.0, math.inf
+    for _ in range(_STEPS):
+        load, rigid = strip_load(law.gap, i, half, law.modulus[i])
+        error = math.log((rigid + k * load * (math.log(law.length / half) - 0.25)) / value)
+        if error < 0.0:
+            below = half
+        else:
+            above = half
+        if below >= above:
+            return half
+        if last_half > 0.0:
+            power = max((error - last_error) / math.log(half / last_half), 0.3)
+        following = half * math.exp(-error / power)
+        if not below <= following <= above or abs(error) > 0.5 * abs(last_error):
+            following = math.sqrt(below * above) if below < 0.01 * above else 0.5 * (below + above)
+            if above == high and error < 0.0:
+                following = high
+            elif below == low and error > 0.0 and half < 10.0 * low:
+                following = low
+        if abs(following - half) <= _TOLERANCE * half:
+            return following
+        last_half, last_error, half = half, error, following
+    return half

@@ -14,7 +14,7 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class Break:
-    """Where a modification of one gear begins along its profile; to a depth of jump d + bend d^2/2.
+    """Where a modification of one gear begins along its profile, to a depth of jump d + bend d^2/2.
 
     Attributes
     ----------
@@ -26,6 +26,8 @@ class Break:
         +1 where it runs towards the pinion's tip (the wheel's root), else -1.
     jump, bend : float
         1 and 1/m.
+    ends_flank : bool
+        Whether the usable flank ends there: a rounded or chamfered tip.
     """
 
     gear: int
@@ -33,6 +35,7 @@ class Break:
     side: int
     jump: float
     bend: float
+    ends_flank: bool = False
 
     def distance(self, s_1: FloatArray, s_2: FloatArray) -> FloatArray:
         """Return how far it is from touching points at these coordinates, m towards the pinion's tip."""

@@ -28,7 +28,7 @@ GAUSS_POINTS, GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(13)
 
 @dataclass(frozen=True)
 class Patches:
-    """Patches of one gear; arrays (P, n).
+    """Patches of one gear; arrays (P, n Q), Q side by side on each of n slices.
 
     Attributes
     ----------
@@ -36,20 +36,34 @@ class Patches:
         Flank coordinate of the middle and half the length, m.
     edge_share : ndarray
         Share of the load that is singular at the tip edge, 0 to 1.
+    count : int
+        Q.
     """
 
     center: FloatArray
     half_width: FloatArray
     edge_share: FloatArray
+    count: int = 1
 
     def rows(self, keep: IntArray) -> Patches:
         """Keep some positions."""
-        return Patches(self.center[keep], self.half_width[keep], self.edge_share[keep])
+        return Patches(self.center[keep], self.half_width[keep], self.edge_share[keep], self.count)
+
+    def by_slice(self, position: int, slices: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return centres, half-widths and edge shares (k, Q) on some slices at one position."""
+        arrays = (self.center, self.half_width, self.edge_share)
+        first, second, third = (each[position].reshape(-1, self.count)[slices] for each in arrays)
+        return first, second, third
 
     @property
     def centroid(self) -> FloatArray:
         """Flank coordinate of the load's centroid, m."""
         return self.center + 0.5 * self.edge_share * self.half_width
+
+    @property
+    def at_edge(self) -> FloatArray:
+        """How far the strip hangs on the edge: 0 before it reaches it, 1 where rigid flanks touch there."""
+        return np.minimum(1.5 * self.edge_share, 1.0)
 
     @property
     def law_width(self) -> FloatArray:
@@ -68,7 +82,7 @@ class Patches:
 
 
 def tip_patches(
-    s: FloatArray, offset: FloatArray, tip: float, half_width: float, edge_length: float
+    s: FloatArray, offset: FloatArray, tip: float, half_width: float, edge_length: FloatArray | float
 ) -> Patches:
     """Patches on a flank for contacts at `s`.
 
@@ -82,7 +96,7 @@ def tip_patches(
         Flank coordinate of the tip edge, m.
     half_width : float
         Half-width away from the edge, m.
-    edge_length : float
+    edge_length : ndarray or float
         Length c of the patch at the edge, m, at most 2 `half_width`.
     """
     half = np.clip(offset, 0.5 * edge_length, half_width)

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TypeVar
 
 import numpy as np
 
 from fe_contact.contact.model import ContactModel
-from fe_contact.contact.patch import Patches
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.touch import Touch
 from fe_contact.types import FloatArray, IntArray
-
-Arrays = TypeVar("Arrays", Touch, Patches)
 
 
 def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) -> ContactProblem:
@@ -49,15 +45,14 @@ def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) ->
         candidates,
         position=np.tile(candidates.position, times) + pitch,
         touch=touch,
-        patch_1=_repeated(candidates.patch_1, times),
-        patch_2=_repeated(candidates.patch_2, times),
+        width=np.concatenate([candidates.width] * times),
     )
     return problem.touching(moved)
 
 
-def _repeated(arrays: Arrays, times: int) -> Arrays:
-    """Write arrays (P, n) or (P, n, B) out so many times, one below the other."""
+def _repeated(touch: Touch, times: int) -> Touch:
+    """Write arrays (P, m) or (P, m, B) out so many times, one below the other."""
     tiled: dict[str, FloatArray] = {
-        name: np.concatenate([values] * times) for name, values in vars(arrays).items()
+        name: np.concatenate([values] * times) for name, values in vars(touch).items()
     }
-    return type(arrays)(**tiled)
+    return Touch(**tiled)

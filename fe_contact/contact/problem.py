@@ -5,15 +5,84 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from fe_contact.contact.patch import Patches
 from fe_contact.contact.strip import Gap
 from fe_contact.contact.touch import Touch
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class LoadedSlices:
+    """Slices of the tooth pairs on which forces press: P positions, n slices each, one a pair in the plane.
+
+    Attributes
+    ----------
+    pair : ndarray of int, shape (n,)
+        Pair index; +1 is ahead. Slices of one pair stand together.
+    face_position : ndarray, shape (n,)
+        Distance of the slice's middle from the pinion's mid-face, m.
+    present : ndarray of bool, shape (P, n)
+        Whether any contact can press on it; else its other entries are harmless numbers.
+    touch : Touch
+        Touching points of plain involutes at the middles, arrays (P, n); at the ends of the path of contact
+        where the middle is beyond them.
+    patch_1, patch_2 : Patches
+        Load patches on the driving and the driven gear, one under each point of the contact line.
+    slice_width : float
+        Along the face, m.
+    base_helix_angle : float
+        beta_b of gear 1 in rad, > 0 right hand.
+    corner_1, corner_2 : float
+        What the tip corner of either gear yields over a half plane; see `fe_contact.hertz.wedge_softness`.
+    law_length : float
+        Reference length in m that parts the contact from the bodies: what is nearer to the strip is in the
+        local law, what is further in the finite elements.
+    """
+
+    pair: IntArray
+    face_position: FloatArray
+    present: BoolArray
+    touch: Touch
+    patch_1: Patches
+    patch_2: Patches
+    slice_width: float
+    base_helix_angle: float
+    corner_1: float
+    corner_2: float
+    law_length: float
+
+    @property
+    def width(self) -> float:
+        """Width of a slice along the contact line, m."""
+        return self.slice_width / math.cos(self.base_helix_angle)
+
+    def half_planes(self, first: float, second: float) -> tuple[FloatArray, FloatArray]:
+        """Return 2 (1 - nu^2)/(pi E) of both gears under each patch (P, m): more at the own tip edge."""
+        return (
+            first * (1.0 + (self.corner_1 - 1.0) * self.patch_1.at_edge),
+            second * (1.0 + (self.corner_2 - 1.0) * self.patch_2.at_edge),
+        )
+
+    def mean(self, values: FloatArray) -> FloatArray:
+        """Return the mean over the patches (P, m) of each slice (P, n)."""
+        return np.asarray(values.reshape(*self.present.shape, -1).mean(axis=2))
+
+    def rows(self, keep: IntArray) -> LoadedSlices:
+        """Keep some positions."""
+        return replace(
+            self,
+            present=self.present[keep],
+            touch=self.touch.rows(keep),
+            patch_1=self.patch_1.rows(keep),
+            patch_2=self.patch_2.rows(keep),
+        )
 
 
 @dataclass(frozen=True)
 class Candidates:
-    """Places where teeth can touch: P positions, n candidates each (a pair in 2-D, a slice of a pair in 3-D).
+    """Points where teeth can touch: P positions, m points each (a pair in 2-D, several a slice in 3-D).
 
     A candidate that does not exist at a position has an infinite gap; its other entries are then harmless
     numbers.
@@ -22,47 +91,49 @@ class Candidates:
     ----------
     position : ndarray, shape (P,)
         Base pitches, by the driving gear's angle.
-    pair : ndarray of int, shape (n,)
+    pair : ndarray of int, shape (m,)
         Pair index; +1 is ahead. Candidates of one pair stand together.
-    face_position : ndarray, shape (n,)
-        Distance of the slice's middle from the pinion's mid-face, m.
+    face_position : ndarray, shape (m,)
+        Distance from the pinion's mid-face, m.
     touch : Touch
-        Touching points of the rigid flanks, arrays (P, n).
-    patch_1, patch_2 : Patches
-        Load patches on the driving and the driven gear, arrays (P, n).
-    slice_width : float
-        Along the face, m.
-    base_helix_angle : float
-        beta_b of gear 1 in rad, > 0 right hand.
+        Touching points of the rigid flanks, arrays (P, m).
+    width : ndarray, shape (P, m)
+        Length of contact line of each, m; less than usual where the line ends.
+    point_width : float
+        Part of the face that each stands for, m.
+    slices : LoadedSlices
+        On which they press, at Q positions: position p at row p modulo Q.
+    blend : ndarray, shape (points of a pair, slices of a pair)
+        Parts of the force of each point on the slices of its pair; see `fe_contact.contact.slices`.
     """
 
     position: FloatArray
     pair: IntArray
     face_position: FloatArray
     touch: Touch
-    patch_1: Patches
-    patch_2: Patches
-    slice_width: float
-    base_helix_angle: float = 0.0
+    width: FloatArray
+    point_width: float
+    slices: LoadedSlices
+    blend: FloatArray
 
     @property
     def gap(self) -> FloatArray:
-        """Rigid gap (P, n) on the line of action in m, as deflection of the driven gear that closes it."""
+        """Rigid gap (P, m) on the line of action in m, as deflection of the driven gear that closes it."""
         return self.touch.gap
 
     @property
-    def width(self) -> float:
-        """Width of a slice along the contact line, m."""
-        return self.slice_width / math.cos(self.base_helix_angle)
+    def base_helix_angle(self) -> float:
+        """beta_b of gear 1 in rad, > 0 right hand."""
+        return self.slices.base_helix_angle
 
     @property
     def radius(self) -> FloatArray:
-        """Relative radius of curvature (P, n) in the normal section, m."""
+        """Relative radius of curvature (P, m) in the normal section, m."""
         return self.touch.radius / math.cos(self.base_helix_angle)
 
     @property
     def gap_about(self) -> Gap:
-        """Gap about the touching points in the normal section, arrays (P, n) and (P, n, B)."""
+        """Gap about the touching points in the normal section, arrays (P, m) and (P, m, B)."""
         normal = math.cos(self.base_helix_angle)
         touch = self.touch
         return Gap(
@@ -77,22 +148,33 @@ class Candidates:
 
     @property
     def motion_arm(self) -> FloatArray:
-        """Normal approach per unit deflection of the driven gear (P, n)."""
+        """Normal approach per unit deflection of the driven gear (P, m)."""
         return self.touch.lever_2 * math.cos(self.base_helix_angle)
 
     @property
     def torque_share(self) -> FloatArray:
-        """Share of T_1/(r_b1 cos beta_b) per unit normal force (P, n)."""
+        """Share of T_1/(r_b1 cos beta_b) per unit normal force (P, m)."""
         return self.touch.lever_1
 
+    def on_slices(self, force: FloatArray) -> FloatArray:
+        """Return forces (..., m) of the candidates as forces (..., n) on the slices."""
+        shape = force.shape[:-1]
+        return np.asarray((force.reshape(*shape, -1, len(self.blend)) @ self.blend).reshape(*shape, -1))
+
+    def at_points(self, motion: FloatArray) -> FloatArray:
+        """Return motions (..., n) of the slices at the candidates (..., m)."""
+        shape = motion.shape[:-1]
+        by_pair = motion.reshape(*shape, -1, self.blend.shape[1])
+        return np.asarray((by_pair @ self.blend.T).reshape(*shape, -1))
+
     def rows(self, keep: IntArray) -> Candidates:
-        """Return the candidates of some positions."""
+        """Return the candidates of some positions, those of one base pitch."""
         return replace(
             self,
             position=self.position[keep],
             touch=self.touch.rows(keep),
-            patch_1=self.patch_1.rows(keep),
-            patch_2=self.patch_2.rows(keep),
+            width=self.width[keep],
+            slices=self.slices.rows(keep),
         )
 
     def touching(self, touch: Touch) -> Candidates:
@@ -102,7 +184,7 @@ class Candidates:
 
 @dataclass(frozen=True)
 class ContactProblem:
-    """Candidates with the finite-element compliance between them.
+    """Candidates with the finite-element compliance between the slices on which they press.
 
     The candidates may repeat the positions of the compliance in further base pitches: it does not know one
     tooth from the next.
@@ -112,7 +194,7 @@ class ContactProblem:
     candidates : Candidates
     compliance : ndarray, shape (Q, n, n)
         Of position p at row p modulo Q, P a multiple of Q.
-        Normal approach of candidate i per unit normal force at j, both gears, m/N.
+        Normal approach of slice i per unit normal force on j, both gears, m/N.
     modulus : float
         Contact modulus E*, Pa.
     half_plane_1, half_plane_2 : float
@@ -124,6 +206,36 @@ class ContactProblem:
     modulus: float
     half_plane_1: float
     half_plane_2: float
+
+    @property
+    def half_planes(self) -> tuple[FloatArray, FloatArray]:
+        """`half_plane_1` and `half_plane_2` at each candidate (Q, m), 1/Pa: more at the own tip edge."""
+        return self.candidates.slices.half_planes(self.half_plane_1, self.half_plane_2)
+
+    @property
+    def bodies(self) -> FloatArray:
+        """The compliance (Q, n, n) without what load patches move within the reference length, m/N.
+
+        That is k ln(l/a)/w of each gear on slices of the width w: in the local law instead.
+        """
+        slices = self.candidates.slices
+        k_1, k_2 = self.half_planes
+        near = k_1 * np.log(slices.law_length / slices.patch_1.law_width)
+        near = near + k_2 * np.log(slices.law_length / slices.patch_2.law_width)
+        near = slices.mean(near) / slices.width
+        found, diagonal = self.compliance.copy(), np.arange(slices.pair.size)
+        found[:, diagonal, diagonal] -= np.where(slices.present, near, 0.0)
+        return found
+
+    def moved(self, force: FloatArray) -> FloatArray:
+        """Return how far forces (P, L, m) in N move the flanks apart at every candidate (P, L, m), m.
+
+        Without the local approach of a candidate that carries.
+        """
+        held, bodies = self.candidates.on_slices(force), self.bodies
+        by_pitch = held.reshape(-1, len(bodies), *held.shape[1:])
+        moved = np.einsum("qij,tqlj->tqli", bodies, by_pitch, optimize=True)
+        return self.candidates.at_points(moved.reshape(held.shape))
 
     def rows(self, keep: IntArray) -> ContactProblem:
         """Return the problem of some positions, one row of compliance each."""

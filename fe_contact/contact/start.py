@@ -31,7 +31,8 @@ class Start:
     def on(self, candidates: Candidates) -> FloatArray:
         """Carry the forces over to other candidates (m,) of the same pairs: (P, L, m) in N.
 
-        A slice takes the line load of the nearest one of its pair; a pair that was not there starts unloaded.
+        A candidate takes the line load of the nearest one of its pair; a pair that was not there starts
+        unloaded.
         """
         here = self.candidates
         if np.array_equal(here.pair, candidates.pair) and np.array_equal(
@@ -42,4 +43,4 @@ class Start:
         apart = np.where(alike, np.abs(candidates.face_position[:, None] - here.face_position), np.inf)
         nearest = alike & (apart == apart.min(axis=1)[:, None])
         share = nearest / np.maximum(nearest.sum(axis=1), 1)[:, None]
-        return np.asarray(self.force @ share.T * (candidates.slice_width / here.slice_width))
+        return np.asarray(self.force @ share.T * (candidates.point_width / here.point_width))

@@ -28,10 +28,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
 from numba import njit
 
-from fe_contact.types import FloatArray
+from fe_contact.types import FloatArray, IntArray
 
 _TOLERANCE = 1e-9
 """Of strip and middle over the strip; the approach is stationary in both."""
@@ -62,7 +61,7 @@ class Gap(NamedTuple):
     bend: FloatArray
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def gap_at(about: Gap, position: int) -> Gap:
     """Return the gaps (n,) at one of the positions of arrays (P, n) and (P, n, B)."""
     return Gap(
@@ -76,7 +75,21 @@ def gap_at(about: Gap, position: int) -> Gap:
     )
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
+def some_gaps(gap: Gap, keep: IntArray) -> Gap:
+    """Return some of n gaps."""
+    return Gap(
+        gap.slope[keep],
+        gap.curvature[keep],
+        gap.low[keep],
+        gap.high[keep],
+        gap.place[keep],
+        gap.jump[keep],
+        gap.bend[keep],
+    )
+
+
+@njit(cache=True, error_model="numpy")
 def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[float, float]:
     """Return half the length of the strip in m and the mean gap over it in m, from the touching point's on.
 
@@ -91,7 +104,7 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
         Contact modulus E* in Pa.
     """
     hertz = math.sqrt(4.0 * line_load / (math.pi * modulus * gap.curvature[i]))
-    if gap.slope[i] == 0.0 and _plain(gap, i, hertz):
+    if gap.slope[i] == 0.0 and is_plain(gap, i, hertz):
         return hertz, 0.25 * gap.curvature[i] * hertz * hertz
     widest = 0.5 * (gap.high[i] - gap.low[i])
     below, above = 0.0, math.inf
@@ -118,16 +131,43 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
     return half, rigid
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, float]:
     """Return the line load in N/m under a strip of this half length, and the mean gap over it in m."""
+    if gap.slope[i] == 0.0 and is_plain(gap, i, half):
+        rise = 0.25 * gap.curvature[i] * half * half
+        return math.pi * modulus * rise, rise
     centre = _centre(gap, i, half)
     slope, first, mean, _ = _means(gap, i, centre, half)
-    return 0.5 * math.pi * modulus * half * (first + abs(slope)), mean
+    if gap.low[i] + half < centre < gap.high[i] - half:  # what is left of the slope is the middle's rounding
+        first -= slope * _tilting(gap, i, centre, half)
+    else:
+        first += abs(slope)
+    return 0.5 * math.pi * modulus * half * first, mean
 
 
-@njit(cache=True)
-def _plain(gap: Gap, i: int, half: float) -> bool:
+@njit(cache=True, error_model="numpy")
+def _tilting(gap: Gap, i: int, centre: float, half: float) -> float:
+    """Return how the mean of g' sin t changes with that of g' as the middle moves.
+
+    Where a break is at the end of the strip both go with the root of the distance, so that the middle is
+    never exact enough; to each other they are straight.
+    """
+    by_slope, by_first = float(gap.curvature[i]), 0.0
+    for k in range(gap.place.shape[1]):
+        side = 1.0 if gap.place[i, k] >= 0.0 else -1.0
+        sine = side * (gap.place[i, k] - centre) / half
+        if sine < 1.0 + 4.0 * _TOLERANCE:  # the end may be held at a break, to either side of it by rounding
+            sine = min(max(sine, -1.0), 1.0)
+            cosine = max(math.sqrt(1.0 - sine * sine), 1e-12)
+            angle = 0.5 * math.pi - math.asin(sine)
+            by_slope += (gap.bend[i, k] * angle + gap.jump[i, k] / (half * cosine)) / math.pi
+            by_first += side * (gap.bend[i, k] * cosine + gap.jump[i, k] * sine / (half * cosine)) / math.pi
+    return by_first / by_slope
+
+
+@njit(cache=True, error_model="numpy")
+def is_plain(gap: Gap, i: int, half: float) -> bool:
     """Whether neither an edge nor a break is within `half` of the touching point."""
     if -gap.low[i] < half or gap.high[i] < half:
         return False
@@ -137,7 +177,7 @@ def _plain(gap: Gap, i: int, half: float) -> bool:
     return nearest >= half
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _centre(gap: Gap, i: int, half: float) -> float:
     """Return the middle of the strip: where pressure vanishes at both ends, or one end is at an edge."""
     low: float = max(-half, gap.low[i] + half)
@@ -166,7 +206,7 @@ def _centre(gap: Gap, i: int, half: float) -> float:
     return centre
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _means(gap: Gap, i: int, centre: float, half: float) -> tuple[float, float, float, float]:
     """Return the means of g', g' sin t, g and g'' over the angle t of the strip."""
     s, q = float(gap.slope[i]), float(gap.curvature[i])
@@ -192,107 +232,3 @@ def _means(gap: Gap, i: int, centre: float, half: float) -> tuple[float, float, 
         bend += b * angle / math.pi
         bend += a / (math.pi * half * max(cosine, _BLUNTEST))
     return slope, first, mean, bend
-
-
-@njit(cache=True)
-def rounded(gap: Gap, least: FloatArray) -> Gap:
-    """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""
-    curvature, bend = np.maximum(gap.curvature, least), gap.bend.copy()
-    for i in range(curvature.size):
-        order = np.argsort(np.abs(gap.place[i]))
-        left, right = curvature[i], curvature[i]
-        for k in order:  # away from the touching point to either side
-            here = right if gap.place[i, k] >= 0.0 else left
-            bend[i, k] = max(bend[i, k], least[i] - here)
-            if gap.place[i, k] >= 0.0:
-                right += bend[i, k]
-            else:
-                left += bend[i, k]
-    return Gap(gap.slope, curvature, gap.low, gap.high, gap.place, gap.jump, bend)
-
-
-@njit(cache=True)
-def touching_places(gap: Gap, low: FloatArray, high: FloatArray) -> FloatArray:
-    """Return where gaps that grow to both sides are least between `low` and `high` (n,), m."""
-    found = np.empty(gap.slope.size)
-    for i in range(found.size):
-        place = 0.0
-        rising = _slope(gap, i, place)
-        end = low[i] if rising > 0.0 else high[i]
-        # the slope is made of straight pieces: from break to break until it changes its sign
-        while rising != 0.0 and place != end:
-            stop = end
-            for k in range(gap.place.shape[1]):
-                at = gap.place[i, k]
-                if (place - at) * rising > 0.0 and (at - stop) * rising > 0.0:
-                    stop = at
-            curvature = _curvature(gap, i, 0.5 * (place + stop))
-            here = _slope_beside(gap, i, place, -rising)
-            step = -here / curvature if curvature > 0.0 else -rising * math.inf
-            if here * rising <= 0.0:
-                break
-            if (place + step - stop) * rising >= 0.0:
-                place += step
-                break
-            place = stop
-        found[i] = place
-    return found
-
-
-@njit(cache=True)
-def _slope(gap: Gap, i: int, x: float) -> float:
-    """Return the slope of the gap, the side to which it falls if there is one; zero at a break that holds."""
-    left, right = _slope_beside(gap, i, x, -1.0), _slope_beside(gap, i, x, 1.0)
-    if left > 0.0:
-        return left
-    return right if right < 0.0 else 0.0
-
-
-@njit(cache=True)
-def _slope_beside(gap: Gap, i: int, x: float, side: float) -> float:
-    """Return the slope of the gap just to one side of x."""
-    slope: float = gap.slope[i] + gap.curvature[i] * x
-    for k in range(gap.place.shape[1]):
-        at = gap.place[i, k]
-        right = at >= 0.0
-        beyond = (x - at) if right else (at - x)
-        inside = beyond > 0.0 or (beyond == 0.0 and (side > 0.0) == right)
-        if inside:
-            slope += (gap.jump[i, k] + gap.bend[i, k] * beyond) * (1.0 if right else -1.0)
-    return slope
-
-
-@njit(cache=True)
-def _curvature(gap: Gap, i: int, x: float) -> float:
-    """Return the curvature of the gap between breaks."""
-    curvature: float = gap.curvature[i]
-    for k in range(gap.place.shape[1]):
-        at = gap.place[i, k]
-        if (x > at) if at >= 0.0 else (x < at):
-            curvature += gap.bend[i, k]
-    return curvature
-
-
-@njit(cache=True)
-def moved_gap(gap: Gap, shift: FloatArray) -> tuple[FloatArray, Gap]:
-    """Return the gap (n,) in m at `shift` (n,) in m, and that about there."""
-    n, breaks = gap.place.shape
-    least, slope, curvature = np.empty(n), np.empty(n), np.empty(n)
-    place, bend = gap.place.copy(), gap.bend.copy()
-    for i in range(n):
-        x = shift[i]
-        least[i] = gap.slope[i] * x + 0.5 * gap.curvature[i] * x * x
-        curvature[i] = gap.curvature[i]
-        held = x == gap.low[i] or x == gap.high[i]
-        for k in range(breaks):
-            at = gap.place[i, k]
-            right = at >= 0.0
-            beyond = max((x - at) if right else (at - x), 0.0)
-            least[i] += beyond * (gap.jump[i, k] + 0.5 * gap.bend[i, k] * beyond)
-            held = held or x == at
-            place[i, k] = at - x
-            if (place[i, k] >= 0.0) != right:
-                curvature[i] += gap.bend[i, k]
-                bend[i, k] = -gap.bend[i, k]
-        slope[i] = _slope_beside(gap, i, x, -1.0) if held else 0.0
-    return least, Gap(slope, curvature, gap.low - shift, gap.high - shift, place, gap.jump, bend)

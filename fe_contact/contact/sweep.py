@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 
-from fe_contact.contact.local_law import local_law
-from fe_contact.contact.newton import CONVERGED, PointProblem, solve_point
+from fe_contact.contact.local_law import LocalLaw, free_strips
+from fe_contact.contact.newton import CONVERGED, solve_point
+from fe_contact.contact.point import PointProblem
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.solution import ContactSolution
 from fe_contact.contact.start import Start
-from fe_contact.contact.strip import Gap, gap_at
+from fe_contact.contact.strip import Gap, gap_at, some_gaps
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 
@@ -32,18 +35,18 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
         Points that did not converge hold NaN and their status; nothing is raised.
     """
     c = problem.candidates
-    p, n, levels = c.position.size, c.pair.size, loads.size
+    p, m, levels = c.position.size, c.pair.size, loads.size
     deflection, tangent = np.full((2, p, levels), np.nan)
-    force = np.zeros((p, levels, n))
+    force = np.zeros((p, levels, m))
     status, iterations = np.zeros((2, p, levels), dtype=np.int64)
     residuals = np.zeros((p, levels, 4))
     beyond = np.zeros((p, levels), dtype=np.bool_)
-    normal_gap = c.gap * c.motion_arm
-    first = np.zeros((0, 0, n)) if start is None else np.ascontiguousarray(start.on(c))
+    first_plane, second_plane = problem.half_planes
+    modulus = 2.0 / (math.pi * (first_plane + second_plane))
+    first = np.zeros((0, 0, m)) if start is None else np.ascontiguousarray(start.on(c))
     _sweep(
-        problem.compliance, normal_gap, c.motion_arm, c.torque_share,
-        c.gap_about, np.full(n, c.width), c.patch_1.law_width, c.patch_2.law_width,
-        problem.modulus, problem.half_plane_1, problem.half_plane_2, loads, first,
+        problem.bodies, c.slices.present, c.blend, c.gap * c.motion_arm, c.motion_arm,
+        c.torque_share, c.width, c.gap_about, c.slices.law_length, modulus, loads, first,
         deflection, tangent, force, status, iterations, residuals, beyond,
     )  # fmt: skip
     return ContactSolution(
@@ -51,19 +54,18 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
     )
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _sweep(
-    compliance: FloatArray,
+    bodies: FloatArray,
+    present: BoolArray,
+    blend: FloatArray,
     gap: FloatArray,
     motion_arm: FloatArray,
     torque_arm: FloatArray,
-    about: Gap,
     width: FloatArray,
-    patch_1: FloatArray,
-    patch_2: FloatArray,
-    modulus: float,
-    k1: float,
-    k2: float,
+    about: Gap,
+    length: float,
+    modulus: FloatArray,
     loads: FloatArray,
     first: FloatArray,
     deflection: FloatArray,
@@ -76,18 +78,28 @@ def _sweep(
 ) -> None:
     """Fill the result arrays, started from the `first` forces, or each load from the one below it."""
     for p in range(gap.shape[0]):
-        law = local_law(gap_at(about, p), width, patch_1[p], patch_2[p], modulus, k1, k2)
-        point = PointProblem(compliance[p % compliance.shape[0]], gap[p], motion_arm[p], torque_arm[p], law)
-        start = np.zeros(gap.shape[1])
+        row = p % bodies.shape[0]
+        slices = np.flatnonzero(present[row])
+        pairs = np.cumsum(present[row][:: blend.shape[1]]) - 1  # of all pairs among those that are there
+        here = np.flatnonzero(~(gap[p] == np.inf))  # also those that are not a number
+        points = np.flatnonzero(np.repeat(present[row][:: blend.shape[1]], len(blend)))
+        inner = np.ascontiguousarray(bodies[row][slices][:, slices])
+        gaps = some_gaps(gap_at(about, p), points)
+        local = LocalLaw(width[p][points], gaps, free_strips(gaps), length, modulus[row][points])
+        place = pairs[here // len(blend)] * len(blend) + here % len(blend)
+        point = PointProblem(
+            inner, blend, place, gap[p][here], motion_arm[p][here], torque_arm[p][here], local
+        )
+        start = np.zeros(here.size)
         for k in range(loads.size):
             if first.shape[0] > 0:
-                start = first[p, k].copy()
+                start = first[p, k][here]
             elif k > 0:
                 start *= loads[k] / loads[k - 1]
             d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
             status[p, k], iterations[p, k], beyond[p, k] = code, count, over
             if code == CONVERGED:
                 deflection[p, k], tangent[p, k] = d, t
-                force[p, k] = start
+                force[p, k][here] = start
             else:
-                start = np.zeros(gap.shape[1])
+                start = np.zeros(here.size)

@@ -6,22 +6,27 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.contact.least_gap import moved_gap, rounded, touching_places
 from fe_contact.contact.model import GapTerm
-from fe_contact.contact.strip import Gap, moved_gap, rounded, touching_places
-from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact
+from fe_contact.contact.strip import Gap
+from fe_contact.geometry import ParallelAxes, Side, Toothing, corner_contact, edge_gap
 from fe_contact.hertz import relative_radius
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
 _FLATTEST = 100.0
 _SAMPLES = 17
-_PASSES = 2
-"""How often the touching point is looked for, from the lowest sample on."""
+_PASSES, _CUT_TIP_PASSES = 2, 4
+"""How often the touching point is looked for, from the lowest sample on; where a tip is cut, further off."""
 _STEP = 0.01
 """Step of differences along the flank over the relative radius: about half a contact strip."""
 _REACH = 0.5
 """How far a touching point may move, over the flanks' lengths from the base circle."""
 _ROUNDEST = 0.25
 """Least curvature of the gap over that of plain involutes."""
+_NEAR = 1e-4
+"""Of `_STEP`: step of differences of the exact gap, whose slope is nowhere rounded."""
+_SIDES: tuple[Side, Side] = ("exit", "approach")
+"""Where the tips of the pinion and of the wheel leave contact."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +47,8 @@ class Touch:
         Gap about the touching points in the transverse section, towards tip 1; see `strip.Gap`.
     place, jump, bend : ndarray, shape (P, n, B)
         Its breaks.
+    roll_1 : ndarray
+        Nominal roll lengths of gear 1, m.
     """
 
     s_1: FloatArray
@@ -57,6 +64,7 @@ class Touch:
     place: FloatArray
     jump: FloatArray
     bend: FloatArray
+    roll_1: FloatArray
 
     @property
     def offset_1(self) -> FloatArray:
@@ -116,6 +124,7 @@ def conjugate_touch(pair: ParallelAxes, roll_1: FloatArray, roll_2: FloatArray, 
     return Touch(
         s_1, s_2, gap, radius, lever_1, lever_2,
         opening_2 - opening_1, 1.0 / radius, np.minimum(low, 0.0), np.maximum(high, 0.0), none, none, none,
+        roll_1,
     )  # fmt: skip
 
 
@@ -166,7 +175,7 @@ def _moved(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTe
     here = Touch(*(getattr(touch, name)[possible] for name in touch.__dataclass_fields__))
     flanks = _Flanks(pair, here, np.broadcast_to(face, possible.shape)[possible], gaps)
     shift = flanks.lowest_sample()
-    for _ in range(_PASSES):
+    for _ in range(_CUT_TIP_PASSES if flanks.cut_tips else _PASSES):
         about = flanks.about(shift)
         step = touching_places(about, flanks.first - shift, flanks.last - shift)
         # bumps of a measured flank are no parabolas: the step must lead down, unless it is next to nothing
@@ -191,16 +200,19 @@ class _Flanks:
     def __init__(self, pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tuple[GapTerm, ...]) -> None:
         self._pair, self._touch, self._face, self._gaps = pair, touch, face, gaps
         self._breaks = [each for term in gaps for each in term.breaks(pair)]
+        cut = {_SIDES[each.gear] for each in self._breaks if each.ends_flank}
+        self.cut_tips = [side for side in _SIDES if side in cut]
         # towards a base circle; away from both on the flank of a ring gear
         inwards = np.minimum(touch.s_1, np.where(touch.s_2 < 0.0, -touch.s_2, np.inf))
         self.first = np.maximum(touch.low, -_REACH * inwards)
         self.last = np.minimum(touch.high, np.where(touch.s_2 < 0.0, np.inf, _REACH * touch.s_2))
         self.step = np.minimum(_STEP / touch.curvature, 0.2 * (self.last - self.first))
+        self._tilt = {side: self._beside(side) for side in self.cut_tips}
 
     def gap(self, x: FloatArray) -> FloatArray:
         """Return the gap at x, m."""
-        removed = sum(self._removed(term, x) for term in self._gaps)
-        return np.asarray(x * (self._touch.slope + 0.5 * self._touch.curvature * x) + removed)
+        parabola = x * (self._touch.slope + 0.5 * self._touch.curvature * x)
+        return np.asarray(parabola + self._removed(x) + sum(self._excess(side, x) for side in self.cut_tips))
 
     def lowest_sample(self) -> FloatArray:
         """Return where the gap is least among samples all over the reach."""
@@ -220,10 +232,13 @@ class _Flanks:
         middle = np.clip(x, self.first + step, self.last - step)
         at = []
         for place in (middle - step, middle, middle + step):
-            rest = sum(self._removed(term, place) for term in self._gaps)
-            at.append(rest - sum(each.height(place - x - distance) for each, distance in breaks))
+            beyond = sum(each.height(place - x - distance) for each, distance in breaks)
+            at.append(self._removed(place) - beyond)
         bend = (at[2] - 2.0 * at[1] + at[0]) / step**2
         slope = touch.slope + touch.curvature * x + (at[2] - at[0]) / (2.0 * step) + bend * (x - middle)
+        near = _NEAR * step
+        for side in self.cut_tips:
+            slope = slope + (self._excess(side, x + near) - self._excess(side, x - near)) / (2.0 * near)
         curvature = touch.curvature + bend
         place, jump, bends = np.zeros((3, x.size, len(breaks)))
         for k, (each, distance) in enumerate(breaks):
@@ -237,9 +252,43 @@ class _Flanks:
         # flanks hollowed out more than they are round would touch at several places
         return rounded(Gap(slope, curvature, *ends, place, jump, bends), _ROUNDEST * touch.curvature)
 
-    def _removed(self, term: GapTerm, x: FloatArray) -> FloatArray:
-        """Return what one term removes at x, m."""
-        return term(self._pair, *rolls_at(self._pair, self._touch.s_1 + x, self._touch.s_2 - x), self._face)
+    def _removed(self, x: FloatArray) -> FloatArray:
+        """Return what is removed at x, m."""
+        rolls = rolls_at(self._pair, self._touch.s_1 + x, self._touch.s_2 - x)
+        return np.asarray(sum(term(self._pair, *rolls, self._face) for term in self._gaps))
+
+    def _excess(self, side: Side, x: FloatArray) -> FloatArray:
+        """Return how much further apart than their parabola plain flanks are behind a cut tip, m.
+
+        A rounding or chamfer takes touching points off the line of action by up to its own length, further
+        than a relief does. Next to the touching point of plain flanks the parabola holds.
+        """
+        return self._beyond_parabola(side, x) - np.where(self._behind(side, x), self._tilt[side] * x, 0.0)
+
+    def _beside(self, side: Side) -> FloatArray:
+        """Return the slope of exact gap less parabola at the touching point of plain flanks, behind it."""
+        near = _NEAR * (self.step if side == "approach" else -self.step)
+        return self._beyond_parabola(side, near) / near
+
+    def _beyond_parabola(self, side: Side, x: FloatArray) -> FloatArray:
+        """Return the exact gap of plain flanks less their parabola at x, m, where x is behind a tip."""
+        touch, pair = self._touch, self._pair
+        behind = self._behind(side, x)
+        rolls = rolls_at(pair, (touch.s_1 + x)[behind], (touch.s_2 - x)[behind])
+        nominal = touch.roll_1[behind]
+        if side == "exit":
+            exact = edge_gap(pair, side, rolls[0], nominal)
+        else:
+            exact = edge_gap(pair, side, rolls[1], pair.mating_roll_length(nominal))
+        parabola = touch.gap + x * (touch.slope + 0.5 * touch.curvature * x)
+        found = np.zeros(x.shape)
+        found[behind] = np.nan_to_num(exact - parabola[behind])
+        return found
+
+    def _behind(self, side: Side, x: FloatArray) -> BoolArray:
+        """Return where x is to the root of the gear whose tip leaves on that side, on round flanks."""
+        flattest = _FLATTEST * self._pair.wheel.base_radius
+        return np.asarray((x < 0.0 if side == "exit" else x > 0.0) & (self._touch.radius < flattest))
 
 
 def rolls_at(pair: ParallelAxes, s_1: FloatArray, s_2: FloatArray) -> tuple[FloatArray, FloatArray]:

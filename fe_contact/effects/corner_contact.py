@@ -25,7 +25,7 @@ class CornerContact:
     adds: ClassVar[tuple[str, ...]] = ("candidates", "gap")
     cost: ClassVar[str] = "two more candidates a position; no finite-element work"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/corner_contact.md",)
-    valid_for: ClassVar[str] = "sharp tip edges; rounding up to the size of the contact length"
+    valid_for: ClassVar[str] = "sharp, rounded and chamfered tip edges"
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On unless tip relief keeps the edges and the flanks beside them apart."""
@@ -33,8 +33,9 @@ class CornerContact:
         deflection = _largest_deflection(scene)
         relief = _least_tip_gap(pair)
         clear = relief > 2.0 * deflection
+        missing = _what_is_missing(pair)
         reason = (
-            f"tip relief leaves {1e6 * relief:.1f} um, over twice the bending of {1e6 * deflection:.1f} um"
+            f"{missing} leaves {1e6 * relief:.1f} um, over twice the bending of {1e6 * deflection:.1f} um"
             if clear
             else f"deflections up to {1e6 * deflection:.1f} um close the gap at the tip edges"
         )
@@ -56,6 +57,12 @@ def _least_tip_gap(pair: ParallelAxes) -> float:
     return min(
         _gap_at_tip(gear, radius) for gear, radius in zip((pair.pinion, pair.wheel), radii, strict=True)
     )
+
+
+def _what_is_missing(pair: ParallelAxes) -> str:
+    """Return what keeps the tip edges apart, in words."""
+    sharp = all(gear.tip_form_radius == gear.tip_radius for gear in (pair.pinion, pair.wheel))
+    return "tip relief" if sharp else "relief, rounding or chamfer of the tips"
 
 
 def _curvature_radius(pair: ParallelAxes, roll_1: float) -> float:

@@ -28,7 +28,7 @@ class ModificationGap:
         return self.pinion.varies_along_profile or self.wheel.varies_along_profile
 
     def breaks(self, pair: ParallelAxes) -> tuple[Break, ...]:
-        """Where reliefs begin on either flank."""
+        """Where reliefs and the edges of rounded or chamfered tips begin on either flank."""
         sides = ((pair.pinion, self.pinion), (pair.wheel, self.wheel))
         return tuple(
             Break(
@@ -37,6 +37,7 @@ class ModificationGap:
                 1 if start.towards_tip == (index == 0) else -1,
                 start.jump,
                 start.bend,
+                start.ends_flank,
             )
             for index, (gear, modification) in enumerate(sides)
             for start in modification.relief_starts(gear)

@@ -1,4 +1,4 @@
-"""Profile modification: tip and root relief, profile crowning and slope as gaps on the line of action."""
+"""Profile modification: reliefs, profile crowning and slope, cut tip edges as gaps on the line of action."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class ProfileModification:
     adds: ClassVar[tuple[str, ...]] = ("gap",)
     cost: ClassVar[str] = "a search for the touching point of every candidate; no finite-element work"
     sources: ClassVar[tuple[str, ...]] = ("docs/effects/profile_modification.md", "ISO 21771-1")
-    valid_for: ClassVar[str] = "slopes below about 0.05"
+    valid_for: ClassVar[str] = "slopes below about 0.05; tip edges that open further"
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On where either gear has a modification along its profile."""

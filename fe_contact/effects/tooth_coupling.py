@@ -22,7 +22,7 @@ class ToothCoupling:
 
     def called_for(self, scene: ContactScene) -> Verdict:
         """On wherever two pairs can share load."""
-        ratio = scene.pair.transverse_contact_ratio
+        ratio = scene.pair.active_contact_ratio
         return Verdict(True, f"contact ratio {ratio:.3f}: neighbouring pairs share the load")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:

@@ -29,4 +29,6 @@ def _of_gear(gear: Gear) -> str | None:
         return "pitch deviations: all teeth are alike"
     if gear.modification.varies_along_face:
         return "flanks that vary across the face"
+    if gear.tip_form_roll_length != gear.tip_roll_length:
+        return "rounded or chamfered tips: those of its meshes are sharp"
     return None

@@ -2,7 +2,7 @@
 
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat, Key, seat_compliance
-from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap
+from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap, edge_gap
 from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_blank import GearBlank
@@ -43,6 +43,7 @@ __all__ = [
     "blank_factor",
     "corner_contact",
     "corner_gap",
+    "edge_gap",
     "iso6336_stiffness",
     "seat_compliance",
     "tooth_profile",

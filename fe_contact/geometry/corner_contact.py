@@ -103,11 +103,12 @@ def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> Corn
         raise InputError("overshoot", overshoot, "at least 0", "Inside the path of contact there is no gap.")
     one = np.ones_like(beyond)
     if side == "exit":
-        touch = _touch(pair, pair.pinion, pair.wheel, pair.pinion.tip_roll_length + beyond)
+        edge = pair.pinion.tip_roll_length
+        touch = _touch(pair, pair.pinion, pair.wheel, edge, edge + beyond)
         return _masked(touch, pair.wheel, touch.lever_arm_ratio, one)
     if side == "approach":
-        nominal = pair.wheel.tip_roll_length + pair.wheel.sign * beyond
-        touch = _touch_by_tip_gear(pair, pair.wheel, pair.pinion, nominal)
+        edge = pair.wheel.tip_roll_length
+        touch = _touch_by_tip_gear(pair, pair.wheel, pair.pinion, edge, edge + pair.wheel.sign * beyond)
         return _masked(touch, pair.pinion, one, touch.lever_arm_ratio)
     raise InputError("side", side, 'one of "approach" and "exit"')
 
@@ -117,15 +118,41 @@ def corner_gap(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> FloatArr
     return corner_contact(pair, side, overshoot).gap
 
 
-def _touch(pair: ParallelAxes, tip: Toothing, flank: Toothing, roll_length: FloatArray) -> _Touch:
-    """Turn the flank gear until it touches the edge of the tip gear held at its nominal `roll_length`."""
+def edge_gap(pair: ParallelAxes, side: Side, edge: ArrayLike, roll_length: ArrayLike) -> FloatArray:
+    """Exact rigid gap in m of points of one flank on the other, as if the flank ended in an edge there.
+
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    side : {"approach", "exit"}
+        Whether the points belong to gear 2, or to gear 1.
+    edge, roll_length : array_like
+        Roll lengths in m of the points, and nominal ones of their gear: further towards its tip.
+
+    Returns
+    -------
+    array
+        NaN where such an edge meets no involute or cannot drive.
+    """
+    points, nominal = np.broadcast_arrays(np.asarray(edge, float), np.asarray(roll_length, float))
+    if side == "exit":
+        touch = _touch(pair, pair.pinion, pair.wheel, points, nominal)
+    else:
+        touch = _touch_by_tip_gear(pair, pair.wheel, pair.pinion, points, nominal)
+    return np.where(touch.lever_arm_ratio > 0.0, touch.gap, np.nan)
+
+
+def _touch(
+    pair: ParallelAxes, tip: Toothing, flank: Toothing, edge: FloatArray | float, roll_length: FloatArray
+) -> _Touch:
+    """Turn the flank gear until it touches the `edge` of the tip gear held at its nominal `roll_length`."""
     working, sign = pair.working_pressure_angle, tip.sign * flank.sign
     distance = tip.sign * pair.center_distance  # of the tip gear's centre along the flank gear's +x
-    tip_foot = working + (tip.tip_roll_length - roll_length) / tip.base_radius
+    tip_foot = working + (edge - roll_length) / tip.base_radius
     sine, cosine = np.sin(tip_foot), np.cos(tip_foot)
     # the edge as seen from the flank gear's centre
-    x = distance - sign * tip.base_radius * cosine - sign * tip.tip_roll_length * sine
-    y = sign * (tip.tip_roll_length * cosine - tip.base_radius * sine)
+    x = distance - sign * tip.base_radius * cosine - sign * edge * sine
+    y = sign * (edge * cosine - tip.base_radius * sine)
     with np.errstate(invalid="ignore"):
         touched = np.sqrt(x**2 + y**2 - flank.base_radius**2)
     flank_foot = np.arctan2(y, x) + np.arctan2(touched, flank.base_radius)
@@ -135,7 +162,9 @@ def _touch(pair: ParallelAxes, tip: Toothing, flank: Toothing, roll_length: Floa
     return _Touch(gap, touched, flank_foot - tip_foot, arm)
 
 
-def _touch_by_tip_gear(pair: ParallelAxes, tip: Toothing, flank: Toothing, roll_length: FloatArray) -> _Touch:
+def _touch_by_tip_gear(
+    pair: ParallelAxes, tip: Toothing, flank: Toothing, edge: FloatArray | float, roll_length: FloatArray
+) -> _Touch:
     """Turn the tip gear until its edge touches the flank gear, held where conjugate to `roll_length`.
 
     A lag e brings the tip gear to roll_length + e (a ring gear to roll_length - e), and it touches if the
@@ -144,7 +173,7 @@ def _touch_by_tip_gear(pair: ParallelAxes, tip: Toothing, flank: Toothing, roll_
     """
     lag = np.zeros_like(roll_length)
     for _ in range(_ITERATIONS):
-        touch = _touch(pair, tip, flank, roll_length + tip.sign * lag)
+        touch = _touch(pair, tip, flank, edge, roll_length + tip.sign * lag)
         reachable = touch.lever_arm_ratio > 0.0
         step = np.where(reachable, touch.gap - lag, np.nan) / np.where(reachable, touch.lever_arm_ratio, 1.0)
         settled = np.abs(step) <= _ROUNDING * pair.center_distance

@@ -9,7 +9,12 @@ from fe_contact.checks import LIMIT_SLACK, positive, rounded_down, rounded_up
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.backlash import base_radius_sum, tight_center_distance
 from fe_contact.geometry.internal_interference import tip_interference, trochoidal_interference
-from fe_contact.geometry.pair_feasibility import FILLET_SLACK, refuse_face_overlap, refuse_jamming
+from fe_contact.geometry.pair_feasibility import (
+    FILLET_SLACK,
+    refuse_face_overlap,
+    refuse_jamming,
+    refuse_short_flanks,
+)
 
 if TYPE_CHECKING:
     from fe_contact.geometry.gear import Gear
@@ -35,6 +40,7 @@ def refuse_infeasible_internal_pair(pair: InternalGearPair) -> None:
     refuse_jamming(pair)
     _refuse_tip_clearance(pair)
     _refuse_contact_ratio(pair)
+    refuse_short_flanks(pair)
     _refuse_interference(pair)
     _refuse_tip_interference(pair)
     _refuse_trochoidal_interference(pair)

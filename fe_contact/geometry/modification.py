@@ -6,6 +6,7 @@ action).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
@@ -16,6 +17,14 @@ from numpy.typing import ArrayLike
 from fe_contact.checks import finite, positive, within
 from fe_contact.errors import InputError
 from fe_contact.geometry.flank_grid import FlankGrid
+from fe_contact.geometry.tip_edge import (
+    FLATTEST,
+    STEEPEST,
+    chamfer_start,
+    check_chamfer,
+    check_rounding,
+    rounding_start,
+)
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
@@ -43,26 +52,30 @@ _ACROSS_FACE = (
     "flank_twist",
 )
 _LARGEST = 0.01  # m; catches micrometres given as metres
+_LARGEST_EDGE = 0.1  # m; of a tip rounding or chamfer
 
 
 @dataclass(frozen=True)
 class ReliefStart:
-    """Where a relief begins along the profile, and how: its depth is jump d + bend d^2/2 a distance d inside.
+    """Where a relief or the tip's edge begins along the profile; a distance d inside to jump d + bend d^2/2.
 
     Attributes
     ----------
     roll_length : float
         m.
     towards_tip : bool
-        Whether the relief runs to the tip; else to the root.
+        Whether it runs to the tip; else to the root.
     jump, bend : float
         Slope and curvature with which it begins, over the arc length of the flank; 1 and 1/m.
+    ends_flank : bool
+        Whether it is the edge of a rounded or chamfered tip, where the usable flank ends.
     """
 
     roll_length: float
     towards_tip: bool
     jump: float
     bend: float
+    ends_flank: bool = False
 
 
 @dataclass(frozen=True)
@@ -98,6 +111,13 @@ class FlankModification:
         four times the amount from one end of the face to the other.
     flank_grid : FlankGrid, optional
         Free-form flank, removed besides all of the above.
+    tip_rounding : float
+        Radius in m, >= 0, in the transverse plane, of the arc from the tip form point to the tip circle,
+        tangent to both. All amounts at the tip stay those at the tip circle.
+    tip_chamfer : float
+        Radial height h_K in m, >= 0, of the tip chamfer: d_Fa = d_a - 2 h_K (internal: +). Or a rounding.
+    tip_chamfer_angle : float
+        Angle between flank and chamfer at the tip form point in the transverse plane, rad.
     """
 
     tip_relief: float = 0.0
@@ -115,6 +135,9 @@ class FlankModification:
     end_relief_shape: Shape = "linear"
     flank_twist: float = 0.0
     flank_grid: FlankGrid | None = None
+    tip_rounding: float = 0.0
+    tip_chamfer: float = 0.0
+    tip_chamfer_angle: float = math.radians(30.0)
 
     def __post_init__(self) -> None:
         for kind in ("tip", "root", "end"):
@@ -123,6 +146,7 @@ class FlankModification:
             within(crowning, getattr(self, crowning), 0.0, _LARGEST, "In m: 5 um is 5e-6.")
         for slope in ("profile_slope", "helix_slope", "flank_twist"):
             within(slope, getattr(self, slope), -_LARGEST, _LARGEST, "In m: 5 um is 5e-6.")
+        _check_tip_edge(self)
 
     @property
     def neutral(self) -> bool:
@@ -133,7 +157,8 @@ class FlankModification:
     def varies_along_profile(self) -> bool:
         """Whether the modification depends on the roll length, at any place of the face."""
         alone = (self.tip_relief, self.root_relief, self.profile_crowning, self.profile_slope)
-        return any((*alone, self.flank_twist)) or any(not grid.neutral for grid in self._grids)
+        edge = (self.tip_rounding, self.tip_chamfer)
+        return any((*alone, *edge, self.flank_twist)) or any(not grid.neutral for grid in self._grids)
 
     @property
     def varies_along_face(self) -> bool:
@@ -161,7 +186,10 @@ class FlankModification:
         return () if self.flank_grid is None else (self.flank_grid,)
 
     def check_fits(self, gear: Toothing) -> None:
-        """Raise `InputError` if a relief is longer than the involute or half the face, a grid beside it."""
+        """Raise `InputError` if a relief is longer than the involute or half the face, a grid beside it.
+
+        And if the tip's edge leaves no involute or no tip.
+        """
         height = abs(gear.tip_radius - gear.form_radius)
         advice = "Lengths are in m: 1 mm is 0.001."
         within("modification.tip_relief_length", self.tip_relief_length, 0.0, height, advice)
@@ -171,6 +199,15 @@ class FlankModification:
         for grid in self._grids:
             _check_reach("modification.flank_grid.roll_length", grid.roll_length, *_involute(gear))
             _check_reach("modification.flank_grid.face_position", grid.face_position, -half, half)
+        if self.tip_rounding:
+            check_rounding(gear, self.tip_rounding)
+        if self.tip_chamfer:
+            check_chamfer(gear, self.tip_chamfer, self.tip_chamfer_angle)
+
+    def tip_form_roll_length(self, gear: Toothing) -> float:
+        """Roll length in m at which the usable flank of `gear` ends and its tip's edge begins."""
+        edge = self._tip_edge(gear)
+        return gear.tip_roll_length if edge is None else edge.roll_length
 
     def material_removed(
         self, gear: Toothing, roll_length: ArrayLike, face_position: ArrayLike = 0.0
@@ -205,18 +242,38 @@ class FlankModification:
         return removed
 
     def relief_starts(self, gear: Toothing) -> tuple[ReliefStart, ...]:
-        """Return where reliefs begin along the profile."""
-        return tuple(
+        """Return where reliefs, and the tip's edge if it is not sharp, begin along the profile."""
+        starts = tuple(
             ReliefStart(start, end == gear.tip_roll_length, *_beginning(gear, amount, shape, start, end))
             for amount, shape, start, end in self._reliefs(gear)
         )
+        edge = self._tip_edge(gear)
+        return starts if edge is None else (*starts, edge)
+
+    def _tip_edge(self, gear: Toothing) -> ReliefStart | None:
+        """Return where the tip's rounding or chamfer begins, None for a sharp edge.
+
+        The involute turns away from its tangent too, with the curvature 1/l; hollow in a ring gear.
+        """
+        if self.tip_rounding:
+            start = rounding_start(gear, self.tip_rounding)
+            return ReliefStart(start, True, 0.0, 1.0 / self.tip_rounding - gear.sign / start, True)
+        if self.tip_chamfer:
+            start = chamfer_start(gear, self.tip_chamfer)
+            return ReliefStart(start, True, math.tan(self.tip_chamfer_angle), -gear.sign / start, True)
+        return None
 
     def _along_profile(self, gear: Toothing, roll: FloatArray) -> FloatArray:
-        """Reliefs, crowning and slope over the roll length."""
+        """Reliefs, crowning, slope and tip edge over the roll length."""
         across = _across_profile(gear, roll)
         removed = self.profile_crowning * across**2 + 0.5 * self.profile_slope * across
         for amount, shape, start, end in self._reliefs(gear):
             removed += amount * _course(shape, (roll - start) / (end - start))
+        edge = self._tip_edge(gear)
+        if edge is not None:
+            start = edge.roll_length
+            inside = np.maximum(gear.sign * (roll - start) * (roll + start) / (2.0 * gear.base_radius), 0.0)
+            removed += inside * (edge.jump + 0.5 * edge.bend * inside)
         return np.asarray(removed, dtype=float)
 
     def _reliefs(self, gear: Toothing) -> Iterator[tuple[float, Shape, float, float]]:
@@ -284,6 +341,17 @@ def _check_relief(modification: FlankModification, kind: str) -> None:
         positive(f"{kind}_length", length, f"{kind} needs the length over which it acts, in m.")
     elif length < 0.0:
         raise InputError(f"{kind}_length", length, "at least 0")
+
+
+def _check_tip_edge(modification: FlankModification) -> None:
+    """Check rounding and chamfer of the tip, of which there is at most one."""
+    for field in ("tip_rounding", "tip_chamfer"):
+        within(field, getattr(modification, field), 0.0, _LARGEST_EDGE, "In m: 0.2 mm is 2e-4.")
+    angle = "In rad, between flank and chamfer: 30 deg is 0.524."
+    within("tip_chamfer_angle", modification.tip_chamfer_angle, FLATTEST, STEEPEST, angle)
+    if modification.tip_rounding and modification.tip_chamfer:
+        advice = "The tip has a rounding or a chamfer: give one of them."
+        raise InputError("tip_chamfer", modification.tip_chamfer, "0 where tip_rounding is given", advice)
 
 
 def _check_reach(field: str, axis: tuple[float, ...], low: float, high: float) -> None:

@@ -55,6 +55,7 @@ def refuse_infeasible_pair(pair: GearPair) -> None:
     refuse_face_overlap(pair)
     refuse_jamming(pair)
     _refuse_contact_ratio(pair)
+    refuse_short_flanks(pair)
     _refuse_tip_clearance(pair)
     _refuse_interference(pair)
     _refuse_fillet_interference(pair)
@@ -105,6 +106,19 @@ def _refuse_contact_ratio(pair: GearPair) -> None:
         bound = f"smaller: the contact ratio is {value:.6g}, below 1"
         advice = "Lower the centre distance, or raise the tip diameters or the number of teeth."
         raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, advice)
+
+
+def refuse_short_flanks(pair: ParallelAxes) -> None:
+    """Refuse tip edges that end the usable flanks before the next tooth pair is in contact."""
+    value = pair.active_contact_ratio + pair.overlap_ratio
+    if value >= 1.0:
+        return
+    gears = {"pinion": pair.pinion, "wheel": pair.wheel}
+    name = max(gears, key=lambda each: abs(gears[each].tip_roll_length - gears[each].tip_form_roll_length))
+    shape = gears[name].modification
+    field = "tip_rounding" if shape.tip_rounding else "tip_chamfer"
+    bound = f"smaller: between the tip form circles the contact ratio is {value:.6g}, below 1"
+    raise InfeasibleGeometry("contact ratio", f"{name}.modification.{field}", getattr(shape, field), bound)
 
 
 def _refuse_tip_clearance(pair: GearPair) -> None:

@@ -124,14 +124,26 @@ class ParallelAxes:
 
     @cached_property
     def path_of_contact(self) -> PathOfContact:
-        """The points A to E as roll lengths on gear 1, m."""
+        """The points A to E of sharp tip edges as roll lengths on gear 1, m."""
         start = self.wheel.sign * (self.common_tangent - self.wheel.tip_roll_length)
         pitch_point = self.pinion.base_radius * math.tan(self.working_pressure_angle)
         return PathOfContact(start, pitch_point, self.pinion.tip_roll_length, self.base_pitch)
 
+    @cached_property
+    def active_path(self) -> PathOfContact:
+        """A to E between the tip form circles: shorter where tips are rounded or chamfered."""
+        start = self.wheel.sign * (self.common_tangent - self.wheel.tip_form_roll_length)
+        pitch_point = self.path_of_contact.pitch_point
+        return PathOfContact(start, pitch_point, self.pinion.tip_form_roll_length, self.base_pitch)
+
+    @property
+    def active_contact_ratio(self) -> float:
+        """epsilon_alpha of the usable flanks, which end at the tip form circles."""
+        return self.active_path.length / self.base_pitch
+
     @property
     def transverse_contact_ratio(self) -> float:
-        """epsilon_alpha."""
+        """epsilon_alpha between the tip circles."""
         return self.path_of_contact.length / self.base_pitch
 
     @property

@@ -224,6 +224,18 @@ class Toothing:
         """Roll length of the tip edge, m."""
         return self.roll_length(self.tip_radius)
 
+    @cached_property
+    def tip_form_roll_length(self) -> float:
+        """Roll length at which the usable flank ends, m: the tip edge, unless it is rounded or chamfered."""
+        return self.modification.tip_form_roll_length(self)
+
+    @property
+    def tip_form_radius(self) -> float:
+        """d_Fa / 2: radius at which the usable flank ends, m."""
+        if self.tip_form_roll_length == self.tip_roll_length:
+            return self.tip_radius
+        return math.hypot(self.base_radius, self.tip_form_roll_length)
+
     def roll_length(self, radius: float) -> float:
         """Roll length in m at `radius` >= base radius."""
         return roll_length_at_radius(self.base_radius, radius)

@@ -1,6 +1,6 @@
 """Analytic contact of elastic half-planes: pure functions of load, curvature and modulus."""
 
-from fe_contact.hertz.edge_contact import edge_contact_length, edge_half_width
+from fe_contact.hertz.edge_contact import edge_contact_length, edge_half_width, wedge_softness
 from fe_contact.hertz.line_contact import (
     contact_modulus,
     half_width,
@@ -21,4 +21,5 @@ __all__ = [
     "peak_pressure",
     "relative_radius",
     "two_cylinder_approach",
+    "wedge_softness",
 ]

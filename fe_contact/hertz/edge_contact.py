@@ -15,6 +15,8 @@ A contact on the line of action at arc distance t from the edge has phi = -t/R (
 at the edge). As long as c > 2t the edge cuts the Hertz strip off; at c = 2t both laws agree in value and
 slope. The derivation is in docs/theory/hertz.md.
 
+The body with the edge is a wedge there and yields more than a half plane: `wedge_softness`.
+
 References
 ----------
 .. [1] K. L. Johnson, Contact Mechanics, Cambridge University Press 1985, sections 2.7 and 5.5.
@@ -62,3 +64,19 @@ def edge_half_width(length: ArrayLike, slope: ArrayLike, radius: ArrayLike) -> F
     singular, regular = phi * r + 0.5 * c, 0.25 * c  # resultants of the two parts, up to a factor
     w = (-singular + 0.5 * regular) / (singular + regular)
     return np.asarray(0.5 * c * np.exp(0.5 + w), dtype=float)
+
+
+def wedge_softness(angle: float) -> float:
+    """Return how much more a wedge yields to a force at its edge than a half plane does; 1 at an angle of pi.
+
+    A force p at the apex, normal to a face, moves what is r away by -k_w p ln(r) plus a constant.
+    This is k_w/k, k = 2 (1 - nu^2)/(pi E) that of the half plane, by the radial stresses in a wedge.
+
+    Parameters
+    ----------
+    angle : float
+        Of the material between the faces, rad.
+    """
+    half = 0.5 * angle
+    along, across = half + 0.5 * math.sin(angle), half - 0.5 * math.sin(angle)
+    return 0.5 * math.pi * (math.sin(half) ** 2 / along + math.cos(half) ** 2 / across)

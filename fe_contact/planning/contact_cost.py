@@ -8,15 +8,16 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from fe_contact.contact import ContactModel
+from fe_contact.contact.slices import POINTS
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.discretisation import FaceDiscretisation
 from fe_contact.planning.plan import Plan
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 
 _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
-_FACE_POSITION = 6.6e-8
-"""Per candidate, tooth pair, layer and element of a module along the profile."""
-_FACE_CANDIDATE, _FACE_SQUARE = 3.2e-6, 1.4e-8
+_FACE_POSITION, _FACE_ELEMENT = 2e-5, 2.4e-5
+"""Per slice of a tooth pair, and per element of a module along the profile."""
+_FACE_CANDIDATE, _FACE_SQUARE = 2.9e-6, 1.0e-7
 _PLANE_EXPECTED, _SPUR_EXPECTED, _HELICAL_EXPECTED = 118, 88, 64
 """Positions that the search ends with; helical pairs begin with so many and add some for false steps."""
 _STEPS, _STEP_SLICES = 50, 15
@@ -35,6 +36,10 @@ _TABLE_POINT = 2e-6
 
 _HELD_POSITIONS, _HELD_PART = 320, 2.5
 """Positions whose compliance is held at once: of a search that begins with 64, and in parts of fixed ones."""
+
+
+_POINT_NUMBERS = 25
+"""Numbers that are kept of a touching point."""
 
 
 class Work(NamedTuple):
@@ -95,26 +100,26 @@ def held_out_loads(loads: int) -> int:
 
 
 def contact_bytes(pair: ParallelAxes, plan: Plan) -> float:
-    """Return the bytes of the compliance between candidates that is held at once."""
+    """Return the bytes of compliance and touching points that are held at once."""
     held = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
-    return 8.0 * held * candidates(pair, plan.discretisation.slices) ** 2
+    count = candidates(pair, plan.discretisation.slices)
+    points = count * (POINTS if plan.discretisation.slices > 1 else 1)
+    return 8.0 * held * (count**2 + _POINT_NUMBERS * points)
 
 
 def candidates(pair: ParallelAxes, slices: int) -> float:
-    """Return about how many candidates a position has."""
+    """Return about how many slices of tooth pairs a position has."""
     return float((pair.transverse_contact_ratio + pair.overlap_ratio + 1.0) * slices)
 
 
 def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> Work:
     """Return what one position and one point of it cost in so many slices."""
     made = plan.discretisation
-    pairs = pair.transverse_contact_ratio + pair.overlap_ratio + 1.0
     count = candidates(pair, slices)
     if not isinstance(made, FaceDiscretisation):
         return Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
-    layers = max(recipe.layers for recipe in made.recipes)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
-    position = _FACE_POSITION * count * pairs * layers * elements
+    position = count * (_FACE_POSITION + _FACE_ELEMENT * elements)
     return Work(position, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
 
 

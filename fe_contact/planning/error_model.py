@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass
 
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.planning.discretisation import FaceDiscretisation
+from fe_contact.planning.discretisation import SLICE_ORDER, FaceDiscretisation
 from fe_contact.planning.plan import Plan
 from fe_contact.types import Json
 
@@ -24,7 +24,7 @@ _FACE_RIPPLE = {"draft": 5.5e-3, "standard": 1.8e-3, "fine": 8e-4}
 """Mesh over the face, of peak-to-peak in parts of the mean: spur pairs and modified profiles."""
 _HELICAL_RIPPLE = {"draft": 1e-3, "standard": 4e-4, "fine": 2e-4}
 """The same of plain helical pairs, whose contact lines average over the profile."""
-_HELICAL_SLICES, _SPUR_SLICES, _SLICES, _ORDER = 4.5e-3, 2e-4, 31, 2.5
+_HELICAL_SLICES, _SPUR_SLICES, _SLICES, _ORDER = 1.2e-3, 2e-4, 15, SLICE_ORDER
 """Peak-to-peak in parts of the mean at so many slices, and its order in their number."""
 _CORRECTION, LEFT_OUT = 0.03, 1.25
 """Error of the correction for a finite width over what it is expected to correct, and of leaving it out."""

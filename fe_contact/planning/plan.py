@@ -17,8 +17,11 @@ from fe_contact.planning.discretisation import Discretisation, face_discretisati
 from fe_contact.types import FloatArray, Json
 
 EDGE_PATCH = 0.0125
-"""Length of the patch at a tip edge in modules: the contact length there under rated load (factors of two
-move STE in corner contact by about 0.1 %)."""
+"""Least length of the patch at a tip edge in modules: two to three elements of the tip (factors of two move
+STE in corner contact by less than 0.05 %)."""
+
+EDGE_SHARE = 0.5
+"""Share of the largest load whose strip the patch at a tip edge follows: another pair carries too there."""
 
 WIDEST_PATCH = 0.375
 """Largest half-width of a load patch in modules, unless the mesh asks for more.
@@ -149,7 +152,7 @@ def make_plan(
         stress = accuracy.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
         discretisation = plane_discretisation(pair, level, hypothesis, model.finite_width)
-    patch = _patch_rule(pair, LARGEST_SUPPORT * levels[-1], discretisation.least_patch)
+    patch = _patch_rule(pair, float(levels[-1]), discretisation)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     support = _support_loads(levels)
     return Plan(
@@ -172,9 +175,17 @@ def _support_loads(levels: FloatArray) -> FloatArray:
     return np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
 
 
-def _patch_rule(pair: ParallelAxes, force: float, least: float) -> PatchRule:
-    """Return patches wider than any contact strip, within reason, and than the meshes ask for."""
-    return PatchRule(max(least, wanted_patch(pair, force)), EDGE_PATCH * pair.pinion.normal_module)
+def _patch_rule(pair: ParallelAxes, force: float, made: Discretisation) -> PatchRule:
+    """Return patches wider than any contact strip, within reason, and than the meshes ask for.
+
+    `force` is the largest requested load in N.
+    """
+    cosine = math.cos(pair.base_helix_angle)
+    modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
+    edge_load = 4.0 * EDGE_SHARE * force * cosine / (pair.face_width * math.pi * modulus)
+    widest = max(made.least_patch, wanted_patch(pair, LARGEST_SUPPORT * force))
+    least_edge = max(made.least_edge, EDGE_PATCH * pair.pinion.normal_module)
+    return PatchRule(widest, least_edge, edge_load)
 
 
 def wanted_patch(pair: ParallelAxes, force: float) -> float:

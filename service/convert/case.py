@@ -180,6 +180,8 @@ def _modification(given: ToothingInput) -> FlankModification:
     for name in _RELIEFS:
         facts[f"{name}_length"] = getattr(given, f"{name}_length_mm") * MM
         facts[f"{name}_shape"] = getattr(given, f"{name}_shape")
+    facts["tip_rounding"], facts["tip_chamfer"] = given.tip_rounding_mm * MM, given.tip_chamfer_mm * MM
+    facts["tip_chamfer_angle"] = given.tip_chamfer_angle_deg * DEGREE
     return FlankModification(**facts, flank_grid=_flank_grid(given))
 
 

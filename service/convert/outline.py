@@ -62,13 +62,13 @@ def _gear(gear: Toothing) -> Json:
 
 
 def _path(pair: ParallelAxes) -> Json:
-    """Return the line of action and the points A to E on it, in the frame of the drawing."""
+    """Return the line of action and A to E of the usable flanks on it, in the frame of the drawing."""
     alpha = pair.working_pressure_angle
     along = np.array([math.cos(alpha), math.sin(alpha)])
     foot = pair.pinion.base_radius * np.array([-math.sin(alpha), math.cos(alpha)])
     found = {
         name: _points((foot + roll * along)[None, :])[0]
-        for name, roll in zip("ABCDE", pair.path_of_contact.points, strict=True)
+        for name, roll in zip("ABCDE", pair.active_path.points, strict=True)
     }
     return {"points_mm": found, "base_pitch_mm": pair.base_pitch / MM}
 
@@ -78,9 +78,9 @@ def _figures(pair: ParallelAxes) -> Json:
     return {
         "speed_ratio": pair.speed_ratio,
         "working_pressure_angle_deg": pair.working_pressure_angle / DEGREE,
-        "transverse_contact_ratio": pair.transverse_contact_ratio,
+        "transverse_contact_ratio": pair.active_contact_ratio,
         "overlap_ratio": pair.overlap_ratio,
-        "total_contact_ratio": pair.total_contact_ratio,
+        "total_contact_ratio": pair.active_contact_ratio + pair.overlap_ratio,
         "base_pitch_mm": pair.base_pitch / MM,
         "common_face_width_mm": pair.face_width / MM,
         "circumferential_backlash_um": 1e6 * pair.circumferential_backlash,

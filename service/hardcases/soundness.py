@@ -47,16 +47,15 @@ def _plain(problem: ContactProblem, position: int) -> Problem:
     c = problem.candidates
     real = np.isfinite(c.gap[position])
     motion = c.motion_arm[position, real]
+    row = position % len(problem.compliance)
+    everywhere = c.at_points(c.at_points(problem.bodies[row]).T)
     return Problem(
-        compliance=problem.compliance[position % problem.compliance.shape[0]][np.ix_(real, real)],
+        compliance=everywhere[np.ix_(real, real)],
         gap=c.gap[position, real] * motion,
         motion_arm=motion,
         torque_arm=c.torque_share[position, real],
         gap_about=GapAbout(*(part[position, real] for part in c.gap_about)),
-        width=np.full(int(real.sum()), c.width),
-        patch_1=c.patch_1.law_width[position, real],
-        patch_2=c.patch_2.law_width[position, real],
-        modulus=problem.modulus,
-        k1=problem.half_plane_1,
-        k2=problem.half_plane_2,
+        width=c.width[position, real],
+        length=c.slices.law_length,
+        modulus=2.0 / (np.pi * sum(k[row, real] for k in problem.half_planes)),
     )

@@ -21,11 +21,7 @@ _HEAD = (
 _FAMILIES = (
     ("closed forms", ("iso6336", "thin_slices"), palette.ORANGE),
     ("2-D finite elements", ("plane_strain", "corrected_draft", "corrected", "corrected_fine"), palette.BLUE),
-    (
-        "3-D finite elements",
-        ("3d_draft", "3d_draft_61", "3d_standard", "3d_standard_61", "3d_fine"),
-        palette.GREEN,
-    ),
+    ("3-D finite elements", ("3d_draft", "3d_standard", "3d_fine"), palette.GREEN),
 )
 Judged = RungResult | MeasuredFullContact
 

@@ -24,6 +24,7 @@ GridRow = Annotated[
 ]
 
 
+EdgeLength = Annotated[float, Field(ge=0.0, le=100.0)]
 PitchDeviations = Annotated[
     tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...], Strict(False), Field(max_length=1000)
 ]
@@ -156,6 +157,24 @@ class ToothingInput(BoundaryModel):
             }
         ],
     )
+    tip_rounding_mm: EdgeLength = Field(
+        default=0.0,
+        description="Radius in mm of the rounded tip edge in the transverse plane, tangent to flank and tip "
+        "circle; 0 is a sharp edge",
+        examples=[0.3],
+    )
+    tip_chamfer_mm: EdgeLength = Field(
+        default=0.0,
+        description="Radial height h_K in mm of the tip chamfer: d_Fa = d_a - 2 h_K",
+        examples=[0.4],
+    )
+    tip_chamfer_angle_deg: float = Field(
+        default=30.0,
+        ge=5.0,
+        le=85.0,
+        description="Angle in deg between flank and tip chamfer in the transverse plane",
+        examples=[30.0],
+    )
     pitch_deviation_um: PitchDeviations = Field(
         default=(),
         description="Cumulative pitch deviation F_pi (ISO 1328-1) of the loaded flank of every tooth in um, "
@@ -199,6 +218,14 @@ class ToothingInput(BoundaryModel):
             length = f"{name}_length_mm"
             if getattr(self, f"{name}_um") > 0.0 and getattr(self, length) == 0.0:
                 refuse(length, 0.0, f"above 0 when {name}_um is given", f"Give {length}, for example 1.5.")
+        return self
+
+    @model_validator(mode="after")
+    def _one_tip_edge(self) -> Self:
+        """Refuse a tip that is rounded and chamfered."""
+        if self.tip_rounding_mm > 0.0 and self.tip_chamfer_mm > 0.0:
+            advice = "The tip has a rounding or a chamfer: give one of them."
+            refuse("tip_chamfer_mm", self.tip_chamfer_mm, "0 where tip_rounding_mm is given", advice)
         return self
 
 

@@ -14,9 +14,9 @@ FLANK_FIELDS = tuple(
     name
     for name in ToothingInput.model_fields
     if name.startswith(("tip_relief", "root_relief", "end_relief", "profile_crowning", "profile_slope"))
-    or name.startswith(("helix_", "flank_twist"))
+    or name.startswith(("helix_", "flank_twist", "tip_rounding", "tip_chamfer"))
 )
-"""Modifications of a gear that a live question may change: amounts, lengths and shapes."""
+"""Modifications of a gear that a live question may change: amounts, lengths, shapes and tip edges."""
 
 
 def _left_out(name: str) -> Any:

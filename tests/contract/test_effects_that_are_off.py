@@ -15,7 +15,9 @@ from fe_contact.effects import EFFECTS
 from fe_contact.types import Json
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=20e-3, bore_diameter=40e-3)
-MODIFIED = FlankModification(tip_relief=5e-6, tip_relief_length=1e-3, helix_crowning=5e-6)
+MODIFIED = FlankModification(
+    tip_relief=5e-6, tip_relief_length=1e-3, helix_crowning=5e-6, tip_rounding=0.1e-3
+)
 ERRING = PitchDeviation((4e-6, *([0.0] * 19)))
 SHAFT = Shaft(length=0.2, diameter=0.04, position=0.06)
 ALL_OVER_THE_FACE = GearPair(

@@ -7,7 +7,6 @@ any size beside zero, edges of every angle, identical contacts, arms that differ
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -16,12 +15,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fe_contact.contact.interior_point import GapAbout, Problem, solve
-from fe_contact.contact.local_law import local_law
-from fe_contact.contact.newton import CONVERGED, PATIENCE, PointProblem, solve_point
+from fe_contact.contact.local_law import LocalLaw, free_strips
+from fe_contact.contact.newton import CONVERGED, solve_point
+from fe_contact.contact.point import PointProblem
 from fe_contact.contact.strip import Gap
 
 MODULUS = 115e9
-HALF_PLANE = 1.0 / (math.pi * MODULUS)  # equal bodies
 NOMINAL = 2660.0
 
 
@@ -53,11 +52,8 @@ def random_problem(seed: int, n: int, kind: str, gaps: str, twins: bool, arms: b
         torque_arm=motion * rng.uniform(0.98, 1.02, n) if arms else motion,
         gap_about=random_gaps(rng, n),
         width=np.full(n, 25e-3 / max(1, n // 5)),
-        patch_1=rng.uniform(1e-4, 4e-4, n),
-        patch_2=rng.uniform(1e-4, 4e-4, n),
-        modulus=MODULUS,
-        k1=HALF_PLANE,
-        k2=HALF_PLANE,
+        length=rng.uniform(1e-4, 4e-4),
+        modulus=MODULUS / rng.choice([1.0, 1.44], n),
     )
     return with_twins(problem) if twins and n > 1 else problem
 
@@ -86,7 +82,7 @@ def with_twins(problem: Problem) -> Problem:
 
 def picked(problem: Problem, index: np.ndarray) -> Problem:
     """Return the contacts of these indices."""
-    names = ("gap", "motion_arm", "torque_arm", "width", "patch_1", "patch_2")
+    names = ("gap", "motion_arm", "torque_arm", "width", "modulus")
     arrays = {name: getattr(problem, name)[index] for name in names}
     arrays["gap_about"] = GapAbout(*(part[index] for part in vars(problem.gap_about).values()))
     return replace(problem, compliance=problem.compliance[np.ix_(index, index)], **arrays)
@@ -95,18 +91,21 @@ def picked(problem: Problem, index: np.ndarray) -> Problem:
 class Solved:
     """What the compiled solver says, from a cold start unless `force` is given."""
 
-    def __init__(
-        self, problem: Problem, load: float, force: np.ndarray | None = None, patience: int = PATIENCE
-    ) -> None:
-        p = problem
+    def __init__(self, problem: Problem, load: float, force: np.ndarray | None = None) -> None:
+        p, n = problem, problem.gap.size
         gap = Gap(*vars(p.gap_about).values())
-        law = local_law(gap, p.width, p.patch_1, p.patch_2, p.modulus, p.k1, p.k2)
-        point = PointProblem(p.compliance, p.gap, p.motion_arm, p.torque_arm, law)
-        self.force = np.zeros(p.gap.size) if force is None else force.copy()
+        law = LocalLaw(p.width, gap, free_strips(gap), p.length, p.modulus)
+        there = np.flatnonzero(np.isfinite(p.gap))
+        point = PointProblem(
+            p.compliance, np.eye(n), there, p.gap[there], p.motion_arm[there], p.torque_arm[there], law
+        )
+        found = np.zeros(there.size) if force is None else force[there]
         self.residual = np.full(4, np.nan)
         self.deflection, self.tangent, self.status, self.iterations, self.beyond = solve_point(
-            point, load, self.force, self.residual, patience
+            point, load, found, self.residual
         )
+        self.force = np.zeros(n)
+        self.force[there] = found
 
 
 kinds = st.sampled_from(["smooth", "dense", "singular", "body"])
@@ -148,20 +147,37 @@ def test_two_solvers_agree_on_sixty_contacts(seed, kind, twins, arms, load):
 
 
 def test_a_handful_of_iterations():
-    # of a cold start on the nasty problems; the bold steps must settle nearly all
+    # of a cold start on the nasty problems
     kinds_of = ("smooth", "dense", "singular", "body")
     counts = [
         Solved(random_problem(seed, 12, kinds_of[seed % 4], "mixed", False, True), NOMINAL).iterations
         for seed in range(200)
     ]
     assert np.mean(counts) < 9.0
-    assert np.mean(np.array(counts) > PATIENCE) < 0.01
+    assert max(counts) <= 24
 
 
 @settings(max_examples=30, deadline=None)
-@given(problem=problems, load=loads)
-def test_cautious_steps_alone_find_the_same_solution(problem, load):
-    assert_agreement(problem, load, Solved(problem, load, patience=0))
+@given(seed=st.integers(0, 2**32 - 1), kind=kinds, arms=st.booleans(), load=loads, slices=st.integers(1, 5))
+def test_contacts_that_press_on_few_slices(seed, kind, arms, load, slices):
+    # what moves the contacts is a curve through the slices: the same problem as with the whole compliance
+    problem = random_problem(seed, 12, kind, "mixed", False, arms)
+    blend = np.random.default_rng(seed).normal(0.3, 0.5, (12, slices))
+    bodies = compliance(np.random.default_rng(seed + 1), "body", slices)
+    whole = replace(problem, compliance=blend @ bodies @ blend.T)
+    gap = Gap(*vars(problem.gap_about).values())
+    law = LocalLaw(problem.width, gap, free_strips(gap), problem.length, problem.modulus)
+    point = PointProblem(
+        bodies, blend, np.arange(12), problem.gap, problem.motion_arm, problem.torque_arm, law
+    )
+    force, residual = np.zeros(12), np.zeros(4)
+    deflection, _, status, *_ = solve_point(point, load, force, residual)
+    assert status == CONVERGED
+    answer = solve(whole, load)
+    assert answer.violation < 1e-11, "the oracle itself must solve the problem"
+    # a strip that two edges hold is exact to 1e-9 in either
+    assert deflection == pytest.approx(answer.deflection, rel=1e-8, abs=0.0)
+    assert np.all(residual < 1e-9)
 
 
 @thorough
@@ -207,7 +223,7 @@ def test_rigid_offset_is_added(problem, load, offset):
 @thorough
 @given(problem=problems, load=loads, scale=st.floats(0.01, 100.0))
 def test_lengths_scale_and_forces_scale_with_their_square(problem, load, scale):
-    names, here = ("gap", "width", "patch_1", "patch_2"), problem.gap_about
+    names, here = ("gap", "width", "length"), problem.gap_about
     larger = replace(
         problem,
         compliance=problem.compliance / scale,

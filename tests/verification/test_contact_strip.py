@@ -11,7 +11,8 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.contact.strip import Gap, half_strip, moved_gap, strip_load, touching_places
+from fe_contact.contact.least_gap import moved_gap, touching_places
+from fe_contact.contact.strip import Gap, half_strip, strip_load
 
 MODULUS = 115e9
 RADIUS = 6e-3
@@ -187,3 +188,14 @@ def test_touching_points_are_where_the_gap_is_least():
         assert least[i] <= values.min() + 1e-15
         beside = np.linspace(moved.low[0], moved.high[0], 41)[1:-1]
         assert height(moved, beside) + least[i] == pytest.approx(height(one, beside + place[i]), abs=1e-15)
+
+
+def test_load_grows_with_the_strip_where_its_end_stays_at_a_kink():
+    # a chamfer's edge holds the end of the strip: the middle is then known by the kink's angle alone
+    one = [np.array([value]) for value in (0.0, 24.9, -6.8e-3, np.inf)]
+    gap = Gap(*one, np.array([[63.47e-6]]), np.array([[0.577]]), np.zeros((1, 1)))
+    halves = np.linspace(0.95, 1.6, 5000) * 63.47e-6
+    loads = np.array([strip_load(gap, 0, half, MODULUS)[0] for half in halves])
+    assert np.all(np.diff(loads) > 0.0)
+    for half, load in zip(halves[::250], loads[::250], strict=True):
+        assert half_strip(gap, 0, load, MODULUS)[0] == pytest.approx(half, rel=1e-6)

@@ -14,8 +14,6 @@ RUNGS: tuple[Rung, ...] = (
     FiniteElementRung("corrected", "2-D corrected for the width, standard", "auto", "standard"),
     FiniteElementRung("corrected_fine", "2-D corrected for the width, fine", "auto", "fine"),
     FiniteElementRung("3d_draft", "3-D, draft", "3d", "draft"),
-    FiniteElementRung("3d_draft_61", "3-D, draft, 61 slices", "3d", "draft", 61),
     FiniteElementRung("3d_standard", "3-D, standard", "3d", "standard"),
-    FiniteElementRung("3d_standard_61", "3-D, standard, 61 slices", "3d", "standard", 61),
-    FiniteElementRung("3d_fine", "3-D, fine, 91 slices", "3d", "fine", 91),
+    FiniteElementRung("3d_fine", "3-D, fine, 23 slices", "3d", "fine", 23),
 )

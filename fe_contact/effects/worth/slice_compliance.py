@@ -1,4 +1,4 @@
-"""Compliance between contact candidates without finite elements: springs that know of each other.
+"""Compliance between loaded slices without finite elements: springs that know of each other.
 
 A slice bends its own tooth (`tooth_bending`) and, less and less, the slices beside it: exponentially over a
 decay length, as a beam on an elastic foundation, reflected at the free ends of the face, so that an even load
@@ -17,7 +17,7 @@ import math
 
 import numpy as np
 
-from fe_contact.contact import Candidates, ContactModel
+from fe_contact.contact import ContactModel, LoadedSlices
 from fe_contact.effects.worth.axial_compliance import antiplane_shear, plate_bending
 from fe_contact.effects.worth.tooth_bending import half_plane, tooth_bending
 from fe_contact.geometry import ParallelAxes, Toothing, blank_factor, seat_compliance, web_compliance
@@ -36,27 +36,27 @@ WEB_EXCESS = 2.1
 """What a web adds over its own twist: 1.9 to 2.3 measured (docs/effects/thin_rim.md)."""
 
 
-def slice_compliance(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -> FloatArray:
-    """Return the normal approach (P, n, n) in m of each candidate per N at each other, both gears.
+def slice_compliance(pair: ParallelAxes, slices: LoadedSlices, model: ContactModel) -> FloatArray:
+    """Return the normal approach (P, n, n) in m of each slice per N on each other, both gears.
 
     Parameters
     ----------
     pair : GearPair or InternalGearPair
-    candidates : Candidates
-        P positions, n candidates.
+    slices : LoadedSlices
+        P positions, n slices.
     model : ContactModel
         What of it a compliance can show: coupling, finite width, rim, seats.
     """
-    touch = candidates.touch
+    touch = slices.touch
     sides = (
-        (pair.pinion, touch.s_1, touch.lever_1, candidates.patch_1.law_width),
-        (pair.wheel, touch.s_2, touch.lever_2, candidates.patch_2.law_width),
+        (pair.pinion, touch.s_1, touch.lever_1, slices.mean(slices.patch_1.law_width)),
+        (pair.wheel, touch.s_2, touch.lever_2, slices.mean(slices.patch_2.law_width)),
     )
-    total = np.zeros((*touch.gap.shape, candidates.pair.size))
+    total = np.zeros((*touch.gap.shape, slices.pair.size))
     for gear, s, lever, patch in sides:
         # off the line of action the gear with the edge moves less, as in `contact_problem`
         share = lever[:, :, None] * lever[:, None, :]
-        share *= _of_gear(gear, candidates, model, s, patch)
+        share *= _of_gear(gear, slices, model, s, patch)
         total += share
     if model.finite_width or model.across_face:
         total *= 1.0 + finite_width_excess(pair)
@@ -64,32 +64,34 @@ def slice_compliance(pair: ParallelAxes, candidates: Candidates, model: ContactM
 
 
 def _of_gear(
-    gear: Toothing, candidates: Candidates, model: ContactModel, s: FloatArray, patch: FloatArray
+    gear: Toothing, slices: LoadedSlices, model: ContactModel, s: FloatArray, patch: FloatArray
 ) -> FloatArray:
     """One gear's share."""
     bending = tooth_bending(gear)
     blank = blank_factor(gear) if model.thin_rim else 1.0
     root = np.sqrt(bending.at(bending.tooth, s) + bending.at(bending.foundation, s) / blank)
-    apart = np.abs(candidates.pair[:, None] - candidates.pair)
-    face = candidates.face_position
+    apart = np.abs(slices.pair[:, None] - slices.pair)
+    face = slices.face_position
     decay = TOOTH_DECAY * gear.normal_module
-    own = (apart == 0) * _along_face(face, decay, candidates.slice_width)
+    own = (apart == 0) * _along_face(face, decay, slices.slice_width)
     found = root[:, :, None] * root[:, None, :]
     found *= own
     depth = 2.0 * bending.at(bending.depth, s) / patch
     ratio = gear.material.poissons_ratio
-    local = np.maximum(np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25, 0.0)
+    local = np.log(depth) - 0.5 * ratio / (1.0 - ratio) - 0.25
+    # what is within the reference length is in the local law, and never more than there is
+    local = np.maximum(local, np.log(slices.law_length / patch))
     diagonal = np.arange(face.size)
-    local *= math.cos(gear.helix_angle) * half_plane(gear) / candidates.slice_width
+    local *= math.cos(gear.helix_angle) * half_plane(gear) / slices.slice_width
     found[:, diagonal, diagonal] += local
-    body = _body(gear, candidates, model)
+    body = _body(gear, slices, model)
     found += body if model.couple_teeth else (apart == 0) * body
     return np.asarray(found)
 
 
-def _body(gear: Toothing, candidates: Candidates, model: ContactModel) -> FloatArray:
+def _body(gear: Toothing, slices: LoadedSlices, model: ContactModel) -> FloatArray:
     """Displacement (n, n) of teeth by what the body under them does."""
-    apart, face = np.abs(candidates.pair[:, None] - candidates.pair), candidates.face_position
+    apart, face = np.abs(slices.pair[:, None] - slices.pair), slices.face_position
     inner, outer = sorted((gear.held_radius, gear.root_radius))
     depth = outer - inner
     pitch = math.pi * gear.transverse_module
@@ -102,7 +104,7 @@ def _body(gear: Toothing, candidates: Candidates, model: ContactModel) -> FloatA
     whole += _seat(gear) if model.bore_seat else 0.0
     transverse, axial = math.cos(gear.base_helix_angle) ** 2, math.sin(gear.base_helix_angle) ** 2
     elastic = transverse * (rigid + sunk) + axial * _axial_shear(gear, apart)
-    elastic = elastic * _along_face(face, BODY_DECAY * depth, candidates.slice_width)
+    elastic = elastic * _along_face(face, BODY_DECAY * depth, slices.slice_width)
     return np.asarray(elastic + transverse * whole + axial * plate_bending(gear)[apart % gear.teeth])
 
 

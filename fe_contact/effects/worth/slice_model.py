@@ -26,7 +26,7 @@ from fe_contact.hertz import contact_modulus
 from fe_contact.types import FloatArray
 
 PLANE_POSITIONS, FACE_POSITIONS = 64, 32
-FACE_SLICES = 21
+FACE_SLICES = 11
 MOST_PITCHES = 96
 """Base pitches looked at where teeth differ: several turns of usual gears."""
 _PATCH, _EDGE = 0.15, 0.0125
@@ -83,7 +83,7 @@ class Springs:
         key = (model.corner_contact, model.across_face, *bodies)
         if key not in self._known:
             plain = self._candidates(model)
-            compliance = slice_compliance(self.pair, plain, model)
+            compliance = slice_compliance(self.pair, plain.slices, model)
             modulus = contact_modulus(self.pair.pinion.material, self.pair.wheel.material)
             planes = half_plane(self.pair.pinion), half_plane(self.pair.wheel)
             self._known[key] = ContactProblem(plain, compliance, modulus, *planes)

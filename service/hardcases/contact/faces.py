@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from fe_contact.contact import ContactProblem, ContactSolution
+from fe_contact.contact.slices import POINTS
 from fe_contact.types import FloatArray
 from service.hardcases.posed import NOMINAL_TORQUE, Posed, even_positions, nominal_pair, posed
 from service.hardcases.scene import HardScene, Measured
@@ -32,7 +33,7 @@ def five_per_cent() -> Sequence[Measured]:
     problem, solution = case.solve(position, case.plan.load)
     mirrored_problem, mirrored = other.solve(position, other.plan.load)
     slices = case.plan.discretisation.slices
-    wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / slices)
+    wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / (slices * POINTS))
     return (
         *soundness(problem, solution, 8),
         Measured("part of the face that carries, %", 100.0 * _carrying(problem, solution), most=6.0),

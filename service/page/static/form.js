@@ -11,7 +11,7 @@ const MAIN = new Set([
 ]);
 const GROUPS = {
   "More of the teeth": /^(addendum|dedendum|root_radius|tip_diameter|thickness|cutter)/,
-  "More flank modifications": /^(tip_relief_shape|root_relief|profile_|helix_slope|end_relief|flank_|pitch_)/,
+  "More flank modifications": /^(tip_relief_shape|tip_rounding|tip_chamfer|root_relief|profile_|helix_slope|end_relief|flank_|pitch_)/,
   "Body, seat, shaft and material": /./,
 };
 

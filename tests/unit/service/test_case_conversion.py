@@ -14,6 +14,7 @@ from bad_inputs import GOOD
 
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
+from fe_contact import FlankModification
 from fe_contact.errors import InputError, MeshError
 from service.convert.case import analysis_arguments, case_json, gear_pair
 from service.convert.checks import check_case
@@ -48,6 +49,8 @@ MODIFIED: dict[str, Any] = {
     "end_relief_um": 7.0,
     "end_relief_length_mm": 2.0,
     "end_relief_shape": "parabolic",
+    "tip_chamfer_mm": 0.3,
+    "tip_chamfer_angle_deg": 25.0,
 }
 
 
@@ -64,10 +67,17 @@ def test_lengths_and_angles_become_si() -> None:
 def test_every_modification_arrives_in_si() -> None:
     modification = gear_pair(case(**MODIFIED)).pinion.modification
     for name, value in MODIFIED.items():
-        stem = name.removesuffix("_um").removesuffix("_mm")
+        stem = name.removesuffix("_um").removesuffix("_mm").removesuffix("_deg")
         found = getattr(modification, stem)
         assert found == (value if isinstance(value, str) else pytest.approx(value * factor(name), rel=1e-15))
     assert gear_pair(case(**MODIFIED)).wheel.modification.neutral
+    rounded = gear_pair(case(tip_rounding_mm=0.2)).pinion.modification
+    assert rounded.tip_rounding == pytest.approx(2e-4, rel=1e-15)
+
+
+def test_a_gear_without_modifications_is_the_librarys_own_default() -> None:
+    """To the last bit, angles with the rest: equal pairs have equal hashes."""
+    assert gear_pair(case()).pinion.modification == FlankModification()
 
 
 def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
@@ -84,6 +94,7 @@ def test_every_field_of_the_gear_schema_reaches_the_gear() -> None:
         "tip_diameter_mm": 87.0,
         "thickness_allowance_um": 100.0,
         "pitch_deviation_um": [1.0] * 20,
+        "tip_rounding_mm": 0.2,
         "material": {"youngs_modulus_gpa": 100.0},
         "seat": {"tangential_foundation_n_per_mm3": 1e4},
         "blank": {"rim_thickness_mm": 8.0, "web_thickness_mm": 10.0},

@@ -55,6 +55,8 @@ def test_every_field_of_a_ring_gear_reaches_it() -> None:
         "profile_shift_coefficient": 0.02,
         "thickness_allowance_um": 20.0,
         "tip_relief_um": 10.0,
+        "tip_rounding_mm": 0.1,
+        "tip_chamfer_mm": 0.1,
         "tip_diameter_mm": 188.6,
         "face_width_mm": 21.0,
     }

@@ -102,7 +102,7 @@ def test_the_correction_is_right_within_its_stated_error(name, record_figure):
     measure of the correction.
     """
     pair = SCENES[name]
-    force = 20e6 * pair.face_width * pair.pinion.normal_module / 1e-3
+    force = 0.6e6 * pair.face_width * pair.pinion.normal_module / 1e-3  # strips narrower than slices
     space, held = in_space(pair, force)
     corrected, plain = in_plane(pair, force)
     expected, found = space - held, corrected - plain

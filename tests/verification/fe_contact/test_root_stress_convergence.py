@@ -24,14 +24,14 @@ PEAKS = ("tension", "compression")
 
 def peaks(found: UnitRootStress, width: float = 1.0) -> np.ndarray:
     """Extreme profile stresses (2,) at the middle of the face, per line load high on the flank."""
-    center, half = np.array([0.7 * found.s[-1]]), np.array([0.3 * GEAR.normal_module])
+    center, half = np.array([[0.7 * found.s[-1]]]), np.array([[0.3 * GEAR.normal_module]])
     forces = np.zeros(found.stress.shape[-1])
     if found.across_face:
         grid = FaceGrid(found.s, found.z, found.index)
-        loads = face_loads(grid, center, half, np.zeros(1), found.z[:1], found.z[-1:])
+        loads = face_loads(grid, center, half, np.zeros((1, 1)), found.z[:1], found.z[-1:])
         forces[loads.nodes[0, : loads.used[0]]] = width * loads.forces[0, : loads.used[0]]
     else:
-        load_vector(found.s, center[0], half[0], 0.0, forces)
+        load_vector(found.s, center[0, 0], half[0, 0], 0.0, forces)
     own = found.stress[len(found.distance) // 2, :, 0] @ forces * np.array([1.0, -1.0])[:, None, None]
     middle = np.argmin(np.abs(found.station_z))
     return crests(found.station_s, own[..., middle])[0]

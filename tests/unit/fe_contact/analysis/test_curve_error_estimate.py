@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from fe_contact.planning.discretisation import face_discretisation
+from fe_contact.planning.discretisation import SLICE_ORDER, face_discretisation
 from fe_contact.ste.curve_errors import SOURCES
 from fe_contact.ste.fields import DIMENSIONS
 
@@ -63,15 +63,17 @@ def test_the_estimate_covers_the_true_error(pair, how, cache):
 
 
 def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
-    """Few slices make false steps: the estimate must see them, also where the mesh is exact."""
+    """The estimate must see what slices do to the ripple, also where the mesh is exact: a little."""
     table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32, cache=cache)
     slices = table.curve_error[SOURCES.index("slices"), :, 0, 0, 0]
     ripple = float(table.peak_to_peak(force=FORCE))
-    assert 0.005 * ripple < slices[1] < ripple
+    assert 1e-4 * ripple < slices[1] < 0.02 * ripple
     assert slices[0] < 0.01 * float(table.mean(force=FORCE))
     made = face_discretisation(helical(), "draft")
     assert made.coarse_slices == made.slices // 2 | 1
-    assert made.remaining_slices == pytest.approx(1.0 / ((made.slices / made.coarse_slices) ** 1.25 - 1.0))
+    assert made.remaining_slices == pytest.approx(
+        1.0 / ((made.slices / made.coarse_slices) ** SLICE_ORDER - 1.0)
+    )
 
 
 def test_a_finer_level_states_a_smaller_error(cache):

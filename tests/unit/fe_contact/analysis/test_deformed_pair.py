@@ -81,6 +81,7 @@ def test_the_work_of_the_forces_is_that_of_the_contact(cache: Path) -> None:
         place = solved(pair, cache, **request)
         contact, candidates, force = place.contact, place.problem.candidates, place.solution.force[:, 0]
         compliance = bare_compliance(place)
+        pressed = candidates.on_slices(force)
         levers = np.stack([candidates.touch.lever_1, candidates.touch.lever_2])
         assert np.all(np.any((levers != 1.0) & (force > 0.0), axis=(1, 2)))  # both tips touch somewhere
         for p in range(2):
@@ -90,14 +91,14 @@ def test_the_work_of_the_forces_is_that_of_the_contact(cache: Path) -> None:
             else:
                 assert contact.plane is not None
                 both = plane_flank_forces(candidates, force, p, contact.plane)
-                flanks, width = contact.plane, candidates.width  # type: ignore[assignment]
+                flanks, width = contact.plane, candidates.slices.width  # type: ignore[assignment]
             work = width * sum(
                 float(f @ flank.block(tooth, other) @ g)
                 for flank, forces in zip(flanks, both, strict=True)
                 for tooth, f in forces.items()
                 for other, g in forces.items()
             )
-            assert work == pytest.approx(force[p] @ compliance[p] @ force[p], rel=1e-10)
+            assert work == pytest.approx(pressed[p] @ compliance[p] @ pressed[p], rel=1e-10)
             turned = [abs(sum(float(f.sum()) for f in forces.values())) * width for forces in both]
             assert turned == pytest.approx([2000.0, 2000.0], rel=0.05)
 
@@ -226,5 +227,6 @@ def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand: float, cache: Pa
     for gear, other in ((found.pinion, found.wheel), (found.wheel, found.pinion)):
         most = gear.points[gear.von_mises.argmax()]
         assert most[2] == pytest.approx(-0.5 * pair.face_width, rel=1e-6)
-        assert np.linalg.norm(other.points - most, axis=1).min() < 0.3 * pair.pinion.normal_module
+        near = 0.4 * pair.pinion.normal_module  # two elements of the draft flank
+        assert np.linalg.norm(other.points - most, axis=1).min() < near
         assert gear.residual < 1e-10

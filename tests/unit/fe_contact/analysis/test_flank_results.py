@@ -58,9 +58,14 @@ def test_the_pressure_is_hertz_of_the_line_load(cache):
     found = solved(pair, cache, effects=NO_CORNERS)
     radius = relative_radius(found.roll_length_1, found.roll_length_2) / math.cos(pair.base_helix_angle)
     modulus = contact_modulus(pair.pinion.material, pair.wheel.material)
+    path, reach = pair.path_of_contact, 0.5 * found.slice_width * abs(math.tan(pair.base_helix_angle))
+    inside = (found.roll_length_1 > path.start + reach) & (found.roll_length_1 < path.end - reach)
     carried = found.force > 0.0
     expected = found.line_load * modulus / (math.pi * radius)
-    assert found.pressure[carried] ** 2 == pytest.approx(expected[carried], rel=1e-9)
+    whole = carried & inside  # the line does not end in the stretch
+    assert whole.sum() > 0.9 * carried.sum()
+    assert found.pressure[whole] ** 2 == pytest.approx(expected[whole], rel=1e-9)
+    assert np.all(found.pressure[carried] ** 2 >= expected[carried] * (1.0 - 1e-9))
     assert np.all(found.pressure[~carried] == 0.0)
 
 

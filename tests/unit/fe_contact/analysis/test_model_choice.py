@@ -93,11 +93,10 @@ def test_a_level_or_nothing_asked_keeps_the_model_of_the_scene():
     assert only.model.across_face
 
 
-def test_helical_pairs_get_slices_before_a_finer_mesh():
-    """False steps fall with the slices, and those cost less than elements."""
+def test_helical_pairs_get_the_cheapest_mesh_and_slices_that_are_exact_enough():
     found = [decided(pair(0.3), tolerance=t) for t in (0.1, 0.01)]
-    assert {one.mesh.level for one in found} == {"draft"}
-    assert found[1].mesh.slices > found[0].mesh.slices
+    assert found[0].mesh.level == "draft"
+    assert found[1].mesh.option.error.total < 0.01 < found[0].mesh.option.error.total
     assert found[1].plan.discretisation.slices == found[1].mesh.slices
 
 

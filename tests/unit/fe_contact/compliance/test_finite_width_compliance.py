@@ -72,7 +72,9 @@ def test_an_even_load_is_the_box_over_the_whole_face(gear: Gear) -> None:
     load_vector(solid.s, center, width, share, profile)
     loads = face_loads(
         FaceGrid(solid.s, solid.z, solid.index),
-        *(np.array([x]) for x in (center, width, share, solid.z[0], solid.z[-1])),
+        *(np.array([[x]]) for x in (center, width, share)),
+        solid.z[:1],
+        solid.z[-1:],
     )
     box = np.zeros(len(solid.blocks[0]))
     box[loads.nodes[0, : loads.used[0]]] = loads.forces[0, : loads.used[0]]

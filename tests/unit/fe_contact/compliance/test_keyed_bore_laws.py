@@ -155,9 +155,9 @@ def test_the_key_has_its_area_and_its_place(gear: Gear, angle: float) -> None:
 def test_contact_sees_the_key_as_the_blocks_do() -> None:
     found = solved(keyed(HELICAL))
     grid, tooth = FaceGrid(found.s, found.z, found.index), np.array([-1, 0, 0, 2])
-    middle = 0.5 * (found.s_form + found.s_tip) + np.array([0.0, -1e-4, 3e-4, 0.0])
+    middle = 0.5 * (found.s_form + found.s_tip) + np.array([[0.0], [-1e-4], [3e-4], [0.0]])
     low = np.array([-8e-3, -2e-3, 4e-3, 0.0])
-    loads = face_loads(grid, middle, np.full(4, 1e-3), np.zeros(4), low, low + 3e-3)
+    loads = face_loads(grid, middle, np.full((4, 1), 1e-3), np.zeros((4, 1)), low, low + 3e-3)
     forces = np.zeros((4, found.index.max() + 1))
     for i in range(4):
         np.add.at(forces[i], loads.nodes[i, : loads.used[i]], loads.forces[i, : loads.used[i]])

@@ -203,7 +203,7 @@ def patch(found: UnitRootStress, gear: Gear) -> np.ndarray:
     if found.across_face:
         grid = FaceGrid(found.s, found.z, found.index)
         ends = (found.z[:1], found.z[-1:])
-        loads = face_loads(grid, np.array([center]), np.array([half]), np.zeros(1), *ends)
+        loads = face_loads(grid, np.array([[center]]), np.array([[half]]), np.zeros((1, 1)), *ends)
         forces[loads.nodes[0, : loads.used[0]]] = loads.forces[0, : loads.used[0]]
     else:
         load_vector(found.s, center, half, 0.0, forces)

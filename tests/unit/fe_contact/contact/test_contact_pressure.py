@@ -20,7 +20,7 @@ B = float(half_width(LOAD / WIDTH, RADIUS, MODULUS))
 def pressure(slope=0.0, low=-math.inf, high=math.inf, place=math.inf, jump=0.0) -> float:
     one = [np.array([[value]]) for value in (slope, 1.0 / RADIUS, low, high)]
     breaks = [np.array([[[value]]]) for value in (place, jump, 0.0)]
-    candidates = SimpleNamespace(gap_about=Gap(*one, *breaks), width=WIDTH)
+    candidates = SimpleNamespace(gap_about=Gap(*one, *breaks), width=np.array([[WIDTH]]))
     problem = SimpleNamespace(candidates=candidates, modulus=MODULUS)
     return float(contact_pressure(problem, np.array([[[LOAD]]]))[0, 0, 0])
 

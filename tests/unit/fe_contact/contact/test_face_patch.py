@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fe_contact.contact.face_patch import FaceGrid, add_compliance, face_loads, responses
+from fe_contact.contact.face_patch import FaceGrid, FaceLoads, add_compliance, face_loads, responses
 from fe_contact.contact.patch import load_vector
 
 
@@ -25,8 +25,13 @@ def coordinates(mesh: FaceGrid) -> np.ndarray:
     return np.column_stack([mesh.s[where[:, 1]], planes[where[:, 0]]])
 
 
+def loads_of(mesh: FaceGrid, *patches: tuple[float, float, float, float, float]) -> FaceLoads:
+    center, half_width, share, low, high = (np.array(column) for column in zip(*patches, strict=True))
+    return face_loads(mesh, center[:, None], half_width[:, None], share[:, None], low, high)
+
+
 def dense(mesh: FaceGrid, *patches: tuple[float, float, float, float, float]) -> np.ndarray:
-    loads = face_loads(mesh, *(np.array(column) for column in zip(*patches, strict=True)))
+    loads = loads_of(mesh, *patches)
     result = np.zeros((len(patches), mesh.freedom.max() + 1))
     for p in range(len(patches)):
         used = loads.used[p]
@@ -75,6 +80,22 @@ def test_neighbouring_boxes_add_up_to_one():
     assert 0.3 * parts[0] + 0.7 * parts[1] == pytest.approx(whole, abs=1e-14)
 
 
+def test_a_load_follows_its_contact_line():
+    # three patches side by side, each a third of the range with its own place along the profile
+    mesh = grid()
+    centers, half, share = (
+        np.array([[3e-3, 3.4e-3, 3.8e-3]]),
+        np.full((1, 3), 1e-3),
+        np.array([[0.0, 0.2, 0.4]]),
+    )
+    loads = face_loads(mesh, centers, half, share, np.array([-3e-3]), np.array([6e-3]))
+    found = np.zeros(mesh.freedom.max() + 1)
+    np.add.at(found, loads.nodes[0, : loads.used[0]], loads.forces[0, : loads.used[0]])
+    bounds = ((-3e-3, 0.0), (0.0, 3e-3), (3e-3, 6e-3))
+    parts = dense(mesh, *((centers[0, q], 1e-3, share[0, q], *bounds[q]) for q in range(3)))
+    assert found == pytest.approx(parts.mean(axis=0), abs=1e-15)
+
+
 @pytest.mark.parametrize("teeth", [[0, 0, 0, 0], [-1, -1, 0, 1], [2, 1, 0, -1]])
 def test_compliance_is_the_double_product(teeth):
     mesh = grid()
@@ -82,7 +103,7 @@ def test_compliance_is_the_double_product(teeth):
     freedoms = mesh.freedom.max() + 1
     blocks = rng.normal(size=(3, freedoms, freedoms))
     blocks[0] += blocks[0].T
-    loads = face_loads(mesh, *(np.array(column) for column in zip(*PATCHES, strict=True)))
+    loads = loads_of(mesh, *PATCHES)
     lever = np.array([1.0, 0.9, 1.0, 0.8])
     found = np.zeros((4, 4))
     add_compliance(responses(blocks), np.array(teeth), loads, lever, found)

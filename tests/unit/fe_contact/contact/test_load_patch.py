@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from scipy.special import j1
 
+from fe_contact.contact import PatchRule
 from fe_contact.contact.patch import Patches, load_vector, tip_patches
+from fe_contact.hertz import edge_contact_length
 
 
 def flank(ends: np.ndarray) -> np.ndarray:
@@ -166,3 +168,24 @@ def test_law_width_gives_the_patch_self_approach(share):
     mean = math.log(2.0) + series - math.log(half)
     patches = Patches(np.array([0.0]), np.array([half]), np.array([share]))
     assert -(math.log(patches.law_width[0]) - 0.25 - math.log(2.0)) == pytest.approx(mean, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("slope", [0.2, 0.01, 1e-3, 0.0, -1e-3, -5e-3])
+def test_patches_at_an_edge_are_as_long_as_the_strip(slope):
+    load, modulus, radius = 1e5, 115e9, 30e-3
+    rule = PatchRule(half_width=1e-3, edge_length=1e-9, edge_load=4.0 * load / (math.pi * modulus))
+    found = rule.lengths(np.array(-slope * radius), np.array(radius))
+    strip = float(edge_contact_length(load, slope, radius, modulus))
+    assert float(found) == pytest.approx(strip, rel=1e-9, abs=0.0)
+
+
+def test_patches_at_an_edge_keep_their_bounds():
+    rule = PatchRule(half_width=3e-4, edge_length=5e-5, edge_load=1e-5)
+    lengths = rule.lengths(np.array([-1.0, 0.0, 1.0]), np.array([1e-2, 10.0, 1e-2]))
+    assert lengths.tolist() == [5e-5, 6e-4, 6e-4]
+
+
+def test_a_contact_hangs_on_the_edge_from_the_patch_that_reaches_it_to_the_edge_itself():
+    hang = at([0.5 * EDGE_LENGTH, 0.25 * EDGE_LENGTH, 0.0, -1e-4]).at_edge
+    assert hang[0] == 0.0 and 0.0 < hang[1] < 1.0
+    assert hang[2:] == pytest.approx([1.0, 1.0], rel=1e-12)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
@@ -9,7 +11,7 @@ from scipy.optimize import minimize_scalar
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.contact.touch import conjugate_touch, flank_coordinate, modified_touch
 from fe_contact.effects.modification_gap import ModificationGap
-from fe_contact.geometry import InternalGearPair, RingGear
+from fe_contact.geometry import InternalGearPair, RingGear, corner_contact, edge_gap
 
 
 def pair(**modification: object) -> GearPair:
@@ -170,3 +172,96 @@ def test_the_edge_of_a_ring_on_a_flatter_flank_has_a_radius():
     assert flatter.sum() > 0
     assert np.all(found.radius[np.isfinite(found.gap)] > 0.0)
     assert found.radius[flatter] == pytest.approx(100.0 * gears.wheel.base_radius)
+
+
+def ring_pair(**modification: object) -> InternalGearPair:
+    shape = FlankModification(**modification)
+    pinion = Gear(20, 4e-3, 25e-3, bore_diameter=40e-3, modification=shape)
+    ring = RingGear(60, 4e-3, 25e-3, rim_diameter=300e-3, addendum_coefficient=0.8, modification=shape)
+    return InternalGearPair(pinion, ring, 80e-3)
+
+
+@pytest.mark.parametrize("make", [pair, ring_pair])
+@pytest.mark.parametrize("side", ["exit", "approach"])
+def test_the_edge_of_a_chamfer_touches_like_the_tip_of_a_shorter_tooth(make, side):
+    """On the line of action of the tip circles, where the edge of the chamfer is off it."""
+    height = 0.5e-3
+    gears = make(tip_chamfer=height)
+    shorter = cut_off(make(), height)
+    beyond = np.array([1e-6, 0.05e-3, 0.2e-3, 0.5e-3, 0.9e-3])
+    if side == "exit":
+        roll_1 = gears.pinion.tip_form_roll_length + beyond
+    else:
+        roll_1 = gears.active_path.start - beyond
+    wanted = corner_contact(shorter, side, beyond)
+    assert np.all(wanted.valid)
+    plain = conjugate_touch(gears, roll_1[:, None], gears.mating_roll_length(roll_1)[:, None], corners=True)
+    assert np.all(plain.gap == 0.0)
+    found = modified_touch(gears, plain, np.zeros(1), (Removed(),))
+    assert found.gap[:, 0] == pytest.approx(wanted.gap, rel=2e-3, abs=1e-12)
+    at = found.s_1 if side == "exit" else found.s_2
+    gear = gears.pinion if side == "exit" else gears.wheel
+    assert at[:, 0] == pytest.approx(float(flank_coordinate(gear, gear.tip_form_roll_length)), abs=1e-12)
+    left = found.slope[:, 0]
+    opening = np.abs(left) if side == "exit" else left + found.jump[:, 0, -1]
+    assert opening == pytest.approx(wanted.slope_angle, rel=0.08, abs=2e-4)
+
+
+def cut_off(gears, height):
+    shorter = [
+        replace(gear, tip_diameter=2.0 * (gear.tip_radius - gear.sign * height))
+        for gear in (gears.pinion, gears.wheel)
+    ]
+    return replace(gears, pinion=shorter[0], wheel=shorter[1])
+
+
+@pytest.mark.parametrize("make", [pair, ring_pair])
+@pytest.mark.parametrize("edge", [{"tip_rounding": 0.2e-3}, {"tip_rounding": 1e-6}, {"tip_chamfer": 0.2e-3}])
+def test_a_cut_tip_against_a_direct_search(make, edge):
+    """The least of exact gap of the plain flanks and material removed, on the arc or at its beginning."""
+    gears = make(**edge)
+    beyond = np.array([0.05e-3, 0.1e-3, 0.3e-3])
+    roll_1 = gears.pinion.tip_form_roll_length + beyond
+    inside = roll_1 <= gears.pinion.tip_roll_length
+    _, found = touches_at(gears, roll_1)
+    tip = float(flank_coordinate(gears.pinion, gears.pinion.tip_roll_length))
+    form = float(flank_coordinate(gears.pinion, gears.pinion.tip_form_roll_length))
+    for k in np.flatnonzero(inside):
+        s = np.linspace(form - 1e-5, min(tip, form + 0.1e-3), 200_001)
+        roll = np.sqrt(2.0 * gears.pinion.base_radius * s)
+        removed = gears.pinion.modification.material_removed(gears.pinion, roll)
+        gap = edge_gap(gears, "exit", roll, roll_1[k]) + removed
+        assert found.gap[k, 0] == pytest.approx(float(np.nanmin(gap)), rel=2e-3, abs=2e-12)
+        assert found.s_1[k, 0] == pytest.approx(float(s[np.nanargmin(gap)]), abs=1e-6)
+
+
+def touches_at(gears, roll_1):
+    plain = conjugate_touch(gears, roll_1[:, None], gears.mating_roll_length(roll_1)[:, None], corners=True)
+    return plain, modified_touch(gears, plain, np.zeros(1), (Removed(),))
+
+
+@pytest.mark.parametrize("make", [pair, ring_pair])
+@pytest.mark.parametrize("edge", [{"tip_rounding": 0.3e-3}, {"tip_chamfer": 0.3e-3}])
+def test_touching_points_run_over_a_cut_tip_without_a_jump(make, edge):
+    gears = make(**edge)
+    ends = gears.active_path.start - 0.8e-3, gears.active_path.end + 0.8e-3
+    plain, found = touches_at(gears, np.linspace(*ends, 6001))
+    possible = np.isfinite(found.gap[:, 0])
+    gap = found.gap[possible, 0]
+    assert np.abs(np.diff(gap)).max() < 0.25e-6
+    assert np.abs(np.diff(gap, 2)).max() < 2e-9
+    assert np.all(gap >= -1e-15)
+    within = np.abs(plain.roll_1 - np.mean(ends)) < 0.5 * (gears.active_path.length - 1e-9)
+    assert np.all(np.abs(found.gap[within]) < 1e-15)
+    assert np.abs(np.diff(found.s_1[possible, 0])).max() < 5e-6
+
+
+def test_roundings_tend_to_the_sharp_edge():
+    """Gap and place of a rounded edge approach those of a sharp one in proportion to its radius."""
+    sharp = pair()
+    roll_1 = sharp.pinion.tip_roll_length + np.linspace(0.02e-3, 0.8e-3, 14)
+    plain, _ = touches_at(sharp, roll_1)
+    for radius in (1e-5, 1e-7, 1e-9):
+        _, found = touches_at(pair(tip_rounding=radius), roll_1)
+        for name, limit in (("gap", 0.2 * radius), ("s_1", 2.0 * radius)):
+            assert getattr(found, name) == pytest.approx(getattr(plain, name), abs=limit), name

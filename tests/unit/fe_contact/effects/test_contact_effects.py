@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields, is_dataclass, replace
 
 import numpy as np
 import pytest
@@ -34,12 +34,14 @@ def candidates(case: ContactScene, model: ContactModel):
 
 
 def assert_identical(first, second):
-    """Compare every array of two sets of candidates, bit for bit."""
+    """Compare every array of two sets of candidates and of what they hold, bit for bit."""
+    assert type(first) is type(second)
     for entry in fields(first):
         a, b = getattr(first, entry.name), getattr(second, entry.name)
-        pairs = [(a, b)] if isinstance(a, np.ndarray | float) else [(vars(a)[n], vars(b)[n]) for n in vars(a)]
-        for x, y in pairs:
-            np.testing.assert_array_equal(x, y, err_msg=entry.name, strict=isinstance(x, np.ndarray))
+        if is_dataclass(a):
+            assert_identical(a, b)
+        else:
+            np.testing.assert_array_equal(a, b, err_msg=entry.name, strict=isinstance(a, np.ndarray))
 
 
 @pytest.mark.parametrize("model", [ContactModel(), ContactModel(corner_contact=True)])

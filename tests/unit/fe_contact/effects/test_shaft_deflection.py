@@ -116,9 +116,9 @@ def internal_pair(helix: float, offset: float) -> InternalGearPair:
 
 
 def places(pair: ParallelAxes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Roll lengths (P, n) and face positions (n,) of touching points."""
+    """Roll lengths (P, n) and face positions (n,) of the middles of slices."""
     slices = Slices.of_pair(pair, 5)
-    found = contact_candidates(pair, ContactModel(), np.arange(3) / 3, PatchRule(3e-4, 2e-4), slices)
+    found = contact_candidates(pair, ContactModel(), np.arange(3) / 3, PatchRule(3e-4, 2e-4), slices).slices
     return *rolls_at(pair, found.touch.s_1, found.touch.s_2), found.face_position
 
 
@@ -189,7 +189,7 @@ def test_opposite_hand_on_mirrored_shafts_is_the_mirror_image():
 def problem_of(pair: GearPair) -> ContactProblem:
     slices = Slices.of_pair(pair, 5)
     candidates = contact_candidates(pair, ContactModel(), np.arange(3) / 3, PatchRule(3e-4, 2e-4), slices)
-    springs = 1e-9 * np.eye(candidates.pair.size) + np.zeros((3, 1, 1))
+    springs = 1e-9 * np.eye(candidates.slices.pair.size) + np.zeros((3, 1, 1))
     return ContactProblem(candidates, springs, 1e11, 1e-11, 1e-11)
 
 
@@ -210,7 +210,7 @@ def test_without_shafts_the_problem_is_untouched_and_with_ever_stiffer_ones_noth
     assert np.abs(added).max() < 1e-14 * problem.compliance.max()
 
 
-def test_the_term_is_added_between_all_candidates_once():
+def test_the_term_is_added_between_all_slices_once():
     case = scene(SHAFT, replace(SHAFT, position=0.1))
     problem = problem_of(case.pair)
     model = ShaftDeflection().contribute(case, ContactModel())

@@ -107,6 +107,8 @@ def test_what_plane_strain_does_not_hold_is_refused_by_reason() -> None:
     assert "rim" in str(refusal(replace(PAIR, pinion=web)))
     crowned = replace(WHEEL, modification=FlankModification(helix_crowning=5e-6))
     assert "across the face" in str(refusal(replace(PAIR, wheel=crowned)))
+    rounded = replace(WHEEL, modification=FlankModification(tip_rounding=0.1e-3))
+    assert "tips" in str(refusal(replace(PAIR, wheel=rounded)))
 
 
 def test_no_element_is_turned_over_by_a_relief_as_deep_as_it_is_large() -> None:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.hertz import edge_contact_length, edge_half_width, half_width
+from fe_contact.hertz import edge_contact_length, edge_half_width, half_width, wedge_softness
 
 MODULUS, RADIUS = 115e9, 6e-3
 LOADS = np.geomspace(1e2, 1e7, 21)
@@ -59,3 +59,23 @@ def test_parallel_flanks_at_the_edge():
 def test_blunt_wedge_does_not_know_the_radius():
     # phi R >> c: pressure ~ sqrt((c-x)/x), w = -1
     assert edge_half_width(1e-6, 0.5, 1.0) == pytest.approx(0.5e-6 * math.exp(-0.5), rel=1e-5, abs=0.0)
+
+
+def test_a_wedge_of_half_a_turn_is_a_half_plane():
+    assert wedge_softness(math.pi) == pytest.approx(1.0, rel=1e-15, abs=0.0)
+
+
+def test_sharper_wedges_yield_more():
+    softness = [wedge_softness(math.radians(angle)) for angle in range(180, 60, -5)]
+    assert np.all(np.diff(softness) > 0.0)
+
+
+@pytest.mark.parametrize("angle", [1.3, 0.5 * math.pi, 2.0, 2.6])
+def test_the_stresses_of_a_wedge_balance_the_force(angle):
+    # radial stress -(softness field)/r over an arc; k_w is half the moduli of axial and transverse force
+    theta = np.linspace(-0.5 * angle, 0.5 * angle, 4001)
+    normal = math.sin(0.5 * angle), math.cos(0.5 * angle)
+    directions = np.cos(theta), np.sin(theta)
+    stiff = [np.trapezoid(part**2, theta) for part in directions]
+    softness = 0.5 * math.pi * sum(n**2 / each for n, each in zip(normal, stiff, strict=True))
+    assert wedge_softness(angle) == pytest.approx(softness, rel=1e-6, abs=0.0)

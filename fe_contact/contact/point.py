@@ -1,0 +1,126 @@
+"""One position of the contact: the forces of its contacts under given motions of the bodies, compiled."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from numba import njit
+
+from fe_contact.contact.elimination import dot
+from fe_contact.contact.local_law import LocalLaw, force_at, plain_load, plain_strip
+from fe_contact.types import FloatArray, IntArray
+
+
+class PointProblem(NamedTuple):
+    """One position: m contacts that can carry force, on n = J K slices of J pairs.
+
+    Attributes
+    ----------
+    bodies : ndarray, shape (n, n)
+        Normal approach of slice i per unit normal force on j, without what is in the local law, m/N.
+    blend : ndarray, shape (points of a pair, K)
+        Parts of the force of each point on the slices of its pair.
+    place : ndarray of int, shape (m,)
+        Each contact among the points of all pairs.
+    gap : ndarray, shape (m,)
+        Normal rigid gap in m.
+    motion_arm, torque_arm : ndarray, shape (m,)
+        Normal approach per unit deflection, and share of the load per unit force; > 0.
+    law : LocalLaw
+        Of all points of all pairs.
+    """
+
+    bodies: FloatArray
+    blend: FloatArray
+    place: IntArray
+    gap: FloatArray
+    motion_arm: FloatArray
+    torque_arm: FloatArray
+    law: LocalLaw
+
+
+class State(NamedTuple):
+    """Where an iteration is.
+
+    Attributes
+    ----------
+    held : ndarray, shape (n,)
+        Forces on the slices h, N.
+    moved : ndarray, shape (n,)
+        What they move, K h, m.
+    force, slope : ndarray, shape (m,)
+        Of the contacts under these motions: N, N/m.
+    pressed : ndarray, shape (n,)
+        Those forces on the slices N'F, N.
+    """
+
+    held: FloatArray
+    moved: FloatArray
+    force: FloatArray
+    slope: FloatArray
+    pressed: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: State) -> None:
+    """Fill in forces and slopes of the contacts, and the forces on the slices, under the motions."""
+    points, count = problem.blend.shape
+    place, blend, moved, arm = problem.place, problem.blend, state.moved, problem.motion_arm
+    width, curvature, free = problem.law.width, problem.law.gap.curvature, problem.law.free
+    length, modulus = problem.law.length, problem.law.modulus
+    for q in range(gap.size):
+        closer = arm[q] * elastic - gap[q]
+        state.force[q], state.slope[q] = 0.0, 0.0
+        i = place[q]
+        first, row = i // points * count, i % points
+        for a in range(count):
+            closer -= blend[row, a] * moved[first + a]
+        if closer <= 0.0:
+            continue
+        half = plain_strip(curvature[i], length, closer)
+        if half < free[i]:
+            line_load, stiffness = plain_load(curvature[i], length, modulus[i], half, closer)
+            state.force[q], state.slope[q] = width[i] * line_load, width[i] * stiffness
+        else:
+            state.force[q], state.slope[q] = force_at(problem.law, i, closer)
+    press(problem, state.force, state.pressed)
+
+
+@njit(cache=True, error_model="numpy")
+def press(problem: PointProblem, force: FloatArray, out: FloatArray) -> None:
+    """Fill in the forces of the contacts on the slices."""
+    points, count = problem.blend.shape
+    place, blend = problem.place, problem.blend
+    out[:] = 0.0
+    for q in range(force.size):
+        if force[q] != 0.0:
+            first, row = place[q] // points * count, place[q] % points
+            for a in range(count):
+                out[first + a] += blend[row, a] * force[q]
+
+
+@njit(cache=True, error_model="numpy")
+def move(problem: PointProblem, held: FloatArray, out: FloatArray) -> None:
+    """Fill in the motions of the slices under forces on them."""
+    for j in range(held.size):
+        out[j] = dot(problem.bodies[j], held, held.size)
+
+
+@njit(cache=True, error_model="numpy")
+def motion_at(problem: PointProblem, q: int, moved: FloatArray) -> float:
+    """Return the motion of the bodies at a contact, m."""
+    points, count = problem.blend.shape
+    first, row = problem.place[q] // points * count, problem.place[q] % points
+    value = 0.0
+    for a in range(count):
+        value += problem.blend[row, a] * moved[first + a]
+    return value
+
+
+@njit(cache=True, error_model="numpy")
+def stiffness(problem: PointProblem, state: State) -> float:
+    """Return how fast the contacts take load as the gear moves, N/m."""
+    value = 0.0
+    for q in range(state.slope.size):
+        value += problem.torque_arm[q] * state.slope[q] * problem.motion_arm[q]
+    return value
