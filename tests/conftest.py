@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import re
@@ -10,6 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from compiled_once import compile_once
 
 FIGURES = Path(__file__).parents[1] / "out" / "validation"
 
@@ -17,13 +19,20 @@ RecordFigure = Callable[..., None]
 
 
 def pytest_configure() -> None:
-    """Heed interrupts again: who starts the tests in the background may have had them ignored for good.
+    """Share what is compiled, and heed interrupts again, which may have been ignored for good.
 
-    A shell does so for what it starts with ``&``, and all its children inherit it; tests that interrupt a
-    program would wait for ever.
+    A shell ignores them for what it starts with ``&``, and all its children inherit it; tests that interrupt
+    a program would wait for ever.
     """
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        compile_once()
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_finish() -> None:
+    """Spare the collector of garbage what lives as long as the tests: modules, and the tests themselves."""
+    gc.freeze()
 
 
 @pytest.fixture

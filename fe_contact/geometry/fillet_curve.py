@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from functools import lru_cache
 
 import numpy as np
 
@@ -53,9 +54,15 @@ class FilletCurve(ABC):
         """Tool angles at which the arc length from `start` equals `arc` (Newton from a table)."""
         if arc.size == 0:
             return arc
-        table = np.linspace(start, 0.5 * np.pi, 257)
-        angle = np.interp(arc, self.arc_length(start, table), table)
+        angle = np.interp(arc, *_arc_table(self, start))
         for _ in range(4):
             slope = np.maximum(self.speed(angle), np.finfo(float).tiny)
             angle = np.clip(angle - (self.arc_length(start, angle) - arc) / slope, start, 0.5 * np.pi)
         return np.asarray(angle, dtype=float)
+
+
+@lru_cache(maxsize=16)
+def _arc_table(curve: FilletCurve, start: float) -> tuple[FloatArray, FloatArray]:
+    """Return arc lengths from `start` and their tool angles: flanks are asked for again and again."""
+    angle = np.linspace(start, 0.5 * np.pi, 257)
+    return curve.arc_length(start, angle), angle

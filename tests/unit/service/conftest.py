@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 import structlog.testing
+from condensed_once import condensed_bodies, condensed_once
 from postgres_server import database_url, postgres
 from s3_server import s3_objects, s3_url
 
-__all__ = ["database_url", "postgres", "s3_objects", "s3_url"]
+__all__ = ["condensed_bodies", "condensed_once", "database_url", "postgres", "s3_objects", "s3_url"]
 
 STAND_INS = str(Path(__file__).resolve().parents[2] / "stand_ins")
 

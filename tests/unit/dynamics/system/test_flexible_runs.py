@@ -28,21 +28,22 @@ def run_up(duration=0.05, **changes):
 
 
 def test_no_energy_comes_from_shafts_that_spin_and_bend():
-    """Undamped and thrown: what does not balance, over the energy of the throw."""
+    """Undamped and thrown: what does not balance is at most 2 % of the energy of the throw in a second."""
+    duration = 2e-3
     scene = with_mesh(
         with_bushings(flexible_pair(gear=0.07, table=spring_table(4e8)), damping_ratio=0.0), damping=0.0
     )
     shafts = tuple(replace(shaft, damping_ratio=0.0) for shaft in scene.shafts)
     effects = {**scene.effects, "gyroscopic": "on"}
     drive = replace(scene.drives[0], speed=TimeLaw.constant(2000.0))
-    system = assemble(replace(scene, shafts=shafts, effects=effects, drives=(drive,), duration=0.005))
+    system = assemble(replace(scene, shafts=shafts, effects=effects, drives=(drive,), duration=duration))
     start, rng = static_equilibrium(system), np.random.default_rng(7)
     velocity = 1e-3 * rng.normal(size=start.displacement.size) / system.arrays.scale
     run = integrate(system, start, Integration(tolerance=1e-12), velocity=velocity)
     assert run.status.usable
     audit = EnergyAudit.from_arrays(run.work, run.stored)
     thrown = 0.5 * velocity @ system.arrays.mass @ velocity
-    assert abs(audit.residual) < 1e-4 * thrown
+    assert abs(audit.residual) < 0.02 * duration * thrown
     assert abs(audit.stored_bushings) > 1e-2 * thrown
 
 

@@ -159,5 +159,7 @@ def test_nodes_of_one_pitch_among_others_join_its_neighbours():
     kinks = np.abs(nodes.position[:, None] - [0.213, 0.741]).min(axis=1)
     assert spacing[kinks < 0.05].min() < 0.15 * spacing[kinks > 0.15].min()
     even = np.arange(64) / 64
-    fixed, _ = measured_nodes(even, steps(even).reshape(192, 1), lambda x: steps(x).reshape(-1, 1), 3, 0.002)
+    fixed, _ = measured_nodes(
+        even, steps(even).reshape(192, 1), lambda x: steps(x).reshape(-1, 1), 3, NodeRule(16, 0.002, 768)
+    )
     assert fixed.error[[64, 127]].max() < 1e-12

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -61,10 +62,12 @@ def moved_3d(compliance: FlankCompliance3D, tooth: int = 0) -> float:
     return float(loads @ compliance.block(tooth, 0) @ loads / loads.sum() ** 2)
 
 
+@cache
 def plane(gear: Gear, teeth: int | None = None) -> FlankCompliance:
     return flank_compliance(gear, coarse_2d(gear), PlaneHypothesis.PLANE_STRESS, teeth=teeth)
 
 
+@cache
 def solid_3d(gear: Gear, reach: int | None = None) -> FlankCompliance3D:
     return flank_compliance_3d(gear, coarse_3d(gear), reach=reach)
 

@@ -22,10 +22,14 @@ from fe_contact.material import STEEL
 from fe_contact.mesh import SectorRecipe
 
 
-def disc(modules: float, helix: float = 0.3) -> Gear:
-    """40 teeth on a small bore, this wide."""
+def disc(modules: float, helix: float = 0.3, teeth: int = 40) -> Gear:
+    """Teeth on a small bore, this wide."""
     return Gear(
-        teeth=40, normal_module=4e-3, face_width=modules * 4e-3, bore_diameter=16e-3, helix_angle=helix
+        teeth=teeth,
+        normal_module=4e-3,
+        face_width=modules * 4e-3,
+        bore_diameter=teeth * 0.4e-3,
+        helix_angle=helix,
     )
 
 
@@ -54,7 +58,7 @@ def test_rounding_grows_as_a_helical_disc_bends_as_a_plate(
     helix: float, modules: float, power: float
 ) -> None:
     """(D/w)^4 with a helix, whose axial force bends the disc; (D/w)^2 without."""
-    wide, thin = disc(modules, helix), disc(0.5 * modules, helix)
+    wide, thin = disc(modules, helix, 20), disc(0.5 * modules, helix, 20)
     found = [flank_compliance_3d(gear, SectorRecipe.draft(gear), reach=0).checks for gear in (wide, thin)]
     quotient = found[1].energy_rounding / found[0].energy_rounding
     assert math.log2(quotient) == pytest.approx(power, abs=0.3)
@@ -80,6 +84,6 @@ def mate_of(gear: Gear) -> Gear:
 
 
 def test_a_body_beyond_the_bound_names_rounding() -> None:
-    gear = disc(0.1)
+    gear = disc(0.1, teeth=20)
     with pytest.raises(SolveError, match=r"rounding may change it by .* Widen the face"):
         flank_compliance_3d(gear, SectorRecipe.draft(gear), reach=0)

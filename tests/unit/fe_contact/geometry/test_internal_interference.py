@@ -84,16 +84,24 @@ def inside(
     zero: float,
 ) -> float:
     """Largest depth of the mover's flanks, its centre at `height`, in the teeth of the other gear."""
-    sparse = mover[:: len(mover) // 300]
-    angle = np.concatenate((sparse[:, 0], -sparse[:, 0]))
-    angle = (angle + center)[None, :] + 2.0 * math.pi / teeth * np.arange(teeth)[:, None]
-    radius = np.tile(sparse[:, 1], 2)
-    x, y = radius * np.sin(angle), height + radius * np.cos(angle)
-    distance, pitch = np.hypot(x, y), 2.0 * math.pi / fixed_teeth
-    beside = np.abs((np.arctan2(x, y) - zero + 0.5 * pitch) % pitch - 0.5 * pitch)
+    sparse, radius = outline_points(mover)
+    turn = center + 2.0 * math.pi / teeth * np.arange(teeth)[:, None]
+    along = sparse[0] * np.cos(turn) - sparse[1] * np.sin(turn)  # towards the line of centres, of all teeth
+    square = height**2 + radius**2 + 2.0 * height * along
+    within = (square >= fixed[0, 1] ** 2) & (square <= fixed[-1, 1] ** 2)  # few teeth are near the other gear
+    tooth, point = np.nonzero(within)
+    x = sparse[1, point] * np.cos(turn[tooth, 0]) + sparse[0, point] * np.sin(turn[tooth, 0])
+    distance, pitch = np.sqrt(square[within]), 2.0 * math.pi / fixed_teeth
+    beside = np.abs((np.arctan2(x, height + along[within]) - zero + 0.5 * pitch) % pitch - 0.5 * pitch)
     depth = distance * (np.interp(distance, fixed[:, 1], fixed[:, 0]) - beside)
-    within = (distance >= fixed[0, 1]) & (distance <= fixed[-1, 1])
-    return float(np.max(depth, where=within, initial=-np.inf))
+    return float(np.max(depth, initial=-np.inf))
+
+
+def outline_points(flank: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Points (along, across) of both flanks of a tooth on the line of centres, and their radii."""
+    sparse = flank[:: len(flank) // 300]
+    angle, radius = np.concatenate((sparse[:, 0], -sparse[:, 0])), np.tile(sparse[:, 1], 2)
+    return np.stack((radius * np.cos(angle), radius * np.sin(angle))), radius
 
 
 def worst(pair: InternalGearPair) -> float:

@@ -1,0 +1,59 @@
+"""Bodies are condensed once in a run of the tests: what their laws are about comes after them.
+
+Analyses that are given no cache condense both gears each time, which is most of what a small one costs. Files
+that name `condensed_once` in their conftest share the results, each still said to be computed. The laws of
+condensing itself are in tests/unit/fe_contact/compliance, which does not.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fe_contact.compliance import cyclic_compliance, flank_compliance_2d
+from fe_contact.compliance.cache import read_compliance, write_compliance
+from fe_contact.compliance.flank import FlankCompliance
+from fe_contact.compliance.flank_3d import FlankCompliance3D
+
+
+@pytest.fixture(scope="session")
+def condensed_bodies(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where they are kept while the tests run, by all processes."""
+    own = tmp_path_factory.getbasetemp()
+    return (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "condensed_bodies"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def condensed_once(condensed_bodies: Path) -> Iterator[None]:
+    """Condense what no other test has condensed."""
+    plane, face = flank_compliance_2d, cyclic_compliance
+    with pytest.MonkeyPatch.context() as patch:
+        for module, name, key, kind in (
+            (plane, "compute_flank_compliance", plane.compliance_key, FlankCompliance),
+            (face, "compute_flank_compliance_3d", face.compliance_key_3d, FlankCompliance3D),
+        ):
+            patch.setattr(module, name, _kept(getattr(module, name), key, kind, condensed_bodies))
+        yield
+
+
+def _kept(
+    compute: Callable[..., Any], key_of: Callable[..., str], kind: type[Any], folder: Path
+) -> Callable[..., Any]:
+    """Return the computation that looks first."""
+
+    @wraps(compute)
+    def found(*asked: Any) -> Any:
+        key = key_of(*asked)
+        result = read_compliance(folder, key, kind)
+        if result is None:
+            result = compute(*asked)
+            write_compliance(folder, key, result)
+        return replace(result, from_cache=False)
+
+    return found
