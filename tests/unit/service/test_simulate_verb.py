@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 
 import numpy as np
@@ -26,7 +25,7 @@ def test_ctrl_c_keeps_what_was_computed_and_resume_goes_on(tmp_path):
 
     def stop(_stage: str, fraction: float) -> None:
         if 0.3 < fraction < 0.33:
-            os.kill(os.getpid(), signal.SIGINT)
+            signal.raise_signal(signal.SIGINT)
 
     with pytest.raises(KeyboardInterrupt, match="--resume goes on"):
         _run(SCENE, path, stop, resume=False)
@@ -40,9 +39,9 @@ def test_ctrl_c_keeps_what_was_computed_and_resume_goes_on(tmp_path):
 def test_a_second_interrupt_is_not_held_back():
     before = signal.getsignal(signal.SIGINT)
     with pytest.raises(KeyboardInterrupt), until_interrupted() as asked:
-        os.kill(os.getpid(), signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
         assert asked()
-        os.kill(os.getpid(), signal.SIGINT)
+        signal.raise_signal(signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is before
 
 

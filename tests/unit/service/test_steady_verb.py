@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import struct
 from collections.abc import Callable, Iterator
@@ -80,12 +79,16 @@ def test_ctrl_c_ends_a_study_without_a_file(
     def interrupting() -> Iterator[Callable[[str, float], None]]:
         def report(stage: str, _fraction: float) -> None:
             if stage == "down":
-                os.kill(os.getpid(), signal.SIGINT)
+                signal.raise_signal(signal.SIGINT)
 
         yield report
 
     monkeypatch.setattr("service.cli.dynamic_studies.progress_bar", interrupting)
-    result = loa(scene, "--speed-rpm", "3000,3200", "--settling-periods", 2, "-o", tmp_path / "s.nc")
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        result = loa(scene, "--speed-rpm", "3000,3200", "--settling-periods", 2, "-o", tmp_path / "s.nc")
+    finally:
+        signal.signal(signal.SIGINT, handler)
     assert (result.exit_code, result.stdout) == (130, "")
     assert "interrupted" in result.stderr
     assert not (tmp_path / "s.nc").exists()
