@@ -16,6 +16,7 @@ from benchmarks.held_out_cases import held_out_face_cases, held_out_plane_cases
 from benchmarks.honesty_cases import HonestyCase, face_cases, plane_cases
 from benchmarks.marked_section import replace_section
 from benchmarks.measured_rungs import Measured, RungOf, measured, needs_face, rungs_of, truth
+from fe_contact import AllowedError
 from fe_contact.analysis import check_request
 from fe_contact.analysis.model_choice import Decided, decide
 
@@ -125,8 +126,8 @@ def rung_of(chosen: Decided) -> RungOf:
 
 
 def relative_error(found: Measured, exact: Any) -> float:
-    """Largest relative error of mean and peak-to-peak over the loads."""
-    return float(np.max(np.abs(found.value[:2] / exact[:2] - 1.0)))
+    """Largest error of mean and peak-to-peak over the loads, in parts of the size the tolerance counts by."""
+    return float(np.max(np.abs(found.value[:2] - exact[:2]) / AllowedError(TOLERANCE).scale(exact[:2])))
 
 
 def counts(found: Sequence[Kept]) -> list[Figure]:

@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from fe_contact.allowed_error import AllowedError
     from fe_contact.analysis import (
         Ablation,
         ContactPattern,
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
 __all__ = [
     "STEEL",
     "Ablation",
+    "AllowedError",
     "BoreSeat",
     "ContactPattern",
     "DeformedPair",
@@ -133,6 +135,7 @@ _HOME = {
     "Search": "fe_contact.microgeometry",
     "Tolerances": "fe_contact.microgeometry",
     "ToleranceStudy": "fe_contact.microgeometry",
+    "AllowedError": "fe_contact.allowed_error",
     "SteDatabase": "fe_contact.ste",
     "Estimate": "fe_contact.types",
     "Status": "fe_contact.types",

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.effect_ledger import switched_over
 from fe_contact.analysis.influences import estimated_influences
@@ -171,7 +172,7 @@ def ablate(
     *,
     torques: Sequence[float] | FloatArray | None = None,
     normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import compute_database, solved_findings
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.solved_table import Progress
@@ -20,7 +21,7 @@ def analyze(
     *,
     torques: Sequence[float] | FloatArray | None = None,
     normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",
@@ -45,7 +46,8 @@ def analyze(
     torques : sequence of float
         Torques on the driving gear in N m, increasing, > 0; or `normal_forces` in N.
     tolerance, level, time_budget
-        Asked accuracy: relative error, "draft" | "standard" | "fine", or seconds; at most one.
+        Asked accuracy, at most one: error of mean and peak-to-peak, relative or 20 nm, the larger of both
+        (`AllowedError` has another floor); "draft" | "standard" | "fine"; or seconds.
     model : str
         "auto" (three dimensions where the scene acts across the face, else plane strain corrected for
         the finite face width), "plane_strain", "plane_stress" or "3d".

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.error_estimate import left_out
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_table import SolvedTable
@@ -25,8 +26,6 @@ from fe_contact.types import FloatArray, Json
 
 LEAST_BACKLASH = 1e-9
 """m; teeth without a thickness allowance have none but rounding."""
-USUAL_TOLERANCE = 0.01
-"""Relative change that an assumption may make where no tolerance was asked for."""
 
 
 @dataclass(frozen=True)
@@ -42,7 +41,8 @@ class Assumption:
     holds : bool or None
         None: it could not be judged.
     change : float
-        Largest relative change of mean or peak-to-peak that it can make, as far as that is known; NaN else.
+        Largest change of mean or peak-to-peak that it can make, in parts of the size that the tolerance
+        counts by (`AllowedError.scale`), as far as that is known; NaN else.
     reason : str
         What was found.
     """
@@ -108,9 +108,9 @@ def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
     return (*_plane(run), *_coast_flanks(run), *_printed_data(run), _load_patches(run))
 
 
-def allowed_change(run: SolvedRun) -> float:
-    """Return the relative change of mean or peak-to-peak that an assumption may make."""
-    return run.checked.request.accuracy.tolerance or USUAL_TOLERANCE
+def allowed(run: SolvedRun) -> AllowedError:
+    """Return what an assumption may change mean or peak-to-peak by."""
+    return run.checked.request.accuracy.allowed
 
 
 def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
@@ -125,13 +125,13 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     assemble_edges(run.places, run.solved)
     pairs = zip(run.places.places, run.solved, strict=True)
     depth = np.stack([deepest_edge(place, run.plan.load, *solved) for place, solved in pairs], axis=1)
-    change = float(np.max(depth / np.maximum(size, 1e-12 * np.abs(_means(run)))))
+    change = float(np.max(depth / np.maximum(allowed(run).scale(size), 1e-12 * np.abs(_means(run)))))
     deepest = 1e6 * float(depth.max())
     reason = "the gaps at the tip edges stay open"
     if deepest > 0.0:
         reason = f"teeth bend {deepest:.2g} um beyond the gap at a tip edge"
     yield Assumption(
-        CornerContact.name, "tip edges stay clear", change <= allowed_change(run), change, reason
+        CornerContact.name, "tip edges stay clear", change <= allowed(run).relative, change, reason
     )
 
 
@@ -143,14 +143,14 @@ def _spared(run: SolvedTable) -> Iterator[Assumption]:
         if worth is not None:
             change = _relative(worth, run)
             reason = f"estimated at {100 * change:.2g} % of the computed mean or peak-to-peak"
-            holds = change <= allowed_change(run)
+            holds = change <= allowed(run).relative
             yield Assumption(name, "too small to be seen", holds, change, reason)
 
 
 def _relative(worth: Worth, run: SolvedTable) -> float:
     """Return the larger of both estimated changes over the computed values, at the worst load and place."""
-    mean = np.abs(worth.mean)[:, None] / np.abs(_means(run))
-    ripple = np.abs(worth.peak_to_peak)[:, None] / _ripples(run)
+    mean = np.abs(worth.mean)[:, None] / allowed(run).scale(_means(run))
+    ripple = np.abs(worth.peak_to_peak)[:, None] / allowed(run).scale(_ripples(run))
     return float(np.max(np.maximum(mean, ripple)))
 
 
@@ -166,7 +166,7 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     missing = left_out(run.plan, run.places.places[0].contact.pair)
     if missing:
         reason = f"the finite width adds about {100 * missing:.2g} % to the mean"
-        holds = missing <= allowed_change(run)
+        holds = missing <= allowed(run).relative
         yield Assumption(FiniteWidth.name, "plane strain stands for the whole face", holds, missing, reason)
 
 

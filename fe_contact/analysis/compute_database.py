@@ -16,7 +16,7 @@ from fe_contact.analysis.model_choice import Decided
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, solve_table
-from fe_contact.planning import expected_error
+from fe_contact.analysis.tolerance_receipt import tolerance_receipt
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
 from fe_contact.plausibility import Finding, merged, table_findings
@@ -94,7 +94,12 @@ def compute_database(
     metadata.warnings.extend(finding.to_json() for finding in findings)
     if elsewhere.tasks or elsewhere.lost:
         metadata.receipt["elsewhere"] = asdict(elsewhere)
-    return replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+    table = replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+    if request.accuracy.tolerance is not None:
+        kept = tolerance_receipt(table, request.accuracy.tolerance)
+        metadata.receipt["tolerance"] = kept
+        metadata.receipt["choice"]["met"] = kept["met"]
+    return table
 
 
 def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:
@@ -105,8 +110,7 @@ def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]
 
 def _predicted(run: SolvedTable) -> Json:
     """Return what was expected of the run before it began, to stand beside what happened."""
-    error = expected_error(run.checked.request.pair, run.plan)
-    return run.prediction.to_json() | {"error": error.to_json()}
+    return run.prediction.to_json() | {"error": run.decided.mesh.option.error.to_json()}
 
 
 def _metadata(case: Json, run: SolvedTable, clock: StageClock, found: Json, ledger: list[Json]) -> Metadata:

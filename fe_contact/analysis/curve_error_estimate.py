@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from fe_contact.analysis.error_estimate import CORRECTION_ERROR, Nested, contact_error
+from fe_contact.analysis.error_estimate import CORRECTION_ERROR, LEFT_BY_TILT, Nested, contact_error
 from fe_contact.analysis.held_out_axes import AxisError
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
@@ -33,13 +33,20 @@ from fe_contact.types import FloatArray, Json
 LEFT_BY_MESH = {
     "plane": {"draft": (0.28, 0.20, 0.22), "standard": (0.28, 0.32, 0.32)},
     "spur": {"draft": (1.4, 3.6, 2.9), "standard": (1.4, 1.4, 2.2)},
-    "helical": {"draft": (1.5, 1.9, 1.8), "standard": (1.2, 1.3, 1.1)},
+    "helical": {"draft": (1.1, 2.0, 2.0), "standard": (0.7, 1.8, 1.8)},
 }
 """Error left of mean, peak-to-peak and harmonics over the change to the coarse mesh: in the plane, of
-elements half as large; over the face, spur or helical, of elements of two thirds. Coarse meshes are not in
-the range yet in which errors fall with a power of the size: a draft in the plane leaves less of its change
-than a finer mesh, one over the face more. Set on the cases of docs/accuracy.md not held out; the level fine
-has the parts of standard."""
+elements half as large; over the face of a spur pair, of elements of two thirds; of a helical pair, over what
+second order leaves of that change (`FaceDiscretisation.remaining`). Coarse meshes are not in the range yet in
+which errors fall with a power of the size: a draft in the plane leaves less of its change than a finer mesh,
+one over the face more. Set on the cases of docs/accuracy.md not held out; the level fine has the parts of
+standard."""
+HARMONIC_SHARE = 0.3
+"""Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
+slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
+RIPPLE_BY_TILT = 8.0
+"""Error of peak-to-peak and harmonics in parts of them, over the part that the tilt of the flanks takes off
+the mean: 8 on a soft gear on steel against full contact, 2 on steel."""
 SHOWN = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
 
 
@@ -57,22 +64,25 @@ def curve_errors(
     alignments that were solved again, and interpolated between them.
     """
     made, sample = plan.discretisation, nested.sample
+    helical = isinstance(made, FaceDiscretisation) and places.nominal.pair.base_helix_angle != 0.0
 
     def changes(these: FloatArray, those: FloatArray, part: FloatArray | float) -> FloatArray:
         """Parts of the changes of every curve, (22, F, M, D)."""
         one, other = (values.reshape(sample.knots.size, -1) for values in (these, those))
         change = part * quantity_changes(sample.knots, one, other, places.period)
+        change = _shared(change) if helical else change
         return sample.spread(change.reshape(QUANTITIES, *these.shape[1:]))
 
     free_ends = changes(nested.table, nested.plane, CORRECTION_ERROR)
     if stands_in:
         free_ends = changes(nested.table, np.zeros_like(nested.table), stands_in)
+    # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
+    many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
     by_source = {
-        "discretisation": changes(
-            nested.plane, nested.coarse, _left_by_mesh(plan, places.nominal.pair.base_helix_angle != 0.0)
-        ),
-        "slices": changes(nested.table, nested.sliced, made.remaining_slices),
-        "contact_solver": _by_solver(places, solutions, sample),
+        "discretisation": changes(nested.plane, nested.coarse, _left_by_mesh(plan, helical)),
+        "slices": changes(nested.table, many_slices, 1.0),
+        "contact_solver": _by_solver(places, solutions, sample)
+        + changes(nested.table, nested.without_tilt(places.nominal.pair), _by_tilt()),
         "finite_width": free_ends,
         "position": np.broadcast_to(
             positions.curves[:, :, None, None], (*positions.curves.shape, *places.shape)
@@ -92,12 +102,25 @@ def _by_solver(places: Places, solutions: list[ContactSolution], sample: TableSa
     )
 
 
+def _by_tilt() -> FloatArray:
+    """Errors over what the tilt of the flanks takes off, (22, 1)."""
+    return np.array([LEFT_BY_TILT, *[RIPPLE_BY_TILT] * (QUANTITIES - 1)])[:, None]
+
+
 def _left_by_mesh(plan: Plan, helical: bool) -> FloatArray:
     """Error left over the change to the coarse mesh, (22, 1)."""
-    over_face = isinstance(plan.discretisation, FaceDiscretisation)
-    kind = ("helical" if helical else "spur") if over_face else "plane"
+    made = plan.discretisation
+    kind = ("helical" if helical else "spur") if isinstance(made, FaceDiscretisation) else "plane"
     mean, ripple, harmonics = LEFT_BY_MESH[kind]["draft" if plan.level == "draft" else "standard"]
-    return np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])[:, None]
+    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])[:, None]
+    return part * made.remaining if helical else part
+
+
+def _shared(change: FloatArray) -> FloatArray:
+    """Let every harmonic change (22, C) by its share of peak-to-peak at least."""
+    number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)[:, None]
+    least = HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
+    return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], least)])
 
 
 def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
 from fe_contact.analysis.solved_table import Progress
@@ -81,7 +82,7 @@ def deformed_pairs(
     beside: int = 1,
     misalignment: float = 0.0,
     center_distance_change: float = 0.0,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versions
 from fe_contact.analysis.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
@@ -34,7 +35,7 @@ def flank_results(
     misalignment: float = 0.0,
     center_distance_change: float = 0.0,
     at: ArrayLike | None = None,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     model: str = "auto",
     effects: Mapping[str, str] | None = None,

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.ladder import RUNGS, Rung
 from fe_contact.analysis.ladder.full_contact import ORIGIN, FullContactLevel, known_full_contact
 from fe_contact.analysis.measured_full_contact import (
@@ -93,7 +94,7 @@ def frontier(
     *,
     torques: Sequence[float] | FloatArray | None = None,
     normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",

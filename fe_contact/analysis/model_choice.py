@@ -98,8 +98,8 @@ def _width_is_small(checked: Checked) -> bool:
     tolerance = checked.request.accuracy.tolerance
     if tolerance is None:
         return True
-    worth = estimate_worth(*checked.judging(WIDTH), WIDTH, EFFECTS)
-    return worth is not None and worth.largest <= WIDTH_SHARE * tolerance
+    worth = estimate_worth(*checked.judging(WIDTH), WIDTH, EFFECTS, tolerance.least_scale)
+    return worth is not None and worth.largest <= WIDTH_SHARE * tolerance.relative
 
 
 def _again(request: Request) -> Checked:

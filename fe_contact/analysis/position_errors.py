@@ -16,7 +16,7 @@ from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.solved_places import deflected_places
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
-from fe_contact.planning import Plan
+from fe_contact.planning import NodeRule, Plan
 from fe_contact.sampled import LOADS, sample_of, spread
 from fe_contact.ste.curve_quantities import (
     PEAK_TO_PEAK,
@@ -92,7 +92,7 @@ def _measured(
         )
         return np.concatenate(curves, axis=1)
 
-    return measured_nodes(position, value, solve, places.period, plan.nodes.tolerance)
+    return measured_nodes(position, value, solve, places.period, plan.nodes)
 
 
 def measured_nodes(
@@ -100,7 +100,7 @@ def measured_nodes(
     value: FloatArray,
     solve: Callable[[FloatArray], FloatArray],
     period: int,
-    tolerance: float,
+    rule: NodeRule,
 ) -> tuple[PositionNodes, FloatArray]:
     """Measure the error between positions where it is largest, and bound it elsewhere.
 
@@ -114,8 +114,8 @@ def measured_nodes(
         Positions (Q,) to STE (T Q, C) in m.
     period : int
         Base pitches T.
-    tolerance : float
-        Intervals that are predicted to miss less, in parts of the peak-to-peak, are not solved.
+    rule : NodeRule
+        Intervals that are predicted to miss less than a search would allow are not solved.
 
     Returns
     -------
@@ -131,9 +131,9 @@ def measured_nodes(
     failed = NEXT_SPACING * predicted_failure(axis, value)
     error = np.maximum(failed, np.roll(failed, -1, axis=0))
     left = error.copy()
-    worst = _in_parts(error, value).reshape(period, count).max(axis=0)
+    worst = np.nan_to_num(error / rule.ripple(value)).max(axis=1).reshape(period, count).max(axis=0)
     solved = np.argsort(worst, kind="stable")[-max(count // SOLVED_PART, 1) :]
-    solved = np.sort(solved[worst[solved] > tolerance])
+    solved = np.sort(solved[worst[solved] > rule.tolerance])
     if solved.size:
         rows = (np.arange(period)[:, None] * count + solved).ravel()
         found = solve(middle[solved])
@@ -153,12 +153,6 @@ def predicted_failure(axis: Axis, value: FloatArray) -> FloatArray:
         found = interpolate(Axis(axis.knots[kept], axis.period), value[kept], axis.knots[left])
         failed[left] = np.abs(found - value[left])
     return failed
-
-
-def _in_parts(error: FloatArray, value: FloatArray) -> FloatArray:
-    """Largest error (K,) of the curves in parts of their peak-to-peak; 0 where it is unknown."""
-    ripple = np.maximum(np.ptp(value, axis=0), 1e-6 * np.abs(value).max(axis=0))
-    return np.asarray(np.nan_to_num(error / ripple).max(axis=1))
 
 
 def _by_middles(nodes: PositionNodes, period: int) -> FloatArray:

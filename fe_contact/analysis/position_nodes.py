@@ -71,7 +71,7 @@ def adaptive_nodes(rule: NodeRule, solve: Callable[[FloatArray], FloatArray]) ->
     error, between = np.full(values.shape[1:], np.inf), np.zeros_like(values)
     for remaining in reversed(range(MAX_ROUNDS)):
         own = values[values.shape[0] // 2]
-        allowed = np.maximum(rule.tolerance * np.ptp(own, axis=0), 1e-6 * np.abs(own).max(axis=0))
+        allowed = rule.tolerance * rule.ripple(own)
         middles, found, probed = _probed(nodes, values, solve, ~settled, PROBES)
         error[~settled], between[:, ~settled] = probed[~settled], found[:, ~settled]
         missed = np.any(error > allowed, axis=1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.spared_effects import spared_effects
@@ -28,7 +29,7 @@ def check_request(
     *,
     torques: Sequence[float] | FloatArray | None = None,
     normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",
@@ -60,7 +61,7 @@ def check_request(
     request = Request(
         pair,
         load_levels(pair, torques, normal_forces),
-        Accuracy(tolerance, time_budget, level, model, positions, receipt),
+        Accuracy(AllowedError.given(tolerance), time_budget, level, model, positions, receipt),
         axis("misalignments", misalignments),
         axis("center_distance_changes", center_distance_changes),
         dict(effects or {}),
@@ -80,7 +81,7 @@ def check_one_load(
     misalignment: float,
     center_distance_change: float,
     *,
-    tolerance: float | None,
+    tolerance: AllowedError | float | None,
     level: str | None,
     time_budget: float | None,
     model: str,

@@ -29,12 +29,14 @@ COUPLED_LEAST, COUPLED_MOST = 0.65, 0.8
 def expected_ripple(checked: Checked) -> Ripple | None:
     """Solve some loads and alignments of a request by thin slices, in its first base pitch.
 
+    Where the tolerance has a floor, the least counts as the size below which the floor holds.
+
     None for internal pairs, which the stiffness of the slices does not know, and where shafts couple them.
     """
     request, model = checked.request, checked.model
     if request.pair.internal or model.compliances:
         return None
-    plan = make_plan(request.pair, request.load, request.accuracy, model)
+    plan, allowed = make_plan(request.pair, request.load, request.accuracy, model), request.accuracy.allowed
     scene = replace(
         request.scene,
         misalignment=_some(request.misalignment, ALIGNMENTS),
@@ -42,9 +44,12 @@ def expected_ripple(checked: Checked) -> Ripple | None:
     )
     places = table_places(scene, checked.decided, SpringContact(request.pair, plan, law=LAW)).places
     position, load = np.arange(POSITIONS) / POSITIONS, _some(request.load, LOADS)
-    curves = np.stack([place.solve(position, load)[1].deflection for place in places])
-    part = np.ptp(curves, axis=1) / curves.mean(axis=1)
-    return Ripple(COUPLED_LEAST * float(part.min()), COUPLED_MOST * float(part.max()))
+    solved = [place.solve(position, load)[1] for place in places]
+    # errors grow with what the load adds: a misaligned pair leads at no load
+    added = np.stack([np.mean(one.deflection - one.no_load[:, None], axis=0) for one in solved])
+    ripple = np.stack([np.ptp(one.deflection, axis=0) for one in solved])
+    least, most = allowed.scale(COUPLED_LEAST * ripple) / added, COUPLED_MOST * ripple / added
+    return Ripple(float(least.min()), float(most.max()))
 
 
 def _some(axis: FloatArray, most: int) -> FloatArray:

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.flank_results import POSITIONS
 from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
@@ -62,7 +63,7 @@ def root_stress(
     misalignment: float = 0.0,
     center_distance_change: float = 0.0,
     at: ArrayLike | None = None,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     model: str = "auto",
     effects: Mapping[str, str] | None = None,

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.model_choice import decide, model_name
 from fe_contact.analysis.request import Checked
@@ -97,7 +98,7 @@ def plan_run(
     *,
     torques: Sequence[float] | FloatArray | None = None,
     normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",
@@ -140,9 +141,9 @@ def plan_run(
         _planned(checked, name, choice.slices if name == choice.level else None, ripple, cache)
         for name in LEVELS
     )
-    conflict = ""
+    conflict, asked = "", checked.request.accuracy.tolerance
     if both and time_budget is not None:
-        conflict = _conflict(choice, levels, tolerance, positive("time_budget", time_budget, "Seconds."))
+        conflict = _conflict(choice, levels, asked, positive("time_budget", time_budget, "Seconds."))
     return RunPlan(checked, choice, decided.plan, levels, conflict, cache)
 
 
@@ -161,10 +162,10 @@ def _planned(
 
 
 def _conflict(
-    choice: MeshChoice, levels: Sequence[PlannedLevel], tolerance: float | None, time_budget: float
+    choice: MeshChoice, levels: Sequence[PlannedLevel], tolerance: AllowedError | None, time_budget: float
 ) -> str:
     """Say why tolerance and time cannot both be had; empty if they can."""
-    wish = f"level {choice.level}" if tolerance is None else f"{100.0 * tolerance:.3g} %"
+    wish = f"level {choice.level}" if tolerance is None else tolerance.words
     asked = f"{wish} within {time_budget:.3g} CPU s cannot be had"
     if not choice.met:
         return f"{asked}: {choice.reason}"

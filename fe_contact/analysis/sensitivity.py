@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.analyze import analyze
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects.corner_contact import CornerContact
@@ -56,7 +57,7 @@ def study_sensitivity(
     normal_force: float,
     misalignments: Sequence[float] | FloatArray,
     center_distance_changes: Sequence[float] | FloatArray,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",

@@ -13,6 +13,9 @@ from fe_contact.checks import integer, positive, within
 from fe_contact.errors import InputError
 from fe_contact.types import Json
 
+HELICAL_BODY_LAYERS = 6
+"""Layers that the body below a helical tooth wants at least."""
+
 
 class HasFace(Protocol):
     """Anything that knows its normal module, face width and helix."""
@@ -113,8 +116,8 @@ class SectorRecipe:
     def draft(cls, gear: HasFace) -> SectorRecipe:
         """Return the quickest useful recipe: flank elements of 0.2 modules, 8 layers or more."""
         m = gear.normal_module
-        # Below a helical tooth the body wants at least six layers.
-        merge = () if gear.helix_angle else (-2,)
+        layers = _layers(gear, least=8, thickest=1.5, most=16)
+        merge = () if gear.helix_angle and layers < 2 * HELICAL_BODY_LAYERS else (-2,)
         return cls(
             flank_size=0.2 * m,
             tip_size=0.05 * m,
@@ -123,7 +126,7 @@ class SectorRecipe:
             body_size=0.2 * m,
             body_limit=2.0 * m,
             body_growth=0.6,
-            layers=_layers(gear, least=8, thickest=1.5, most=16),
+            layers=layers,
             merge_rows=merge,
         )
 

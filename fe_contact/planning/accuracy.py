@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fe_contact.checks import integer, positive, within
+from fe_contact.allowed_error import RELATIVE, AllowedError
+from fe_contact.checks import integer, positive
 from fe_contact.errors import InputError
 
 LEVELS = ("draft", "standard", "fine")
@@ -20,8 +21,8 @@ class Accuracy:
 
     Attributes
     ----------
-    tolerance : float, optional
-        Relative error on mean and peak-to-peak STE.
+    tolerance : AllowedError, optional
+        Of mean and peak-to-peak STE.
     time_budget : float, optional
         Seconds.
     level : str, optional
@@ -34,7 +35,7 @@ class Accuracy:
         "full", or "minimal": nothing is solved for the sake of error estimates.
     """
 
-    tolerance: float | None = None
+    tolerance: AllowedError | None = None
     time_budget: float | None = None
     level: str | None = None
     model: str = "auto"
@@ -46,8 +47,6 @@ class Accuracy:
         if len(asked) > 1:
             bound = f"left out when {asked[0]} is given"
             raise InputError(asked[1], getattr(self, asked[1]), bound, "Ask for one of them.")
-        if self.tolerance is not None:
-            within("tolerance", self.tolerance, 1e-4, 0.5, "0.01 means one per cent.")
         if self.time_budget is not None:
             positive("time_budget", self.time_budget, "Seconds.")
         if self.level is not None and self.level not in LEVELS:
@@ -59,3 +58,8 @@ class Accuracy:
         if self.positions is not None:
             advice = "64 resolve a spur pair; leave it out for adaptive nodes."
             integer("positions", self.positions, 8, 4096, advice)
+
+    @property
+    def allowed(self) -> AllowedError:
+        """What a run takes as small: the tolerance, without one a part of each quantity."""
+        return self.tolerance or RELATIVE

@@ -1,6 +1,7 @@
 """What the contact of a table and the estimate of its errors cost: positions to assemble, points to solve.
 
-Constants fitted to 100 tables of 3 to 470 candidates in the plane and over the face, met within 0.6 to 1.4.
+Constants fitted to tables of 3 to 70 candidates in the plane and over the face, met within 0.6 to 1.5 where
+the search ends with the positions expected; a level without a floor may ask for twice as many.
 """
 
 from __future__ import annotations
@@ -15,12 +16,11 @@ from fe_contact.planning.plan import Plan
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 
 _PLANE_POSITION, _PLANE_POINT, _PLANE_CANDIDATE = 4e-5, 3e-6, 0.55e-6
-_FACE_POSITION, _FACE_ELEMENT = 2e-5, 2.4e-5
-"""Per slice of a tooth pair, and per element of a module along the profile."""
+_FACE_POSITION = 1.4e-6
+"""Per slice of a tooth pair and square of the elements of a module along the profile."""
 _FACE_CANDIDATE, _FACE_SQUARE = 2.9e-6, 1.0e-7
-_PLANE_EXPECTED, _SPUR_EXPECTED, _HELICAL_EXPECTED = 118, 88, 64
-"""Positions that the search ends with; helical pairs begin with so many and add some for false steps."""
-_STEPS, _STEP_SLICES = 50, 15
+_PLANE_EXPECTED, _FACE_EXPECTED = 118, 76
+"""Positions that the search ends with; of 10 helical pairs 64 to 145, with a tolerance 64 to 66."""
 _TRIED_PER_NODE, _TRIED_PER_START = 9, 4
 """Positions looked at for each node that the search adds, and for each that it begins with."""
 _JUDGED = 3
@@ -62,7 +62,7 @@ def contact_seconds(
     with_errors: bool = True,
 ) -> tuple[float, float]:
     """CPU seconds of the contact, and of what is solved once more for the error estimate."""
-    kept, loads = expected_positions(pair, plan), plan.load.size
+    kept, loads = expected_positions(plan), plan.load.size
     places, distances = alignments[0] * alignments[1], alignments[1]
     judged, rows = min(places, _JUDGED), model.period * places
     tried = 0
@@ -77,7 +77,7 @@ def contact_seconds(
 
 def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
     """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes."""
-    made, kept, loads = plan.discretisation, expected_positions(pair, plan), plan.load.size
+    made, kept, loads = plan.discretisation, expected_positions(plan), plan.load.size
     work = unit_work(pair, plan, made.slices)
     again = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
@@ -119,17 +119,11 @@ def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> Work:
     if not isinstance(made, FaceDiscretisation):
         return Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
-    position = count * (_FACE_POSITION + _FACE_ELEMENT * elements)
-    return Work(position, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
+    return Work(_FACE_POSITION * elements**2 * count, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
 
 
-def expected_positions(pair: ParallelAxes, plan: Plan) -> int:
+def expected_positions(plan: Plan) -> int:
     """Return the positions in a base pitch: asked for, or those that the search usually ends with."""
-    made = plan.discretisation
     if plan.positions is not None:
         return plan.positions
-    if not isinstance(made, FaceDiscretisation):
-        return _PLANE_EXPECTED
-    if pair.base_helix_angle == 0.0:
-        return _SPUR_EXPECTED
-    return _HELICAL_EXPECTED + round(_STEPS * (_STEP_SLICES / made.slices) ** 2)
+    return _FACE_EXPECTED if isinstance(plan.discretisation, FaceDiscretisation) else _PLANE_EXPECTED

@@ -154,7 +154,7 @@ def predict_run(
     correction = {stage: known.get(log_name(kind, stage), 1.0) for stage in STAGES}
     memory = PROCESS_BYTES + contact_bytes(pair, plan) + fine.held + coarse.held
     memory += max(fine.working, coarse.working)
-    return Prediction(raw, correction, int(memory), expected_positions(pair, plan), kind)
+    return Prediction(raw, correction, int(memory), expected_positions(plan), kind)
 
 
 def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> Cost:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.planning.error_model import ExpectedError
 from fe_contact.types import Json
 
@@ -68,22 +69,23 @@ class MeshChoice:
         return {"level": self.level, "slices": self.slices, "met": self.met, "reason": self.reason}
 
 
-def mesh_for_tolerance(tolerance: float, options: Sequence[MeshOption]) -> MeshChoice:
+def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -> MeshChoice:
     """Return the option of least effort whose error is expected to be within the tolerance.
 
+    Expected errors are parts of the size of each quantity that the tolerance counts by.
     If there is none: where it is the model that is beyond it, the one of least effort whose own error is
     within it, as no mesh mends the model; else the most exact one. Said in either case.
     """
-    within = [option for option in options if option.error.total <= tolerance]
+    within = [option for option in options if option.error.total <= tolerance.relative]
     if within:
         best = min(within, key=_effort)
         return MeshChoice(best, True, f"expected error {_percent(best.error.total)} %")
-    enough = [option for option in options if option.error.discretisation <= tolerance]
-    beyond = min(option.error.model for option in options) > tolerance
+    enough = [option for option in options if option.error.discretisation <= tolerance.relative]
+    beyond = min(option.error.model for option in options) > tolerance.relative
     best = min(enough, key=_effort) if enough and beyond else min(options, key=lambda o: o.error.total)
     error = best.error
     parts = f"mesh {_percent(error.discretisation)} %, model {_percent(error.model)} %"
-    return MeshChoice(best, False, f"no mesh is expected within {_percent(tolerance)} % ({parts})")
+    return MeshChoice(best, False, f"no mesh is expected within {tolerance.words} ({parts})")
 
 
 def mesh_for_time(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
@@ -52,13 +52,26 @@ class NodeRule:
         Largest number of nodes.
     judged_pitches : int
         Base pitches of a longer period that are looked at.
+    least_ripple : float
+        Peak-to-peak STE in m that smaller ones count as.
     """
 
     start: int
     tolerance: float
     most: int
     judged_pitches: int = 3
+    least_ripple: float = 0.0
 
+    def ripple(self, curves: FloatArray) -> FloatArray:
+        """Return the peak-to-peak STE (C,) in m of curves (P, C) in m that the tolerance is a part of."""
+        least = np.maximum(self.least_ripple, _ROUNDING * np.abs(curves).max(axis=0))
+        return np.asarray(np.maximum(np.ptp(curves, axis=0), least))
+
+
+FLOOR_SHARE = 0.5
+"""Part of the floor of a tolerance that positions go by: meshes and slices take most of what is allowed."""
+_ROUNDING = 1e-6
+"""Least ripple beside the deflection: less is not looked into."""
 
 PLANE_NODES = NodeRule(64, 0.0015, 768, 64)
 FACE_NODES = NodeRule(64, 0.005, 192, 3)
@@ -154,6 +167,8 @@ def make_plan(
         discretisation = plane_discretisation(pair, level, hypothesis, model.finite_width)
     patch = _patch_rule(pair, float(levels[-1]), discretisation)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
+    if accuracy.tolerance is not None:
+        nodes = replace(nodes, least_ripple=FLOOR_SHARE * accuracy.tolerance.least_scale)
     support = _support_loads(levels)
     return Plan(
         discretisation,

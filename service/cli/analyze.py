@@ -17,7 +17,7 @@ from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
 from service.convert.plausibility import phrased_database
 from service.convert.task_workers import Hands, working_hands
-from service.convert.units import UM
+from service.convert.units import NM, UM
 from service.directories import cache_home
 from service.problems import JobFailed
 from service.schemas import Case
@@ -93,6 +93,8 @@ def _cost(receipt: dict[str, Any]) -> str:
     held_out = _held_out(receipt.get("held_out", {}))
     if held_out:
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
+    if kept := receipt.get("tolerance"):
+        text += f"\n{_tolerance(kept)}"
     outgrown = receipt.get("patch_outgrown_points", 0)
     if outgrown:
         text += f"\ncontact outgrew its load patch at {outgrown} points: the load is far beyond the usual"
@@ -103,6 +105,15 @@ def _cost(receipt: dict[str, Any]) -> str:
     if left_out:
         text += f"\nplane strain: this width deflects about {100 * left_out:.2g} % more (not in the errors)"
     return text
+
+
+def _tolerance(kept: dict[str, Any]) -> str:
+    """Return whether the tolerance is met by the errors as measured."""
+    asked = f"tolerance {100 * kept['relative']:.3g} % or {kept['floor_m'] / NM:.3g} nm"
+    if kept["met"] is None:
+        return f"{asked}: errors not estimated"
+    share = "" if kept["used"] is None else f", largest error {kept['used']:.2g} of it"
+    return f"{asked}: {'met' if kept['met'] else 'NOT met'}{share}"
 
 
 def _held_out(axes: dict[str, Any]) -> str:

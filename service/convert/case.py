@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.errors import FeContactError, InputError
 from fe_contact.geometry import (
     BoreSeat,
@@ -25,9 +26,17 @@ from fe_contact.geometry import (
 from fe_contact.geometry.modification import AMOUNTS
 from fe_contact.material import Material
 from service.convert.errors import translated
-from service.convert.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, UM
+from service.convert.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, NM, UM
 from service.problems import BadInput
-from service.schemas import BoreSeatInput, Case, MaterialInput, PairInput, ToothingInput, WheelInput
+from service.schemas import (
+    AccuracyInput,
+    BoreSeatInput,
+    Case,
+    MaterialInput,
+    PairInput,
+    ToothingInput,
+    WheelInput,
+)
 
 Json = dict[str, Any]
 
@@ -213,7 +222,7 @@ def analysis_arguments(case: Case) -> Json:
         "normal_forces": None if load.normal_force_n is None else list(load.normal_force_n),
         "misalignments": tuple(value * UM for value in errors.misalignment_um),
         "center_distance_changes": tuple(value * MM for value in errors.center_distance_change_mm),
-        "tolerance": accuracy.tolerance,
+        "tolerance": _allowed(accuracy),
         "time_budget": accuracy.time_budget_s,
         "level": accuracy.level,
         "model": accuracy.model,
@@ -223,6 +232,14 @@ def analysis_arguments(case: Case) -> Json:
         "on_violation": accuracy.on_violation,
         "effects": dict(case.effects),
     }
+
+
+def _allowed(accuracy: AccuracyInput) -> AllowedError | None:
+    """Return the tolerance asked for."""
+    if accuracy.tolerance is None:
+        return None
+    with boundary_errors():
+        return AllowedError(accuracy.tolerance, accuracy.tolerance_floor_nm * NM)
 
 
 def case_json(case: Case) -> Json:

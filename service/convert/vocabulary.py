@@ -15,6 +15,7 @@ _CASE = {
     "misalignments": "errors.misalignment_um",
     "center_distance_changes": "errors.center_distance_change_mm",
     "tolerance": "accuracy.tolerance",
+    "tolerance_floor": "accuracy.tolerance_floor_nm",
     "time_budget": "accuracy.time_budget_s",
     "level": "accuracy.level",
     "model": "accuracy.model",

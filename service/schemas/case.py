@@ -106,6 +106,13 @@ class AccuracyInput(BoundaryModel):
     tolerance: float | None = Field(
         default=None, gt=0.0, le=0.5, description="Relative, on mean and peak-to-peak STE", examples=[0.01]
     )
+    tolerance_floor_nm: float = Field(
+        default=20.0,
+        ge=0.0,
+        le=1e6,
+        description="Error in nm that a tolerance allows in any case; per cent of a small ripple may be less",
+        examples=[20.0],
+    )
     time_budget_s: float | None = Field(
         default=None, gt=0.0, le=1e6, description="CPU seconds that may be spent", examples=[10.0]
     )

@@ -40,7 +40,11 @@ class Worth:
 
 
 def estimate_worth(
-    scene: ContactScene, decided: Mapping[str, str], name: str, registry: Sequence[Effect]
+    scene: ContactScene,
+    decided: Mapping[str, str],
+    name: str,
+    registry: Sequence[Effect],
+    least: float = 0.0,
 ) -> Worth | None:
     """Estimate what leaving the effect `name` out of the model changes.
 
@@ -51,6 +55,8 @@ def estimate_worth(
         Every effect "on" or "off"; all but `name` stay so.
     name : str
     registry : sequence of Effect
+    least : float
+        Size in m that smaller means and ripples count as where a change is a part of them.
 
     Returns
     -------
@@ -58,7 +64,7 @@ def estimate_worth(
         None: one of the two states cannot be had, as a plane with what acts across the face, or the springs
         do not know it.
     """
-    return estimate_worths(scene, decided, [name], registry)[name]
+    return estimate_worths(scene, decided, [name], registry, least)[name]
 
 
 def estimate_worths(
@@ -66,6 +72,7 @@ def estimate_worths(
     decided: Mapping[str, str],
     names: Sequence[str],
     registry: Sequence[Effect],
+    least: float = 0.0,
 ) -> dict[str, Worth | None]:
     """Estimate several effects; parameters of `estimate_worth`."""
     known: dict[tuple[tuple[str, str], ...], list[EstimatedCurve]] = {}
@@ -84,12 +91,12 @@ def estimate_worths(
             return worth(next(one for one in registry if one.name == FiniteWidth.name))
         if effect.name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
             # with nothing across the face the corrected plane stands in for three dimensions
-            return _compared(curves(decided), curves(decided))
+            return _compared(curves(decided), curves(decided), least)
         with_it, without = (
             curves(decided if decided[effect.name] == choice else flipped(decided, effect.name, choice))
             for choice in ("on", "off")
         )
-        return _compared(with_it, without)
+        return _compared(with_it, without, least)
 
     return {effect.name: worth(effect) for effect in registry if effect.name in names}
 
@@ -125,13 +132,13 @@ def _curves(
     return [found[model] for model in models]
 
 
-def _compared(with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve]) -> Worth:
+def _compared(with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve], least: float) -> Worth:
     """Take differences of the last curves, and the largest relative one of all."""
     changes = [
         (b.mean - a.mean, b.peak_to_peak - a.peak_to_peak) for a, b in zip(with_it, without, strict=True)
     ]
     relative = [
-        np.abs((mean / curve.mean, ripple / curve.peak_to_peak))
+        np.abs((mean, ripple)) / np.maximum(np.abs((curve.mean, curve.peak_to_peak)), least)
         for (mean, ripple), curve in zip(changes, with_it, strict=True)
     ]
     return Worth(*changes[-1], with_it[-1], float(np.max(relative)))

@@ -14,7 +14,7 @@ from bad_inputs import GOOD
 
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
-from fe_contact import FlankModification
+from fe_contact import AllowedError, FlankModification
 from fe_contact.errors import InputError, MeshError
 from service.convert.case import analysis_arguments, case_json, gear_pair
 from service.convert.checks import check_case
@@ -211,9 +211,22 @@ def test_arguments_of_the_analysis_are_si() -> None:
     assert (arguments["tolerance"], arguments["time_budget"], arguments["positions"]) == (None, 3.0, 64)
 
 
+def test_the_floor_of_a_tolerance_is_given_in_nm() -> None:
+    def allowed(**accuracy: float) -> AllowedError:
+        return analysis_arguments(validated(Case, GOOD | {"accuracy": accuracy}))["tolerance"]
+
+    assert allowed() == AllowedError(0.01, 20e-9)
+    assert allowed(tolerance=0.02, tolerance_floor_nm=0.0) == AllowedError(0.02, 0.0)
+    assert allowed(tolerance_floor_nm=50.0).floor == pytest.approx(5e-8)
+    with pytest.raises(BadInput) as caught:
+        allowed(tolerance=1e-6)
+    assert caught.value.faults[0].field == "accuracy.tolerance"
+
+
 def test_the_echo_holds_every_default_and_is_its_own_fixed_point() -> None:
     echo = case_json(case())
     assert echo["accuracy"]["tolerance"] == 0.01
+    assert echo["accuracy"]["tolerance_floor_nm"] == 20.0
     assert echo["pair"]["pinion"]["addendum_coefficient"] == 1.0
     assert case_json(validated(Case, echo)) == echo
     assert json.loads(json.dumps(echo, allow_nan=False)) == echo

@@ -9,6 +9,11 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.analysis import check_request
+from fe_contact.analysis.compute_database import compute_database
+from fe_contact.analysis.curve_error_estimate import HARMONIC_SHARE
+from fe_contact.analysis.model_choice import decide
+from fe_contact.planning import LEVELS
 from fe_contact.planning.discretisation import SLICE_ORDER, face_discretisation
 from fe_contact.ste.curve_errors import SOURCES
 from fe_contact.ste.fields import DIMENSIONS
@@ -70,10 +75,58 @@ def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
     assert 1e-4 * ripple < slices[1] < 0.02 * ripple
     assert slices[0] < 0.01 * float(table.mean(force=FORCE))
     made = face_discretisation(helical(), "draft")
-    assert made.coarse_slices == made.slices // 2 | 1
+    assert made.coarse_slices == made.slices // 2
     assert made.remaining_slices == pytest.approx(
         1.0 / ((made.slices / made.coarse_slices) ** SLICE_ORDER - 1.0)
     )
+
+
+def test_what_few_slices_change_is_carried_on_along_the_curve(cache):
+    """The table with the error that is left taken off: of its peak-to-peak, and half that of the error.
+
+    An overlap of one: half the slices ripple more than the table, by far more than they leave in it.
+    """
+    quiet = GearPair(
+        *(dataclasses.replace(gear, face_width=27.55e-3) for gear in (helical().pinion, helical().wheel)),
+        helical().center_distance,
+    )
+    checked = check_request(quiet, normal_forces=[FORCE], level="draft", positions=32)
+    decided = decide(checked)
+    made = decided.plan.discretisation
+    table, few = (
+        compute_database(checked, {}, lambda *_: None, cache, decided.in_slices(count))
+        for count in (made.slices, made.coarse_slices)
+    )
+    own, sliced = (one.static_transmission_error[:, 0, 0, 0] for one in (table, few))
+    left = made.remaining_slices * (own - sliced)
+    expected = max(abs(np.ptp(own + left) - np.ptp(own)), 0.5 * np.ptp(left))
+    stated = table.curve_error[SOURCES.index("slices"), :, 0, 0, 0]
+    assert stated[1] == pytest.approx(expected, rel=1e-9)
+    assert expected < 0.9 * made.remaining_slices * abs(np.ptp(own) - np.ptp(sliced))
+    assert stated[0] == pytest.approx(abs(left.mean()), rel=1e-3)
+
+
+def test_no_harmonic_of_a_helical_pair_errs_by_less_than_its_share(cache):
+    table = analyze(helical(), normal_forces=[FORCE], level="draft", positions=32, cache=cache)
+    for name in ("slices", "discretisation"):
+        errors = table.curve_error[SOURCES.index(name), :, 0, 0, 0]
+        share = HARMONIC_SHARE * errors[1] / np.sqrt(np.arange(1, errors.size - 1))
+        assert np.all(errors[2:] >= share * (1.0 - 1e-12))
+        assert np.any(errors[2:] > 1.01 * share)
+
+
+def test_what_a_coarse_mesh_leaves_follows_the_layers_it_has():
+    """Second order; layers come in whole groups, so that a coarse mesh may have more than two thirds."""
+    for width in (5.0, 9.0, 12.0, 15.0, 18.0, 22.0):
+        for level in LEVELS:
+            gear = dataclasses.replace(helical().pinion, face_width=width * 3e-3)
+            mate = dataclasses.replace(gear, helix_angle=-gear.helix_angle)
+            made = face_discretisation(GearPair(gear, mate, helical().center_distance), level)
+            ratio = made.recipes[0].layers / made.coarse_recipes[0].layers
+            assert 4.0 / 3.0 <= ratio <= 1.6
+            assert made.remaining == pytest.approx(1.0 / (min(ratio, 1.5) ** 2 - 1.0))
+            for recipe in (*made.recipes, *made.coarse_recipes):
+                assert recipe.layers // recipe.layer_group >= 6  # below a helical tooth
 
 
 def test_a_finer_level_states_a_smaller_error(cache):

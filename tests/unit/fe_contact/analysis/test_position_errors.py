@@ -34,7 +34,7 @@ def judged(curves, count):
         return curves(position)
 
     nodes = np.arange(count) / count
-    found, left = measured_nodes(nodes, curves(nodes), solve, 1, TOLERANCE)
+    found, left = measured_nodes(nodes, curves(nodes), solve, 1, NodeRule(count, TOLERANCE, 768))
     return found, left, sum(position.size for position in asked)
 
 

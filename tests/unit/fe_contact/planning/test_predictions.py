@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
 from fe_contact.planning import cost_model, host_speed, predict_run
-from fe_contact.planning.contact_cost import contact_bytes
+from fe_contact.planning.contact_cost import contact_bytes, contact_seconds, expected_positions
 from fe_contact.planning.error_model import ExpectedError
 from fe_contact.planning.host_speed import FILE, host_slowness
 from fe_contact.planning.mesh_choice import MeshOption, mesh_for_time, mesh_for_tolerance
@@ -113,7 +113,7 @@ def options(model: float = 0.0, **meshes: float) -> list[MeshOption]:
 def test_a_tolerance_takes_the_cheapest_mesh_that_meets_it():
     known = options(draft=0.02, standard=0.005, fine=0.001)
     for turned in (known, known[::-1]):
-        chosen = [mesh_for_tolerance(t, turned) for t in (0.1, 0.01, 0.002)]
+        chosen = [mesh_for_tolerance(AllowedError(t), turned) for t in (0.1, 0.01, 0.002)]
         assert [choice.level for choice in chosen] == list(LEVELS)
         assert all(choice.met for choice in chosen)
 
@@ -122,14 +122,14 @@ def test_slices_are_taken_instead_of_a_mesh_where_they_are_cheaper():
     few = MeshOption("draft", 15, ExpectedError(2e-3, 0.05, 0.0), 1.0)
     many = MeshOption("draft", 61, ExpectedError(2e-3, 0.005, 0.0), 2.0)
     fine = MeshOption("fine", 31, ExpectedError(1e-3, 0.007, 0.0), 20.0)
-    assert mesh_for_tolerance(0.01, [few, many, fine]).option is many
-    assert mesh_for_tolerance(0.1, [few, many, fine]).option is few
+    assert mesh_for_tolerance(AllowedError(0.01), [few, many, fine]).option is many
+    assert mesh_for_tolerance(AllowedError(0.1), [few, many, fine]).option is few
 
 
 def test_a_tolerance_that_no_mesh_meets_is_said():
-    beyond = mesh_for_tolerance(1e-4, options(draft=3e-3, standard=2e-3, fine=1e-3))
+    beyond = mesh_for_tolerance(AllowedError(1e-4), options(draft=3e-3, standard=2e-3, fine=1e-3))
     assert (beyond.level, beyond.met) == ("fine", False)
-    flat = mesh_for_tolerance(1e-2, options(3e-2, draft=2e-2, standard=5e-3, fine=1e-3))
+    flat = mesh_for_tolerance(AllowedError(1e-2), options(3e-2, draft=2e-2, standard=5e-3, fine=1e-3))
     assert (flat.level, flat.met) == ("standard", False)
     assert "model 3 %" in flat.reason
 
@@ -175,6 +175,16 @@ def test_more_loads_positions_and_alignments_cost_more():
     assert contact(normal_forces=[100.0, 200.0, 500.0]) > plain
     assert contact(misalignments=[0.0, 1e-5]) > plain
     assert contact(center_distance_changes=[0.0, 1e-5]) > 1.5 * plain
+
+
+def test_slices_change_no_positions_but_their_cost():
+    """Contact is at points of the lines, and steps where slices come into contact are gone."""
+    wide = pair(helix=0.4, width=40e-3)
+    asked = check_request(wide, normal_forces=[500.0], level="fine")
+    few, many = (decide(asked).in_slices(count).plan for count in (15, 31))
+    assert expected_positions(few) == expected_positions(many)
+    costs = [contact_seconds(wide, plan, asked.model, (1, 1), with_errors=False)[0] for plan in (few, many)]
+    assert 2.0 < costs[1] / costs[0] < 4.0
 
 
 def test_tolerance_and_time_that_cannot_both_be_had_are_said():

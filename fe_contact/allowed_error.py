@@ -1,0 +1,65 @@
+"""What error a caller allows: a part of the quantity or, where that is less, an absolute one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fe_contact.checks import within
+from fe_contact.types import FloatArray
+
+LARGEST_FLOOR = 1e-3
+"""m."""
+
+
+@dataclass(frozen=True)
+class AllowedError:
+    """The larger of a part of a quantity and an absolute floor.
+
+    One per cent of a ripple of 30 nm is no error that anybody measures: below `scale` the floor counts.
+
+    Attributes
+    ----------
+    relative : float
+        Part of the quantity: mean or peak-to-peak STE.
+    floor : float
+        m; 0: the part alone.
+    """
+
+    relative: float = 0.01
+    floor: float = 20e-9
+
+    def __post_init__(self) -> None:
+        within("tolerance", self.relative, 1e-4, 0.5, "0.01 means one per cent.")
+        within("tolerance_floor", self.floor, 0.0, LARGEST_FLOOR, "In m: 20 nm is 2e-8; 0 means none.")
+
+    @classmethod
+    def given(cls, tolerance: AllowedError | float | None) -> AllowedError | None:
+        """Return what a caller asked for; a number alone is the relative part."""
+        if tolerance is None or isinstance(tolerance, AllowedError):
+            return tolerance
+        return cls(tolerance)
+
+    def of(self, value: FloatArray) -> FloatArray:
+        """Return the error in m that quantities in m may have."""
+        return self.relative * self.scale(value)
+
+    def scale(self, value: FloatArray) -> FloatArray:
+        """Return the size in m of which errors of quantities in m are parts: `relative` of it is allowed."""
+        return np.maximum(np.abs(value), self.least_scale)
+
+    @property
+    def least_scale(self) -> float:
+        """The size in m below which the floor counts."""
+        return self.floor / self.relative
+
+    @property
+    def words(self) -> str:
+        """Both parts."""
+        part = f"{100.0 * self.relative:.3g} %"
+        return f"{part} or {1e9 * self.floor:.3g} nm" if self.floor else part
+
+
+RELATIVE = AllowedError(floor=0.0)
+"""What holds where no tolerance was asked for."""
