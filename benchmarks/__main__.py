@@ -9,6 +9,7 @@ from pathlib import Path
 
 from benchmarks import (
     corrected_plane,
+    derivatives,
     dynamic_worth_estimates,
     dynamics_cost,
     effects_off,
@@ -53,6 +54,7 @@ SUBJECTS = (
     receipt_cost,
     error_honesty,
     live_honesty,
+    derivatives,
     tolerance_promise,
     worth_estimates,
     quiet_helical,

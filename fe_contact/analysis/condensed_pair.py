@@ -26,6 +26,7 @@ from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.solved_table import assembled_table
 from fe_contact.analysis.table_axes import axis, load_levels
 from fe_contact.analysis.table_places import Places, table_places
+from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects import FiniteWidth
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.errors import InputError
@@ -111,11 +112,9 @@ class CondensedPair:
             distance at which more teeth meet than are condensed.
         """
         clock = StageClock()
-        self._refuse_other_bodies(pair)
-        load = self._levels(pair, torques)
-        checked = self._checked(pair, load, misalignment, center_distance_change)
+        checked = self._asked(pair, torques, misalignment, center_distance_change)
         nodes, plan = self._laid_out(checked)
-        alignment = checked.request.misalignment, checked.request.center_distance_change
+        load, alignment = plan.load, (checked.request.misalignment, checked.request.center_distance_change)
         sample = TableSample.of(nodes.position, checked.model.period, (load, *alignment))
         with clock.stage("compliance"):
             contacts, places = self._placed(checked)
@@ -132,6 +131,37 @@ class CondensedPair:
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
         return replace(table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+
+    def solve(
+        self,
+        pair: ParallelAxes,
+        torques: FloatArray,
+        misalignment: float = 0.0,
+        center_distance_change: float = 0.0,
+    ) -> tuple[ParallelAxes, Checked, ContactProblem, ContactSolution]:
+        """Solve the contact alone: no table, no errors.
+
+        Parameters and errors are those of `table`.
+
+        Returns
+        -------
+        pair : GearPair or InternalGearPair
+            At its centre distance.
+        checked : Checked
+        problem, solution
+            At the positions of `table`.
+        """
+        checked = self._asked(pair, torques, misalignment, center_distance_change)
+        nodes, plan = self._laid_out(checked)
+        _, places = self._placed(checked)
+        place = places.places[0]
+        solved = place.solve_pitches(nodes.position, plan.load, np.arange(places.period))
+        return place.contact.pair, checked, *solved
+
+    def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
+        """Check a question, and compose its model."""
+        self._refuse_other_bodies(pair)
+        return self._checked(pair, self._levels(pair, torques), misalignment, change)
 
     def _refuse_other_bodies(self, pair: ParallelAxes) -> None:
         """Refuse gears or a centre distance that this compliance is not of."""

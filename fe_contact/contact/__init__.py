@@ -1,6 +1,7 @@
 """Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
 
 from fe_contact.contact.added_compliance import with_compliances
+from fe_contact.contact.adjoint import Adjoint, adjoint, force_changes
 from fe_contact.contact.assembly import contact_problem
 from fe_contact.contact.candidates import (
     PatchRule,
@@ -8,6 +9,7 @@ from fe_contact.contact.candidates import (
     teeth_in_reach,
     with_gaps,
 )
+from fe_contact.contact.carrying_strips import CarryingStrips
 from fe_contact.contact.face_assembly import face_contact_problem
 from fe_contact.contact.flank_forces import face_flank_forces, plane_flank_forces
 from fe_contact.contact.model import Break, ComplianceTerm, ContactModel, GapTerm, ToothGap
@@ -21,8 +23,10 @@ from fe_contact.contact.sweep import solve_contact
 from fe_contact.contact.touch import flank_coordinate
 
 __all__ = [
+    "Adjoint",
     "Break",
     "Candidates",
+    "CarryingStrips",
     "ComplianceTerm",
     "ContactModel",
     "ContactProblem",
@@ -33,12 +37,14 @@ __all__ = [
     "Slices",
     "Start",
     "ToothGap",
+    "adjoint",
     "contact_candidates",
     "contact_pressure",
     "contact_problem",
     "face_contact_problem",
     "face_flank_forces",
     "flank_coordinate",
+    "force_changes",
     "in_pitches",
     "plane_flank_forces",
     "solve_contact",

@@ -148,7 +148,7 @@ def teeth_in_reach(pair: ParallelAxes) -> int:
 
 def _pair_indices(pair: ParallelAxes, position: FloatArray, slices: Slices) -> IntArray:
     """Return all pairs between A and E in any slice, and one more beyond either end."""
-    lead = slices.center * math.tan(pair.base_helix_angle)
+    lead = slices.point_center * math.tan(pair.base_helix_angle)
     ends = float(lead.min()), float(lead.max())
     first, last = _pair_range(pair, float(position.min()), float(position.max()), ends)
     return np.arange(first, last + 1)

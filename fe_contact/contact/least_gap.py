@@ -16,6 +16,8 @@ def rounded(gap: Gap, least: FloatArray) -> Gap:
     """Return gaps whose curvature (n,) is nowhere below `least` in 1/m."""
     curvature, bend = np.maximum(gap.curvature, least), gap.bend.copy()
     for i in range(curvature.size):
+        if curvature[i] + np.minimum(bend[i], 0.0).sum() >= least[i]:
+            continue
         order = np.argsort(np.abs(gap.place[i]))
         left, right = curvature[i], curvature[i]
         for k in order:  # away from the touching point to either side

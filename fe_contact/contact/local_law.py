@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from fe_contact.contact.strip import Gap, half_strip, strip_load
+from fe_contact.contact.strip import Gap, free_strip, half_strip, strip_load, strip_middle
 from fe_contact.types import FloatArray
 
 SMALLEST_STRIP = 1e-4
@@ -85,24 +85,47 @@ def approach(law: LocalLaw, i: int, force: float) -> tuple[float, float, bool]:
 
 
 @njit(cache=True, error_model="numpy")
+def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
+    """Return middle and half length in m of the strip over which contact `i` carries `force` in N, > 0."""
+    _, least, most = _limits(law, i)
+    half, _ = half_strip(law.gap, i, force / law.width[i], law.modulus[i])
+    half = min(max(half, least), most)
+    return (0.0 if half <= law.free[i] else strip_middle(law.gap, i, half)), half
+
+
+@njit(cache=True, error_model="numpy")
 def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     """Force of contact `i` in N at a local approach in m, and its derivative in N/m; zero where flanks part.
 
-    The inverse of `approach`. At a given strip the load follows from the approach, which is stationary in the
-    strip, so that an error of the strip enters squared.
+    The inverse of `approach`.
     """
     if value <= 0.0:
         return 0.0, 0.0
-    k, least, most = _limits(law, i)
-    half = min(max(plain_strip(law.gap.curvature[i], law.length, value), least), most)
-    if half >= law.free[i]:
-        half = _strip_at(law, i, value, half)
-    load, rigid = strip_load(law.gap, i, half, law.modulus[i])
-    slope = k * (math.log(law.length / half) - 0.25)
-    if half <= least and value < rigid + slope * load:
-        secant = load / (rigid + slope * load)
-        return law.width[i] * secant * value, law.width[i] * secant
-    return law.width[i] * (value - rigid) / slope, law.width[i] / slope
+    half = plain_strip(law.gap.curvature[i], law.length, value)
+    if half <= law.free[i]:
+        load, slope = plain_load(law.gap.curvature[i], law.length, law.modulus[i], half, value)
+    else:
+        _, least, _ = _limits(law, i)
+        half = _strip_at(law, i, value, max(half, least))
+        carried, rigid = strip_load(law.gap, i, half, law.modulus[i])
+        load, slope = _load_on(half, carried, rigid, law.length, law.modulus[i], value)
+    return law.width[i] * load, law.width[i] * slope
+
+
+@njit(cache=True, error_model="numpy")
+def _load_on(
+    half: float, carried: float, rigid: float, length: float, modulus: float, value: float
+) -> tuple[float, float]:
+    """Line load in N/m at an approach in m, and its derivative in N/m^2, from the strip that carries it.
+
+    At a given strip the load follows from the approach, which is stationary in the strip, so that an error of
+    the strip enters squared.
+    """
+    slope = 2.0 / (math.pi * modulus) * (math.log(length / half) - 0.25)
+    if half <= SMALLEST_STRIP * length and value < rigid + slope * carried:
+        secant = carried / (rigid + slope * carried)
+        return secant * value, secant
+    return (value - rigid) / slope, 1.0 / slope
 
 
 @njit(cache=True, error_model="numpy")
@@ -136,27 +159,15 @@ def plain_load(
     curvature: float, length: float, modulus: float, half: float, value: float
 ) -> tuple[float, float]:
     """Line load in N/m of a parabola at an approach in m, its derivative in N/m^2; `half` is its strip."""
-    k = 2.0 / (math.pi * modulus)
+    half = max(half, SMALLEST_STRIP * length)
     rise = 0.25 * curvature * half * half
-    if half < SMALLEST_STRIP * length:
-        half = SMALLEST_STRIP * length
-        rise = 0.25 * curvature * half * half
-        load = math.pi * modulus * rise
-        secant = load / (rise + k * load * (math.log(length / half) - 0.25))
-        return secant * value, secant
-    slope = k * (math.log(length / half) - 0.25)
-    return (value - rise) / slope, 1.0 / slope
+    return _load_on(half, math.pi * modulus * rise, rise, length, modulus, value)
 
 
 @njit(cache=True, error_model="numpy")
 def free_strips(gap: Gap) -> FloatArray:
-    """Half strips (n,) in m up to which gaps are parabolas: to the nearest edge or break, 0 if none is."""
-    free = np.empty(gap.slope.size)
-    for i in range(free.size):
-        free[i] = 0.0 if gap.slope[i] != 0.0 else min(-gap.low[i], gap.high[i])
-        for k in range(gap.place.shape[1]):
-            free[i] = min(free[i], abs(gap.place[i, k]))
-    return free
+    """Half strips (n,) in m up to which gaps are parabolas."""
+    return np.array([free_strip(gap, i) for i in range(gap.slope.size)])
 
 
 @njit(cache=True, error_model="numpy")

@@ -26,7 +26,7 @@ from numba import njit
 
 from fe_contact.contact.elimination import dot, eliminate
 from fe_contact.contact.local_law import approach
-from fe_contact.contact.point import PointProblem, State, evaluate, motion_at, move, press, stiffness
+from fe_contact.contact.point_problem import PointProblem, State, evaluate, motion_at, move, press, stiffness
 from fe_contact.types import FloatArray, IntArray
 
 CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
@@ -42,7 +42,7 @@ _LEVEL = 0.3
 """Slope of the energy at the end of a step over its fall at the beginning, from which on the step is cut."""
 
 
-class _System(NamedTuple):
+class NewtonSystem(NamedTuple):
     """Newton's equations of the slices of touching pairs; filled up to their number.
 
     Attributes
@@ -67,6 +67,13 @@ class _System(NamedTuple):
     right: FloatArray
     shares: FloatArray
     left: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def empty_system(n: int) -> NewtonSystem:
+    """Return room for the equations of so many slices."""
+    member, square = np.empty(n, dtype=np.int64), np.empty((2, n, n))
+    return NewtonSystem(member, square[0], square[1], np.empty((2, n)), np.empty(n), np.empty(n))
 
 
 @njit(cache=True, error_model="numpy")
@@ -150,20 +157,13 @@ def _iterate(
 ) -> tuple[float, float, int, int]:
     """Iterate to the solution; return elastic deflection, tangent, status and iterations."""
     n = state.held.size
-    system = _System(
-        np.empty(n, dtype=np.int64),
-        np.empty((n, n)),
-        np.empty((n, n)),
-        np.empty((2, n)),
-        np.empty(n),
-        np.empty(n),
-    )
+    system = empty_system(n)
     change, motion = np.empty((2, n))
     tangent, last = math.nan, math.inf
     for iteration in range(1, MAX_ITERATIONS + 1):
         if not state.slope.any():  # a step too far has parted all flanks
             elastic = _start(problem, total, gap, state)
-        size = _newton_system(problem, state, system)
+        size = newton_system(problem, state, system)
         if not eliminate(system.matrix, system.right, size):
             return math.nan, math.nan, SINGULAR, iteration
         excess = dot(problem.torque_arm, state.force, gap.size) - total
@@ -185,7 +185,7 @@ def _iterate(
 
 
 @njit(cache=True, error_model="numpy")
-def _condensed(problem: PointProblem, state: State, system: _System, size: int) -> tuple[float, float]:
+def _condensed(problem: PointProblem, state: State, system: NewtonSystem, size: int) -> tuple[float, float]:
     """Return the stiffness of the position in N/m, and what the slices miss of the load in N."""
     stiff, missed = stiffness(problem, state), 0.0
     for r in range(state.held.size):
@@ -233,7 +233,7 @@ def _advance(
 
 
 @njit(cache=True, error_model="numpy")
-def _newton_system(problem: PointProblem, state: State, system: _System) -> int:
+def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> int:
     """Fill in Newton's equations; return the number of slices of pairs that touch."""
     count = problem.blend.shape[1]
     motion = np.zeros(state.held.size)
@@ -269,7 +269,7 @@ def _newton_system(problem: PointProblem, state: State, system: _System) -> int:
 
 
 @njit(cache=True, error_model="numpy")
-def _touching(problem: PointProblem, state: State, system: _System, motion: FloatArray) -> None:
+def _touching(problem: PointProblem, state: State, system: NewtonSystem, motion: FloatArray) -> None:
     """Fill in the lower triangle of N'DN, N'D m and N'D n of all slices."""
     points, count = problem.blend.shape
     touching, shares = system.touching, system.shares

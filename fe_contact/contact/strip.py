@@ -62,31 +62,28 @@ class Gap(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def gap_at(about: Gap, position: int) -> Gap:
-    """Return the gaps (n,) at one of the positions of arrays (P, n) and (P, n, B)."""
+def gap_at(about: Gap, at: int | IntArray) -> Gap:
+    """Return the gaps at one of the positions of arrays (P, n) and (P, n, B), or some of those of (n,)."""
     return Gap(
-        about.slope[position],
-        about.curvature[position],
-        about.low[position],
-        about.high[position],
-        about.place[position],
-        about.jump[position],
-        about.bend[position],
+        about.slope[at],
+        about.curvature[at],
+        about.low[at],
+        about.high[at],
+        about.place[at],
+        about.jump[at],
+        about.bend[at],
     )
 
 
 @njit(cache=True, error_model="numpy")
-def some_gaps(gap: Gap, keep: IntArray) -> Gap:
-    """Return some of n gaps."""
-    return Gap(
-        gap.slope[keep],
-        gap.curvature[keep],
-        gap.low[keep],
-        gap.high[keep],
-        gap.place[keep],
-        gap.jump[keep],
-        gap.bend[keep],
-    )
+def free_strip(gap: Gap, i: int) -> float:
+    """Half strip in m up to which a gap is a parabola: to the nearest edge or break; 0 on a slope."""
+    if gap.slope[i] != 0.0:
+        return 0.0
+    free: float = min(-gap.low[i], gap.high[i])
+    for k in range(gap.place.shape[1]):
+        free = min(free, abs(gap.place[i, k]))
+    return free
 
 
 @njit(cache=True, error_model="numpy")
@@ -104,7 +101,7 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
         Contact modulus E* in Pa.
     """
     hertz = math.sqrt(4.0 * line_load / (math.pi * modulus * gap.curvature[i]))
-    if gap.slope[i] == 0.0 and is_plain(gap, i, hertz):
+    if hertz <= free_strip(gap, i):
         return hertz, 0.25 * gap.curvature[i] * hertz * hertz
     widest = 0.5 * (gap.high[i] - gap.low[i])
     below, above = 0.0, math.inf
@@ -134,10 +131,10 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
 @njit(cache=True, error_model="numpy")
 def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, float]:
     """Return the line load in N/m under a strip of this half length, and the mean gap over it in m."""
-    if gap.slope[i] == 0.0 and is_plain(gap, i, half):
+    if half <= free_strip(gap, i):
         rise = 0.25 * gap.curvature[i] * half * half
         return math.pi * modulus * rise, rise
-    centre = _centre(gap, i, half)
+    centre = strip_middle(gap, i, half)
     slope, first, mean, _ = _means(gap, i, centre, half)
     if gap.low[i] + half < centre < gap.high[i] - half:  # what is left of the slope is the middle's rounding
         first -= slope * _tilting(gap, i, centre, half)
@@ -167,19 +164,8 @@ def _tilting(gap: Gap, i: int, centre: float, half: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def is_plain(gap: Gap, i: int, half: float) -> bool:
-    """Whether neither an edge nor a break is within `half` of the touching point."""
-    if -gap.low[i] < half or gap.high[i] < half:
-        return False
-    nearest = math.inf
-    for k in range(gap.place.shape[1]):
-        nearest = min(nearest, abs(gap.place[i, k]))
-    return nearest >= half
-
-
-@njit(cache=True, error_model="numpy")
-def _centre(gap: Gap, i: int, half: float) -> float:
-    """Return the middle of the strip: where pressure vanishes at both ends, or one end is at an edge."""
+def strip_middle(gap: Gap, i: int, half: float) -> float:
+    """Return the middle of a strip in m: where pressure vanishes at both ends, or one end is at an edge."""
     low: float = max(-half, gap.low[i] + half)
     high: float = min(half, gap.high[i] - half)
     if low >= high:
@@ -207,6 +193,32 @@ def _centre(gap: Gap, i: int, half: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
+def past_break(beyond: float, half: float) -> tuple[float, float, float, float, float]:
+    """Return integrals over the angle of a strip of what lies past a break, d from it on.
+
+    Parameters
+    ----------
+    beyond : float
+        From the middle of the strip to the break, m; less than `half`.
+    half : float
+        m.
+
+    Returns
+    -------
+    angle, cosine : float
+        Of the part past the break, and the cosine where it begins.
+    ramp, tilted, square : float
+        Integrals of d, d sin t and d^2.
+    """
+    sine = max(beyond / half, -1.0)
+    cosine = math.sqrt(1.0 - sine * sine)
+    angle = 0.5 * math.pi - math.asin(sine)
+    ramp = half * cosine - beyond * angle
+    tilted = 0.5 * half * (angle + sine * cosine) - beyond * cosine
+    return angle, cosine, ramp, tilted, half * tilted - beyond * ramp
+
+
+@njit(cache=True, error_model="numpy")
 def _means(gap: Gap, i: int, centre: float, half: float) -> tuple[float, float, float, float]:
     """Return the means of g', g' sin t, g and g'' over the angle t of the strip."""
     s, q = float(gap.slope[i]), float(gap.curvature[i])
@@ -220,12 +232,7 @@ def _means(gap: Gap, i: int, centre: float, half: float) -> tuple[float, float, 
         if beyond >= half:
             continue
         a, b = gap.jump[i, k], gap.bend[i, k]
-        sine = max(beyond / half, -1.0)
-        cosine = math.sqrt(1.0 - sine * sine)
-        angle = 0.5 * math.pi - math.asin(sine)
-        ramp = half * cosine - beyond * angle  # integrals over the angle of d, d sin t, d^2
-        tilted = 0.5 * half * (angle + sine * cosine) - beyond * cosine
-        square = half * tilted - beyond * ramp
+        angle, cosine, ramp, tilted, square = past_break(beyond, half)
         slope += side * (a * angle + b * ramp) / math.pi
         first += (a * cosine + b * tilted) / math.pi
         mean += (a * ramp + 0.5 * b * square) / math.pi

@@ -63,6 +63,31 @@ def quantity_changes(
     return found
 
 
+def quantity_derivatives(values: FloatArray, period: int) -> FloatArray:
+    """Return the derivatives of the quantities of a curve by its values, (22, P).
+
+    Of the amplitude of a harmonic; of peak-to-peak by the highest and the lowest value.
+
+    Parameters
+    ----------
+    values : ndarray, shape (P,)
+        STE in m at equally spaced positions over the period.
+    period : int
+        Base pitches. 41 values in each resolve all harmonics; those that are not resolved have NaN.
+    """
+    position, order = np.arange(values.size) * (period / values.size), np.arange(1, HARMONICS + 1)
+    waves = np.exp(-2.0j * np.pi * order[:, None] * position) * (2.0 / values.size)
+    waves[2 * order * period >= values.size] = np.nan
+    lines = waves @ values
+    ripple = np.zeros(values.size)
+    ripple[np.argmax(values)] += 1.0
+    ripple[np.argmin(values)] -= 1.0
+    amplitude = np.abs(lines)
+    turned = np.divide(lines.conj(), amplitude, out=np.ones_like(lines), where=amplitude > 0.0)
+    mean = np.full(values.size, 1.0 / values.size)
+    return np.stack([mean, ripple, *(turned[:, None] * waves).real])
+
+
 def _with_bend(changes: FloatArray, difference: FloatArray) -> FloatArray:
     """Let peak-to-peak change at least by half the peak-to-peak of the difference (P, C)."""
     least = 0.5 * np.ptp(difference, axis=0)
@@ -95,12 +120,17 @@ def error_bound(position: FloatArray, band: FloatArray, values: FloatArray, peri
 
     To the mean their mean, to peak-to-peak their sum at both extremes, to a harmonic twice their mean.
     """
-    axis = Axis(position, float(period))
-    weight = 0.5 * (axis.spacing + np.roll(axis.spacing, 1)) / period
-    mean = weight @ np.nan_to_num(band)
+    mean = mean_of_curves(position, np.nan_to_num(band), period)
     known = np.nan_to_num(values)
     ends = [np.take_along_axis(band, pick(known, axis=0)[None], 0)[0] for pick in (np.argmax, np.argmin)]
     return np.stack([mean, np.nan_to_num(ends[0] + ends[1]), *[2.0 * mean] * HARMONICS])
+
+
+def mean_of_curves(position: FloatArray, values: FloatArray, period: int) -> FloatArray:
+    """Return the mean (...) of curves (P, ...) that are straight between their knots."""
+    spacing = Axis(position, float(period)).spacing
+    weight = 0.5 * (spacing + np.roll(spacing, 1)) / period
+    return np.asarray(np.tensordot(weight, values, 1))
 
 
 def _quantities(position: FloatArray, values: FloatArray, period: int) -> Quantities:

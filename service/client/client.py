@@ -128,6 +128,7 @@ class LineOfActionClient(Studies):
         center_distance_change_mm: float = 0.0,
         pinion: Mapping[str, Any] | None = None,
         wheel: Mapping[str, Any] | None = None,
+        derivatives: bool = False,
         condense: bool = False,
         caller: str | None = None,
     ) -> LiveOutput:
@@ -142,6 +143,8 @@ class LineOfActionClient(Studies):
         misalignment_um, center_distance_change_mm : float
         pinion, wheel : mapping, optional
             Flank modifications as in a case file (``tip_relief_um`` ...); what is left out is as in the case.
+        derivatives : bool
+            Also return the derivatives of each curve by its flanks, the misalignment and the torque.
         condense : bool
             Compute the compliance first if the service has none in its cache.
         caller : str, optional
@@ -167,6 +170,7 @@ class LineOfActionClient(Studies):
             "center_distance_change_mm": center_distance_change_mm,
             "pinion": dict(pinion or {}),
             "wheel": dict(wheel or {}),
+            "derivatives": derivatives,
             "condense": condense,
             "caller": caller,
         }

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
 
 from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.microgeometry import curve_derivatives
 from fe_contact.ste import SteDatabase
 from service.convert.answers import curve_json
 from service.convert.case import boundary_errors, gear_pair
+from service.convert.derivatives import derivatives_json
 from service.convert.units import MM, UM
 from service.problems import BadInput, Fault, NotAnalysed, NotFound
 from service.schemas import Case
@@ -57,9 +60,18 @@ def live_curves(case: Case, bodies: CondensedPair, change: LiveInput) -> Json:
         with boundary_errors():
             table = bodies.table(pair, torques, skew, change.center_distance_change_mm * MM)
         curves = [_curve(table, k) for k in range(table.force.size)]
+        answer = {"curves": curves, **_receipt(table)}
+        if change.derivatives:
+            begin = time.process_time()
+            place = torques, None, skew, change.center_distance_change_mm * MM
+            with boundary_errors():
+                found = curve_derivatives(bodies, pair, *place)
+            for curve, derivatives in zip(curves, derivatives_json(found), strict=True):
+                curve["derivatives"] = derivatives
+            answer["cost"]["derivatives_cpu_seconds"] = time.process_time() - begin
     except BadInput as error:
         raise BadInput(_as_asked(fault) for fault in error.faults) from None
-    return {"curves": curves, **_receipt(table)}
+    return answer
 
 
 def _curve(table: SteDatabase, k: int) -> Json:

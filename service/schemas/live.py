@@ -66,6 +66,12 @@ class LiveInput(BoundaryModel):
     wheel: FlankChange = Field(  # type: ignore[valid-type]
         default=FlankChange(), description="Flanks of the driven gear", examples=[{"tip_relief_um": 10.0}]
     )
+    derivatives: bool = Field(
+        default=False,
+        description="Also return the derivatives of every curve by its flanks, misalignment and torque, and "
+        "where on the flanks a micrometre matters",
+        examples=[True],
+    )
     condense: bool = Field(
         default=False,
         description="Compute the compliance first if this service has none in its cache, as of gears that "
@@ -86,6 +92,53 @@ class SourceError(BoundaryModel):
     mean: float | None = Field(description="Of the mean in um", examples=[0.01])
     peak_to_peak: float | None = Field(description="Of peak-to-peak in um", examples=[0.02])
     first_harmonic: float | None = Field(description="Of the first mesh harmonic in um", examples=[0.01])
+
+
+class CurveDerivative(BoundaryModel):
+    """Derivatives of a curve by one figure, per unit of the figure."""
+
+    ste_um: list[float] = Field(
+        description="Of the transmission error at each position", examples=[[0.1, 0.2]]
+    )
+    mean_um: float = Field(description="Of the mean", examples=[0.15])
+    peak_to_peak_um: float = Field(description="Of peak-to-peak", examples=[0.02])
+    harmonics_um: list[float | None] = Field(
+        description="Of the amplitudes of the mesh harmonics; null where the positions do not resolve one",
+        examples=[[0.01, -0.02]],
+    )
+
+
+class FlankDerivative(BoundaryModel):
+    """Change per micrometre removed at each node of a grid on a flank, bilinear between the nodes."""
+
+    roll_length_mm: list[float] = Field(description="Rows of the grid: roll lengths", examples=[[4.0, 9.0]])
+    face_position_mm: list[float] = Field(
+        description="Columns: distance from the gear's mid-face", examples=[[-5.0, 5.0]]
+    )
+    mean_um: list[list[float]] = Field(description="Of the mean", examples=[[[0.2, 0.3], [0.3, 0.2]]])
+    peak_to_peak_um: list[list[float]] = Field(
+        description="Of peak-to-peak", examples=[[[0.1, 0.0], [-0.1, 0.0]]]
+    )
+
+
+class CurveDerivatives(BoundaryModel):
+    """What changes a curve, to first order; see docs/theory/contact.md."""
+
+    by: dict[str, CurveDerivative] = Field(
+        description="By every figure that acts: per um, per mm of a length, per N m",
+        examples=[
+            {
+                "pinion.tip_relief_um": {
+                    "ste_um": [0.1, 0.2],
+                    "mean_um": 0.15,
+                    "peak_to_peak_um": 0.02,
+                    "harmonics_um": [0.01, -0.02],
+                }
+            }
+        ],
+    )
+    pinion: FlankDerivative = Field(description="By the flank of the driving gear")
+    wheel: FlankDerivative = Field(description="By the flank of the driven gear")
 
 
 class LiveCurve(BoundaryModel):
@@ -123,6 +176,9 @@ class LiveCurve(BoundaryModel):
     )
     order: list[float] | None = Field(default=None, description="Orders of a period of several base pitches")
     amplitude_um: list[float] | None = Field(default=None, description="Their amplitudes in um")
+    derivatives: CurveDerivatives | None = Field(
+        default=None, description="What changes the curve, if that was asked"
+    )
 
 
 class LiveAssumption(BoundaryModel):
@@ -145,6 +201,9 @@ class LiveCost(BoundaryModel):
     )
     contact_cpu_seconds: float = Field(description="The curves", examples=[0.02])
     error_estimate_cpu_seconds: float = Field(description="Their errors", examples=[0.02])
+    derivatives_cpu_seconds: float = Field(
+        default=0.0, description="Their derivatives, if those were asked", examples=[0.03]
+    )
 
 
 class LiveOutput(BoundaryModel):

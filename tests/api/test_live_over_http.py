@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from running_service import REFERENCES
@@ -101,6 +102,30 @@ def test_a_live_centre_distance_is_that_of_an_analysis_of_its_own(client: TestCl
     whole = table.curve(torque=1.0, center_distance_change=0.05e-3)
     assert curve["center_distance_change_mm"] == 0.05
     assert curve["ste_um"] == pytest.approx((1e6 * whole.ste).tolist(), rel=1e-12, abs=0.0)
+
+
+def test_derivatives_are_the_changes_of_the_curve_in_the_units_of_the_question(
+    client: TestClient, key: str
+) -> None:
+    def curve(relief: float, torque: float, **more: Any) -> dict[str, Any]:
+        question = {"torque_n_m": [torque], "pinion": RELIEF | {"tip_relief_um": relief}, **more}
+        found = client.post(f"/v1/databases/{key}/ste", json=question).json()
+        assert ("derivatives_cpu_seconds" in found["cost"]) == bool(more)
+        return dict(found["curves"][0])
+
+    found = curve(3.0, 0.8, derivatives=True)["derivatives"]
+    step = 1e-3
+    for name, above, below, width in (
+        ("pinion.tip_relief_um", curve(3.0 + step, 0.8), curve(3.0 - step, 0.8), 2.0 * step),
+        ("torque_n_m", curve(3.0, 0.8 + step), curve(3.0, 0.8 - step), 2.0 * step),
+    ):
+        for field in ("mean_um", "peak_to_peak_um"):
+            change = (above[field] - below[field]) / width
+            assert found["by"][name][field] == pytest.approx(change, rel=0.01, abs=1e-3)
+    assert "wheel.helix_crowning_um" not in found["by"]  # a plane case
+    pinion = found["pinion"]
+    assert np.shape(pinion["mean_um"]) == (len(pinion["roll_length_mm"]), len(pinion["face_position_mm"]))
+    assert np.sum(pinion["mean_um"]) == pytest.approx(1.0, rel=1e-6)
 
 
 @pytest.mark.parametrize(

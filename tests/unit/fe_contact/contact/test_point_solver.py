@@ -14,7 +14,7 @@ from fe_contact.contact.elimination import eliminate
 from fe_contact.contact.local_law import LocalLaw, approach, free_strips
 from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
-from fe_contact.contact.point import PointProblem, State
+from fe_contact.contact.point_problem import PointProblem, State
 from fe_contact.contact.strip import Gap
 from fe_contact.types import Status
 

@@ -2,13 +2,62 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
 
 from fe_contact.contact.elimination import dot
-from fe_contact.contact.local_law import LocalLaw, force_at, plain_load, plain_strip
-from fe_contact.types import FloatArray, IntArray
+from fe_contact.contact.local_law import LocalLaw, force_at, free_strips, plain_load, plain_strip
+from fe_contact.contact.problem import ContactProblem
+from fe_contact.contact.strip import Gap, gap_at
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+
+class PointProblems(NamedTuple):
+    """All P positions as the compiled solver reads them; position p has the bodies of row p modulo Q.
+
+    Attributes
+    ----------
+    bodies : ndarray, shape (Q, n, n)
+    present : ndarray of bool, shape (Q, n)
+    blend : ndarray, shape (points of a pair, K)
+    gap, motion_arm, torque_arm, width : ndarray, shape (P, m)
+    about : Gap
+        Arrays (P, m) and (P, m, B).
+    length : float
+    modulus : ndarray, shape (Q, m)
+    """
+
+    bodies: FloatArray
+    present: BoolArray
+    blend: FloatArray
+    gap: FloatArray
+    motion_arm: FloatArray
+    torque_arm: FloatArray
+    width: FloatArray
+    about: Gap
+    length: float
+    modulus: FloatArray
+
+
+def point_problems(problem: ContactProblem) -> PointProblems:
+    """Return the positions of a contact problem."""
+    c = problem.candidates
+    first, second = problem.half_planes
+    return PointProblems(
+        problem.bodies,
+        c.slices.present,
+        c.blend,
+        c.gap * c.motion_arm,
+        c.motion_arm,
+        c.torque_share,
+        c.width,
+        c.gap_about,
+        c.slices.law_length,
+        2.0 / (math.pi * (first + second)),
+    )
 
 
 class PointProblem(NamedTuple):
@@ -37,6 +86,23 @@ class PointProblem(NamedTuple):
     motion_arm: FloatArray
     torque_arm: FloatArray
     law: LocalLaw
+
+
+@njit(cache=True, error_model="numpy")
+def problem_at(every: PointProblems, p: int) -> tuple[PointProblem, IntArray]:
+    """Return the problem of a position, and its contacts among all candidates."""
+    row, (points, count) = p % every.bodies.shape[0], every.blend.shape
+    there = every.present[row]
+    slices = np.flatnonzero(there)
+    pairs = np.cumsum(there[::count]) - 1  # of all pairs among those that are there
+    here = np.flatnonzero(~(every.gap[p] == np.inf))  # also those that are not a number
+    at = np.flatnonzero(np.repeat(there[::count], points))
+    inner = np.ascontiguousarray(every.bodies[row][slices][:, slices])
+    gaps = gap_at(gap_at(every.about, p), at)
+    law = LocalLaw(every.width[p][at], gaps, free_strips(gaps), every.length, every.modulus[row][at])
+    place = pairs[here // points] * points + here % points
+    arms = every.motion_arm[p][here], every.torque_arm[p][here]
+    return PointProblem(inner, every.blend, place, every.gap[p][here], *arms, law), here
 
 
 class State(NamedTuple):
@@ -78,7 +144,7 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
         if closer <= 0.0:
             continue
         half = plain_strip(curvature[i], length, closer)
-        if half < free[i]:
+        if half <= free[i]:
             line_load, stiffness = plain_load(curvature[i], length, modulus[i], half, closer)
             state.force[q], state.slope[q] = width[i] * line_load, width[i] * stiffness
         else:

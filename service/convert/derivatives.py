@@ -1,0 +1,42 @@
+"""Derivatives of curves in boundary units: per um, per mm of a length, per N m."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from fe_contact.microgeometry import CurveDerivatives, FlankDerivatives
+from service.convert.units import MM, UM, factor
+from service.convert.vocabulary import boundary_name
+
+Json = dict[str, Any]
+
+
+def derivatives_json(found: CurveDerivatives) -> Iterator[Json]:
+    """Yield the derivatives of the curve at each torque."""
+    names = [boundary_name(name) for name in found.names]
+    flanks = {gear: found.on_flank(gear) for gear in ("pinion", "wheel")}
+    for k in range(found.torque.size):
+        by = {}
+        for a, name in enumerate(names):
+            scale = factor(name) / UM
+            harmonics = scale * found.harmonics[a, :, k]
+            by[name] = {
+                "ste_um": (scale * found.by[a, :, k]).tolist(),
+                "mean_um": float(scale * found.mean[a, k]),
+                "peak_to_peak_um": float(scale * found.peak_to_peak[a, k]),
+                "harmonics_um": [float(value) if np.isfinite(value) else None for value in harmonics],
+            }
+        yield {"by": by} | {gear: _flank(flank, k) for gear, flank in flanks.items()}
+
+
+def _flank(flank: FlankDerivatives, k: int) -> Json:
+    """Return the grid of one flank at a torque, per um removed."""
+    return {
+        "roll_length_mm": (flank.roll_length / MM).tolist(),
+        "face_position_mm": (flank.face_position / MM).tolist(),
+        "mean_um": flank.mean[k].tolist(),
+        "peak_to_peak_um": flank.peak_to_peak[k].tolist(),
+    }

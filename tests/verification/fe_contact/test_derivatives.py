@@ -1,0 +1,252 @@
+"""Derivatives of transmission-error curves: of the contact, of the flanks, of the quantities of a curve."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from fe_contact import FlankModification, Gear, GearPair, analyze
+from fe_contact.analysis import CondensedPair, condensed_pair
+from fe_contact.contact import adjoint, force_changes, solve_contact
+from fe_contact.errors import InputError
+from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
+from fe_contact.microgeometry import curve_derivatives
+from fe_contact.microgeometry.variables import modified
+from fe_contact.ste.curve_quantities import quantity_derivatives
+
+TORQUES = np.array([30.0, 60.0])
+RELIEF = FlankModification(tip_relief=12e-6, tip_relief_length=0.8e-3, profile_crowning=3e-6)
+CROWNED = replace(RELIEF, helix_crowning=6e-6, helix_slope=2e-6)
+AMOUNTS = ("pinion.tip_relief", "wheel.tip_relief", "pinion.profile_crowning", "wheel.profile_slope")
+SHAPE = {"normal_module": 1.8e-3, "face_width": 15e-3}
+
+
+def helical() -> GearPair:
+    """Two points of a line in every slice; overlap 0.99."""
+    hands = ((23, 1.0), (41, -1.0))
+    return GearPair(
+        *(
+            Gear(
+                teeth=teeth,
+                bore_diameter=20e-3,
+                helix_angle=hand * math.radians(22),
+                modification=CROWNED,
+                **SHAPE,
+            )
+            for teeth, hand in hands
+        )
+    )
+
+
+def spur() -> GearPair:
+    return GearPair(
+        *(Gear(teeth=teeth, bore_diameter=20e-3, modification=RELIEF, **SHAPE) for teeth in (23, 41))
+    )
+
+
+def internal() -> InternalGearPair:
+    pinion = Gear(teeth=23, bore_diameter=20e-3, modification=RELIEF, **SHAPE)
+    ring = RingGear(teeth=71, rim_diameter=150e-3, addendum_coefficient=0.8, modification=RELIEF, **SHAPE)
+    return InternalGearPair(pinion, ring)
+
+
+@pytest.fixture(scope="module")
+def condensed(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], CondensedPair]:
+    """Bodies of the pairs, each found once."""
+    cache, known = tmp_path_factory.mktemp("bodies"), {}
+
+    def of(name: str) -> CondensedPair:
+        if name not in known:
+            pair, model = PAIRS[name](), "3d" if name == "helical" else "plane_strain"
+            wish = {"level": "draft", "model": model, "positions": 16, "receipt": "minimal"}
+            table = analyze(pair, torques=TORQUES, cache=cache, **wish)
+            known[name] = condensed_pair(pair, table, {}, cache)
+        return known[name]
+
+    return of
+
+
+PAIRS: dict[str, Callable[[], ParallelAxes]] = {"helical": helical, "spur": spur, "internal": internal}
+
+
+def solved(bodies: CondensedPair, values: dict[str, float]) -> np.ndarray:
+    """Curves of other flanks, (P, F) in m."""
+    pair = bodies.checked.request.pair
+    return bodies.solve(modified(pair, values), TORQUES)[3].deflection
+
+
+def central(bodies: CondensedPair, name: str, step: float) -> np.ndarray:
+    pair = bodies.checked.request.pair
+    gear, _, quantity = name.partition(".")
+    value = getattr(getattr(pair, gear).modification, quantity)
+    above, below = (solved(bodies, {name: value + way * step}) for way in (1.0, -1.0))
+    return (above - below) / (2.0 * step)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_a_gap_opened_at_one_contact_counts_by_its_weight(name, condensed):
+    bodies = condensed(name)
+    _, _, problem, solution = bodies.solve(bodies.checked.request.pair, TORQUES)
+    found, c = adjoint(problem, solution), problem.candidates
+    lever = np.einsum("pkm,pm->pk", found.weight, c.motion_arm)
+    assert lever == pytest.approx(np.ones(lever.shape), rel=1e-12)  # all moved apart: the gear lags
+    heaviest, step = np.argmax(solution.force[5].sum(axis=0)), 1e-9
+    ends = []
+    for way in (1.0, -1.0):
+        gap = c.touch.gap.copy()
+        gap[5, heaviest] += way * step / c.motion_arm[5, heaviest]
+        ends.append(solve_contact(problem.touching(c.touching(replace(c.touch, gap=gap))), solution.load))
+    difference = (ends[0].deflection - ends[1].deflection)[5] / (2.0 * step)
+    assert found.weight[5, :, heaviest] == pytest.approx(difference, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_forces_change_as_their_derivatives_say(name, condensed):
+    bodies = condensed(name)
+    _, _, problem, solution = bodies.solve(bodies.checked.request.pair, TORQUES)
+    c = problem.candidates
+    opened = np.random.default_rng(2).normal(size=c.touch.gap.shape)
+    apart = np.broadcast_to((opened * c.motion_arm)[:, None, :], solution.force.shape)
+    (found,) = force_changes(problem, solution, apart[None])
+    ends = [
+        solve_contact(
+            problem.touching(c.touching(replace(c.touch, gap=c.touch.gap + way * opened))), solution.load
+        )
+        for way in (1e-11, -1e-11)
+    ]
+    difference = (ends[0].force - ends[1].force) / 2e-11
+    off = np.abs(found - difference)[solution.force > 0.0] / np.abs(difference).max()
+    assert np.quantile(off, 0.99) < 1e-6
+    carried = (found * c.torque_share[:, None]).sum(axis=2)
+    assert np.abs(carried).max() < 1e-9 * np.abs(found).max()  # the load stays
+
+
+@pytest.mark.parametrize("name", ["pinion.helix_crowning", "wheel.helix_slope"])
+def test_by_amounts_over_the_face_curves_change_as_differences_say(name, condensed):
+    bodies = condensed("helical")
+    found = curve_derivatives(bodies, helical(), TORQUES, [name]).by[0]
+    off = np.abs(found - central(bodies, name, 1e-9)) / np.abs(found).max()
+    assert np.quantile(off, 0.9) < 1e-6  # the rest: positions at which contacts begin within the step
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize("name", AMOUNTS)
+def test_by_amounts_along_the_profile_curves_change_as_differences_say(pair, name, condensed):
+    """The gap of the solver is a parabola about its least point, by differences that move with that point."""
+    bodies = condensed(pair)
+    found = curve_derivatives(bodies, PAIRS[pair](), TORQUES, [name]).by[0]
+    off = np.abs(found - central(bodies, name, 1e-9)) / np.abs(found).max()
+    assert np.median(off) < 1e-4 and off.max() < 2e-3
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_by_the_length_of_a_relief_curves_change_as_differences_say(pair, condensed):
+    name, bodies = "pinion.tip_relief_length", condensed(pair)
+    found = curve_derivatives(bodies, PAIRS[pair](), TORQUES, [name]).by[0]
+    off = np.abs(found - central(bodies, name, 1e-8)) / np.abs(found).max()
+    assert np.median(off) < 2e-4 and off.max() < 1e-2
+
+
+def test_by_misalignment_torque_and_centre_distance_curves_change_as_differences_say(condensed):
+    bodies, pair = condensed("helical"), helical()
+    found = curve_derivatives(bodies, pair, TORQUES, ["misalignment", "torque", "center_distance_change"])
+    base = bodies.solve(pair, TORQUES)[3].deflection
+    askew = [bodies.solve(pair, TORQUES, way * 1e-9)[3].deflection for way in (1.0, -1.0)]
+    assert np.median(np.abs(found.by[0] - (askew[0] - askew[1]) / 2e-9)) < 1e-6 * np.abs(found.by[0]).max()
+    more, less = (bodies.solve(pair, TORQUES * (1.0 + way * 1e-6))[3].deflection for way in (1.0, -1.0))
+    assert found.by[1] == pytest.approx((more - less) / (2e-6 * TORQUES), rel=1e-4)
+    apart = bodies.solve(pair, TORQUES, 0.0, 2e-6)[3].deflection
+    change = np.abs(found.by[2] - (apart - base) / 2e-6)
+    assert np.median(change) < 0.02 * np.abs(found.by[2]).max()
+
+
+@pytest.mark.parametrize("gear", ["pinion", "wheel"])
+def test_by_points_of_the_flank_integrates_to_the_amounts(gear, condensed):
+    bodies = condensed("helical")
+    names = [f"{gear}.profile_slope", f"{gear}.helix_slope"]
+    found = curve_derivatives(bodies, helical(), TORQUES, names)
+    flank = found.on_flank(gear, 9, 7)
+    toothing = getattr(helical(), gear)
+    ends = toothing.form_roll_length, toothing.tip_roll_length
+    across = (2.0 * flank.roll_length - sum(ends)) / (ends[1] - ends[0])
+    along = 2.0 * flank.face_position / toothing.face_width
+    for k, height in enumerate((0.5 * across[:, None], 0.5 * along[None, :])):
+        for by_point, by_amount in (
+            (flank.mean, found.mean[k]),
+            (flank.peak_to_peak, found.peak_to_peak[k]),
+            (flank.harmonics, found.harmonics[k]),
+        ):
+            total = (by_point * height).sum(axis=(-2, -1))
+            assert total == pytest.approx(by_amount, rel=2e-3, abs=2e-4 * np.abs(by_amount).max())
+    assert flank.mean.sum(axis=(1, 2)) == pytest.approx([1.0, 1.0], rel=1e-6)
+    assert flank.mean.min() >= -1e-9  # to take material away never brings the gears closer on the mean
+
+
+def test_quantities_change_as_their_derivatives_say(condensed):
+    bodies, name, step = condensed("helical"), "wheel.helix_crowning", 2e-8
+    found = curve_derivatives(bodies, helical(), TORQUES, [name])
+    tables = [bodies.table(modified(helical(), {name: 6e-6 + way * step}), TORQUES) for way in (1.0, -1.0)]
+    for k, torque in enumerate(TORQUES):
+        above, below = (table.curve(torque=float(torque)) for table in tables)
+        for by, one, other in (
+            (found.mean[0, k], above.mean, below.mean),
+            (found.peak_to_peak[0, k], above.peak_to_peak, below.peak_to_peak),
+            (found.harmonics[0, 0, k], above.harmonics[0], below.harmonics[0]),
+        ):
+            assert by == pytest.approx((one.value - other.value) / (2.0 * step), rel=0.01, abs=1e-4)
+
+
+def test_a_figure_that_is_zero_has_its_derivative_to_the_one_side(condensed):
+    bodies = condensed("spur")
+    plain = modified(spur(), {"pinion.profile_crowning": 0.0, "wheel.profile_crowning": 0.0})
+    found = curve_derivatives(bodies, plain, TORQUES, ["pinion.profile_crowning"])
+    step = 1e-8
+    more = bodies.solve(modified(plain, {"pinion.profile_crowning": step}), TORQUES)[3].deflection
+    off = np.abs(found.by[0] - (more - found.ste) / step)
+    assert np.median(off) < 1e-2 * np.abs(found.by[0]).max()
+
+
+def test_by_default_everything_that_acts_is_varied(condensed):
+    over_face = curve_derivatives(condensed("helical"), helical(), TORQUES).names
+    in_plane = curve_derivatives(condensed("spur"), spur(), TORQUES).names
+    assert {"pinion.tip_relief_length", "wheel.flank_twist", "misalignment", "torque"} <= set(over_face)
+    assert not any("helix" in name or name == "misalignment" for name in in_plane)
+    assert not any("root_relief" in name for name in over_face)  # it has no length
+
+
+@pytest.mark.parametrize(
+    ("name", "bound"),
+    [
+        ("pinion.crown", "one of"),
+        ("pinion.root_relief", "a relief that has a length"),
+        ("pinion.helix_crowning", "a figure whose effect the table has"),
+        ("misalignment", "a figure whose effect the table has"),
+    ],
+)
+def test_what_cannot_be_varied_is_refused_by_name(name, bound, condensed):
+    with pytest.raises(InputError, match=bound):
+        curve_derivatives(condensed("spur"), spur(), TORQUES, [name])
+
+
+@pytest.mark.parametrize("period", [1, 3])
+def test_quantities_of_a_curve_are_linear_in_its_values(period):
+    position = np.arange(64 * period) / 64.0
+    orders = np.array([1.0 / period, 1.0, 2.0, 5.0])
+    curve = (1e-6 / orders * np.cos(2.0 * np.pi * orders * position[:, None] + orders)).sum(axis=1)
+    weights = quantity_derivatives(curve, period)
+    assert weights.sum(axis=1) == pytest.approx([1.0, *[0.0] * 21], abs=1e-12)  # a curve moved as a whole
+    sizes = dict(zip(orders.tolist(), (1e-6 / orders).tolist(), strict=True))
+    expected = [sizes.get(float(n), 0.0) for n in range(1, 21)]
+    if period == 1:
+        expected[0] = 2e-6  # two waves of the first order
+    assert weights[2:] @ curve == pytest.approx(expected, abs=1e-18)  # of first degree: Euler
+    assert weights[1] @ curve == pytest.approx(np.ptp(curve), rel=1e-12)
+
+
+def test_harmonics_that_the_positions_do_not_resolve_have_no_derivatives():
+    weights = quantity_derivatives(np.cos(2.0 * np.pi * np.arange(48) / 16.0), 3)
+    assert np.isfinite(weights[:9]).all() and np.isnan(weights[9:]).all()  # 16 in a pitch: below order 8
