@@ -1,6 +1,7 @@
 """Studies of micro-geometry: many designs of one pair on one compliance."""
 
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
+from fe_contact.microgeometry.curve_derivatives import CurveDerivatives, FlankDerivatives, curve_derivatives
 from fe_contact.microgeometry.harris_map import HarrisMap
 from fe_contact.microgeometry.iso1328 import iso1328_tolerances
 from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
@@ -8,7 +9,12 @@ from fe_contact.microgeometry.optimisation import Optimisation, Outcome, StepAsi
 from fe_contact.microgeometry.optimise import optimise
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import Ended, Search, SearchRun
-from fe_contact.microgeometry.search_method import DifferentialEvolution, NelderMead
+from fe_contact.microgeometry.search_method import (
+    DifferentialEvolution,
+    Method,
+    NelderMead,
+    SequentialLinearProgramming,
+)
 from fe_contact.microgeometry.tolerance_study import ToleranceStudy, scatter
 from fe_contact.microgeometry.tolerances import Tolerances
 from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
@@ -16,12 +22,15 @@ from fe_contact.microgeometry.variables import QUANTITIES, DesignVariable
 __all__ = [
     "QUANTITIES",
     "ConfirmedDesign",
+    "CurveDerivatives",
     "DesignVariable",
     "DifferentialEvolution",
     "Ended",
+    "FlankDerivatives",
     "GaussHermite",
     "HarrisMap",
     "Limits",
+    "Method",
     "NelderMead",
     "Objective",
     "Optimisation",
@@ -30,12 +39,14 @@ __all__ = [
     "ScatterNodes",
     "Search",
     "SearchRun",
+    "SequentialLinearProgramming",
     "SobolSample",
     "StepAside",
     "ToleranceStudy",
     "Tolerances",
     "WeightedMean",
     "Worst",
+    "curve_derivatives",
     "iso1328_tolerances",
     "optimise",
     "scatter",

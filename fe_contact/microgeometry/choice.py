@@ -16,14 +16,14 @@ from fe_contact.microgeometry.optimisation import StepAside
 from fe_contact.microgeometry.request import OptimisationRequest
 from fe_contact.microgeometry.scatter import Scatter
 from fe_contact.microgeometry.search import Cancel, Search, SearchRun, search_from
-from fe_contact.microgeometry.search_method import NelderMead
+from fe_contact.microgeometry.search_method import SequentialLinearProgramming
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.stage_clock import StageClock
 
 SLACK = 0.005
 """Limits exceeded by less, in parts of them, are kept: the full analysis has more positions than a search."""
 REFINED = 4
-"""Where they are exceeded by more, a simplex goes on at those positions, with a quarter of the designs."""
+"""Where they are exceeded by more, the search goes on at those positions, with a quarter of the designs."""
 ROUNDS = 3
 """How often: the full analysis of another design has positions of its own, which join those of all before."""
 STEP = 0.05
@@ -114,7 +114,11 @@ def _refined(
     found: Choice, search: Search, study: DesignStudy, clock: StageClock, cache: Path | None, cancel: Cancel
 ) -> Choice:
     """Search on from a design that exceeds the limits between the positions of the search."""
-    shorter = replace(search, method=NelderMead(), evaluations=max(1, search.evaluations // REFINED))
+    shorter = replace(
+        search,
+        method=SequentialLinearProgramming(sample=0),
+        evaluations=max(1, search.evaluations // REFINED),
+    )
     seen = found.problem.evaluator.position, found.optimum.harris_map.position
     evaluator = found.problem.evaluator.at(np.union1d(*seen))
     problem = replace(found.problem, evaluator=evaluator)

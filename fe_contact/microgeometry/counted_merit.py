@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from fe_contact.microgeometry.design_problem import DesignProblem, Judged
+from fe_contact.microgeometry.linear_merit import LinearMerit
 from fe_contact.types import FloatArray
 
 
@@ -80,7 +81,16 @@ class CountedMerit:
     def __call__(self, place: FloatArray) -> float:
         """Judge a design."""
         self._budget.take(self._most)
-        judged = self._problem.judge(place)
+        return self._counted(self._problem.judge(place), place)
+
+    def linearise(self, place: FloatArray) -> tuple[float, LinearMerit]:
+        """Judge a design, and return its merit with what is known about it to first order."""
+        self._budget.take(self._most)
+        judged, merit = self._problem.linearise(place)
+        return self._counted(judged, place), merit
+
+    def _counted(self, judged: Judged, place: FloatArray) -> float:
+        """Count and remember a design; return its merit."""
         self.count += 1
         if self.best is None or judged.order < self.best[0].order:
             self.best = judged, np.clip(place, 0.0, 1.0)

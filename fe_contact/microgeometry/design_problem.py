@@ -8,7 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
-from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
+from fe_contact.microgeometry.linear_merit import LinearMerit
+from fe_contact.microgeometry.linearised_design import linearised
 from fe_contact.microgeometry.objective import Limits, Objective
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import FloatArray
@@ -90,8 +92,29 @@ class DesignProblem:
 
     def judge(self, place: FloatArray) -> Judged:
         """Evaluate the design at a place; one whose contact cannot be solved has an infinite merit."""
+        return self._with_merit(*self._figures(self.values(place)))
+
+    def linearise(self, place: FloatArray) -> tuple[Judged, LinearMerit]:
+        """Evaluate the design at a place (d,) with its derivatives; the memory learns of it.
+
+        Its merit to first order has NaN where the contact cannot be solved.
+        """
         values = self.values(place)
-        objective, violation = self._figures(values)
+        found = linearised(self.evaluator, values, self.names, self.limits)
+        objective, violation = self._judged(found.evaluation, values)
+        ranges = np.array([one.high - one.low for one in self.variables])
+        merit = LinearMerit(
+            found.evaluation.ste / self.scale,
+            found.curves * (ranges / self.scale),
+            self.evaluator.nodes.weight,
+            self.objective.rows(self.evaluator.load.size),
+            tuple((value, by * ranges) for value, by in found.limits),
+            PENALTY,
+        )
+        return self._with_merit(objective, violation), merit
+
+    def _with_merit(self, objective: float, violation: float) -> Judged:
+        """Return a design of this objective in m and violation."""
         if not math.isfinite(objective):
             return Judged(math.inf, math.inf, math.inf)
         return Judged(objective, violation, objective / self.scale + PENALTY * violation)
@@ -102,9 +125,13 @@ class DesignProblem:
         known = None if self.memory is None else self.memory.find(key, position)
         if known is not None:
             return known
-        evaluated = self.evaluator.evaluate(values)
+        return self._judged(self.evaluator.evaluate(values), values)
+
+    def _judged(self, evaluated: Evaluation, values: dict[str, float]) -> tuple[float, float]:
+        """Return objective in m and violation of an evaluated design, and have the memory keep them."""
         objective = self.objective.of(self.evaluator.expected(evaluated))
         violation = evaluated.violation(self.limits) if math.isfinite(objective) else math.inf
         if self.memory is not None:
-            self.memory.add(key, position, (objective, violation))
+            key = np.array(list(values.values()))
+            self.memory.add(key, self.evaluator.position, (objective, violation))
         return objective, violation

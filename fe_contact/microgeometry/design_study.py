@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.model_choice import Decided, decide
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.request import Checked
@@ -15,14 +16,12 @@ from fe_contact.analysis.request_check import check_asked, check_request
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.table_axes import LARGEST_DEVIATION
 from fe_contact.checks import increasing, integer, within
-from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.misalignment import Misalignment
-from fe_contact.effects.profile_modification import ProfileModification
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
-from fe_contact.microgeometry.variables import ACROSS_FACE, modified
+from fe_contact.microgeometry.variables import effect_of, figure, modified
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
 
@@ -58,7 +57,7 @@ class DesignStudy:
 class Accuracies:
     """What `analyze` takes of the same names."""
 
-    tolerance: float | None = None
+    tolerance: AllowedError | float | None = None
     level: str | None = None
     time_budget: float | None = None
     model: str = "auto"
@@ -134,7 +133,7 @@ def check_study(
     integer("positions", positions, 8, 4096, "64 resolve a spur pair.")
     within("misalignment", misalignment, -LARGEST_DEVIATION, LARGEST_DEVIATION, "In m: 10 um is 1e-5.")
     nodes = scatter.nodes()
-    present = {name: _present(pair, name) for name in scatter.modification} | dict(varied)
+    present = {name: figure(pair, name) for name in scatter.modification} | dict(varied)
     acting = {name: present[name] + scatter.modification.get(name, 0.0) for name in present}
     checked = check_request(
         modified(pair, acting),
@@ -152,12 +151,6 @@ def check_study(
     return checked
 
 
-def _present(pair: ParallelAxes, name: str) -> float:
-    """Return a figure of the pair's own modifications, m."""
-    gear, _, quantity = name.partition(".")
-    return float(getattr(getattr(pair, gear).modification, quantity))
-
-
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
     """Return model and mesh by the asked accuracy, every effect decided for good."""
     decided = decide(checked, cache)
@@ -168,16 +161,10 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
 
 def _refuse_off(checked: Checked, varied: Mapping[str, float], scatter: Scatter) -> None:
     """Refuse to vary what an effect that is off would hide."""
-    shown = {name: _effect_of(name) for name in (*varied, *scatter.modification)}
+    shown = {name: effect_of(name) for name in (*varied, *scatter.modification)}
     if scatter.misalignment:
         shown[MISALIGNMENT] = Misalignment.name
     for name, effect in shown.items():
         if checked.decided[effect] == "off":
             bound = f'"on" or "auto" where {name} is varied'
             raise InputError(f"effects.{effect}", "off", bound, "Or leave it out of the variables.")
-
-
-def _effect_of(name: str) -> str:
-    """Return the effect by which a figure of a modification acts."""
-    across = name.partition(".")[2] in ACROSS_FACE
-    return LeadModification.name if across else ProfileModification.name

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,9 +21,9 @@ from fe_contact.contact.touch import Touch, modified_touch
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.objective import Limits
-from fe_contact.microgeometry.scatter import ScatterNodes
-from fe_contact.microgeometry.variables import LENGTHS, SLOPES, modified
-from fe_contact.types import FloatArray, Status
+from fe_contact.microgeometry.scatter import MISALIGNMENT, ScatterNodes
+from fe_contact.microgeometry.variables import LENGTHS, SLOPES, figure, modified
+from fe_contact.types import BoolArray, FloatArray, Status
 
 
 @dataclass(frozen=True)
@@ -92,9 +93,15 @@ class Evaluator:
 
     def evaluate(self, values: Mapping[str, float]) -> Evaluation:
         """Solve the contact of one design, ``gear.quantity`` to m, at every node and load."""
+        return evaluation(figures(problem, solution) for _, problem, solution in self.solved(values))
+
+    def solved(
+        self, values: Mapping[str, float]
+    ) -> Iterator[tuple[ParallelAxes, ContactProblem, ContactSolution]]:
+        """Yield the pair as it comes out at every node, with its contact solved at every load."""
         touches: dict[tuple[float, ...], Touch] = {}
-        found = [self._at_node(values, node, touches) for node in range(self.nodes.weight.size)]
-        return Evaluation(*(np.stack(each) for each in zip(*found, strict=True)))
+        for node in range(self.nodes.weight.size):
+            yield self._at_node(values, node, touches)
 
     def at(self, position: FloatArray) -> Evaluator:
         """Return the same at other positions (P,), of which those in the first base pitch count."""
@@ -112,8 +119,8 @@ class Evaluator:
 
     def _at_node(
         self, values: Mapping[str, float], node: int, touches: dict[tuple[float, ...], Touch]
-    ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-        """Curves and figures of one node; nodes of one modification share its touching points."""
+    ) -> tuple[ParallelAxes, ContactProblem, ContactSolution]:
+        """Solve one node; nodes of one modification share its touching points."""
         pair, skew = self.scattered(values, node), self.misalignment + self.nodes.misalignment[node]
         scene = ContactScene(pair, pair.torque(self.load), np.array([skew]))
         model, _ = compose(scene, self.choices, EFFECTS)
@@ -126,7 +133,7 @@ class Evaluator:
             touches[key] = modified_touch(pair, bodies.candidates.touch, face, moving)
         touch = modified_touch(pair, touches[key], face, steady) if steady else touches[key]
         problem = _in_all_pitches(bodies.touching(bodies.candidates.touching(touch)), model)
-        return _figures(problem, solve_contact(problem, self.load))
+        return pair, problem, solve_contact(problem, self.load)
 
 
 def _deviated(
@@ -134,12 +141,18 @@ def _deviated(
 ) -> dict[str, float]:
     """Add deviations to a design; material removed stays at least zero, and a length above it."""
     out = dict(values)
+    designed = modified(pair, values)
     for name, amount in deviation.items():
-        gear, _, quantity = name.partition(".")
-        designed = values.get(name, getattr(getattr(pair, gear).modification, quantity))
-        least = -np.inf if quantity in SLOPES else 0.1 * designed if quantity in LENGTHS else 0.0
-        out[name] = max(float(designed) + amount, least)
+        out[name] = figure(designed, name) + max(amount, least_deviation(designed, name))
     return out
+
+
+def least_deviation(pair: ParallelAxes, name: str) -> float:
+    """Return the least deviation of a figure in m that leaves material where it is, and lengths."""
+    quantity = name.rpartition(".")[2]
+    if quantity in (*SLOPES, MISALIGNMENT):
+        return -math.inf
+    return -(0.9 if quantity in LENGTHS else 1.0) * figure(pair, name)
 
 
 def _in_all_pitches(problem: ContactProblem, model: ContactModel) -> ContactProblem:
@@ -150,17 +163,63 @@ def _in_all_pitches(problem: ContactProblem, model: ContactModel) -> ContactProb
     return in_pitches(problem, model, rows)
 
 
-def _figures(
-    problem: ContactProblem, solution: ContactSolution
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Return STE (P, L), and pressure, face load factor and load share of the edges (L,)."""
-    candidates = problem.candidates
+@dataclass(frozen=True)
+class NodeFigures:
+    """What one node of the scatter is judged by.
+
+    Attributes
+    ----------
+    ste : ndarray, shape (P, L)
+        m; NaN where the contact was not solved.
+    pressure : ndarray, shape (P, L, m)
+        Of every candidate, Pa.
+    face_load : ndarray, shape (L, Z)
+        Mean over the positions at the points of the face, over its mean over the face.
+    edge_load_share : ndarray, shape (P, L)
+        Part of the load on tip edges.
+    """
+
+    ste: FloatArray
+    pressure: FloatArray
+    face_load: FloatArray
+    edge_load_share: FloatArray
+
+
+def figures(problem: ContactProblem, solution: ContactSolution) -> NodeFigures:
+    """Read the figures off a solution."""
     ste = np.where(solution.status == Status.CONVERGED, solution.deflection, np.nan)
+    face_load = over_face(problem, solution.force)
+    at_edges = on_edges(problem, solution.force) / carried(problem, solution.force).sum(axis=2)
     pressure = contact_pressure(problem, solution.force)
-    pairs = np.unique(candidates.pair).size
-    face_load = solution.force.reshape(*ste.shape, pairs, -1).sum(axis=2).mean(axis=0)
-    loaded = solution.force * candidates.torque_share[:, None, :]
-    at_edge = (candidates.touch.low >= 0.0) | (candidates.touch.high <= 0.0)
-    share = (loaded * at_edge[:, None, :]).sum(axis=2) / loaded.sum(axis=2)
-    factor = face_load.max(axis=1) / face_load.mean(axis=1)
-    return ste, pressure.max(axis=(0, 2)), factor, share.max(axis=0)
+    return NodeFigures(ste, pressure, face_load / face_load.mean(axis=1, keepdims=True), at_edges)
+
+
+def evaluation(nodes: Iterable[NodeFigures]) -> Evaluation:
+    """Put the figures of all nodes together."""
+    found = [
+        (one.ste, one.pressure.max(axis=(0, 2)), one.face_load.max(axis=1), one.edge_load_share.max(axis=0))
+        for one in nodes
+    ]
+    return Evaluation(*(np.stack(each) for each in zip(*found, strict=True)))
+
+
+def over_face(problem: ContactProblem, force: FloatArray) -> FloatArray:
+    """Return forces (P, L, m) at the points of the face, their mean over the positions (L, Z), N."""
+    pairs = np.unique(problem.candidates.pair).size
+    return np.asarray(force.reshape(*force.shape[:2], pairs, -1).sum(axis=2).mean(axis=0))
+
+
+def carried(problem: ContactProblem, force: FloatArray) -> FloatArray:
+    """Return what each of the forces (P, L, m) carries of the load, N."""
+    return np.asarray(force * problem.candidates.torque_share[:, None, :])
+
+
+def edges(problem: ContactProblem) -> BoolArray:
+    """Return which candidates (P, m) touch at a tip edge, if they do."""
+    touch = problem.candidates.touch
+    return np.asarray((touch.low >= 0.0) | (touch.high <= 0.0))
+
+
+def on_edges(problem: ContactProblem, force: FloatArray) -> FloatArray:
+    """Return what forces (P, L, m) on tip edges carry of the load (P, L), N."""
+    return np.asarray((carried(problem, force) * edges(problem)[:, None, :]).sum(axis=2))

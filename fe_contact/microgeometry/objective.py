@@ -23,6 +23,10 @@ class Objective(Protocol):
         """Return the number in m of the expectations (L,) in m."""
         ...
 
+    def rows(self, loads: int) -> FloatArray:
+        """Return weights (R, L) of that many loads: the number is the largest of the R weighted sums."""
+        ...
+
     def to_json(self) -> Json:
         """Return plain JSON."""
         ...
@@ -49,6 +53,11 @@ class WeightedMean:
         """Return the mean."""
         return float(np.average(expected, weights=self.weights or None))
 
+    def rows(self, loads: int) -> FloatArray:
+        """Return one row."""
+        weights = np.array(self.weights or (1.0,) * loads)
+        return np.asarray(weights[None] / weights.sum())
+
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {"objective": "weighted_mean", "weights": list(self.weights)}
@@ -64,6 +73,10 @@ class Worst:
     def of(self, expected: FloatArray) -> float:
         """Return the largest."""
         return float(expected.max())
+
+    def rows(self, loads: int) -> FloatArray:
+        """Return a row for each load."""
+        return np.eye(loads)
 
     def to_json(self) -> Json:
         """Return plain JSON."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.choice import Choice, choose, posed, step_aside
@@ -33,7 +34,7 @@ def optimise(
     limits: Limits = NO_LIMITS,
     search: Search = Search(),  # noqa: B008 (frozen)
     map_torques: Sequence[float] | FloatArray | None = None,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",

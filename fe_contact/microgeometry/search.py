@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.checks import integer
 from fe_contact.microgeometry.counted_merit import Budget, Cancelled, CountedMerit, Spent
 from fe_contact.microgeometry.design_problem import DesignProblem, Judged
-from fe_contact.microgeometry.search_method import DifferentialEvolution, Method
+from fe_contact.microgeometry.search_method import Method, SequentialLinearProgramming
 from fe_contact.types import FloatArray, Json
 
 EXPLORED = 0.65
@@ -45,10 +45,10 @@ class Search:
     positions : int
         Equally spaced in a base pitch; the analysis at the end places its own.
     exploration : int
-        Positions by which differential evolution ranks designs, at most `positions`.
+        Positions by which designs are ranked before any is followed, at most `positions`.
     """
 
-    method: Method = DifferentialEvolution()  # noqa: RUF009 (frozen)
+    method: Method = SequentialLinearProgramming()  # noqa: RUF009 (frozen)
     seed: int = 0
     starts: int = 1
     evaluations: int = 1000

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import count
 from typing import Protocol
 
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution, minimize
+from scipy.stats import qmc
 
 from fe_contact.checks import integer
 from fe_contact.microgeometry.counted_merit import CountedMerit, Spent
@@ -19,6 +21,17 @@ EDGE = 0.2
 """Of the first simplex, in parts of the ranges, towards the inside."""
 SPREAD = 1e-3
 """Standard deviation of the merit over a population that has converged, in parts of its mean."""
+
+FIRST_REGION = 0.2
+"""Largest step of a linear programme to begin with, in parts of the ranges."""
+POOR, GOOD, POORER = 0.25, 0.75, 0.4
+"""Parts of the promised fall by which the region shrinks or grows; to what part of the step it shrinks."""
+
+TRIED = 7
+"""Steps of every start before the best of them is followed to its end."""
+
+ASIDE, LEAST_GAIN, MISSES = 0.05, 0.005, 3
+"""Where a walk ends it is taken up again beside, so far away at most, until that gains less so often."""
 
 
 class Method(Protocol):
@@ -72,6 +85,108 @@ class NelderMead:
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {"method": "nelder_mead"}
+
+
+@dataclass(frozen=True)
+class SequentialLinearProgramming:
+    """From design to design by linear programmes over the derivatives of the curves, in a trust region.
+
+    Peak-to-peak is made of maxima, whose kinks a programme of all positions, loads and nodes sees [1]_. It is
+    local: a Sobol' sequence ranked by the rough merit gives further starts; each is followed for some
+    designs, the best of them to its end. Where a contact begins curves have kinks that a programme sees from
+    one side only; so it is taken up again a little beside where it ended.
+
+    Attributes
+    ----------
+    sample : int
+        Points of the sequence, 0 to 4096; 0: from the start alone.
+    trials : int
+        The best of them that are followed, 0 to 64.
+
+    References
+    ----------
+    .. [1] K. Madsen, H. Schjaer-Jacobsen, Linearly constrained minimax optimization, Math. Programming 14
+       (1978) 208-223.
+    """
+
+    sample: int = 64
+    trials: int = 3
+
+    def __post_init__(self) -> None:
+        integer("method.sample", self.sample, 0, 4096)
+        integer("method.trials", self.trials, 0, 64)
+
+    def minimise(
+        self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
+    ) -> None:
+        """Search; the sequence and the places beside an end are random."""
+        walks = [_Walk(merit, start)]
+        for place in self._best(rough, start.size, seed):
+            walks.append(_Walk(merit, place))
+        for walk in walks if len(walks) > 1 else ():
+            walk.follow(TRIED)
+        best = min(walks, key=lambda walk: walk.value)
+        best.follow()
+        random, misses = np.random.default_rng(seed.spawn(1)[0]), 0
+        while misses < MISSES and np.isfinite(best.value):
+            aside = best.place + ASIDE * random.uniform(-1.0, 1.0, start.size)
+            other = _Walk(merit, np.clip(aside, 0.0, 1.0), 2.0 * ASIDE)
+            other.follow()
+            misses = 0 if other.value < (1.0 - LEAST_GAIN) * best.value else misses + 1
+            best = min(best, other, key=lambda walk: walk.value)
+
+    def _best(self, rough: CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
+        """Return the best points of the sequence, as far as the designs reach."""
+        found: list[tuple[float, FloatArray]] = []
+        with suppress(Spent):
+            sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
+            for place in sequence.random_base2((self.sample - 1).bit_length())[: self.sample]:
+                found.append((rough(place), place))
+        found.sort(key=lambda one: one[0])
+        return [place for value, place in found[: self.trials] if np.isfinite(value)]
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {"method": "sequential_linear_programming", "sample": self.sample, "trials": self.trials}
+
+
+class _Walk:
+    """Steps of linear programmes from one design on.
+
+    Attributes
+    ----------
+    place : ndarray, shape (d,)
+        The best so far.
+    value : float
+        Its merit.
+    """
+
+    def __init__(self, merit: CountedMerit, start: FloatArray, region: float = FIRST_REGION) -> None:
+        self._merit, self.place, self._region = merit, start, region
+        self.value, self._linear = merit.linearise(start)
+
+    def follow(self, most: int | None = None) -> None:
+        """Step until converged, or so often at most."""
+        for _ in range(most) if most is not None else count():
+            if not np.isfinite(self.value) or self._region <= SIMPLEX_SIZE or not self._step():
+                return
+
+    def _step(self) -> bool:
+        """Take a step if one promises anything; shorten the region where it keeps too little of it."""
+        ends = np.maximum(-self._region, -self.place), np.minimum(self._region, 1.0 - self.place)
+        step, promised = self._linear.least(*ends)
+        if self.value - promised <= SIMPLEX_MERIT * self.value:
+            return False
+        place = np.clip(self.place + step, 0.0, 1.0)
+        value, linear = self._merit.linearise(place)
+        kept = (self.value - value) / (self.value - promised)
+        if kept < POOR:
+            self._region = POORER * float(np.abs(step).max())
+        elif kept > GOOD:
+            self._region = min(2.0 * self._region, 1.0)
+        if value < self.value:
+            self.place, self.value, self._linear = place, value, linear
+        return True
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,16 @@ from pathlib import Path
 
 import numpy as np
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.checks import increasing, integer, within
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import full_table
 from fe_contact.microgeometry.design_study import Accuracies, check_study, design_study
-from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
+from fe_contact.microgeometry.linearised_design import linearised
+from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.scatter import ONE_NODE, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.spread import Quantile, quantile, rank_correlation
 from fe_contact.microgeometry.tolerances import Tolerances
@@ -46,8 +49,10 @@ class ToleranceStudy:
     nominal, error : ndarray, shape (L,)
         Without deviations, and the error of the analysis there, m.
     quantiles : tuple of Quantile
+    first_order : ndarray, shape (N, L)
+        Peak-to-peak of the same pairs from the nominal curves and their derivatives, m: known at once.
     confidence : float
-        Of their bounds.
+        Of the bounds of the quantiles.
     cost : dict
         CPU and wall seconds by stage, of this process.
     asked : dict
@@ -60,6 +65,7 @@ class ToleranceStudy:
     nominal: FloatArray
     error: FloatArray
     quantiles: tuple[Quantile, ...]
+    first_order: FloatArray
     confidence: float
     cost: Json
     asked: Json
@@ -94,6 +100,7 @@ class ToleranceStudy:
             "influence": self.influence.tolist(),
             "deviation_m": self.deviation.tolist(),
             "peak_to_peak_m": self.peak_to_peak.tolist(),
+            "first_order_m": self.first_order.tolist(),
             "cost": self.cost,
             "asked": self.asked,
         }
@@ -110,7 +117,7 @@ def scatter(
     fractions: Sequence[float] = FRACTIONS,
     misalignment: float = 0.0,
     positions: int = 64,
-    tolerance: float | None = None,
+    tolerance: AllowedError | float | None = None,
     level: str | None = None,
     time_budget: float | None = None,
     model: str = "auto",
@@ -164,21 +171,24 @@ def scatter(
         pair, torques, [], {}, _widths(tolerances), misalignment, positions, accuracy, clock, report, cache
     )
     deviation = tolerances.sample(samples, seed)
+    names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)
+    with clock.stage("first order"):
+        at_once = first_order(nominal, names, deviation)
     with clock.stage("samples"):
-        found = _evaluated(study.evaluator, tuple(tolerances.widths), deviation, workers, report)
+        found = _evaluated(study.evaluator, names, deviation, workers, report)
     with clock.stage("confirmation"):
-        nominal = replace(study.evaluator, nodes=ONE_NODE)
         table = full_table(nominal, {}, study.decided, cache)
         error = [table.peak_to_peak(force=float(f), misalignment=misalignment).error for f in table.force]
     report("confirmation", 1.0)
     return ToleranceStudy(
         study.torque,
-        tuple(tolerances.widths),
+        names,
         deviation,
         found,
         nominal.evaluate({}).peak_to_peak[0],
         np.array(error),
         tuple(quantile(found, fraction, confidence) for fraction in fractions),
+        at_once,
         confidence,
         clock.to_json(),
         {
@@ -228,6 +238,20 @@ def _evaluated(
         bad = int((~np.isfinite(found)).any(axis=1).sum())
         raise SolveError(f"the contact of {bad} of {found.shape[0]} pairs cannot be solved", found)
     return found
+
+
+def first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArray) -> FloatArray:
+    """Peak-to-peak (N, L) in m of pairs that deviate by (N, d), from curves that are linear in it.
+
+    Nothing is removed below zero by a deviation.
+    """
+    found = linearised(nominal, {}, names, NO_LIMITS)
+    least = np.array([least_deviation(nominal.contact.pair, name) for name in names])
+    held = np.maximum(deviation, least)
+    curves = (
+        found.evaluation.ste[0, :, k] + held @ found.curves[0, :, k].T for k in range(nominal.load.size)
+    )
+    return np.stack([np.ptp(each, axis=1) for each in curves], axis=1)
 
 
 def ripple_of_samples(shared: tuple[Evaluator, tuple[str, ...]], deviation: FloatArray) -> FloatArray:

@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 from functools import reduce
 
 from fe_contact.checks import finite
+from fe_contact.effects.lead_modification import LeadModification
+from fe_contact.effects.profile_modification import ProfileModification
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import Json
@@ -96,6 +98,12 @@ def gear_and_quantity(field: str, name: str) -> tuple[str, str]:
     return gear, quantity
 
 
+def effect_of(name: str) -> str:
+    """Return the effect by which a figure of a modification acts."""
+    across = name.partition(".")[2] in ACROSS_FACE
+    return LeadModification.name if across else ProfileModification.name
+
+
 def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> None:
     """Refuse none, one twice, reliefs without a length, and bounds that the gears have no room for.
 
@@ -111,8 +119,7 @@ def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> 
             raise InputError("variables", name, "given once")
     for one in variables:
         length = f"{one.quantity}_length"
-        given = getattr(getattr(pair, one.gear).modification, length, None)
-        if given == 0.0 and f"{one.gear}.{length}" not in names:
+        if lacks_length(pair, one.name) and f"{one.gear}.{length}" not in names:
             advice = f"Give {one.gear}.{length} a value in the case, or make it a variable."
             raise InputError(f"variables.{one.name}", "free", "beside the length of that relief", advice)
     for end in ("low", "high"):
@@ -123,9 +130,21 @@ def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> 
             raise InputError(f"variables ({end})", at_end, f"bounds with {error}") from None
 
 
+def lacks_length(pair: ParallelAxes, relief: str) -> bool:
+    """Whether ``gear.quantity`` is a relief that has no length yet."""
+    gear, _, quantity = relief.partition(".")
+    return bool(getattr(getattr(pair, gear).modification, f"{quantity}_length", None) == 0.0)
+
+
 def start_of(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> tuple[float, ...]:
     """Return the values of the variables in the pair as it is, m; they may lie outside their bounds."""
-    return tuple(float(getattr(getattr(pair, v.gear).modification, v.quantity)) for v in variables)
+    return tuple(figure(pair, one.name) for one in variables)
+
+
+def figure(pair: ParallelAxes, name: str) -> float:
+    """Return ``gear.quantity`` of the pair's own modifications, m."""
+    gear, _, quantity = name.partition(".")
+    return float(getattr(getattr(pair, gear).modification, quantity))
 
 
 def modified(pair: ParallelAxes, values: Mapping[str, float]) -> ParallelAxes:

@@ -11,10 +11,12 @@ from fe_contact.microgeometry import (
     DifferentialEvolution,
     GaussHermite,
     Limits,
+    Method,
     NelderMead,
     Optimisation,
     Scatter,
     Search,
+    SequentialLinearProgramming,
     SobolSample,
     WeightedMean,
     Worst,
@@ -142,10 +144,13 @@ def _limits(study: OptimisationInput) -> Limits:
 
 def _search(given: SearchInput) -> Search:
     """Return how it is searched."""
-    evolution = given.method == "differential_evolution"
-    method = DifferentialEvolution(given.population) if evolution else NelderMead()
+    methods: dict[str, Method] = {
+        "sequential_linear_programming": SequentialLinearProgramming(given.sample, given.trials),
+        "differential_evolution": DifferentialEvolution(given.population),
+        "nelder_mead": NelderMead(),
+    }
     counts = given.starts, given.evaluations, given.positions, given.exploration
-    return Search(method, given.seed, *counts)
+    return Search(methods[given.method], given.seed, *counts)
 
 
 def optimisation_json(found: Optimisation) -> Json:

@@ -23,6 +23,7 @@ def stored_scatter(content: Json) -> ToleranceStudy:
         _lengths(content["nominal_um"]),
         _lengths(content["error_um"]),
         tuple(_quantile(one, len(content["torque_n_m"])) for one in content["quantiles"]),
+        _lengths(content["first_order_um"]),
         content["confidence"],
         content["cost"],
         content["asked"],

@@ -140,8 +140,20 @@ class LimitsInput(BoundaryModel):
 class SearchInput(BoundaryModel):
     """How the best design is searched."""
 
-    method: Literal["differential_evolution", "nelder_mead"] = Field(
-        default="differential_evolution", description="Global, or local and cheap", examples=["nelder_mead"]
+    method: Literal["sequential_linear_programming", "differential_evolution", "nelder_mead"] = Field(
+        default="sequential_linear_programming",
+        description="By derivatives from the best of a sample, global without them, or local without them",
+        examples=["differential_evolution"],
+    )
+    sample: int = Field(
+        default=64,
+        ge=0,
+        le=4096,
+        description="Of sequential_linear_programming: designs that are ranked before any is followed",
+        examples=[64],
+    )
+    trials: int = Field(
+        default=3, ge=0, le=64, description="Of them the best that are followed", examples=[3]
     )
     population: int = Field(
         default=5, ge=3, le=50, description="Of differential_evolution, for each variable", examples=[5]
@@ -155,7 +167,11 @@ class SearchInput(BoundaryModel):
         default=64, ge=8, le=4096, description="In a base pitch, for the search", examples=[64]
     )
     exploration: int = Field(
-        default=16, ge=8, le=4096, description="Positions by which evolution ranks designs", examples=[16]
+        default=16,
+        ge=8,
+        le=4096,
+        description="Positions by which they, or those of evolution, are ranked",
+        examples=[16],
     )
 
 

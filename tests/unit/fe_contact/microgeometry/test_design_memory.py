@@ -11,6 +11,7 @@ import pytest
 from fe_contact import GearPair
 from fe_contact.microgeometry import (
     DesignVariable,
+    DifferentialEvolution,
     Limits,
     Optimisation,
     Search,
@@ -24,7 +25,7 @@ FREE = (
     DesignVariable("pinion.profile_crowning", 0.0, 2e-5),
     DesignVariable("wheel.profile_slope", -1e-5, 1e-5),
 )
-SEARCH = Search(evaluations=60, positions=24, exploration=8)
+SEARCH = Search(DifferentialEvolution(), evaluations=60, positions=24, exploration=8)
 
 
 @pytest.fixture

@@ -10,7 +10,13 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import DifferentialEvolution, Ended, NelderMead, Search
+from fe_contact.microgeometry import (
+    DifferentialEvolution,
+    Ended,
+    NelderMead,
+    Search,
+    SequentialLinearProgramming,
+)
 from fe_contact.microgeometry.design_problem import DesignProblem, Judged
 from fe_contact.microgeometry.search import EXPLORED, search_from
 from fe_contact.microgeometry.search_starts import search_all, search_one
@@ -19,6 +25,18 @@ from fe_contact.workers import InProcess
 
 START = np.array([0.9, 0.1, 0.5])
 BOTTOM = np.array([0.3, 0.6, 0.2])
+EVOLUTION = DifferentialEvolution()
+
+
+@dataclass
+class Tangent:
+    """A bowl to first order."""
+
+    away: FloatArray
+
+    def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
+        step = np.where(self.away > 0.0, low, high)
+        return step, 1.0 + float((self.away**2).sum() + 2.0 * self.away @ step)
 
 
 @dataclass
@@ -38,6 +56,9 @@ class Bowl:
         value = 1.0 + float(((place - self.bottom) ** 2).sum())
         return Judged(value, 0.0, value)
 
+    def linearise(self, place: FloatArray) -> tuple[Judged, Tangent]:
+        return self.judge(place), Tangent(place - self.bottom)
+
     def rough(self, positions: int) -> Bowl:
         self.roughened = Bowl(self.bottom + 0.02)
         return self.roughened
@@ -52,7 +73,7 @@ def searched(bowl: Bowl, search: Search, cancel: Callable[[], bool] | None = Non
 
 def test_evolution_explores_roughly_and_a_simplex_settles_it() -> None:
     bowl = Bowl()
-    run = searched(bowl, Search(seed=1, evaluations=3000))
+    run = searched(bowl, Search(EVOLUTION, seed=1, evaluations=3000))
     assert run.ended is Ended.CONVERGED and run.converged
     np.testing.assert_allclose(run.place, BOTTOM, atol=2e-3)  # not the bottom of the rough one
     assert bowl.roughened is not None
@@ -61,14 +82,28 @@ def test_evolution_explores_roughly_and_a_simplex_settles_it() -> None:
 
 
 def test_the_simplex_keeps_its_part_of_the_designs() -> None:
-    run = searched(Bowl(), Search(seed=1, evaluations=200))
+    run = searched(Bowl(), Search(EVOLUTION, seed=1, evaluations=200))
     assert run.explored + 1 == int(EXPLORED * 200)  # the start is judged in full
     assert run.evaluations == 200 and run.ended is Ended.SPENT
-    longer = searched(Bowl(), Search(seed=1, evaluations=400))
+    longer = searched(Bowl(), Search(EVOLUTION, seed=1, evaluations=400))
     assert longer.judged.objective <= run.judged.objective
 
 
-@pytest.mark.parametrize("method", [DifferentialEvolution(), NelderMead()])
+def test_programmes_follow_the_best_of_a_sample() -> None:
+    bowl = Bowl()
+    run = searched(bowl, Search(SequentialLinearProgramming(sample=32, trials=2), seed=1))
+    assert run.ended is Ended.CONVERGED and run.explored == 32
+    np.testing.assert_allclose(run.place, BOTTOM, atol=0.02)  # a bowl is flat to first order at its bottom
+    assert run.judged.objective < 1.0 + 1e-3
+    ranked = bowl.roughened
+    assert ranked is not None
+    best = min(tuple(ranked.seen), key=lambda place: ranked.judge(place).objective)
+    assert any(np.array_equal(best, place) for place in bowl.seen)
+    alone = searched(Bowl(), Search(SequentialLinearProgramming(sample=0), seed=1))
+    assert alone.explored == 0 and alone.judged.objective < 1.0 + 1e-3
+
+
+@pytest.mark.parametrize("method", [DifferentialEvolution(), NelderMead(), SequentialLinearProgramming()])
 @pytest.mark.parametrize("evaluations", [1, 2, 3])
 def test_a_search_of_hardly_any_design_keeps_the_best(method: Any, evaluations: int) -> None:
     bowl = Bowl()
@@ -85,7 +120,7 @@ def test_a_cancelled_search_keeps_the_best_so_far(after: int) -> None:
         asked[0] += 1
         return asked[0] > after
 
-    run = searched(bowl, Search(seed=2, evaluations=2000), cancel)
+    run = searched(bowl, Search(EVOLUTION, seed=2, evaluations=2000), cancel)
     assert run.ended is Ended.CANCELLED and run.evaluations == after
     told = Bowl().judge(run.place)  # in full, whatever it was ranked by
     assert run.judged == told

@@ -49,6 +49,17 @@ def test_what_deviates_more_has_more_influence(found: ToleranceStudy) -> None:
     assert pinion > 0.8 > wheel
 
 
+def test_the_first_order_answer_is_off_by_the_square_of_the_tolerances(
+    found: ToleranceStudy, pair: GearPair, compliances: Path
+) -> None:
+    narrow = Tolerances(0.0, {name: 0.1 * width for name, width in SLOPES.modification.items()})
+    asked: dict[str, Any] = {"samples": 120, "seed": 3, "positions": 16, "cache": compliances, **DRAFT}
+    tenth = scatter(pair, TORQUES, narrow, **asked)
+    one, other = (np.abs(each.first_order - each.peak_to_peak).mean(axis=0) for each in (found, tenth))
+    assert np.all(other < 0.05 * one)
+    assert np.all(one < 0.5 * found.peak_to_peak.std(axis=0))  # slopes of 10 um are not small
+
+
 def test_bounds_enclose_their_quantiles(found: ToleranceStudy) -> None:
     values = [one.value for one in found.quantiles]
     assert np.all(np.diff(values, axis=0) > 0.0)

@@ -1,0 +1,161 @@
+"""A design with its derivatives by the variables: curves and limits to first order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fe_contact.contact import CarryingStrips, ContactProblem, ContactSolution, adjoint, force_changes
+from fe_contact.geometry import ParallelAxes
+from fe_contact.microgeometry.curve_derivatives import opened_by
+from fe_contact.microgeometry.evaluator import (
+    Evaluation,
+    Evaluator,
+    NodeFigures,
+    carried,
+    edges,
+    evaluation,
+    figures,
+    on_edges,
+    over_face,
+)
+from fe_contact.microgeometry.linear_merit import Rows
+from fe_contact.microgeometry.objective import Limits
+from fe_contact.types import FloatArray
+
+NEAR = 0.8
+"""Pressures from this part of the largest on are followed."""
+_POINT = 1e-9
+"""Half length in m of the strip of an edge that is not in contact."""
+
+
+@dataclass(frozen=True)
+class LinearisedDesign:
+    """One design at S nodes of the scatter and L loads, to first order in d variables.
+
+    Attributes
+    ----------
+    evaluation : Evaluation
+    curves : ndarray, shape (S, P, L, d)
+        dSTE/dvariable, m/m.
+    limits : tuple of Rows
+        Of each limit that is set: in parts of it less 1 (the load on edges: less its limit), at all places
+        at which it may come to count.
+    """
+
+    evaluation: Evaluation
+    curves: FloatArray
+    limits: tuple[Rows, ...]
+
+
+@dataclass(frozen=True)
+class _Node:
+    """One node of the scatter with its derivatives by d variables.
+
+    Attributes
+    ----------
+    pair, problem, solution, figures
+    names : tuple of str
+        Of the variables.
+    strips : CarryingStrips
+    opened : ndarray, shape (d, k)
+        Normal approach that each variable takes away from them, m/m.
+    """
+
+    pair: ParallelAxes
+    problem: ContactProblem
+    solution: ContactSolution
+    figures: NodeFigures
+    names: tuple[str, ...]
+    strips: CarryingStrips
+    opened: FloatArray
+
+    @cached_property
+    def ste(self) -> FloatArray:
+        """Derivatives of the transmission error (d, P, L), m/m."""
+        return np.stack([self.strips.change(each) for each in self.opened])
+
+    @cached_property
+    def force(self) -> FloatArray:
+        """Derivatives of the forces (d, P, L, m), N/m; solved only where a limit asks."""
+        apart = np.zeros((len(self.names), *self.strips.shape))
+        apart.reshape(len(self.names), -1)[:, self.strips.index] = self.opened
+        return force_changes(self.problem, self.solution, apart)
+
+
+def linearised(
+    evaluator: Evaluator, values: Mapping[str, float], names: Sequence[str], limits: Limits
+) -> LinearisedDesign:
+    """Solve a design, ``gear.quantity`` to m, and differentiate it by the variables named."""
+    nodes = [_node(*solved, tuple(names)) for solved in evaluator.solved(values)]
+    rows = [_limit_rows(node, limits) for node in nodes]
+    joined = tuple(
+        (np.concatenate([one[0] for one in each]), np.concatenate([one[1] for one in each]))
+        for each in zip(*rows, strict=True)
+    )
+    curves = np.stack([np.moveaxis(node.ste, 0, -1) for node in nodes])
+    return LinearisedDesign(evaluation(node.figures for node in nodes), curves, joined)
+
+
+def _node(
+    pair: ParallelAxes, problem: ContactProblem, solution: ContactSolution, names: tuple[str, ...]
+) -> _Node:
+    """Differentiate a node."""
+    strips = CarryingStrips.of(pair, problem.candidates, adjoint(problem, solution))
+    opened = np.stack([opened_by(strips, pair, name) for name in names])
+    return _Node(pair, problem, solution, figures(problem, solution), names, strips, opened)
+
+
+def _limit_rows(node: _Node, limits: Limits) -> list[Rows]:
+    """Return the rows of one node for each limit that is set."""
+    rows: list[Rows] = []
+    if limits.max_pressure is not None:
+        rows.append(_pressure(node, limits.max_pressure))
+    if limits.face_load_factor is not None:
+        rows.append(_face_load(node, limits.face_load_factor))
+    if limits.edge_load_share is not None:
+        rows.append(_edge_load(node, limits.edge_load_share))
+    return rows
+
+
+def _pressure(node: _Node, limit: float) -> Rows:
+    """Return how far pressures exceed their limit; they grow as the root of the load."""
+    found = node.figures.pressure
+    near = found >= NEAR * found.max()
+    part = found[near] / limit
+    by = [0.5 * part * each[near] / node.solution.force[near] for each in node.force]
+    return part - 1.0, np.stack(by, axis=-1)
+
+
+def _face_load(node: _Node, limit: float) -> Rows:
+    """Return how far the load at each point of the face exceeds its limit."""
+    mean = over_face(node.problem, node.solution.force).mean(axis=1, keepdims=True) * limit
+    by = [(over_face(node.problem, each) / mean).ravel() for each in node.force]
+    return node.figures.face_load.ravel() / limit - 1.0, np.stack(by, axis=-1)
+
+
+def _edge_load(node: _Node, limit: float) -> Rows:
+    """Return how far the load on tip edges exceeds its limit at each position and load.
+
+    Where none is in contact it is below zero by what the nearest one would carry, had the gear to lag by
+    its clearance more.
+    """
+    problem, solution, c = node.problem, node.solution, node.problem.candidates
+    load = carried(problem, solution.force).sum(axis=2)
+    share, by = node.figures.edge_load_share.copy(), [on_edges(problem, each) / load for each in node.force]
+    clear = c.motion_arm[:, None] * (c.gap[:, None] - solution.deflection[..., None])
+    clear = np.where(edges(problem)[:, None], clear + problem.moved(solution.force), np.inf)
+    nearest = clear.argmin(axis=2)
+    p, k = np.nonzero((share == 0.0) & np.isfinite(clear.min(axis=2)))
+    m = nearest[p, k]
+    per_gap = 1.0 / (c.motion_arm[p, m] * solution.tangent[p, k] * load[p, k])
+    share[p, k] = -clear[p, k, m] * per_gap
+    zero = np.zeros(p.size)
+    points = CarryingStrips.at(node.pair, c, load.shape[1], (p, k, m), zero, zero + _POINT, zero)
+    for a, name in enumerate(node.names):
+        moved = problem.moved(node.force[a])[p, k, m] - c.motion_arm[p, m] * node.ste[a, p, k]
+        by[a][p, k] = -(opened_by(points, node.pair, name) + moved) * per_gap
+    return share.ravel() - limit, np.stack([each.ravel() for each in by], axis=-1)
