@@ -9,7 +9,6 @@ from typing import Any, Protocol
 import numpy as np
 
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.error_estimate import left_out
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_table import SolvedTable
 from fe_contact.analysis.table_places import Place, Places
@@ -21,7 +20,7 @@ from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.effects.misalignment import MisalignmentGap
 from fe_contact.effects.worth import Worth, estimate_worth
 from fe_contact.geometry.printed_data import backlash_rounding
-from fe_contact.planning import Plan
+from fe_contact.planning import Plan, left_out
 from fe_contact.types import FloatArray, Json
 
 LEAST_BACKLASH = 1e-9
@@ -163,9 +162,9 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     found = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
     name = FaceLoadDistribution.name
     yield Assumption(name, "load even over the face", not reasons, float("nan"), found)
-    missing = left_out(run.plan, run.places.places[0].contact.pair)
+    missing = left_out(run.places.places[0].contact.pair, run.plan.discretisation)
     if missing:
-        reason = f"the finite width adds about {100 * missing:.2g} % to the mean"
+        reason = f"the finite width is worth about {100 * missing:.2g} % of the mean"
         holds = missing <= allowed(run).relative
         yield Assumption(FiniteWidth.name, "plane strain stands for the whole face", holds, missing, reason)
 

@@ -37,7 +37,6 @@ def condensed_errors(
     contacts: CondensedContacts,
     sample: TableSample,
     plan: Plan,
-    stands_in: float = 0.0,
 ) -> JudgedTable:
     """Estimate the errors of a table of one alignment.
 
@@ -52,8 +51,6 @@ def condensed_errors(
     sample : TableSample
         Points that are solved again.
     plan : Plan
-    stands_in : float
-        Relative error of plane strain where it stands in for a finite width uncorrected.
 
     Returns
     -------
@@ -71,7 +68,7 @@ def condensed_errors(
     plane = solved(contacts.plane, own)
     nested = Nested(sample, own, plane, solved(contacts.coarse, plane), solved(contacts.sliced, own))
     positions = errors_by_halves(table.position, solution.deflection, places.period)
-    measured = places, [solution], nested, positions, plan, stands_in
+    measured = places, [solution], nested, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.own)

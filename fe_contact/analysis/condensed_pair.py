@@ -27,12 +27,10 @@ from fe_contact.analysis.solved_table import assembled_table
 from fe_contact.analysis.table_axes import axis, load_levels
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.contact import ContactProblem, ContactSolution
-from fe_contact.effects import FiniteWidth
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes
-from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.planning import LEFT_OUT, Plan
+from fe_contact.planning import Plan
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import LARGEST_SUPPORT
 from fe_contact.stage_clock import StageClock
@@ -123,8 +121,7 @@ class CondensedPair:
             solved = places.places[0].solve_pitches(nodes.position, load, np.arange(places.period))
             table = assembled_table(checked.request, places, nodes, [solved], [])
         with clock.stage("error estimate"):
-            stands_in = self._plane_strain_error(pair)
-            judged = condensed_errors(table, places, solved[1], contacts, sample, plan, stands_in)
+            judged = condensed_errors(table, places, solved[1], contacts, sample, plan)
         found = check_condensed(CondensedRun(checked, plan, places, [solved]), self.spared)
         receipt = condensed_receipt(plan, solved[1], judged, found, clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
@@ -229,11 +226,6 @@ class CondensedPair:
         while len(self._apart) > KEPT_DISTANCES:
             self._apart.popitem(last=False)
         return self._apart[change]
-
-    def _plane_strain_error(self, pair: ParallelAxes) -> float:
-        """Return the relative error of plane strain where a tolerance took it for a finite width, else 0."""
-        taken = FiniteWidth.name in self.spared and not self.checked.model.across_face
-        return LEFT_OUT * finite_width_excess(pair) if taken else 0.0
 
 
 def _refuse_more_teeth(contact: PairContact, change: float) -> None:

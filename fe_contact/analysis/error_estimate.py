@@ -4,8 +4,8 @@ The finite-element error comes from a second, coarser discretisation solved at t
 quadratic elements and Galerkin patches the error falls at least with the square of the element size, which
 bounds what is left of the difference (`Discretisation.remaining`). The table's error is measured at the
 middles between its nodes. Where the plane stands in for three dimensions, a part of what it was corrected by
-is its error; it is measured against three-dimensional solutions (docs/effects/finite_width.md). What plane
-strain leaves out where it was asked for is reported beside these and not added in.
+is its error; it is measured against three-dimensional solutions (docs/effects/finite_width.md). A plane that
+is not corrected, asked for by name or not, errs by what it leaves out of the finite width.
 """
 
 from __future__ import annotations
@@ -17,11 +17,9 @@ import numpy as np
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
-from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactSolution
-from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.geometry.parallel_axes import ParallelAxes
-from fe_contact.planning import Plan, PlaneDiscretisation, flank_tilt
+from fe_contact.planning import LEFT_OUT, Plan, flank_tilt, left_out
 from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03
@@ -40,10 +38,9 @@ class ErrorSources:
     Attributes
     ----------
     discretisation, slices, interpolation, contact, finite_width : ndarray
-        Finite elements, slices of the face, table beside the node, contact, correction of the plane.
-    model : float
-        Relative excess of the mean STE that plane strain leaves out; 0 where it is corrected for it, in plane
-        stress, and in three dimensions.
+        Finite elements, slices of the face, table beside the node, contact, the plane for a finite width.
+    left_out : float
+        Relative part of the mean STE that an uncorrected plane leaves out; it is part of `finite_width`.
     """
 
     discretisation: FloatArray
@@ -51,7 +48,7 @@ class ErrorSources:
     interpolation: FloatArray
     contact: FloatArray
     finite_width: FloatArray
-    model: float
+    left_out: float
 
     @property
     def total(self) -> FloatArray:
@@ -59,7 +56,7 @@ class ErrorSources:
         return self.discretisation + self.slices + self.interpolation + self.contact + self.finite_width
 
     def to_json(self) -> Json:
-        """Return the largest of each source by load, m, and the model's own uncertainty.
+        """Return the largest of each source by load, m, and the part that the plane leaves out.
 
         Beside a failed point errors are unknown and left out; None where that leaves none.
         """
@@ -71,7 +68,7 @@ class ErrorSources:
             "finite_width_m": self.finite_width,
         }
         worst = {name: _largest_known(values) for name, values in sources.items()}
-        return worst | {"plane_for_finite_width_relative": self.model}
+        return worst | {"plane_for_finite_width_relative": self.left_out}
 
 
 def _largest_known(errors: FloatArray) -> list[float | None]:
@@ -116,7 +113,6 @@ def estimate_errors(
     nested: Nested,
     positions: PositionErrors,
     plan: Plan,
-    stands_in: float = 0.0,
 ) -> ErrorSources:
     """Combine the measured differences.
 
@@ -129,18 +125,17 @@ def estimate_errors(
     positions : PositionErrors
         The largest of the judged places stand for every place.
     plan : Plan
-    stands_in : float
-        Relative error of plane strain where it stands in for a finite width uncorrected.
     """
     made, pair = plan.discretisation, places.places[0].contact.pair
+    missing = left_out(pair, made)
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:
         """Return a part of the differences of STE, at all points."""
         return nested.sample.spread_points(part * np.nan_to_num(np.abs(these - those)))
 
     free_ends = left(nested.table, nested.plane, CORRECTION_ERROR)
-    if stands_in:
-        curves = [stands_in * np.nan_to_num(np.abs(solution.deflection)) for solution in solutions]
+    if missing:
+        curves = [LEFT_OUT * missing * np.nan_to_num(np.abs(solution.deflection)) for solution in solutions]
         free_ends = places.gathered(curves)
     return ErrorSources(
         left(nested.plane, nested.coarse, made.remaining),
@@ -149,15 +144,8 @@ def estimate_errors(
         places.gathered([contact_error(solution) for solution in solutions])
         + left(nested.table, nested.without_tilt(pair), LEFT_BY_TILT),
         free_ends,
-        left_out(plan, pair),
+        missing,
     )
-
-
-def left_out(plan: Plan, pair: ParallelAxes) -> float:
-    """Return the relative excess of the mean STE that plane strain leaves out where it was asked for."""
-    made = plan.discretisation
-    asked = isinstance(made, PlaneDiscretisation) and made.hypothesis is PlaneHypothesis.PLANE_STRAIN
-    return finite_width_excess(pair) if asked and not made.corrected else 0.0
 
 
 def contact_error(solution: ContactSolution) -> FloatArray:

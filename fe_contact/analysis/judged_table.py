@@ -7,16 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from fe_contact.analysis.curve_error_estimate import curve_errors, summary, unestimated, with_axes
-from fe_contact.analysis.error_estimate import Nested, estimate_errors, left_out
+from fe_contact.analysis.error_estimate import Nested, estimate_errors
 from fe_contact.analysis.held_out_axes import held_out_axes
-from fe_contact.analysis.model_choice import plane_strain_error
 from fe_contact.analysis.position_errors import position_errors
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.solved_places import Solved
 from fe_contact.analysis.table_places import Places
-from fe_contact.planning import Plan
+from fe_contact.planning import Plan, left_out
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 
@@ -77,7 +76,7 @@ def judged_table(
     sliced = sample.solved(fine.in_slices(made.coarse_slices), fine) if made.slices > 1 else own
     nested = Nested(sample, own, plane, sample.solved(coarse, fine), sliced)
     positions = position_errors(nodes, fine, found, plan)
-    measured = fine, found, nested, positions, plan, plane_strain_error(checked)
+    measured = fine, found, nested, positions, plan
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
     held_out = {name: error.to_json() for name, error in between.items()}
@@ -86,6 +85,6 @@ def judged_table(
 
 def unjudged_table(table: SteDatabase, places: Places, plan: Plan) -> JudgedTable:
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
-    left = {"plane_for_finite_width_relative": left_out(plan, places.places[0].contact.pair)}
+    left = {"plane_for_finite_width_relative": left_out(places.places[0].contact.pair, plan.discretisation)}
     unknown = np.full(table.error_estimate.shape, np.nan)
     return JudgedTable(unknown, unestimated(places, plan), left, {})

@@ -16,8 +16,7 @@ from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.ripple import expected_ripple
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.worth import estimate_worth
-from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.planning import LEFT_OUT, LEVELS, FaceDiscretisation, MeshChoice, Plan, chosen_mesh, make_plan
+from fe_contact.planning import LEVELS, FaceDiscretisation, MeshChoice, Plan, chosen_mesh, make_plan
 from fe_contact.types import Json
 
 FACE, WIDTH = FaceLoadDistribution.name, FiniteWidth.name
@@ -115,15 +114,6 @@ def model_name(checked: Checked) -> str:
         return "plane stress"
     corrected = "plane strain corrected for the finite width"
     return corrected if checked.model.finite_width else "plane strain"
-
-
-def plane_strain_error(checked: Checked) -> float:
-    """Return the relative error of plane strain where it is taken for the accuracy's sake, else 0.
-
-    Where the caller asked for plane strain it is the model, not an error.
-    """
-    taken = WIDTH in checked.request.spared and not checked.model.across_face
-    return LEFT_OUT * finite_width_excess(checked.request.pair) if taken else 0.0
 
 
 def _mesh(checked: Checked, cache: Path | None) -> MeshChoice:

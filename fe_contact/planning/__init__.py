@@ -4,7 +4,7 @@ from fe_contact.planning.accuracy import LEVELS, Accuracy
 from fe_contact.planning.cost_model import Prediction, predict_run
 from fe_contact.planning.cycle_cost import MOST_ROWS, CycleCost, cycle_cost, refuse_long_cycle
 from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
-from fe_contact.planning.error_model import LEFT_OUT, ExpectedError, Ripple, expected_error
+from fe_contact.planning.error_model import LEFT_OUT, ExpectedError, Ripple, expected_error, left_out
 from fe_contact.planning.flank_tilt import flank_tilt
 from fe_contact.planning.mesh_choice import MeshChoice, MeshOption
 from fe_contact.planning.plan import NodeRule, Plan, make_plan
@@ -32,6 +32,7 @@ __all__ = [
     "cycle_cost",
     "expected_error",
     "flank_tilt",
+    "left_out",
     "make_plan",
     "planned",
     "predict_run",

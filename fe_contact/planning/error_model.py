@@ -10,9 +10,10 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 
+from fe_contact.compliance import PlaneHypothesis
 from fe_contact.geometry import ParallelAxes
-from fe_contact.geometry.finite_width import finite_width_excess
-from fe_contact.planning.discretisation import SLICE_ORDER, FaceDiscretisation
+from fe_contact.geometry.finite_width import finite_width_excess, plane_stress_excess
+from fe_contact.planning.discretisation import SLICE_ORDER, Discretisation, FaceDiscretisation
 from fe_contact.planning.plan import Plan
 from fe_contact.types import Json
 
@@ -89,8 +90,8 @@ def expected_error(pair: ParallelAxes, plan: Plan, ripple: Ripple | None = None)
     """
     made, level = plan.discretisation, plan.level
     if not isinstance(made, FaceDiscretisation):
-        excess = finite_width_excess(pair)
-        return ExpectedError(_PLANE[level], 0.0, (_CORRECTION if made.corrected else LEFT_OUT) * excess)
+        model = _CORRECTION * finite_width_excess(pair) if made.corrected else LEFT_OUT * left_out(pair, made)
+        return ExpectedError(_PLANE[level], 0.0, model)
     helical = pair.base_helix_angle != 0.0
     known = ripple or (HELICAL_RIPPLE if helical else SPUR_RIPPLE)
     modified = any(gear.modification.varies_along_profile for gear in (pair.pinion, pair.wheel))
@@ -98,3 +99,15 @@ def expected_error(pair: ParallelAxes, plan: Plan, ripple: Ripple | None = None)
     mesh = max(_FACE_MEAN[level] * (1.0 + known.most), part / known.least)
     steps = (_HELICAL_SLICES if helical else _SPUR_SLICES) * (_SLICES / made.slices) ** _ORDER
     return ExpectedError(mesh, steps / known.least, 0.0)
+
+
+def left_out(pair: ParallelAxes, made: Discretisation) -> float:
+    """Return the relative part of the mean STE that a plane leaves out of a finite width; 0 if none.
+
+    Plane strain deflects less than the gear, plane stress more. The plane that is corrected leaves nothing
+    out, nor do three dimensions.
+    """
+    if isinstance(made, FaceDiscretisation) or made.corrected:
+        return 0.0
+    thin = made.hypothesis is PlaneHypothesis.PLANE_STRESS
+    return plane_stress_excess(pair) if thin else finite_width_excess(pair)

@@ -103,7 +103,7 @@ def _cost(receipt: dict[str, Any]) -> str:
         text += f"\nerrors NOT estimated: {', '.join(missing).replace('_', ' ')}"
     left_out = receipt["error_by_source"]["plane_for_finite_width_relative"]
     if left_out:
-        text += f"\nplane strain: this width deflects about {100 * left_out:.2g} % more (not in the errors)"
+        text += f"\nthe plane leaves out a finite width: {100 * left_out:.2g} % of the mean, in the errors"
     return text
 
 

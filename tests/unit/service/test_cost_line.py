@@ -34,4 +34,4 @@ def test_contacts_that_outgrew_their_patch_are_counted() -> None:
 
 
 def test_the_plane_model_says_what_it_leaves_out() -> None:
-    assert "3.3 % more" in _cost(receipt(0.0333))
+    assert "3.3 % of the mean, in the errors" in _cost(receipt(0.0333))
