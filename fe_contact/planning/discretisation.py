@@ -81,11 +81,14 @@ class FaceDiscretisation:
         Driving and driven gear; the coarse ones for the discretisation error.
     slices : int
         Of the common face width.
+    most_slices : int
+        Of two thirds of a layer of either gear: narrower ones would move the same freedoms of the bodies.
     """
 
     recipes: tuple[SectorRecipe, SectorRecipe]
     coarse_recipes: tuple[SectorRecipe, SectorRecipe]
     slices: int
+    most_slices: int
 
     corrected = False
 
@@ -100,11 +103,8 @@ class FaceDiscretisation:
         return 1.0 / (ratio**2 - 1.0)
 
     def in_slices(self, count: int) -> FaceDiscretisation:
-        """Return the same meshes in another number of slices, of two thirds of a layer at least.
-
-        Narrower ones would move the same freedoms of the bodies.
-        """
-        return replace(self, slices=min(count, *(3 * recipe.layers // 2 for recipe in self.recipes)))
+        """Return the same meshes in another number of slices, or in `most_slices`."""
+        return replace(self, slices=min(count, self.most_slices))
 
     @property
     def coarse_slices(self) -> int:
@@ -156,8 +156,14 @@ def face_discretisation(pair: ParallelAxes, level: str, slices: int | None = Non
     """Choose the sectors of both gears and, unless they are given, the slices."""
     first, second = (SECTOR_RECIPE[level](gear) for gear in (pair.pinion, pair.wheel))
     coarse = _coarser(first, pair.pinion), _coarser(second, pair.wheel)
-    made = FaceDiscretisation((first, second), coarse, SLICES)
-    return made.in_slices(slices or SLICES)
+    most = min(_most_slices(pair, *one) for one in ((pair.pinion, first), (pair.wheel, second)))
+    return FaceDiscretisation((first, second), coarse, min(slices or SLICES, most), most)
+
+
+def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
+    """Return how many slices of the common face are as wide as two thirds of a layer; 1 at least."""
+    layers = recipe.layers * pair.face_width / gear.face_width
+    return max(math.floor(1.5 * layers * (1.0 + 1e-9)), 1)
 
 
 def _coarser(recipe: SectorRecipe, gear: Toothing) -> SectorRecipe:

@@ -110,6 +110,17 @@ ODD = (
     Odd("diamond", both={"material": Material(1.1e12, 0.07)}),
     Odd("cork: no lateral strain", both={"material": Material(30e6, 0.0)}, call={"torques": [1e-3, 1e-2]}),
     Odd("steel on rubber", wheel={"material": Material(5e6, 0.49)}, call={"torques": [1e-4, 1e-2]}),
+    Odd(
+        "a pinion four times as wide as the wheel",
+        pinion={"teeth": 23, "profile_shift_coefficient": 0.14, "face_width": 40 * MM},
+        wheel={
+            "teeth": 11,
+            "profile_shift_coefficient": 0.25,
+            "face_width": 10.8 * MM,
+            "bore_diameter": 20.7 * MM,
+        },
+        call={"model": "3d", "positions": 32},
+    ),
     Odd("one load", call={"torques": [100.0]}),
     Odd("twenty loads within a per mille", call={"torques": [100.0 + 0.005 * i for i in range(20)]}),
     Odd("load of a micronewton", call={"normal_forces": [1e-6]}),

@@ -1,6 +1,7 @@
 """Accuracy to discretisation, and the receipt."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -55,6 +56,16 @@ def test_three_dimensions_have_fewer_slices_than_half_layers(pair):
         assert isinstance(made, FaceDiscretisation)
         assert made.slices <= min(2 * recipe.layers for recipe in made.recipes)
         assert made.coarse_recipes[0].layers < made.recipes[0].layers
+
+
+def test_slices_are_no_narrower_than_layers_of_the_wider_gear_allow(pair):
+    """Layers are of each gear's own face; slices of the common one."""
+    wide = replace(pair, pinion=replace(pair.pinion, face_width=4.0 * pair.wheel.face_width))
+    made = plan(wide, ContactModel(across_face=True), level="draft").discretisation
+    layer = wide.pinion.face_width / made.recipes[0].layers
+    assert wide.face_width / made.slices >= 0.66 * layer
+    assert wide.face_width / (made.slices + 1) < 0.67 * layer
+    assert made.in_slices(31).slices == made.slices
 
 
 def test_one_way_of_asking_at_a_time():
