@@ -12,8 +12,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from fe_contact.analysis.error_estimate import CORRECTION_ERROR, LEFT_BY_TILT, Nested, contact_error
+from fe_contact.analysis.error_estimate import CORRECTION_ERROR, Nested, contact_error
 from fe_contact.analysis.held_out_axes import AxisError
+from fe_contact.analysis.model_error import model_errors, of_bending
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
@@ -44,12 +45,6 @@ standard."""
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
 slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
-RIPPLE_BY_TILT = 8.0
-"""Error of peak-to-peak and harmonics in parts of them, over the part that the tilt of the flanks takes off
-the mean: 8 on a soft gear on steel against full contact, 2 on steel."""
-BENDING_RIPPLE, BENDING_HARMONIC = 0.43, 0.2
-"""Peak-to-peak, and harmonic k times k, of STE of spur pairs without modifications over the mean: 0.42 to
-0.44 and 0.1 to 0.25 at contact ratios of 1.56 to 1.71."""
 SHOWN = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
 
 
@@ -60,13 +55,13 @@ def curve_errors(
     positions: PositionErrors,
     plan: Plan,
 ) -> FloatArray:
-    """Return the errors at the nodes of the table, (5, 22, F, M, D) in m: sources `AT_NODES`.
+    """Return the errors at the nodes of the table, (6, 22, F, M, D) in m: sources `AT_NODES`.
 
     Parameters are those of `estimate_errors`. Errors of the discretisation are those at the loads and
     alignments that were solved again, and interpolated between them.
     """
-    made, sample = plan.discretisation, nested.sample
-    helical = isinstance(made, FaceDiscretisation) and places.nominal.pair.base_helix_angle != 0.0
+    made, sample, pair = plan.discretisation, nested.sample, places.nominal.pair
+    helical = isinstance(made, FaceDiscretisation) and pair.base_helix_angle != 0.0
 
     def changes(these: FloatArray, those: FloatArray, part: FloatArray | float) -> FloatArray:
         """Parts of the changes of every curve, (22, F, M, D)."""
@@ -75,21 +70,21 @@ def curve_errors(
         change = _shared(change) if helical else change
         return sample.spread(change.reshape(QUANTITIES, *these.shape[1:]))
 
+    own = changes(nested.table, np.zeros_like(nested.table), 1.0)
     free_ends = changes(nested.table, nested.plane, CORRECTION_ERROR)
-    if missing := left_out(places.nominal.pair, made):
-        own = changes(nested.table, np.zeros_like(nested.table), 1.0)
-        free_ends = LEFT_OUT * missing * of_bending(own)
+    if missing := left_out(pair, made):
+        free_ends = LEFT_OUT * missing * of_bending(pair, own)
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
     by_source = {
         "discretisation": changes(nested.plane, nested.coarse, _left_by_mesh(plan, helical)),
         "slices": changes(nested.table, many_slices, 1.0),
-        "contact_solver": _by_solver(places, solutions, sample)
-        + changes(nested.table, nested.without_tilt(places.nominal.pair), _by_tilt()),
+        "contact_solver": _by_solver(places, solutions, sample),
         "finite_width": free_ends,
         "position": np.broadcast_to(
             positions.curves[:, :, None, None], (*positions.curves.shape, *places.shape)
         ),
+        "model": model_errors(pair, plan.load, own),
     }
     return np.stack([by_source[name] for name in AT_NODES])
 
@@ -103,21 +98,6 @@ def _by_solver(places: Places, solutions: list[ContactSolution], sample: TableSa
             for solution in solutions
         ]
     )
-
-
-def of_bending(own: FloatArray) -> FloatArray:
-    """Return of what size the quantities (22, ...) in m of a spur pair are as far as its teeth bend.
-
-    Reliefs make ripple small, but not what an error of the bodies changes in it.
-    """
-    number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)
-    over_mean = np.array([1.0, BENDING_RIPPLE, *BENDING_HARMONIC / number])
-    return np.maximum(own, np.multiply.outer(over_mean, own[MEAN]))
-
-
-def _by_tilt() -> FloatArray:
-    """Errors over what the tilt of the flanks takes off, (22, 1)."""
-    return np.array([LEFT_BY_TILT, *[RIPPLE_BY_TILT] * (QUANTITIES - 1)])[:, None]
 
 
 def _left_by_mesh(plan: Plan, helical: bool) -> FloatArray:
@@ -137,7 +117,7 @@ def _shared(change: FloatArray) -> FloatArray:
 
 
 def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray:
-    """Append the interpolation along the axes: (8, 22, F, M, D).
+    """Append the interpolation along the axes: (9, 22, F, M, D).
 
     What was judged at one alignment stands for all of them. An interval that was not judged has NaN.
     """
@@ -152,7 +132,7 @@ def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray
 
 
 def unestimated(places: Places, plan: Plan) -> FloatArray:
-    """Return the errors of a run in which none was estimated, (8, 22, F, M, D): NaN."""
+    """Return the errors of a run in which none was estimated, (9, 22, F, M, D): NaN."""
     return np.full((len(SOURCES), QUANTITIES, plan.load.size, *places.shape), np.nan)
 
 

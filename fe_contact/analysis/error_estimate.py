@@ -14,21 +14,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.analysis.model_error import point_error
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
-from fe_contact.geometry.parallel_axes import ParallelAxes
-from fe_contact.planning import LEFT_OUT, Plan, flank_tilt, left_out
+from fe_contact.planning import LEFT_OUT, Plan, left_out
 from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03
 """Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
 peak-to-peak and harmonics on the cases of docs/accuracy.md that are not held out is 0.033, of peak-to-peak at
 a face of 1.2 modules, of which the mesh covers its part."""
-LEFT_BY_TILT = 2.0
-"""Error of STE over what the tilt of the flanks takes off it; full contact of a soft gear on steel asks for
-1.1 with small displacements, and large ones have the other sign (docs/theory/contact.md)."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +34,9 @@ class ErrorSources:
 
     Attributes
     ----------
-    discretisation, slices, interpolation, contact, finite_width : ndarray
-        Finite elements, slices of the face, table beside the node, contact, the plane for a finite width.
+    discretisation, slices, interpolation, contact, finite_width, model : ndarray
+        Finite elements, slices of the face, table beside the node, contact, the plane for a finite width, and
+        what the method leaves out.
     left_out : float
         Relative part of the mean STE that an uncorrected plane leaves out; it is part of `finite_width`.
     """
@@ -48,12 +46,14 @@ class ErrorSources:
     interpolation: FloatArray
     contact: FloatArray
     finite_width: FloatArray
+    model: FloatArray
     left_out: float
 
     @property
     def total(self) -> FloatArray:
         """Sum of the sources at each point, m."""
-        return self.discretisation + self.slices + self.interpolation + self.contact + self.finite_width
+        parts = self.discretisation, self.slices, self.interpolation, self.contact, self.finite_width
+        return np.asarray(sum(parts) + self.model)
 
     def to_json(self) -> Json:
         """Return the largest of each source by load, m, and the part that the plane leaves out.
@@ -66,6 +66,7 @@ class ErrorSources:
             "table_interpolation_m": self.interpolation,
             "contact_solver_m": self.contact,
             "finite_width_m": self.finite_width,
+            "model_m": self.model,
         }
         worst = {name: _largest_known(values) for name, values in sources.items()}
         return worst | {"plane_for_finite_width_relative": self.left_out}
@@ -100,11 +101,6 @@ class Nested:
     plane: FloatArray
     coarse: FloatArray
     sliced: FloatArray
-
-    def without_tilt(self, pair: ParallelAxes) -> FloatArray:
-        """Return the table's own less what the tilt of the flanks takes off, m."""
-        load = self.sample.axes[0][self.sample.nodes[0]]
-        return np.asarray(self.table * (1.0 - flank_tilt(pair, load)[:, None, None]))
 
 
 def estimate_errors(
@@ -141,11 +137,16 @@ def estimate_errors(
         left(nested.plane, nested.coarse, made.remaining),
         left(nested.table, nested.sliced, made.remaining_slices),
         np.broadcast_to(positions.band[:, :, None, None], (*positions.band.shape, *places.shape)),
-        places.gathered([contact_error(solution) for solution in solutions])
-        + left(nested.table, nested.without_tilt(pair), LEFT_BY_TILT),
+        places.gathered([contact_error(solution) for solution in solutions]),
         free_ends,
+        places.gathered([_left_by_model(solution, places, plan) for solution in solutions]),
         missing,
     )
+
+
+def _left_by_model(solution: ContactSolution, places: Places, plan: Plan) -> FloatArray:
+    """Return what the method leaves out at points (P, F), m."""
+    return point_error(places.nominal.pair, plan.load, np.nan_to_num(solution.deflection))
 
 
 def contact_error(solution: ContactSolution) -> FloatArray:

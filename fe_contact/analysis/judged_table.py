@@ -28,7 +28,7 @@ class JudgedTable:
     ----------
     band : ndarray, shape (P, F, M, D)
         Of every point, m; NaN where not estimated.
-    curve_error : ndarray, shape (8, 22, F, M, D)
+    curve_error : ndarray, shape (9, 22, F, M, D)
         Of mean, peak-to-peak and harmonics by source, m; NaN where not estimated.
     by_source, held_out : dict
         The largest by source; what was measured between the nodes of each axis.

@@ -9,7 +9,7 @@ from fe_contact.ste.fields import SteFields
 from fe_contact.ste.loads import OperatingPoint
 from fe_contact.types import FloatArray
 
-AT_NODES = ("discretisation", "slices", "contact_solver", "finite_width", "position")
+AT_NODES = ("discretisation", "slices", "contact_solver", "finite_width", "position", "model")
 """Sources that act at stored loads and alignments as well."""
 BETWEEN_NODES = ("force", "misalignment", "center_distance_change")
 """Interpolation along each axis: nothing on its nodes; stored at the lower node of every interval."""

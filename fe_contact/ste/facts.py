@@ -10,7 +10,8 @@ from typing import Any
 from fe_contact.errors import DatabaseError
 from fe_contact.types import Json
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
+"""Version 1 states no errors of the model."""
 
 
 @dataclass(frozen=True)

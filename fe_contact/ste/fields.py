@@ -96,7 +96,7 @@ class SteFields:
         As the arrays of the same names without `support`.
     period : int
         Whole base pitches after which everything repeats: 1 where all teeth of a gear are alike.
-    curve_error : (8, 22, F, M, D) array
+    curve_error : (9, 22, F, M, D) array
         Errors of mean, peak-to-peak and 20 harmonics in m, >= 0, by source (`ste.curve_errors.SOURCES`); NaN:
         not estimated. Empty for tables without, whose errors follow from the bands.
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste.curve_errors import SOURCES
+from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.facts import SCHEMA_VERSION, Metadata, PairFacts
 from fe_contact.ste.fields import CURVE_ERROR, DIMENSIONS, RESIDUALS, SteFields
 from fe_contact.ste.netcdf_file import digest, read_variables, write_dataset
@@ -101,6 +101,8 @@ def read(path: Path) -> dict[str, Any]:
     period = _period(path, attributes)
     if attributes.get("data_sha256") != _digest(content, period):
         raise DatabaseError(f"{path}: damaged, its arrays do not match their checksum")
+    if content.get("curve_error", np.empty(0)).shape[0] == len(SOURCES) - 1:  # of schema version 1
+        content["curve_error"] = np.insert(content["curve_error"], AT_NODES.index("model"), 0.0, axis=0)
     return content | {
         "facts": _facts(path, attributes),
         "metadata": _metadata(path, attributes),

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste.curve_errors import SOURCES
+from fe_contact.ste.curve_errors import AT_NODES, SOURCES
 from fe_contact.ste.curve_quantities import (
     FIRST_HARMONIC,
     MEAN,
@@ -126,6 +126,17 @@ def test_files_keep_the_errors_and_older_ones_have_bands(judged: SteDatabase, sp
     assert old.curve_error.size == 0
     assert old.mean(force=float(old.force[0])) == spur.mean(force=float(old.force[0]))
     assert not judged.identical(spur)
+
+
+def test_files_of_schema_1_state_no_error_of_the_model(judged: SteDatabase, tmp_path) -> None:
+    source = AT_NODES.index("model")
+    before = replace(judged, curve_error=np.delete(judged.curve_error, source, axis=0))
+    before.to_netcdf(tmp_path / "one.nc")
+    found = SteDatabase.from_netcdf(tmp_path / "one.nc")
+    assert not found.curve_error[source].any()
+    assert np.array_equal(np.delete(found.curve_error, source, axis=0), before.curve_error)
+    found.to_netcdf(tmp_path / "again.nc")
+    assert SteDatabase.from_netcdf(tmp_path / "again.nc").identical(found)
 
 
 def test_damaged_errors_are_refused(judged: SteDatabase, tmp_path) -> None:

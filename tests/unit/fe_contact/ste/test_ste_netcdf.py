@@ -13,7 +13,7 @@ import pytest
 import xarray
 
 from fe_contact.errors import DatabaseError
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import SCHEMA_VERSION, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
 from fe_contact.types import Status
 
@@ -91,7 +91,7 @@ def test_other_programs_read_names_units_and_documents(stored):
         assert dataset.max_pressure.attrs["units"] == "Pa"
         assert all(variable.attrs["long_name"] for variable in dataset.variables.values())
         assert dataset.status.attrs["flag_meanings"].split()[2] == "singular"
-        assert dataset.attrs["schema_version"] == 1
+        assert dataset.attrs["schema_version"] == SCHEMA_VERSION
         assert json.loads(dataset.attrs["case"]) == database.metadata.case
         assert json.loads(dataset.attrs["facts"])["base_pitch"] == database.facts.base_pitch
         assert "1 of 1440 points FAILED" in dataset.attrs["summary"]
@@ -154,7 +154,9 @@ class TestUnreadable:
         return self.refusal(path)
 
     def test_newer_schema(self, stored):
-        message = self.rewritten(stored[1], lambda dataset: dataset.assign_attrs(schema_version=2))
+        message = self.rewritten(
+            stored[1], lambda dataset: dataset.assign_attrs(schema_version=SCHEMA_VERSION + 1)
+        )
         assert "schema version 2" in message
         assert "reads 1 to 1" in message
 

@@ -1,0 +1,38 @@
+"""Stated errors against full contact: pairs of six regimes, half of which set no constant."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from benchmarks.full_contact_coverage import QUANTITIES, Assessed, assessed
+
+SOURCE = "full finite-element contact by condensation, plane strain, its own convergence forgiven"
+LEAST_COVERAGE, LARGEST_RATIO = 90.0, 3.0
+
+
+@pytest.fixture(scope="module")
+def held_out() -> list[Assessed]:
+    found = [one for one in assessed() if one.case.held_out]
+    assert len({one.case.regime for one in found}) >= 6
+    return found
+
+
+@pytest.mark.parametrize("q", range(len(QUANTITIES)), ids=QUANTITIES)
+def test_stated_errors_cover_full_contact(held_out, q, record_figure) -> None:
+    covered = 100.0 * np.concatenate([one.covered[q] for one in held_out]).mean()
+    record_figure(f"{QUANTITIES[q]}: curves covered", covered, "at least 90 %", "%", SOURCE)
+    assert covered >= LEAST_COVERAGE
+
+
+@pytest.mark.parametrize("q", range(2), ids=QUANTITIES[:2])
+def test_they_are_not_much_too_large(held_out, q, record_figure) -> None:
+    ratio = float(np.median(np.concatenate([one.ratio[q] for one in held_out])))
+    record_figure(f"{QUANTITIES[q]}: median stated over true error", ratio, "at most 3", "-", SOURCE)
+    assert ratio <= LARGEST_RATIO
+
+
+@pytest.mark.parametrize("level", ["standard", "fine"])
+def test_no_level_states_less_than_was_ever_proved(held_out, level) -> None:
+    for one in (one for one in held_out if one.level == level):
+        assert np.all(one.stated[0] >= 1e-3 * one.value[0])
