@@ -1,72 +1,21 @@
-"""Checks of single values, each raising one clear `InputError`."""
+"""Checks of single values, each raising one clear `InputError`; see `bounds.Checks`."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 
-import numpy as np
-
+from bounds import Checks
 from dynamics.errors import InputError
-from dynamics.types import FloatArray
 
+_CHECKS = Checks(InputError)
 
-def finite(field: str, value: float, suggestion: str = "") -> float:
-    """Return `value` as a float if it is a finite number."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not math.isfinite(value):
-        raise InputError(field, value, "a finite number", suggestion)
-    return float(value)
-
-
-def positive(field: str, value: float, suggestion: str = "") -> float:
-    """Return `value` if it is finite and above zero."""
-    number = finite(field, value, suggestion)
-    if number <= 0.0:
-        raise InputError(field, value, "above 0", suggestion)
-    return number
-
-
-def not_negative(field: str, value: float, suggestion: str = "") -> float:
-    """Return `value` if it is finite and zero or above."""
-    number = finite(field, value, suggestion)
-    if number < 0.0:
-        raise InputError(field, value, "0 or above", suggestion)
-    return number
-
-
-def within(field: str, value: float, low: float, high: float, suggestion: str = "") -> float:
-    """Return `value` if low <= value <= high."""
-    number = finite(field, value, suggestion)
-    if not low <= number <= high:
-        raise InputError(field, value, f"from {low:g} to {high:g}", suggestion)
-    return number
-
-
-def integer(field: str, value: int, low: int, high: int, suggestion: str = "") -> int:
-    """Return `value` if it is an integer from `low` to `high`."""
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not low <= value <= high:
-        raise InputError(field, value, f"an integer from {low} to {high}", suggestion)
-    return int(value)
-
-
-def one_of(field: str, value: str, choices: Collection[str], suggestion: str = "") -> str:
-    """Return `value` if it is one of `choices`."""
-    if value not in choices:
-        names = ", ".join(f'"{name}"' for name in choices)
-        raise InputError(field, value, f"one of {names}" if choices else "absent", suggestion)
-    return value
-
-
-def increasing(field: str, values: Sequence[float] | FloatArray, suggestion: str = "") -> FloatArray:
-    """Return `values` as a 1-D array if it is non-empty, finite and strictly increasing."""
-    array = np.atleast_1d(np.asarray(values, dtype=float))
-    if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
-        raise InputError(field, values, "a non-empty list of finite numbers", suggestion)
-    if np.any(np.diff(array) <= 0.0):
-        raise InputError(
-            field, values, "strictly increasing", suggestion or "Sort the list and drop repeats."
-        )
-    return array
+finite = _CHECKS.finite
+positive = _CHECKS.positive
+not_negative = _CHECKS.not_negative
+within = _CHECKS.within
+integer = _CHECKS.integer
+one_of = _CHECKS.one_of
+increasing = _CHECKS.increasing
 
 
 def distinct(field: str, names: Sequence[str]) -> None:

@@ -14,38 +14,15 @@ from __future__ import annotations
 
 from typing import Any
 
+from bounds import RefusedValue
+
 
 class DynamicsError(Exception):
     """Anything this package raises on purpose."""
 
 
-class InputError(DynamicsError):
-    """A value the caller gave cannot be used.
-
-    Parameters
-    ----------
-    field : str
-        Dotted name of the field, e.g. ``"bushings[0].radial_stiffness"``.
-    value : object
-        What was given.
-    bound : str
-        What would be accepted, e.g. ``"above 0"``.
-    suggestion : str
-        What to try.
-    """
-
-    def __init__(self, field: str, value: object, bound: str, suggestion: str = "") -> None:
-        self.field, self.value, self.bound, self.suggestion = field, value, bound, suggestion
-        text = f"{field} = {value!r}: must be {bound}"
-        super().__init__(f"{text}. {suggestion}" if suggestion else text)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle by the four facts, so that the error crosses process boundaries whole."""
-        return type(self), (self.field, self.value, self.bound, self.suggestion)
-
-    def within(self, prefix: str) -> InputError:
-        """Return the same error with its field named inside `prefix`."""
-        return type(self)(f"{prefix}.{self.field}", self.value, self.bound, self.suggestion)
+class InputError(DynamicsError, RefusedValue):
+    """A value the caller gave cannot be used: field, value, bound and what to try, see `RefusedValue`."""
 
 
 class SolveError(DynamicsError):

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import SiNote
 from fe_contact.checks import within
 from fe_contact.types import FloatArray
 
@@ -32,7 +33,9 @@ class AllowedError:
 
     def __post_init__(self) -> None:
         within("tolerance", self.relative, 1e-4, 0.5, "0.01 means one per cent.")
-        within("tolerance_floor", self.floor, 0.0, LARGEST_FLOOR, "In m: 20 nm is 2e-8; 0 means none.")
+        within(
+            "tolerance_floor", self.floor, 0.0, LARGEST_FLOOR, SiNote("In m: 20 nm is 2e-8; 0 means none.")
+        )
 
     @classmethod
     def given(cls, tolerance: AllowedError | float | None) -> AllowedError | None:

@@ -15,43 +15,17 @@ Inner solvers return a `Status` with residuals; only `analyze` and the readers r
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Self
 
-import numpy as np
+from bounds import RefusedValue, Words
 
 
 class FeContactError(Exception):
     """Anything this package raises on purpose."""
 
 
-class InputError(FeContactError):
-    """A value the caller gave cannot be used.
-
-    Parameters
-    ----------
-    field : str
-        Dotted name of the field, e.g. ``"pinion.teeth"``.
-    value : object
-        What was given.
-    bound : str
-        What would be accepted, e.g. ``"an integer from 5 to 1000"``.
-    suggestion : str
-        What to try.
-    """
-
-    def __init__(self, field: str, value: object, bound: str, suggestion: str = "") -> None:
-        value = value.item() if isinstance(value, np.generic) else value  # a number, to whoever reads it
-        self.field, self.value, self.bound, self.suggestion = field, value, bound, suggestion
-        text = f"{field} = {value!r}: must be {bound}"
-        super().__init__(f"{text}. {suggestion}" if suggestion else text)
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle by the four facts, so that the error crosses process boundaries whole."""
-        return type(self), (self.field, self.value, self.bound, self.suggestion)
-
-    def within(self, prefix: str) -> InputError:
-        """Return the same error with its field named inside `prefix`."""
-        return type(self)(f"{prefix}.{self.field}", self.value, self.bound, self.suggestion)
+class InputError(FeContactError, RefusedValue):
+    """A value the caller gave cannot be used: field, value, bound and what to try, see `RefusedValue`."""
 
 
 class InfeasibleGeometry(InputError):
@@ -61,7 +35,7 @@ class InfeasibleGeometry(InputError):
     "tip clearance", "profile shift sum", "jamming", "undercut" ...
     """
 
-    def __init__(self, name: str, field: str, value: object, bound: str, suggestion: str = "") -> None:
+    def __init__(self, name: str, field: str, value: object, bound: Words, suggestion: Words = "") -> None:
         self.name = name
         super().__init__(field, value, bound, suggestion)
         self.args = (f"{name}: {self.args[0]}",)
@@ -70,7 +44,7 @@ class InfeasibleGeometry(InputError):
         """Pickle with the name."""
         return type(self), (self.name, self.field, self.value, self.bound, self.suggestion)
 
-    def within(self, prefix: str) -> InfeasibleGeometry:
+    def within(self, prefix: str) -> Self:
         """Return the same error with its field named inside `prefix`."""
         return type(self)(self.name, f"{prefix}.{self.field}", self.value, self.bound, self.suggestion)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from bounds import Quantity, Text
 from fe_contact.checks import positive, within
 
 
@@ -26,7 +27,7 @@ class Material:
     density: float = 7850.0
 
     def __post_init__(self) -> None:
-        positive("youngs_modulus", self.youngs_modulus, "Steel is 2.1e11 Pa.")
+        positive("youngs_modulus", self.youngs_modulus, Text.of("Steel is ", Quantity(2.1e11, "Pa"), "."))
         within("poissons_ratio", self.poissons_ratio, 0.0, 0.499, "Steel is 0.3.")
         positive("density", self.density, "Steel is 7850 kg/m^3.")
 

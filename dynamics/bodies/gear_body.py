@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from bounds import SiNote
 from dynamics.bodies.inertia import Inertia
 from dynamics.checks import finite, integer, positive, within
 
@@ -50,7 +51,7 @@ class GearBody:
         integer("teeth", self.teeth, 1, 100_000)
         positive("base_radius", self.base_radius)
         positive("face_width", self.face_width)
-        within("base_helix_angle", self.base_helix_angle, -1.2, 1.2, "Angles are in radians.")
+        within("base_helix_angle", self.base_helix_angle, -1.2, 1.2, SiNote("Angles are in radians."))
 
     @property
     def base_pitch(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from bounds import below
 from dynamics.bodies.steel import STEEL_DENSITY
 from dynamics.checks import not_negative, positive
 from dynamics.errors import InputError
@@ -55,7 +56,8 @@ def hollow_cylinder(
         not_negative("bore_diameter", bore_diameter) / 2.0,
     )
     if bore >= outer:
-        raise InputError("bore_diameter", bore_diameter, f"below the outer diameter {outer_diameter:g} m")
+        bound = below(outer_diameter, "m", "the outer diameter")
+        raise InputError("bore_diameter", bore_diameter, bound)
     mass = positive("density", density) * math.pi * (outer**2 - bore**2) * positive("length", length)
     square = outer**2 + bore**2
     return Inertia(mass, mass * square / 2.0, mass * (3.0 * square + length**2) / 12.0)

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from itertools import accumulate
 
+from bounds import Quantity, Text
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
 from dynamics.bodies.places import SAME_PLACE
 from dynamics.bodies.timoshenko_beam import BeamSection
@@ -61,8 +62,8 @@ class Shaft:
         """Sections make up the shaft, and its inertia."""
         together = math.fsum(section.length for section in self.sections)
         if abs(together / self.length - 1.0) > SAME_PLACE:
-            bound = f"sections that are together as long as the shaft, {self.length:g} m"
-            raise InputError("sections", f"{together:g} m", bound)
+            bound = Text.of("sections that are together as long as the shaft, ", Quantity(self.length, "m"))
+            raise InputError("sections", Quantity(together, "m"), bound)
         if self.inertia != Inertia():
             raise InputError("inertia", self.inertia.mass, "left out where sections are given")
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from bounds import Text, above, below, between
 from dynamics.bodies.places import SAME_PLACE, nearest_on, on_length
 from dynamics.bodies.steel import STEEL_DENSITY, STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
 from dynamics.checks import finite, not_negative, positive, within
@@ -44,7 +45,7 @@ class BeamSection:
             positive(name, getattr(self, name))
         within("poisson_ratio", self.poisson_ratio, 0.0, 0.499)
         if not_negative("bore_diameter", self.bore_diameter) >= self.outer_diameter:
-            bound = f"below the outer diameter {self.outer_diameter:g} m"
+            bound = below(self.outer_diameter, "m", "the outer diameter")
             raise InputError("bore_diameter", self.bore_diameter, bound)
 
     @property
@@ -121,12 +122,13 @@ def timoshenko_beam(
     if not sections:
         raise InputError("sections", 0, "at least one section")
     if not longest > 0.0:
-        raise InputError("longest", longest, "above 0")
+        raise InputError("longest", longest, above(0.0))
     ends = np.cumsum([0.0, *(section.length for section in sections)])
     length = float(ends[-1])
     for index, place in enumerate(stations):
         if not on_length(finite(f"stations[{index}]", place), length):
-            raise InputError(f"stations[{index}]", place, f"on the beam, from 0 to {length:g} m")
+            bound = Text.of("on the beam, ", between(0.0, length, "m"))
+            raise InputError(f"stations[{index}]", place, bound)
     node = _nodes(ends, [nearest_on(place, length) for place in stations], longest)
     size = PER_NODE * node.size
     mass, stiffness = np.zeros((size, size)), np.zeros((size, size))

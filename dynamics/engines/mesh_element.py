@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from bounds import SiNote, exactly
 from dynamics.checks import finite, integer, not_negative, positive, within
 from dynamics.errors import InputError
 from dynamics.forces.coast_flank import CoastFlank
@@ -60,9 +61,10 @@ class MeshElement:
             positive(f"base_radius[{index}]", self.base_radius[index])
         driven = self.base_radius[1] / self.teeth[1]
         if abs(driven * self.teeth[0] / self.base_radius[0] - 1.0) > EQUAL:
-            bound = f"{self.base_radius[0] * self.teeth[1] / self.teeth[0]:.12g}, of the driver's base pitch"
+            wanted = self.base_radius[0] * self.teeth[1] / self.teeth[0]
+            bound = exactly(wanted, ", of the driver's base pitch")
             raise InputError("base_radius[1]", self.base_radius[1], bound, "Base pitches must agree to 1e-9.")
-        within("base_helix_angle", self.base_helix_angle, -1.2, 1.2, "Angles are in radians.")
+        within("base_helix_angle", self.base_helix_angle, -1.2, 1.2, SiNote("Angles are in radians."))
         not_negative("damping", self.damping)
         positive("damping_reach", self.reach)
         finite("position_offset", self.position_offset)

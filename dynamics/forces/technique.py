@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import between
 from dynamics.errors import InputError
 from dynamics.forces.mesh_table import LEVERS, MeshTable
 from dynamics.forces.packed_tables import pack_tables
@@ -115,6 +116,6 @@ def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:
     """Weights of `knots` for linear interpolation at `value`."""
     knots = np.atleast_1d(np.asarray(knots, dtype=float))
     if not knots[0] <= value <= knots[-1]:
-        bound = f"from {knots[0]:g} to {knots[-1]:g} m, the table's"
+        bound = between(float(knots[0]), float(knots[-1]), "m", note=", the table's")
         raise InputError(field, value, bound, "Compute the table for this place.")
     return np.array([np.interp(value, knots, unit) for unit in np.eye(knots.size)])

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import above
 from dynamics.checks import finite, not_negative
 from dynamics.errors import InputError
 from dynamics.joints.matrix import Matrix, check_matrix
@@ -54,4 +55,4 @@ class Coupling:
             raise InputError("second", self.second, "another shaft than the first")
         if self.torsional_stiffness == 0.0 and (self.stiffness is None or self.stiffness[5][5] <= 0.0):
             suggestion = "Without it the shafts would not turn together."
-            raise InputError("torsional_stiffness", 0.0, "above 0", suggestion)
+            raise InputError("torsional_stiffness", 0.0, above(0.0), suggestion)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from bounds import above, at_least
 from dynamics.checks import finite
 from dynamics.errors import InputError
 from dynamics.system.assemble import System
@@ -61,11 +62,10 @@ def checked_speeds(speed: FloatArray | list[float] | tuple[float, ...], *, above
     for index, value in enumerate(found):
         finite(f"speed[{index}]", float(value))
         if value < 0.0 or (above_zero and value == 0.0):
-            bound = "above 0" if above_zero else "0 or above"
-            raise InputError(
-                f"speed[{index}]", float(value), bound, "The scene says in which sense it turns."
-            )
+            advice = "The scene says in which sense it turns."
+            bound = above(0.0) if above_zero else at_least(0.0)
+            raise InputError(f"speed[{index}]", float(value), bound, advice)
         if index and value <= found[index - 1]:
-            bound = f"above the one before it, {found[index - 1]:g}"
+            bound = above(float(found[index - 1]), name="the one before it,")
             raise InputError(f"speed[{index}]", float(value), bound, "Sort the list and drop repeats.")
     return found

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from bounds import at_most
 from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.results import RunResult
@@ -38,11 +39,10 @@ def checked_order(result: RunResult, field: str, value: int | None, mesh: int = 
     if value > valid:
         sampling, top = result.receipt["sampling"], float(np.max(result.mesh_frequency[mesh]))
         rate = value * top * sampling["rate"] / sampling["pass_frequency"]
-        bound = (
-            f"at most {valid}: the output passes {sampling['pass_frequency']:.4g} Hz, and the mesh frequency"
-        )
+        passed = f"the output passes {sampling['pass_frequency']:.4g} Hz"
+        bound = at_most(valid, note=f": {passed}, and the mesh frequency reaches {top:.4g} Hz")
         suggestion = (
             f"Run with outputs.mesh_orders = {value}, or outputs.sample_rate of {rate:.4g} Hz or more."
         )
-        raise InputError(field, value, f"{bound} reaches {top:.4g} Hz", suggestion)
+        raise InputError(field, value, bound, suggestion)
     return value

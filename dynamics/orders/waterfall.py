@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import Bound, at_most, between
 from dynamics.checks import integer
 from dynamics.errors import InputError
 from dynamics.orders.position_grid import check_series, resample_to_position
@@ -95,7 +96,8 @@ def order_waterfall(
     length = pitches * per_pitch
     blocks = time.size // length
     if blocks == 0:
-        raise InputError("pitches", pitches, f"at most {time.size // per_pitch}, the run's length")
+        bound = at_most(time.size // per_pitch, note=", the run's length")
+        raise InputError("pitches", pitches, bound)
     cut = values[..., : blocks * length].reshape(*values.shape[:-1], blocks, length)
     lines = spectrum(cut, float(per_pitch), unit)
     middle = time[: blocks * length].reshape(blocks, length).mean(axis=1)
@@ -133,10 +135,10 @@ def frequency_waterfall(
     unit = check_series(result, series)
     length = round(block * result.sample_rate)
     if not 4 <= length <= result.time.size:
-        bound = f"from {4.0 / result.sample_rate:g} s to the run's {result.time[-1]:g} s"
+        bound = between(4.0 / result.sample_rate, float(result.time[-1]), "s", "the run's")
         raise InputError("block", block, bound)
     if not 0.0 <= overlap < 1.0:
-        raise InputError("overlap", overlap, "from 0 to below 1")
+        raise InputError("overlap", overlap, Bound(0.0, 1.0, high_open=True))
     step = max(round(length * (1.0 - overlap)), 1)
     first = np.arange(0, result.time.size - length + 1, step)
     values = getattr(result, series)

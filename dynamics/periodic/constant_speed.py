@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bounds import above, below
 from dynamics.errors import InputError
 from dynamics.forces.by_address import by_address
 from dynamics.linearize.common_period import CommonPeriod
@@ -24,7 +25,7 @@ def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: 
     """
     extreme = system.scene.drives[period.law].speed.extreme
     if not np.isfinite(speed) or speed * extreme <= 0.0:
-        bound = f"{'above' if extreme > 0.0 else 'below'} 0, the sense in which the scene turns"
+        bound = (above if extreme > 0.0 else below)(0.0, note=", the sense in which the scene turns")
         raise InputError("speed", speed, bound, "Turn the scene's drive round for the other flanks.")
     laws = _constant(speed * period.proportion)
     none = np.zeros(period.proportion.size)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import at_most
 from dynamics.checks import integer, positive
 from dynamics.errors import InputError
 from dynamics.results.run_result import RunResult
@@ -47,7 +48,7 @@ def dynamic_factor(result: RunResult, pitches: int = 16, mesh: int = 0) -> Dynam
     block = np.floor(travel * (1.0 + 1e-12) / pitches).astype(int)
     first = np.searchsorted(block, np.arange(block[-1] + 1))
     if first.size < 2:
-        raise InputError("pitches", pitches, f"at most {int(travel[-1])}, the run's length")
+        raise InputError("pitches", pitches, at_most(int(travel[-1]), note=", the run's length"))
     nominal = result.nominal_force[mesh]
     force, least, largest = (
         series[mesh, : first[-1]] / nominal

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bounds import Quantity, Text
 from dynamics.errors import InputError
 from dynamics.results.energy_audit import EnergyAudit
 from dynamics.results.step_statistics import StepStatistics
@@ -143,7 +144,8 @@ class RunResult:
         """
         first, last = np.searchsorted(self.time, [start, end * (1.0 + 1e-12)])
         if last - first < 2:
-            bound = f"inside the run, 0 to {self.time[-1]:g} s, and longer than a sample"
+            run = Quantity(float(self.time[-1]), "s")
+            bound = Text.of("inside the run, 0 to ", run, ", and longer than a sample")
             raise InputError("window", (start, end), bound)
         return slice(int(first), int(last))
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import Quantity, Text, exactly
 from dynamics.bodies import GearBody
 from dynamics.errors import InputError
 from dynamics.system.scene import Scene
@@ -43,13 +44,9 @@ def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
         used = float(radius @ teeth / (teeth @ teeth)) * teeth
         for gear, value in zip(train, used, strict=True):
             if abs(value / gear.base_radius - 1.0) > PRINTED:
-                field, bound = (
-                    f"gears[{scene.gears.index(gear)}].base_radius",
-                    f"{value:.6g}, as its train has it",
-                )
-                raise InputError(
-                    field, gear.base_radius, bound, f"Base pitches of a train agree to {PRINTED:g}."
-                )
+                field = f"gears[{scene.gears.index(gear)}].base_radius"
+                advice = f"Base pitches of a train agree to {PRINTED:g}."
+                raise InputError(field, gear.base_radius, exactly(value, ", as its train has it"), advice)
             corrected[gear.name] = (gear.base_radius, float(value))
     if not corrected:
         return scene, corrected
@@ -65,9 +62,10 @@ def _check(scene: Scene) -> None:
     for index, mesh in enumerate(scene.meshes):
         driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
         if abs(driver.base_pitch / driven.base_pitch - 1.0) > PRINTED:
-            bound = f"a gear of base pitch {driver.base_pitch:.6g} m like the driver's"
+            pitch = Quantity(driver.base_pitch, "m", digits=6)
+            bound = Text.of("a gear of base pitch ", pitch, " like the driver's")
             advice = f"base_radius / teeth must agree to {PRINTED:g}; smaller differences are corrected."
-            raise InputError(f"meshes[{index}].driven", driven.base_pitch, bound, advice)
+            raise InputError(f"meshes[{index}].driven", Quantity(driven.base_pitch, "m"), bound, advice)
 
 
 def _trains(scene: Scene) -> Sequence[list[GearBody]]:

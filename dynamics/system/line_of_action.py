@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import Quantity, Text, above
 from dynamics.bodies import GearBody
 from dynamics.errors import InputError
 from dynamics.system.scene import Scene
@@ -64,7 +65,8 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     bases = _acting_base_radii(driver, driven)
     if distance <= bases:
         what = "difference" if driver.internal or driven.internal else "sum"
-        raise InputError(field, distance, f"at a centre distance above the base radii's {what}, {bases:g} m")
+        bound = Text.of("at a centre distance ", above(bases, "m", f"the base radii's {what},"))
+        raise InputError(field, Quantity(distance, "m"), bound)
     angle = math.acos(bases / distance)
     e = (
         apart / distance * (-1.0 if driven.internal else 1.0)
@@ -104,8 +106,9 @@ def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
         raise InputError(field, driven.teeth, f"such that the ring gear has more teeth than {pinion.teeth}")
     hand, name = (1.0, "the same hand") if ring.internal else (-1.0, "the other hand")
     if abs(driver.base_helix_angle - hand * driven.base_helix_angle) > 1e-9:
-        bound = f"of base helix angle {hand * driver.base_helix_angle:g}, {name}"
-        raise InputError(field, driven.base_helix_angle, bound)
+        wanted = Quantity(hand * driver.base_helix_angle, "rad")
+        bound = Text.of("of base helix angle ", wanted, f", {name}")
+        raise InputError(field, Quantity(driven.base_helix_angle, "rad"), bound)
 
 
 def _middle_of_common_face(field: str, z1: float, driver: GearBody, z2: float, driven: GearBody) -> float:
@@ -113,5 +116,6 @@ def _middle_of_common_face(field: str, z1: float, driver: GearBody, z2: float, d
     low = max(z1 - driver.face_width / 2.0, z2 - driven.face_width / 2.0)
     high = min(z1 + driver.face_width / 2.0, z2 + driven.face_width / 2.0)
     if high <= low:
-        raise InputError(field, driven.position, "at an axial place where the faces overlap")
+        place = Quantity(driven.position, "m")
+        raise InputError(field, place, "at an axial place where the faces overlap")
     return (low + high) / 2.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from bounds import above
 from dynamics.errors import InputError
 from dynamics.system.base_pitches import Corrections, with_common_base_pitches
 from dynamics.system.bearing_elements import (
@@ -112,4 +113,4 @@ def _check_rotation(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:
     """Every shaft free to turn needs a moment of inertia."""
     for index, rotor in enumerate(rotors):
         if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
-            raise InputError(f"inertia of {rotor.shaft.name}.rotation", 0.0, "above 0", GIVE_INERTIA)
+            raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)

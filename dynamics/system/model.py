@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from bounds import above
 from dynamics.errors import InputError
 from dynamics.system.columns import mass_terms
 from dynamics.system.connections import Connections, gather_connections
@@ -107,4 +108,4 @@ def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:
     """Every free direction needs inertia."""
     for name, value in zip(freedoms.name, mass_terms(rotors)[0][freedoms.place], strict=True):
         if value <= 0.0:
-            raise InputError(f"inertia of {name}", float(value), "above 0", GIVE_INERTIA)
+            raise InputError(f"inertia of {name}", float(value), above(0.0), GIVE_INERTIA)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bounds import Quantity
 from dynamics.errors import InputError
 from dynamics.system.kinematics import Kinematics, mesh_shafts
 from dynamics.system.law_arrays import slope
@@ -50,7 +51,7 @@ def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> Float
     for index, value in enumerate(force):
         if value < -1e-9 * np.max(np.abs(force)) and driving_only[index]:
             bound, suggestion = "loaded on its driving flank", "Turn the load, or give it its coast flank."
-            raise InputError(f"meshes[{index}]", f"{value:.6g} N", bound, suggestion)
+            raise InputError(f"meshes[{index}]", Quantity(float(value), "N", digits=6), bound, suggestion)
     return np.asarray(np.where(driving_only, np.maximum(force, 0.0), np.abs(force)), dtype=float)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from bounds import Text, between
 from dynamics.bodies import Shaft
 from dynamics.bodies.places import Placed, on_length
 from dynamics.errors import InputError
@@ -19,6 +20,7 @@ def check_places(shafts: Sequence[Shaft], kind: str, parts: Sequence[Placed]) ->
     length = {shaft.name: shaft.length for shaft in shafts}
     for index, part in enumerate(parts):
         if not on_length(part.position, length[part.shaft]):
-            bound = f'on the shaft "{part.shaft}", from 0 m to {length[part.shaft]:.6g} m from its left end'
+            ends = between(0.0, length[part.shaft], "m")
+            bound = Text.of(f'on the shaft "{part.shaft}", ', ends, " from its left end")
             advice = "Lengthen the shaft, or move what sits on it."
             raise InputError(f"{kind}[{index}].position", part.position, bound, advice)

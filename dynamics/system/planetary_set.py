@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import chain
 
+from bounds import Quantity, SiNote, Text
 from dynamics.bodies import GearBody, Inertia, Shaft
 from dynamics.checks import finite, integer, one_of, positive
 from dynamics.errors import InputError
@@ -130,14 +131,15 @@ class PlanetarySet:
             off = float(both * turn - round(both * turn))
             if abs(off) <= TOOTH_FIT:
                 continue
-            nearest = 360.0 * round(both * turn) / both
+            nearest = 2.0 * math.pi * round(both * turn) / both
             if self.angles is None:
                 bound = f"a divisor of z_sun + z_ring = {both}, for planets equally spaced"
                 raise InputError(
                     "planets", self.planets, bound, "Change tooth numbers or give the pins' angles."
                 )
             bound = f"a multiple of 2 pi / (z_sun + z_ring) = 2 pi / {both}"
-            suggestion = f"The nearest is {math.radians(nearest):.9g} rad ({nearest:.6g} deg)."
+            degrees = SiNote(f" ({math.degrees(nearest):.6g} deg)")
+            suggestion = Text.of("The nearest is ", Quantity(nearest, "rad", digits=9), degrees, ".")
             raise InputError(f"angles[{index}]", self.angles[index], bound, suggestion)
 
     @property

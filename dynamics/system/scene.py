@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from bounds import above, at_most
 from dynamics.bodies import AngleLaw, GearBody, Shaft, TimeLaw
 from dynamics.checks import distinct, integer, not_negative, one_of, positive, within
 from dynamics.errors import InputError
@@ -102,7 +103,8 @@ class Integration:
         positive("tolerance", self.tolerance)
         positive("smallest_step", self.smallest_step)
         if self.largest_step <= self.smallest_step:
-            raise InputError("largest_step", self.largest_step, f"above smallest_step {self.smallest_step:g}")
+            bound = above(self.smallest_step, name="smallest_step")
+            raise InputError("largest_step", self.largest_step, bound)
         if self.fixed_step is not None:
             positive("fixed_step", self.fixed_step)
         integer("step_limit", self.step_limit, 1, 2**62)
@@ -270,7 +272,7 @@ def check_samples(duration: float, rate: float) -> None:
         Naming its duration.
     """
     if duration * rate > SAMPLE_LIMIT:
-        bound = f"at most {SAMPLE_LIMIT:g} samples at {rate:g} Hz"
+        bound = at_most(SAMPLE_LIMIT / rate, "s", note=f", {SAMPLE_LIMIT:g} samples at {rate:g} Hz")
         suggestion = "Shorten the run, or lower outputs.mesh_orders or outputs.sample_rate."
         raise InputError("duration", duration, bound, suggestion)
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import at_most
 from fe_contact.analysis.condensed_assumptions import CondensedRun, check_condensed
 from fe_contact.analysis.condensed_contacts import CondensedContacts
 from fe_contact.analysis.condensed_errors import condensed_errors
@@ -172,7 +173,7 @@ class CondensedPair:
         load = load_levels(pair, torques, None)
         if load[-1] > self.largest_load * (1.0 + 1e-9):
             most = float(pair.torque(np.array([self.largest_load]))[0])
-            bound = f"at most {most:.6g}: {LARGEST_SUPPORT:g} times the highest load of the table"
+            bound = at_most(most, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
             advice = "Analyse the case with a higher load."
             raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, advice)
         return load

@@ -7,7 +7,7 @@ import numpy as np
 from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene
 from fe_contact.errors import InputError
-from fe_contact.geometry import CLAMPED
+from fe_contact.geometry import CLAMPED, FlankModification
 
 
 def refuse_beyond_plane(scene: ContactScene, model: ContactModel) -> None:
@@ -34,13 +34,21 @@ def _refuse_face_effects(scene: ContactScene) -> None:
     if pair.pinion.helix_angle != 0.0:
         raise InputError("pinion.helix_angle", pair.pinion.helix_angle, "0 for a plane model", advice)
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
-        if gear.modification.varies_along_face:
-            bound = "constant along the face for a plane model"
-            raise InputError(f"{name}.modification", gear.modification, bound, advice)
+        _refuse_varying_flanks(f"{name}.modification", gear.modification.along_face, advice)
         if pair.shafts[name == "wheel"] is not None:
             raise InputError(f"{name}.shaft", "given", "left out for a plane model", advice)
     if np.any(scene.misalignment != 0.0):
         raise InputError("misalignments", scene.misalignment.tolist(), "[0.0] for a plane model", advice)
+
+
+def _refuse_varying_flanks(field: str, along_face: FlankModification, advice: str) -> None:
+    """Refuse what a flank has along the face, by the amount that varies."""
+    bound = "constant along the face for a plane model"
+    for name in ("helix_crowning", "helix_slope", "end_relief", "flank_twist"):
+        if amount := getattr(along_face, name):
+            raise InputError(f"{field}.{name}", amount, f"0: {bound}", advice)
+    if along_face.flank_grid is not None:
+        raise InputError(f"{field}.flank_grid.removed", along_face.flank_grid.removed, bound, advice)
 
 
 def _refuse_web_off_center(scene: ContactScene) -> None:

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from bounds import Text, at_least
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.spared_effects import spared_effects
 from fe_contact.analysis.table_axes import axis, load_levels
-from fe_contact.checks import integer, rounded_up
+from fe_contact.checks import integer
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, LedgerEntry, compose
@@ -167,7 +168,7 @@ def _refuse_distances(request: Request) -> None:
         try:
             request.pair.at_center_distance(request.pair.center_distance + float(change))
         except InputError as error:
-            bound = f"a change at which the gears mesh: {error.field} {error.bound}"
+            bound = Text.of(f"a change at which the gears mesh: {error.field} ", error.bound)
             field_name = f"center_distance_changes[{i}]"
             raise InputError(field_name, float(change), bound, error.suggestion) from None
 
@@ -178,9 +179,7 @@ def _refuse_thin_discs(pair: ParallelAxes, level: str | None) -> None:
         least = least_face_width(gear, getattr(SectorRecipe, level or "fine")(gear).layers)
         if gear.face_width < least:
             bends = "bends as a plate under the axial force of its helix" if gear.helix_angle else "gives way"
-            bound = (
-                f"at least {rounded_up(least)} m: a thinner disc {bends}, and rounding of its stiffness "
-                f"changes that by more than {LARGEST_ROUNDING:g}"
-            )
+            rounding = f"rounding of its stiffness changes that by more than {LARGEST_ROUNDING:g}"
+            bound = at_least(least, "m", note=f": a thinner disc {bends}, and {rounding}")
             advice = "Widen the face or the bore" + (", or take a spur gear." if gear.helix_angle else ".")
             raise InputError(f"{name}.face_width", gear.face_width, bound, advice)

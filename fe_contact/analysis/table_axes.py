@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from bounds import SiNote
 from fe_contact.checks import increasing, positive, within
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
@@ -47,5 +48,11 @@ def axis(name: str, values: Sequence[float] | FloatArray) -> FloatArray:
     """
     levels = increasing(name, values)
     for i, value in enumerate(levels):
-        within(f"{name}[{i}]", float(value), -LARGEST_DEVIATION, LARGEST_DEVIATION, "In m: 30 um is 3e-5.")
+        within(
+            f"{name}[{i}]",
+            float(value),
+            -LARGEST_DEVIATION,
+            LARGEST_DEVIATION,
+            SiNote("In m: 30 um is 3e-5."),
+        )
     return levels

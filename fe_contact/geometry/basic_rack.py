@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fe_contact.checks import positive, rounded_down, within
+from bounds import SiNote, at_most
+from fe_contact.checks import positive, within
 from fe_contact.errors import InfeasibleGeometry
 
 
@@ -37,19 +38,25 @@ class BasicRack:
     root_radius_coefficient: float = 0.38
 
     def __post_init__(self) -> None:
-        positive("normal_module", self.normal_module, "In m: module 4 mm is 0.004.")
+        positive("normal_module", self.normal_module, SiNote("In m: module 4 mm is 0.004."))
         low, high = math.radians(10.0), math.radians(35.0)
-        within("normal_pressure_angle", self.pressure_angle, low, high, "In rad: 20 deg is 0.349.")
+        within("normal_pressure_angle", self.pressure_angle, low, high, SiNote("In rad: 20 deg is 0.349."))
         within("addendum_coefficient", self.addendum_coefficient, 0.1, 3.0, "The usual value is 1.")
         within("dedendum_coefficient", self.dedendum_coefficient, 0.1, 4.0, "The usual value is 1.25.")
         within("root_radius_coefficient", self.root_radius_coefficient, 0.0, 2.0, "The usual value is 0.38.")
         self._refuse_large_root_radius()
 
     def _refuse_large_root_radius(self) -> None:
-        """Refuse a rounding larger than the full fillet."""
+        """Refuse a rounding larger than the full fillet, and a tooth space without a root."""
         limit = self.full_fillet_coefficient
+        if limit < 0.0:
+            crossing = "smaller: the flanks of the rack's tooth space cross above its root"
+            advice = "Lower the dedendum or the pressure angle."
+            raise InfeasibleGeometry(
+                "root radius", "dedendum_coefficient", self.dedendum_coefficient, crossing, advice
+            )
         if self.root_radius_coefficient > limit + 1e-12:
-            bound = f"at most {rounded_down(limit)}, the full fillet"
+            bound = at_most(limit, note=", the full fillet")
             advice = "Lower the root radius, the dedendum or the pressure angle."
             raise InfeasibleGeometry(
                 "root radius", "root_radius_coefficient", self.root_radius_coefficient, bound, advice

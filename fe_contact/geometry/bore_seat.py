@@ -6,7 +6,8 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import LIMIT_SLACK, finite, positive, rounded_down, rounded_up, within
+from bounds import LIMIT_SLACK, Quantity, SiNote, Text, at_most, between
+from fe_contact.checks import finite, positive, within
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.types import Json
 
@@ -16,6 +17,12 @@ if TYPE_CHECKING:
 
 NARROWEST = 0.02  # seat in face widths
 FOUNDATIONS = ("radial_foundation", "tangential_foundation", "axial_foundation")
+
+
+_FOUNDATION = Text.of(SiNote("In N/m^3: "), Quantity(1e13, "N/m^3"), " is 10 N/mm^2 per um. Left out: rigid.")
+_KEY = Text.of(
+    "About G / h for a key of height h: ", Quantity(1e13, "N/m^3"), " for ", Quantity(8e-3, "m"), " of steel."
+)
 
 
 @dataclass(frozen=True)
@@ -39,8 +46,8 @@ class Key:
     angle: float = 0.0
 
     def __post_init__(self) -> None:
-        positive("width", self.width, "In m: 12 mm is 0.012.")
-        within("angle", self.angle, -math.pi, math.pi, "In rad: 0 is below tooth 0, pi is opposite.")
+        positive("width", self.width, SiNote("In m: 12 mm is 0.012."))
+        within("angle", self.angle, -math.pi, math.pi, SiNote("In rad: 0 is below tooth 0, pi is opposite."))
 
 
 @dataclass(frozen=True)
@@ -76,13 +83,12 @@ class BoreSeat:
     def __post_init__(self) -> None:
         for field in FOUNDATIONS:
             if getattr(self, field) is not None:
-                positive(field, getattr(self, field), "In N/m^3: 1e13 is 10 N/mm^2 per um. Left out: rigid.")
+                positive(field, getattr(self, field), _FOUNDATION)
         if self.width is not None:
-            positive("width", self.width, "In m: 20 mm is 0.02. Left out: the face width.")
-        finite("offset", self.offset, "In m, from mid-face.")
+            positive("width", self.width, SiNote("In m: 20 mm is 0.02. Left out: the face width."))
+        finite("offset", self.offset, SiNote("In m, from mid-face."))
         if self.key is not None and self.tangential_foundation is None:
-            advice = "About G / h for a key of height h: 1e13 N/m^3 for 8 mm of steel."
-            raise InputError("tangential_foundation", None, "given with a key", advice)
+            raise InputError("tangential_foundation", None, "given with a key", _KEY)
 
     @property
     def key_modulus(self) -> float:
@@ -140,16 +146,15 @@ def refuse_misfit_seat(gear: Gear) -> None:
     seat, face = gear.seat, gear.face_width
     width = face if seat.width is None else seat.width
     if not NARROWEST * face * (1.0 - LIMIT_SLACK) <= width <= (1.0 + 1e-9) * face:
-        bound = f"from {rounded_up(NARROWEST * face)} m to the face width {rounded_down(face)} m"
+        bound = between(NARROWEST * face, face, "m", "the face width")
         raise InfeasibleGeometry("seat", "seat.width", seat.width, bound, "Leave it out for the face width.")
     room = 0.5 * (face - width)
     if abs(seat.offset) > room + 1e-9 * face:
-        low, high = rounded_up(-room), rounded_down(room)
-        bound = f"from {low} m to {high} m, so that the seat stays within the face"
+        bound = between(-room, room, "m", note=", so that the seat stays within the face")
         raise InfeasibleGeometry("seat", "seat.offset", seat.offset, bound, "Lower the offset or the width.")
     around = 2.0 * math.pi * gear.held_radius
     if seat.key is not None and seat.key.width > (1.0 + 1e-9) * around:
-        bound = f"at most the circumference of the bore {rounded_down(around)} m"
+        bound = at_most(around, "m", "the circumference of the bore")
         raise InfeasibleGeometry("key", "seat.key.width", seat.key.width, bound, "Lower the width.")
 
 

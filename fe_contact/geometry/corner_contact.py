@@ -23,6 +23,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bounds import at_least
 from fe_contact.errors import InputError
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.toothing import Toothing
@@ -100,7 +101,7 @@ def corner_contact(pair: ParallelAxes, side: Side, overshoot: ArrayLike) -> Corn
     """
     beyond = np.asarray(overshoot, dtype=float)
     if not np.all(beyond >= 0.0):
-        raise InputError("overshoot", overshoot, "at least 0", "Inside the path of contact there is no gap.")
+        raise InputError("overshoot", overshoot, at_least(0.0), "Inside the path of contact there is no gap.")
     one = np.ones_like(beyond)
     if side == "exit":
         edge = pair.pinion.tip_roll_length

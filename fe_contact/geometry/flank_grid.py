@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 from numba import njit
 
+from bounds import SiNote
 from fe_contact.checks import increasing, within
 from fe_contact.errors import InputError
 from fe_contact.types import FloatArray
@@ -101,7 +102,7 @@ def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
     """Check a row of the grid."""
     if len(row) != length:
         raise InputError(f"removed[{index}]", f"{len(row)} values", f"{length} values, one per face position")
-    advice = "In m: 5 um is 5e-6."
+    advice = SiNote("In m: 5 um is 5e-6.")
     return tuple(within(f"removed[{index}][{j}]", v, -_LARGEST, _LARGEST, advice) for j, v in enumerate(row))
 
 

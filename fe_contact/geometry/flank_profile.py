@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.checks import rounded_down, rounded_up
+from bounds import between
 from fe_contact.errors import InputError
 from fe_contact.geometry.involute import involute_normal, involute_point
 from fe_contact.types import BoolArray, FloatArray
@@ -146,7 +146,7 @@ class FlankProfile:
         where = np.asarray(s, dtype=float)
         slack = 1e-9 * self.gear.normal_module
         if not np.all((where >= self.s_space - slack) & (where <= self.s_tip + slack)):
-            bound = f"from {rounded_up(self.s_space)} m to {rounded_down(self.s_tip)} m"
+            bound = between(self.s_space, self.s_tip, "m")
             raise InputError("s", s, bound, "Flank coordinates run from s_space to s_tip.")
         return np.asarray(np.clip(where, self.s_space, self.s_tip), dtype=float)
 

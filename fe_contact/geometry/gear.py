@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bounds import SiNote
 from fe_contact.checks import integer, positive, within
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
@@ -84,13 +85,13 @@ class Gear(Toothing):
 
     def __post_init__(self) -> None:
         integer("teeth", self.teeth, 4, 2000, "Count the teeth of an external gear.")
-        positive("face_width", self.face_width, "In m: 25 mm is 0.025.")
-        positive("bore_diameter", self.bore_diameter, "In m: 40 mm is 0.04.")
+        positive("face_width", self.face_width, SiNote("In m: 25 mm is 0.025."))
+        positive("bore_diameter", self.bore_diameter, SiNote("In m: 40 mm is 0.04."))
         limit = math.radians(50.0)
-        within("helix_angle", self.helix_angle, -limit, limit, "In rad: 15 deg is 0.262.")
+        within("helix_angle", self.helix_angle, -limit, limit, SiNote("In rad: 15 deg is 0.262."))
         within("profile_shift_coefficient", self.profile_shift_coefficient, -3.0, 3.0, "In normal modules.")
         if self.tip_diameter is not None:
-            positive("tip_diameter", self.tip_diameter, "In m: 88 mm is 0.088.")
+            positive("tip_diameter", self.tip_diameter, SiNote("In m: 88 mm is 0.088."))
         self._check_thickness_allowance()
         refuse_infeasible_gear(self)
         self.modification.check_fits(self)
@@ -99,7 +100,13 @@ class Gear(Toothing):
     def _check_thickness_allowance(self) -> None:
         """Check the basic rack, and the allowance against the tooth it is taken from."""
         module = self.basic_rack.normal_module
-        within("thickness_allowance", self.thickness_allowance, 0.0, 0.5 * module, "In m: 0.1 mm is 1e-4.")
+        within(
+            "thickness_allowance",
+            self.thickness_allowance,
+            0.0,
+            0.5 * module,
+            SiNote("In m: 0.1 mm is 1e-4."),
+        )
 
     @cached_property
     def basic_rack(self) -> BasicRack:

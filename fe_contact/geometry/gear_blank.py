@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import LIMIT_SLACK, finite, positive, rounded_down, rounded_up
+from bounds import LIMIT_SLACK, SiNote, at_least, below, between
+from fe_contact.checks import finite, positive
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.types import Json
 
@@ -44,11 +45,11 @@ class GearBlank:
     web_offset: float = 0.0
 
     def __post_init__(self) -> None:
-        positive("rim_thickness", self.rim_thickness, "In m: 12 mm is 0.012.")
-        positive("web_thickness", self.web_thickness, "In m: 8 mm is 0.008.")
+        positive("rim_thickness", self.rim_thickness, SiNote("In m: 12 mm is 0.012."))
+        positive("web_thickness", self.web_thickness, SiNote("In m: 8 mm is 0.008."))
         if self.hub_diameter is not None:
-            positive("hub_diameter", self.hub_diameter, "In m: 60 mm is 0.06.")
-        finite("web_offset", self.web_offset, "In m, from mid-face.")
+            positive("hub_diameter", self.hub_diameter, SiNote("In m: 60 mm is 0.06."))
+        finite("web_offset", self.web_offset, SiNote("In m, from mid-face."))
 
     def mirrored(self) -> GearBlank:
         """Return the mirror image in the plane of mid-face."""
@@ -106,20 +107,20 @@ def _refuse_rim(gear: Gear, blank: GearBlank) -> None:
     """Refuse a hub inside the bore, a rim that leaves no web, and one that carries no teeth."""
     hub = gear.bore_diameter if blank.hub_diameter is None else blank.hub_diameter
     if hub < gear.bore_diameter:
-        bound = f"at least the bore diameter {rounded_up(gear.bore_diameter)} m"
+        bound = at_least(gear.bore_diameter, "m", "the bore diameter")
         raise InfeasibleGeometry("hub", "blank.hub_diameter", hub, bound, "Raise it or leave it out.")
     least, deepest = THINNEST_RIM * gear.normal_module, gear.root_radius - 0.5 * hub
     if deepest <= least:
         field = "bore_diameter" if blank.hub_diameter is None else "blank.hub_diameter"
-        widest = rounded_down(2.0 * (gear.root_radius - least))
-        bound = f"below {widest} m, which leaves a rim of {THINNEST_RIM:g} normal modules"
+        widest = 2.0 * (gear.root_radius - least)
+        bound = below(widest, "m", note=f", which leaves a rim of {THINNEST_RIM:g} normal modules")
         raise InfeasibleGeometry("rim", field, hub, bound, "Leave the blank out for a solid gear.")
     if not blank.rim_thickness < deepest:
-        bound = f"below {rounded_down(deepest)} m, what lies between root circle and hub (or bore)"
+        bound = below(deepest, "m", note=", what lies between root circle and hub (or bore)")
         advice = "Lower the rim thickness or the hub diameter; leave the blank out for a solid gear."
         raise InfeasibleGeometry("rim", "blank.rim_thickness", blank.rim_thickness, bound, advice)
     if blank.rim_thickness < least * (1.0 - LIMIT_SLACK):
-        bound = f"at least {rounded_up(least)} m, {THINNEST_RIM:g} normal modules"
+        bound = at_least(least, "m", note=f", {THINNEST_RIM:g} normal modules")
         raise InfeasibleGeometry(
             "rim", "blank.rim_thickness", blank.rim_thickness, bound, "Raise the rim thickness."
         )
@@ -129,11 +130,11 @@ def _refuse_web(gear: Gear, blank: GearBlank) -> None:
     """Refuse a web that is a foil, or that leaves the face."""
     least = THINNEST_WEB * gear.face_width
     if not least * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
-        bound = f"from {rounded_up(least)} m to the face width {rounded_down(gear.face_width)} m"
+        bound = between(least, gear.face_width, "m", "the face width")
         advice = "A web as thick as the face is wide is a solid gear."
         raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, advice)
     room = 0.5 * (gear.face_width - blank.web_thickness)
     if abs(blank.web_offset) > room + 1e-9 * gear.face_width:
-        bound = f"from {rounded_up(-room)} m to {rounded_down(room)} m, so that the web stays within the face"
+        bound = between(-room, room, "m", note=", so that the web stays within the face")
         advice = "Lower the offset or the web thickness."
         raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, advice)

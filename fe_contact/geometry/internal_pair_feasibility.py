@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import LIMIT_SLACK, positive, rounded_down, rounded_up
+from bounds import LIMIT_SLACK, Quantity, SiNote, Text, above, at_least, at_most, below
+from fe_contact.checks import positive
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.backlash import base_radius_sum, tight_center_distance
 from fe_contact.geometry.internal_interference import tip_interference, trochoidal_interference
@@ -27,14 +28,14 @@ _SHORTER = "Raise the ring's tip diameter, or lower the pinion's"
 def refuse_tooth_numbers(pinion: Gear, ring: RingGear) -> None:
     """Refuse a pinion that is no smaller than the ring."""
     if ring.teeth <= pinion.teeth:
-        bound = f"above the pinion's {pinion.teeth}"
+        bound = above(pinion.teeth, name="the pinion's")
         advice = "With standard teeth of 20 deg about ten more are needed for the tips to pass each other."
         raise InfeasibleGeometry("tooth number difference", "wheel.teeth", ring.teeth, bound, advice)
 
 
 def refuse_infeasible_internal_pair(pair: InternalGearPair) -> None:
     """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
-    positive("center_distance", pair.center_distance, "In m, positive: 80 mm is 0.08.")
+    positive("center_distance", pair.center_distance, SiNote("In m, positive: 80 mm is 0.08."))
     refuse_face_overlap(pair)
     _refuse_short_distance(pair)
     refuse_jamming(pair)
@@ -51,8 +52,9 @@ def _refuse_short_distance(pair: InternalGearPair) -> None:
     """Refuse base circles without a common tangent."""
     shortest = abs(base_radius_sum(pair.pinion, pair.wheel))
     if pair.center_distance <= shortest:
-        bound = f"above {rounded_up(shortest)} m, the difference of the base radii"
-        advice = f"Without backlash it is {rounded_down(tight_center_distance(pair.pinion, pair.wheel))} m."
+        bound = above(shortest, "m", note=", the difference of the base radii")
+        tight = Quantity(tight_center_distance(pair.pinion, pair.wheel), "m", side="high")
+        advice = Text.of("Without backlash it is ", tight, ".")
         raise InfeasibleGeometry("center distance", "center_distance", pair.center_distance, bound, advice)
 
 
@@ -69,13 +71,13 @@ def _refuse_tip_clearance(pair: InternalGearPair) -> None:
     at_pinion_tip, at_ring_tip = pair.tip_clearances
     if at_pinion_tip <= 0.0:
         largest = 2.0 * (pair.pinion.tip_radius + at_pinion_tip)
-        bound = f"below {rounded_down(largest)} m, where the tip reaches the ring's root circle"
+        bound = below(largest, "m", note=", where the tip reaches the ring's root circle")
         advice = "Lower the pinion's tip diameter, or raise the ring's dedendum."
         value = 2.0 * pair.pinion.tip_radius
         raise InfeasibleGeometry("tip clearance", "pinion.tip_diameter", value, bound, advice)
     if at_ring_tip <= 0.0:
         smallest = 2.0 * (pair.wheel.tip_radius - at_ring_tip)
-        bound = f"above {rounded_up(smallest)} m, where the tip reaches the pinion's root circle"
+        bound = above(smallest, "m", note=", where the tip reaches the pinion's root circle")
         advice = "Raise the ring's tip diameter, or the pinion's dedendum."
         value = 2.0 * pair.wheel.tip_radius
         raise InfeasibleGeometry("tip clearance", "wheel.tip_diameter", value, bound, advice)
@@ -86,14 +88,14 @@ def _refuse_interference(pair: InternalGearPair) -> None:
     pinion, ring, path = pair.pinion, pair.wheel, pair.path_of_contact
     if path.start < pinion.form_roll_length * (1.0 - LIMIT_SLACK):
         smallest = 2.0 * math.hypot(ring.base_radius, pair.common_tangent + pinion.form_roll_length)
-        bound = f"at least {rounded_up(smallest)} m, where the tip meets the pinion's form circle"
+        bound = at_least(smallest, "m", note=", where the tip meets the pinion's form circle")
         advice = "Raise the ring's tip diameter, or the pinion's profile shift or number of teeth."
         value = 2.0 * ring.tip_radius
         raise InfeasibleGeometry("interference", "wheel.tip_diameter", value, bound, advice)
     if pair.common_tangent + path.end > ring.form_roll_length * (1.0 + LIMIT_SLACK):
         reach = ring.form_roll_length - pair.common_tangent
         largest = 2.0 * math.hypot(pinion.base_radius, max(reach, 0.0))
-        bound = f"at most {rounded_down(largest)} m, where the tip meets the ring's form circle"
+        bound = at_most(largest, "m", note=", where the tip meets the ring's form circle")
         advice = "Lower the pinion's tip diameter, or raise the ring's dedendum or lower its root radius."
         value = 2.0 * pinion.tip_radius
         raise InfeasibleGeometry("interference", "pinion.tip_diameter", value, bound, advice)
@@ -103,7 +105,8 @@ def _refuse_tip_interference(pair: InternalGearPair) -> None:
     """Refuse tips that hit each other as they enter or leave."""
     depth = tip_interference(pair)
     if depth > FILLET_SLACK * pair.pinion.normal_module:
-        bound = f"larger: the tips overlap by {depth:.3g} m as they pass each other"
+        overlap = Quantity(depth, "m", digits=3)
+        bound = Text.of("larger: the tips overlap by ", overlap, " as they pass each other")
         advice = f"{_SHORTER}, or raise the difference of the tooth numbers, {pair.tooth_number_difference}."
         value = 2.0 * pair.wheel.tip_radius
         raise InfeasibleGeometry("tip interference", "wheel.tip_diameter", value, bound, advice)
@@ -113,7 +116,8 @@ def _refuse_trochoidal_interference(pair: InternalGearPair) -> None:
     """Refuse a tip that cuts the mating fillet."""
     depth = trochoidal_interference(pair)
     if depth > FILLET_SLACK * pair.pinion.normal_module:
-        bound = f"larger: a tip cuts the mating fillet by {depth:.3g} m off the line of action"
+        cut = Quantity(depth, "m", digits=3)
+        bound = Text.of("larger: a tip cuts the mating fillet by ", cut, " off the line of action")
         advice = f"{_SHORTER}, or lower the mate's root radius or raise its dedendum."
         value = 2.0 * pair.wheel.tip_radius
         raise InfeasibleGeometry("trochoidal interference", "wheel.tip_diameter", value, bound, advice)
@@ -123,7 +127,8 @@ def _refuse_trimming_interference(pair: InternalGearPair) -> None:
     """Refuse radial assembly past tips that stand in the way."""
     clearance = pair.radial_assembly_clearance
     if pair.radial_assembly and clearance < 0.0:
-        bound = f"false: the tips are in the way by {-clearance:.3g} m on the pinion's base circle"
+        overlap = Quantity(-clearance, "m", digits=3)
+        bound = Text.of("false: the tips are in the way by ", overlap, " on the pinion's base circle")
         advice = (
             f"Put the pinion in along the axis. {_SHORTER}, or raise the difference of the tooth numbers."
         )

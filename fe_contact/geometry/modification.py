@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bounds import Quantity, SiNote, Text, at_least
 from fe_contact.checks import finite, positive, within
 from fe_contact.errors import InputError
 from fe_contact.geometry.flank_grid import FlankGrid
@@ -143,9 +144,9 @@ class FlankModification:
         for kind in ("tip", "root", "end"):
             _check_relief(self, f"{kind}_relief")
         for crowning in ("profile_crowning", "helix_crowning"):
-            within(crowning, getattr(self, crowning), 0.0, _LARGEST, "In m: 5 um is 5e-6.")
+            within(crowning, getattr(self, crowning), 0.0, _LARGEST, SiNote("In m: 5 um is 5e-6."))
         for slope in ("profile_slope", "helix_slope", "flank_twist"):
-            within(slope, getattr(self, slope), -_LARGEST, _LARGEST, "In m: 5 um is 5e-6.")
+            within(slope, getattr(self, slope), -_LARGEST, _LARGEST, SiNote("In m: 5 um is 5e-6."))
         _check_tip_edge(self)
 
     @property
@@ -191,7 +192,7 @@ class FlankModification:
         And if the tip's edge leaves no involute or no tip.
         """
         height = abs(gear.tip_radius - gear.form_radius)
-        advice = "Lengths are in m: 1 mm is 0.001."
+        advice = SiNote("Lengths are in m: 1 mm is 0.001.")
         within("modification.tip_relief_length", self.tip_relief_length, 0.0, height, advice)
         within("modification.root_relief_length", self.root_relief_length, 0.0, height, advice)
         within("modification.end_relief_length", self.end_relief_length, 0.0, 0.5 * gear.face_width, advice)
@@ -333,21 +334,22 @@ def _check_relief(modification: FlankModification, kind: str) -> None:
     """Check amount, length and shape of one relief."""
     amount, length = getattr(modification, kind), getattr(modification, f"{kind}_length")
     shape = getattr(modification, f"{kind}_shape")
-    within(kind, amount, 0.0, _LARGEST, "In m: 20 um is 20e-6.")
+    within(kind, amount, 0.0, _LARGEST, SiNote("In m: 20 um is 20e-6."))
     if shape not in SHAPES:
         raise InputError(f"{kind}_shape", shape, 'one of "linear" and "parabolic"')
     finite(f"{kind}_length", length)
     if amount:
-        positive(f"{kind}_length", length, f"{kind} needs the length over which it acts, in m.")
+        advice = SiNote(f"{kind} needs the length over which it acts, in m.")
+        positive(f"{kind}_length", length, advice)
     elif length < 0.0:
-        raise InputError(f"{kind}_length", length, "at least 0")
+        raise InputError(f"{kind}_length", length, at_least(0.0))
 
 
 def _check_tip_edge(modification: FlankModification) -> None:
     """Check rounding and chamfer of the tip, of which there is at most one."""
     for field in ("tip_rounding", "tip_chamfer"):
-        within(field, getattr(modification, field), 0.0, _LARGEST_EDGE, "In m: 0.2 mm is 2e-4.")
-    angle = "In rad, between flank and chamfer: 30 deg is 0.524."
+        within(field, getattr(modification, field), 0.0, _LARGEST_EDGE, SiNote("In m: 0.2 mm is 2e-4."))
+    angle = SiNote("In rad, between flank and chamfer: 30 deg is 0.524.")
     within("tip_chamfer_angle", modification.tip_chamfer_angle, FLATTEST, STEEPEST, angle)
     if modification.tip_rounding and modification.tip_chamfer:
         advice = "The tip has a rounding or a chamfer: give one of them."
@@ -357,7 +359,8 @@ def _check_tip_edge(modification: FlankModification) -> None:
 def _check_reach(field: str, axis: tuple[float, ...], low: float, high: float) -> None:
     """Refuse an axis of a grid that lies beside the flank: a wrong unit or origin."""
     if axis[-1] <= low or axis[0] >= high:
-        bound = f"a range that reaches into the flank, which spans {low:.6g} m to {high:.6g} m"
+        ends = Quantity(low, "m", digits=6), " to ", Quantity(high, "m", digits=6)
+        bound = Text.of("a range that reaches into the flank, which spans ", *ends)
         raise InputError(field, [axis[0], axis[-1]], bound, "Is the unit or the origin another one?")
 
 

@@ -6,7 +6,8 @@ import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, NoReturn
 
-from fe_contact.checks import LIMIT_SLACK, finite, positive, rounded_down, rounded_up
+from bounds import LIMIT_SLACK, Quantity, SiNote, Text, Words, at_least, at_most, below, exactly
+from fe_contact.checks import finite, positive
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.backlash import (
     base_radius_sum,
@@ -15,6 +16,7 @@ from fe_contact.geometry.backlash import (
     tight_shift_sum,
 )
 from fe_contact.geometry.fillet_interference import fillet_penetration
+from fe_contact.geometry.modification import UNMODIFIED
 from fe_contact.geometry.printed_data import backlash_rounding
 
 if TYPE_CHECKING:
@@ -44,14 +46,13 @@ def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
     for name, field, value, wanted in compared:
         if not math.isclose(value, wanted, rel_tol=1e-9, abs_tol=1e-12):
             advice = _EXTERNAL if wheel.sign > 0 else _INTERNAL
-            raise InfeasibleGeometry(
-                name, f"wheel.{field}", value, f"{wanted:.9g}, to fit the pinion", advice
-            )
+            bound = exactly(wanted, ", to fit the pinion")
+            raise InfeasibleGeometry(name, f"wheel.{field}", value, bound, advice)
 
 
 def refuse_infeasible_pair(pair: GearPair) -> None:
     """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
-    positive("center_distance", pair.center_distance, "In m: 80 mm is 0.08.")
+    positive("center_distance", pair.center_distance, SiNote("In m: 80 mm is 0.08."))
     refuse_face_overlap(pair)
     refuse_jamming(pair)
     _refuse_contact_ratio(pair)
@@ -63,13 +64,12 @@ def refuse_infeasible_pair(pair: GearPair) -> None:
 
 def refuse_face_overlap(pair: ParallelAxes) -> None:
     """Refuse gears that pass beside each other."""
-    finite("axial_offset", pair.axial_offset, "In m: 5 mm is 0.005.")
+    finite("axial_offset", pair.axial_offset, SiNote("In m: 5 mm is 0.005."))
     low, high = pair.common_face
     if high <= low:
         limit = 0.5 * (pair.pinion.face_width + pair.wheel.face_width)
-        raise InfeasibleGeometry(
-            "face overlap", "axial_offset", pair.axial_offset, f"less than {rounded_down(limit)} m in size"
-        )
+        bound = below(limit, "m", note=" in size")
+        raise InfeasibleGeometry("face overlap", "axial_offset", pair.axial_offset, bound)
 
 
 def refuse_jamming(pair: ParallelAxes) -> None:
@@ -79,22 +79,22 @@ def refuse_jamming(pair: ParallelAxes) -> None:
     if not touching and pair.transverse_base_backlash >= 0.0:
         return
     tight = tight_center_distance(pinion, wheel)
-    side, distance = ("at most", rounded_down(tight)) if pair.internal else ("at least", rounded_up(tight))
-    advice = f"Without backlash: center_distance = {distance} m"
+    bound = (at_most if pair.internal else at_least)(tight, "m", note=", where the teeth jam")
+    distance = Quantity(tight, "m", side="high" if pair.internal else "low")
+    advice = Text.of("Without backlash: center_distance = ", distance)
     if not touching:
-        tight_sum = tight_shift_sum(pinion, wheel, pair.working_pressure_angle)
-        advice += f", or x_1 + x_2 = {rounded_down(tight_sum)} instead of {shift_sum(pinion, wheel):.7g}"
-        advice += f". {_beyond_rounding(pair)}"
-    bound = f"{side} {distance} m, where the teeth jam"
-    raise InfeasibleGeometry(
-        "profile shift sum", "center_distance", pair.center_distance, bound, f"{advice}."
-    )
+        largest = Quantity(tight_shift_sum(pinion, wheel, pair.working_pressure_angle), side="high")
+        instead = Text.of(largest, " instead of ", Quantity(shift_sum(pinion, wheel)))
+        advice = Text.of(advice, ", or x_1 + x_2 = ", instead, ". ", _beyond_rounding(pair))
+    advice = Text.of(advice, ".")
+    raise InfeasibleGeometry("profile shift sum", "center_distance", pair.center_distance, bound, advice)
 
 
-def _beyond_rounding(pair: ParallelAxes) -> str:
+def _beyond_rounding(pair: ParallelAxes) -> Text:
     """Say how large a jam is beside what rounding of printed data makes."""
     jam, rounding = -pair.transverse_base_backlash, backlash_rounding(pair)
-    return f"Jam {jam:.3g} m; rounding of the printed values makes {rounding:.2g} m at most"
+    most = Text.of("rounding of the printed values makes ", Quantity(rounding, "m", digits=2), " at most")
+    return Text.of("Jam ", Quantity(jam, "m", digits=3), "; ", most)
 
 
 def _refuse_contact_ratio(pair: GearPair) -> None:
@@ -127,7 +127,7 @@ def _refuse_tip_clearance(pair: GearPair) -> None:
     for name, gear, mate in gears:
         largest = pair.center_distance - mate.root_radius
         if gear.tip_radius >= largest:
-            bound = f"below {rounded_down(2.0 * largest)} m, where the tip reaches the mating root circle"
+            bound = below(2.0 * largest, "m", note=", where the tip reaches the mating root circle")
             advice = "Lower the tip diameter or the addendum, or raise the mate's dedendum."
             raise InfeasibleGeometry(
                 "tip clearance", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice
@@ -151,20 +151,20 @@ def _refuse_fillet_interference(pair: GearPair) -> None:
     for name, gear, mate in gears:
         depth = fillet_penetration(pair, gear, mate)
         if depth > FILLET_SLACK * gear.normal_module:
-            reason = f"the tip cuts the mating fillet by {depth:.3g} m off the line of action"
+            cut = Quantity(depth, "m", digits=3)
+            reason = Text.of("the tip cuts the mating fillet by ", cut, " off the line of action")
             advice = "Lower the tip diameter or the addendum, or the mate's root radius."
             _refuse_long_tip(pair, name, gear, reason, advice)
 
 
-def _refuse_long_tip(pair: GearPair, name: str, gear: Gear, reason: str, advice: str) -> NoReturn:
+def _refuse_long_tip(pair: GearPair, name: str, gear: Gear, reason: Words, advice: str) -> NoReturn:
     """Refuse a tip diameter, and say which one is clear of the mating flank and fillet."""
     mate = pair.wheel if gear is pair.pinion else pair.pinion
     largest = _largest_clear_tip(pair, gear, mate)
-    bound = "smaller" if largest is None else f"at most {rounded_down(largest)} m"
-    separator = ":" if largest is None else ","
-    raise InfeasibleGeometry(
-        "interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, f"{bound}{separator} {reason}", advice
+    bound = (
+        Text.of("smaller: ", reason) if largest is None else at_most(largest, "m", note=Text.of(", ", reason))
     )
+    raise InfeasibleGeometry("interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice)
 
 
 def _largest_clear_tip(pair: GearPair, gear: Gear, mate: Gear) -> float | None:
@@ -173,7 +173,7 @@ def _largest_clear_tip(pair: GearPair, gear: Gear, mate: Gear) -> float | None:
     low, high = gear.form_radius, min(gear.tip_radius, math.hypot(gear.base_radius, reach))
 
     def cuts(radius: float) -> bool:
-        shorter = replace(gear, tip_diameter=2.0 * radius)
+        shorter = replace(gear, tip_diameter=2.0 * radius, modification=UNMODIFIED)
         return fillet_penetration(pair, shorter, mate) > FILLET_SLACK * gear.normal_module
 
     low += 1e-6 * gear.normal_module

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.checks import LIMIT_SLACK
+from bounds import LIMIT_SLACK
 from fe_contact.geometry.backlash import allowance_backlash, base_circle_backlash, base_radius_sum
 from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.printed_data import backlash_rounding

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bounds import SiNote
 from fe_contact.checks import within
 from fe_contact.errors import InputError
 from fe_contact.types import FloatArray
@@ -50,7 +51,7 @@ class PitchDeviation:
 
     def __post_init__(self) -> None:
         checked = (
-            within(f"pitch_deviation[{tooth}]", value, -LARGEST, LARGEST, "In m: 5 um is 5e-6.")
+            within(f"pitch_deviation[{tooth}]", value, -LARGEST, LARGEST, SiNote("In m: 5 um is 5e-6."))
             for tooth, value in enumerate(self.cumulative)
         )
         object.__setattr__(self, "cumulative", tuple(checked))

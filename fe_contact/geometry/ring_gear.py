@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
 
+from bounds import SiNote
 from fe_contact.checks import integer, positive, within
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.cutter_trochoid import CutterTrochoid
@@ -91,12 +92,12 @@ class RingGear(Toothing):
 
     def __post_init__(self) -> None:
         integer("teeth", self.teeth, 12, 4000, "Count the teeth of an internal gear as a positive number.")
-        positive("face_width", self.face_width, "In m: 25 mm is 0.025.")
-        positive("rim_diameter", self.rim_diameter, "In m: 240 mm is 0.24.")
+        positive("face_width", self.face_width, SiNote("In m: 25 mm is 0.025."))
+        positive("rim_diameter", self.rim_diameter, SiNote("In m: 240 mm is 0.24."))
         limit = math.radians(50.0)
-        within("helix_angle", self.helix_angle, -limit, limit, "In rad: 15 deg is 0.262.")
+        within("helix_angle", self.helix_angle, -limit, limit, SiNote("In rad: 15 deg is 0.262."))
         if self.tip_diameter is not None:
-            positive("tip_diameter", self.tip_diameter, "In m: 180 mm is 0.18.")
+            positive("tip_diameter", self.tip_diameter, SiNote("In m: 180 mm is 0.18."))
         self._check_tool()
         refuse_infeasible_ring(self)
         self.modification.check_fits(self)
@@ -109,7 +110,13 @@ class RingGear(Toothing):
         for name in ("profile_shift_coefficient", "cutter_profile_shift_coefficient"):
             within(name, getattr(self, name), -3.0, 3.0, "In normal modules.")
         integer("cutter_teeth", self.cutter_teeth, 6, self.teeth - 1, "Fewer teeth than the ring gear.")
-        within("thickness_allowance", self.thickness_allowance, 0.0, 0.5 * module, "In m: 0.1 mm is 1e-4.")
+        within(
+            "thickness_allowance",
+            self.thickness_allowance,
+            0.0,
+            0.5 * module,
+            SiNote("In m: 0.1 mm is 1e-4."),
+        )
 
     @cached_property
     def basic_rack(self) -> BasicRack:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from fe_contact.checks import LIMIT_SLACK, rounded_down, rounded_up
+from bounds import LIMIT_SLACK, Quantity, Text, above, at_least, below
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.trimming import radial_clearance
 
@@ -29,12 +29,12 @@ def refuse_shift_sum_of_cutter(gear: RingGear, involute: float) -> None:
     if involute <= 0.0:
         angle = math.tan(gear.transverse_pressure_angle) - gear.transverse_pressure_angle
         largest = angle * (gear.teeth - gear.cutter_teeth) / (2.0 * math.tan(gear.normal_pressure_angle))
-        limit = rounded_down(largest - gear.profile_shift_coefficient)
+        limit = largest - gear.profile_shift_coefficient
         raise InfeasibleGeometry(
             "profile shift sum",
             "cutter_profile_shift_coefficient",
             gear.cutter_profile_shift_coefficient,
-            f"below {limit}, where the cutter fills the tooth space",
+            below(limit, note=", where the cutter fills the tooth space"),
             _OTHER_CUTTER,
         )
 
@@ -42,19 +42,18 @@ def refuse_shift_sum_of_cutter(gear: RingGear, involute: float) -> None:
 def _refuse_rim(gear: RingGear) -> None:
     """Refuse a rim that leaves nothing behind the teeth."""
     if gear.rim_diameter <= 2.0 * gear.root_radius:
-        bound = f"above the root diameter {rounded_up(2.0 * gear.root_radius)} m"
+        bound = above(2.0 * gear.root_radius, "m", "the root diameter")
         raise InfeasibleGeometry("rim", "rim_diameter", gear.rim_diameter, bound, "Raise the rim diameter.")
 
 
 def _refuse_tip_diameter(gear: RingGear) -> None:
     """Refuse a tip circle beyond the involute at the fillet, or inside what the cutter's involute reaches."""
     if gear.tip_radius >= gear.form_radius:
-        bound = f"below the form diameter {rounded_down(2.0 * gear.form_radius)} m, where the fillet begins"
+        bound = below(2.0 * gear.form_radius, "m", "the form diameter", ", where the fillet begins")
         raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound)
     smallest = math.hypot(gear.base_radius, gear.cutter.common_tangent)
     if gear.tip_radius < smallest * (1.0 - LIMIT_SLACK):
-        limit = rounded_up(2.0 * smallest)
-        bound = f"at least {limit} m, where the cutter's involute ends at its base circle"
+        bound = at_least(2.0 * smallest, "m", note=", where the cutter's involute ends at its base circle")
         advice = f"Raise the tip diameter, or lower the addendum or the profile shift. {_OTHER_CUTTER}"
         name = "tip diameter" if gear.tip_radius < gear.base_radius else "interference"
         raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
@@ -87,6 +86,7 @@ def _refuse_cut_tips(gear: RingGear) -> None:
 def _refuse_pointed_tooth(gear: RingGear) -> None:
     """Refuse a tooth whose flanks meet before the tip circle."""
     if gear.tip_tooth_thickness <= 0.0:
-        bound = f"larger: the transverse tip thickness is {gear.tip_tooth_thickness:.3g} m"
+        thickness = Quantity(gear.tip_tooth_thickness, "m", digits=3)
+        bound = Text.of("larger: the transverse tip thickness is ", thickness)
         advice = "Raise the tip diameter, or lower the addendum."
         raise InfeasibleGeometry("pointed tooth", "tip_diameter", 2.0 * gear.tip_radius, bound, advice)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from bounds import SiNote
 from fe_contact.checks import positive, within
 from fe_contact.material import STEEL, Material
 
@@ -38,12 +39,12 @@ class Shaft:
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        positive("length", self.length, "In m: 200 mm is 0.2.")
-        positive("diameter", self.diameter, "In m: 40 mm is 0.04.")
-        advice = "In m from the bearing of smaller z; a gear may overhang by one length."
+        positive("length", self.length, SiNote("In m: 200 mm is 0.2."))
+        positive("diameter", self.diameter, SiNote("In m: 40 mm is 0.04."))
+        advice = SiNote("In m from the bearing of smaller z; a gear may overhang by one length.")
         within("position", self.position, -self.length, 2.0 * self.length, advice)
         if self.bearing_stiffness is not None:
-            positive("bearing_stiffness", self.bearing_stiffness, "In N/m; left out: rigid bearings.")
+            positive("bearing_stiffness", self.bearing_stiffness, SiNote("In N/m; left out: rigid bearings."))
 
 
 Shafts = tuple[Shaft | None, Shaft | None]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bounds import SiNote, Text, Words
 from fe_contact.checks import within
 from fe_contact.geometry.involute import involute_normal, involute_point
 
@@ -23,8 +24,8 @@ FLATTEST, STEEPEST = math.radians(5.0), math.radians(85.0)
 """Angles between flank and chamfer, rad; a flatter one is a relief."""
 _HALVINGS = 50
 _LOWEST = 1e-3  # of the normal module: a chamfer so low fits at any angle at which it reaches the tip circle
-_ROUNDING = "It must leave an involute and some of the tip. In m: 0.2 mm is 2e-4."
-_ANGLE = "In rad, between flank and chamfer: it must run on towards the tip circle."
+_ROUNDING = Text.of("It must leave an involute and some of the tip. ", SiNote("In m: 0.2 mm is 2e-4."))
+_ANGLE = Text.of("The chamfer must run on towards the tip circle. ", SiNote("In rad, to the flank."))
 _CHAMFER = "It must leave an involute and some of the tip; at a smaller angle it takes less of the tip."
 
 
@@ -70,7 +71,7 @@ def check_chamfer(gear: Toothing, height: float, angle: float) -> None:
     _check("modification.tip_chamfer", height, 0.0, fits, _CHAMFER)
 
 
-def _check(field: str, value: float, least: float, fits: Callable[[float], bool], advice: str) -> None:
+def _check(field: str, value: float, least: float, fits: Callable[[float], bool], advice: Words) -> None:
     """Refuse a value that does not fit, naming the largest that does."""
     if fits(value):
         return

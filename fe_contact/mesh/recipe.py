@@ -7,6 +7,7 @@ import json
 from dataclasses import asdict, dataclass, replace
 from typing import Protocol
 
+from bounds import at_most
 from fe_contact.checks import integer, positive, within
 from fe_contact.errors import InputError
 from fe_contact.types import Json
@@ -58,7 +59,7 @@ class MeshRecipe:
             positive(field, getattr(self, field))
         within("growth", self.growth, 0.05, 1.0, "0.3 is usual.")
         if self.tip_size > self.flank_size:
-            raise InputError("tip_size", self.tip_size, f"at most flank_size = {self.flank_size:g}")
+            raise InputError("tip_size", self.tip_size, at_most(self.flank_size, name="flank_size ="))
         if self.real_teeth is not None:
             integer("real_teeth", self.real_teeth, 1, 100_001)
             if self.real_teeth % 2 == 0:

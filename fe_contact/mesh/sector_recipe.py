@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass
 from itertools import pairwise
 from typing import Protocol
 
+from bounds import at_most
 from fe_contact.checks import integer, positive, within
 from fe_contact.errors import InputError
 from fe_contact.types import Json
@@ -93,7 +94,7 @@ class SectorRecipe:
         within("split", self.split, 0.1, 0.9, "0.5 is usual.")
         within("layer_growth", self.layer_growth, 1.0, 10.0, "1.5 is usual.")
         if self.tip_size > self.flank_size:
-            raise InputError("tip_size", self.tip_size, f"at most flank_size = {self.flank_size:g}")
+            raise InputError("tip_size", self.tip_size, at_most(self.flank_size, name="flank_size ="))
         self._check_merging()
 
     def _check_merging(self) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bounds import SiNote
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.model_choice import Decided, decide
 from fe_contact.analysis.pair_contact import pair_contact
@@ -131,7 +132,9 @@ def check_study(
     Parameters and errors are those of `design_study`, all torques in one.
     """
     integer("positions", positions, 8, 4096, "64 resolve a spur pair.")
-    within("misalignment", misalignment, -LARGEST_DEVIATION, LARGEST_DEVIATION, "In m: 10 um is 1e-5.")
+    within(
+        "misalignment", misalignment, -LARGEST_DEVIATION, LARGEST_DEVIATION, SiNote("In m: 10 um is 1e-5.")
+    )
     nodes = scatter.nodes()
     present = {name: figure(pair, name) for name in scatter.modification} | dict(varied)
     acting = {name: present[name] + scatter.modification.get(name, 0.0) for name in present}

@@ -7,6 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
+from bounds import Bound, SiNote, above, at_least
 from fe_contact.checks import finite, positive
 from fe_contact.errors import InputError
 from fe_contact.types import FloatArray, Json
@@ -44,7 +45,7 @@ class WeightedMean:
             return
         for index, weight in enumerate(self.weights):
             if finite(f"objective.weights[{index}]", weight) < 0.0:
-                raise InputError(f"objective.weights[{index}]", weight, "at least 0")
+                raise InputError(f"objective.weights[{index}]", weight, at_least(0.0))
         if len(self.weights) != loads or sum(self.weights) == 0.0:
             bound = f"{loads} numbers, one for each torque, not all 0"
             raise InputError("objective.weights", list(self.weights), bound)
@@ -103,17 +104,18 @@ class Limits:
 
     def __post_init__(self) -> None:
         if self.max_pressure is not None:
-            positive("limits.max_pressure", self.max_pressure, "In Pa: 1500 MPa is 1.5e9.")
+            positive("limits.max_pressure", self.max_pressure, SiNote("In Pa: 1500 MPa is 1.5e9."))
         if (
             self.face_load_factor is not None
             and finite("limits.face_load_factor", self.face_load_factor) <= 1
         ):
-            raise InputError("limits.face_load_factor", self.face_load_factor, "above 1")
+            raise InputError("limits.face_load_factor", self.face_load_factor, above(1.0))
         if (
             self.edge_load_share is not None
             and not 0.0 <= finite("limits.edge_load_share", self.edge_load_share) < 1.0
         ):
-            raise InputError("limits.edge_load_share", self.edge_load_share, "from 0 to below 1")
+            bound = Bound(0.0, 1.0, high_open=True)
+            raise InputError("limits.edge_load_share", self.edge_load_share, bound)
 
     def to_json(self) -> Json:
         """Return plain JSON."""

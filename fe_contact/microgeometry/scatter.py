@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import roots_hermitenorm
 from scipy.stats import norm, qmc
 
+from bounds import SiNote, at_least
 from fe_contact.checks import finite, integer, positive
 from fe_contact.errors import InputError
 from fe_contact.microgeometry.variables import gear_and_quantity
@@ -129,11 +130,11 @@ class Scatter:
     rule: ScatterRule = GaussHermite()
 
     def __post_init__(self) -> None:
-        if finite("scatter.misalignment", self.misalignment, "In m: 10 um is 1e-5.") < 0.0:
-            raise InputError("scatter.misalignment", self.misalignment, "at least 0")
+        if finite("scatter.misalignment", self.misalignment, SiNote("In m: 10 um is 1e-5.")) < 0.0:
+            raise InputError("scatter.misalignment", self.misalignment, at_least(0.0))
         for name, deviation in self.modification.items():
             gear_and_quantity(f"scatter.modification.{name}", name)
-            positive(f"scatter.modification.{name}", deviation, "A standard deviation in m.")
+            positive(f"scatter.modification.{name}", deviation, SiNote("A standard deviation in m."))
 
     def to_json(self) -> Json:
         """Return plain JSON."""

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from scipy.special import ndtr, ndtri
 
+from bounds import SiNote
 from fe_contact.checks import positive
 from fe_contact.errors import InputError
 from fe_contact.microgeometry.scatter import MISALIGNMENT
@@ -40,10 +41,10 @@ class Tolerances:
 
     def __post_init__(self) -> None:
         if self.misalignment:
-            positive("tolerances.misalignment", self.misalignment, "In m: 10 um is 1e-5.")
+            positive("tolerances.misalignment", self.misalignment, SiNote("In m: 10 um is 1e-5."))
         for name, width in self.modification.items():
             gear_and_quantity(f"tolerances.modification.{name}", name)
-            positive(f"tolerances.modification.{name}", width, "In m: 10 um is 1e-5.")
+            positive(f"tolerances.modification.{name}", width, SiNote("In m: 10 um is 1e-5."))
         if self.distribution not in ("normal", "uniform"):
             raise InputError("tolerances.distribution", self.distribution, 'one of "normal" and "uniform"')
         if not self.widths:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
+from bounds import SiNote, Text, above, at_least
 from fe_contact.checks import finite
 from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.profile_modification import ProfileModification
@@ -57,11 +58,12 @@ class DesignVariable:
         finite(f"{where}.low", self.low)
         finite(f"{where}.high", self.high)
         if what in LENGTHS and self.low <= 0.0:
-            raise InputError(f"{where}.low", self.low, "above 0, as it is a length", "0.0005 is 0.5 mm.")
+            bound = above(0.0, note=", as it is a length")
+            raise InputError(f"{where}.low", self.low, bound, SiNote("0.0005 is 0.5 mm."))
         if what not in SLOPES and self.low < 0.0:
-            raise InputError(f"{where}.low", self.low, "at least 0, as it is material removed")
+            raise InputError(f"{where}.low", self.low, at_least(0.0, note=", as it is material removed"))
         if self.high <= self.low:
-            raise InputError(f"{where}.high", self.high, f"above the lower bound {self.low:g}")
+            raise InputError(f"{where}.high", self.high, above(self.low, name="the lower bound"))
 
     @property
     def gear(self) -> str:
@@ -127,7 +129,7 @@ def check_variables(pair: ParallelAxes, variables: Sequence[DesignVariable]) -> 
         try:
             modified(pair, at_end)
         except InputError as error:
-            raise InputError(f"variables ({end})", at_end, f"bounds with {error}") from None
+            raise InputError(f"variables ({end})", at_end, Text.of("bounds with ", error)) from None
 
 
 def lacks_length(pair: ParallelAxes, relief: str) -> bool:

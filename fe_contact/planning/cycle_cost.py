@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict, dataclass
 
+from bounds import at_most
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.plan import Plan
@@ -86,11 +87,11 @@ def refuse_long_cycle(cost: CycleCost) -> None:
     if cost.rows <= MOST_ROWS:
         return
     longest = MOST_ROWS // (cost.positions * cost.alignments)
-    bound = f"at most {longest} with {cost.positions} positions a pitch and {cost.alignments} alignments"
+    note = f" with {cost.positions} positions a pitch and {cost.alignments} alignments"
     gigabytes = cost.rows * _BYTES_PER_ROW / 1e9
     advice = (
         f"The table would have {cost.rows} rows, about {cost.cpu_seconds:.2g} CPU s and {gigabytes:.2g} GB. "
         "Ask for fewer pitches (the teeth of one gear, say), fewer positions or alignments, or give one gear "
         "only its deviations."
     )
-    raise InputError("pitches", cost.pitches, bound, advice)
+    raise InputError("pitches", cost.pitches, at_most(longest, note=note), advice)

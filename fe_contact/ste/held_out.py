@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import between
 from fe_contact.errors import InputError
 from fe_contact.ste.database import SteDatabase
 from fe_contact.types import FloatArray
@@ -69,7 +70,7 @@ def _require_inside(database: SteDatabase, other: SteDatabase) -> None:
     for name in ("force", "misalignment", "center_distance_change"):
         inner, outer = getattr(other, name), getattr(database, name)
         if inner[0] < outer[0] or inner[-1] > outer[-1]:
-            raise InputError(f"other.{name}", inner.tolist(), f"from {outer[0]:g} to {outer[-1]:g}")
+            raise InputError(f"other.{name}", inner.tolist(), between(float(outer[0]), float(outer[-1])))
     if other.position.size < 2:
         raise InputError("other.position", other.position.tolist(), "two or more positions")
 

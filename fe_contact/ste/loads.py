@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bounds import at_most
 from fe_contact.checks import positive, within
 from fe_contact.errors import InputError
 from fe_contact.ste.fields import SteFields
@@ -69,9 +70,8 @@ def _normal_force(database: SteFields, torque: float | None, force: float | None
     if known.size:
         return float(database.force[known[0]])
     if asked > stored[-1]:
-        raise InputError(
-            name, asked, f"at most {stored[-1]:g} {unit}, the highest load stored", "Add it to the case."
-        )
+        bound = at_most(float(stored[-1]), unit, note=", the highest load stored")
+        raise InputError(name, asked, bound, "Add it to the case.")
     return asked if torque is None else database.facts.normal_force(asked)
 
 

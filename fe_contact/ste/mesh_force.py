@@ -15,6 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from bounds import at_least
 from fe_contact.errors import InputError
 from fe_contact.ste.force_cubic import ForceCubic
 from fe_contact.ste.force_table import ForceTable
@@ -142,7 +143,7 @@ class MeshForce:
             center_distance_change=center_distance_change,
         )
         if np.any(f < 0.0):
-            raise InputError("force", float(f.min()), "0 N or more", "Teeth do not pull.")
+            raise InputError("force", float(f.min()), at_least(0.0, "N"), "Teeth do not pull.")
         f = f * to_transverse
         at = self._stencils(x, m, c)
         lower = np.searchsorted(self.table.level, f, side="right") - 1

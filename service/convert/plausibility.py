@@ -106,8 +106,7 @@ def unique(warnings: Iterable[Json]) -> list[Json]:
 def _phrased(content: Json, name: Callable[[str], str]) -> Json:
     """Return one finding."""
     finding, field = finding_of(content), name(content["field"])
-    bare = re.sub(r"\[\d+\]$", "", field)
-    unit = Unit(unit_name(bare) or finding.unit, factor(bare))
+    unit = Unit(unit_name(field) or finding.unit, factor(field))
     scaled = {
         key: None if content[key] is None else float(f"{content[key] / unit.factor:.12g}")
         for key in ("value", "low", "high")

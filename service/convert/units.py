@@ -1,8 +1,10 @@
-"""Units at the boundary: what one of each is in SI."""
+"""Units at the boundary: what one of each is in SI, by the ending of the fields' names."""
 
 from __future__ import annotations
 
 import math
+
+from bounds import Unit
 
 MM = 1e-3
 UM = 1e-6
@@ -14,41 +16,44 @@ RPM = 2.0 * math.pi / 60.0
 N_PER_UM = 1e6
 N_PER_MM3 = 1e9
 
-BY_SUFFIX: dict[str, float] = {
-    "_mm": MM,
-    "_n_per_um": N_PER_UM,
-    "_n_per_mm3": N_PER_MM3,
-    "_um": UM,
-    "_mrad": MRAD,
-    "_nm": NM,
-    "_gpa": GPA,
-    "_deg": DEGREE,
-    "_rpm": RPM,
+BY_SUFFIX: dict[str, Unit] = {
+    "_mm": Unit("mm", MM, "m"),
+    "_n_per_um": Unit("N/um", N_PER_UM, "N/m"),
+    "_n_per_mm3": Unit("N/mm^3", N_PER_MM3, "N/m^3"),
+    "_um": Unit("um", UM, "m"),
+    "_mrad": Unit("mrad", MRAD, "rad"),
+    "_nm": Unit("nm", NM, "m"),
+    "_gpa": Unit("GPa", GPA, "Pa"),
+    "_deg": Unit("deg", DEGREE, "rad"),
+    "_rpm": Unit("rpm", RPM, "rad/s"),
 }
 
+_IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
 
-NAMES: dict[str, str] = {
-    "_mm": "mm",
-    "_n_per_um": "N/um",
-    "_n_per_mm3": "N/mm^3",
-    "_um": "um",
-    "_mrad": "mrad",
-    "_nm": "nm",
-    "_gpa": "GPa",
-    "_deg": "deg",
-    "_rpm": "rpm",
-}
-"""How the units of `BY_SUFFIX` are written."""
+
+def unit_of(name: str) -> Unit | None:
+    """Return the unit of the boundary field `name`, or of an entry of it; None where it is SI's."""
+    own = name.rpartition(".")[2].partition("[")[0]
+    return next((unit for suffix, unit in BY_SUFFIX.items() if own.endswith(suffix)), None)
 
 
 def unit_name(name: str) -> str | None:
     """Return how the unit of the boundary field `name` is written; None where it is SI's or none."""
-    return next((unit for suffix, unit in NAMES.items() if name.endswith(suffix)), None)
+    unit = unit_of(name)
+    return unit.name if unit else None
 
 
 def factor(name: str) -> float:
     """Return the SI value of one unit of the boundary field `name`, 1 for a name without such a unit."""
-    return next((value for suffix, value in BY_SUFFIX.items() if name.endswith(suffix)), 1.0)
+    unit = unit_of(name)
+    return unit.factor if unit else 1.0
+
+
+def unit_in_words(value: float, si: str) -> Unit:
+    """Return the unit in a sentence of a value in the unit `si`: mm for lengths, um for small ones."""
+    if si == "m":
+        return BY_SUFFIX["_um" if 0.0 < abs(value) < 0.1 * MM else "_mm"]
+    return next((BY_SUFFIX[name] for name in _IN_WORDS if BY_SUFFIX[name].si == si), Unit(si, 1.0, si))
 
 
 def boundary_text(value: float) -> str:

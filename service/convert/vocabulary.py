@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-
 # Fields of a case, by the library's name (see fe_contact.geometry and fe_contact.planning).
 _CASE = {
     "normal_module": "pair.normal_module_mm",
@@ -61,12 +59,14 @@ _LAST = {
     "end_relief_length": "end_relief_length_mm",
     "youngs_modulus": "youngs_modulus_gpa",
     "diameter": "diameter_mm",
+    "reference_diameter": "reference_diameter_mm",
     "bearing_stiffness": "bearing_stiffness_n_per_um",
     # scene
     "duration": "duration_s",
     "length": "length_mm",
     "position": "position_mm",
     "outer_diameter": "diameter_mm",
+    "base_radius": "base_radius_mm",
     "radial_stiffness": "radial_stiffness_n_per_m",
     "axial_stiffness": "axial_stiffness_n_per_m",
     "radial_damping": "radial_damping_n_s_per_m",
@@ -141,5 +141,5 @@ def scene_field(name: str) -> str:
 
 def _split_index(part: str) -> tuple[str, str]:
     """Split ``torques[2]`` into the name and the index."""
-    match = re.fullmatch(r"([^\[]*)(\[.*\])?", part)
-    return (match.group(1), match.group(2) or "") if match else (part, "")
+    name, bracket, index = part.partition("[")
+    return name, bracket + index

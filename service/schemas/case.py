@@ -14,7 +14,7 @@ from service.schemas.wheel import WheelInput
 
 Load = Annotated[float, Field(gt=0.0, le=1e9)]
 Misalignment = Annotated[float, Field(ge=-10_000.0, le=10_000.0)]
-CenterDistanceChange = Annotated[float, Field(ge=-100.0, le=100.0)]
+CenterDistanceChange = Annotated[float, Field(ge=-10.0, le=10.0)]
 Loads = Annotated[tuple[Load, ...], Strict(False), Field(min_length=1, max_length=256)]
 Misalignments = Annotated[tuple[Misalignment, ...], Strict(False), Field(min_length=1, max_length=64)]
 CenterDistanceChanges = Annotated[
@@ -36,7 +36,7 @@ class PairInput(BoundaryModel):
 
     normal_module_mm: float = Field(gt=0.0, le=100.0, description="Normal module in mm", examples=[4.0])
     normal_pressure_angle_deg: float = Field(
-        default=20.0, ge=5.0, le=35.0, description="Normal pressure angle in degrees", examples=[20.0]
+        default=20.0, ge=10.0, le=35.0, description="Normal pressure angle in degrees", examples=[20.0]
     )
     helix_angle_deg: float = Field(
         default=0.0,
@@ -104,7 +104,7 @@ class AccuracyInput(BoundaryModel):
     """What the planner is asked for: an accuracy, a time or a level; nothing given means tolerance 0.01."""
 
     tolerance: float | None = Field(
-        default=None, gt=0.0, le=0.5, description="Relative, on mean and peak-to-peak STE", examples=[0.01]
+        default=None, ge=1e-4, le=0.5, description="Relative, on mean and peak-to-peak STE", examples=[0.01]
     )
     tolerance_floor_nm: float = Field(
         default=20.0,

@@ -6,7 +6,7 @@ import difflib
 import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import islice
-from typing import Any, Union, get_args, get_origin
+from typing import Annotated, Any, Union, get_args, get_origin
 
 import annotated_types
 from pydantic import BaseModel, ValidationError
@@ -98,7 +98,7 @@ def _model_in(annotation: object) -> type[BaseModel] | None:
     """Return the model inside an annotation such as `Model | None` or `tuple[Model, ...]`."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
-    if get_origin(annotation) in (Union, types.UnionType, tuple, list, dict):
+    if get_origin(annotation) in (Union, types.UnionType, tuple, list, dict, Annotated):
         found = (_model_in(argument) for argument in get_args(annotation))
         return next((inner for inner in found if inner is not None), None)
     return None

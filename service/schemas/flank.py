@@ -31,8 +31,8 @@ class FlankPoint(BoundaryModel):
     )
     center_distance_change_mm: float | None = Field(
         default=None,
-        ge=-100.0,
-        le=100.0,
+        ge=-10.0,
+        le=10.0,
         description="Change of the centre distance in mm; left out: the case's value nearest to 0",
         examples=[0.0],
     )

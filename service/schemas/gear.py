@@ -53,18 +53,18 @@ class ToothingInput(BoundaryModel):
     teeth: int = Field(ge=5, le=1000, description="Number of teeth", examples=[20])
     face_width_mm: float = Field(ge=1e-3, le=5000.0, description="Face width in mm", examples=[25.0])
     profile_shift_coefficient: float = Field(
-        default=0.0, ge=-5.0, le=5.0, description="Profile shift in normal modules", examples=[0.2]
+        default=0.0, ge=-3.0, le=3.0, description="Profile shift in normal modules", examples=[0.2]
     )
     addendum_coefficient: float = Field(
         default=1.0,
-        gt=0.0,
+        ge=0.1,
         le=3.0,
         description="Addendum of the basic rack in normal modules",
         examples=[1.0],
     )
     dedendum_coefficient: float = Field(
         default=1.25,
-        gt=0.0,
+        ge=0.1,
         le=3.0,
         description="Dedendum of the basic rack in normal modules",
         examples=[1.25],

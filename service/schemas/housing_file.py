@@ -43,6 +43,8 @@ def _written_out(given: object, folder: Path, index: int) -> object:
     try:
         stiffness, damping = read_housing_matrices(folder / name)
     except InputError as error:
-        raise BadInput.of(field, name, error.bound, error.suggestion or "See docs/case-file.md.") from None
+        raise BadInput.of(
+            field, name, str(error.bound), str(error.suggestion) or "See docs/case-file.md."
+        ) from None
     found = {key: value for key, value in given.items() if key != FIELD} | {ROWS: stiffness.tolist()}
     return found if damping is None else found | {"damping_matrix": damping.tolist()}

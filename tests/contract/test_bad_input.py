@@ -66,7 +66,7 @@ def test_python(bad: BadInput) -> None:
     with pytest.raises(InputError) as caught:
         bad.python()
     assert caught.value.field.endswith(bad.python_field)
-    assert caught.value.bound
+    assert str(caught.value.bound)
     assert children() == before
 
 

@@ -61,7 +61,7 @@ def test_python(bad: BadScene) -> None:
     with pytest.raises(InputError) as caught:
         bad.python()
     assert caught.value.field == bad.python_field
-    assert caught.value.bound
+    assert str(caught.value.bound)
 
 
 @EVERY

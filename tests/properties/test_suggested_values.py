@@ -8,10 +8,7 @@ from collections import Counter
 from typing import Any
 
 import numpy as np
-import pytest
 
-from fe_contact.checks import rounded_down, rounded_up, within
-from fe_contact.errors import InputError
 from service.convert.case import gear_pair
 from service.problems import BadInput, Fault
 from service.schemas import Case, validated
@@ -125,27 +122,3 @@ def random_gear(random: np.random.Generator, module: float) -> Table:
             "web_offset_mm": round(gear["face_width_mm"] * random.uniform(-0.4, 0.4), 3),
         }
     return gear
-
-
-@pytest.mark.parametrize("limit", [0.087361258749, 1.0 / 3.0, -2.0 / 3.0, 123456.78, 2.116665e-3, 0.0])
-def test_limits_are_rounded_to_the_side_that_is_accepted(limit: float) -> None:
-    low, high = float(rounded_up(limit)), float(rounded_down(limit))
-    assert low >= limit >= high
-    assert low - high <= 1.1e-6 * abs(limit)
-
-
-def test_a_limit_with_few_digits_is_printed_with_few() -> None:
-    assert (rounded_up(0.07), rounded_down(0.07), rounded_up(0.1 + 0.2), rounded_down(60.0)) == (
-        "0.07",
-        "0.07",
-        "0.3",
-        "60",
-    )
-
-
-def test_both_ends_of_a_printed_range_are_accepted() -> None:
-    low, high = 1.0 / 3.0, 4.2333e-3 * 0.5 * 1e3
-    with pytest.raises(InputError) as caught:
-        within("thickness_allowance", 5.0, low, high)
-    for end in re.findall(NUMBER, caught.value.bound):
-        within("thickness_allowance", float(end), low, high)

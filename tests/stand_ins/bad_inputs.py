@@ -367,7 +367,7 @@ BAD_INPUTS: tuple[BadInput, ...] = (
     BadInput(
         "lead crowning in a plane model",
         lambda: analyze(crowned(), torques=[100.0], model="plane_strain"),
-        "pinion.modification",
+        "pinion.modification.helix_crowning",
         {"pair.pinion.helix_crowning_um": 5.0, "accuracy.model": "plane_strain"},
         "pair.pinion.helix_crowning_um",
     ),

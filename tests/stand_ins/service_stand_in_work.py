@@ -10,6 +10,7 @@ import subprocess
 import time
 from pathlib import Path
 
+from bounds import below
 from fe_contact.errors import InputError, MeshError
 from service.jobs.order import Product, Progress, WorkOrder
 
@@ -91,7 +92,8 @@ def _misbehave(order: WorkOrder, mode: str) -> None:
     if mode == "mesh":
         raise MeshError("element 7 has a negative Jacobian")
     if mode == "input":
-        raise InputError("pinion.bore_diameter", 0.095, "below the root diameter 0.07 m", "Lower the bore.")
+        bound = below(0.07, "m", "the root diameter")
+        raise InputError("pinion.bore_diameter", 0.095, bound, "Lower the bore.")
     if mode == "defect":
         raise RuntimeError(SECRET)
 

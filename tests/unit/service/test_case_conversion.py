@@ -12,6 +12,19 @@ from typing import Any
 import pytest
 from bad_inputs import GOOD
 
+from bounds import (
+    Bound,
+    Quantity,
+    SiNote,
+    Text,
+    Words,
+    above,
+    at_least,
+    at_most,
+    below,
+    between,
+    exactly,
+)
 from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
 from fe_contact import AllowedError, FlankModification
@@ -26,6 +39,9 @@ from service.schemas import Case, read_model, validated
 from service.schemas.request_examples import CASE
 
 ROOT = Path(__file__).parents[3]
+
+
+TOO_HIGH = InputError("pinion.modification.tip_relief", 2e-3, at_most(1e-3))
 
 
 def case(**pinion: Any) -> Case:
@@ -262,19 +278,24 @@ def test_the_example_is_the_papers_pair() -> None:
     ("error", "said"),
     [
         (
-            InputError("pinion.face_width", -0.025, "above 0", "In m: 25 mm is 0.025."),
+            InputError("pinion.face_width", -0.025, above(0.0), SiNote("In m: 25 mm is 0.025.")),
             "pair.pinion.face_width_mm = -25.0: must be above 0",
         ),
         (InputError("wheel.helix_angle", 0.5236, "0 rad"), "pair.helix_angle_deg = "),
         (
-            InputError("pinion.modification.tip_relief_length", 0.05, "from 0 to 0.00636"),
+            InputError("pinion.modification.tip_relief_length", 0.05, between(0.0, 0.00636)),
             "pair.pinion.tip_relief_length_mm = 50.0: must be from 0 to 6.36",
         ),
         (
-            InputError("pinion.material.youngs_modulus", 0.0, "above 0", "Steel is 2.1e11 Pa."),
+            InputError(
+                "pinion.material.youngs_modulus",
+                0.0,
+                above(0.0),
+                Text.of("Steel is ", Quantity(2.1e11, "Pa"), "."),
+            ),
             "pair.pinion.material.youngs_modulus_gpa = 0.0: must be above 0. Steel is 210 GPa.",
         ),
-        (InputError("torques[2]", 1.0, "above 2"), "load.torque_n_m[2] = 1.0: must be above 2"),
+        (InputError("torques[2]", 1.0, above(2.0)), "load.torque_n_m[2] = 1.0: must be above 2"),
         (InputError("misalignments[1]", 3e-5, "0"), "errors.misalignment_um[1] = 30.0: must be 0"),
         (
             InputError("misalignments", [0.0, 3e-5], "[0.0] for a plane model"),
@@ -282,14 +303,27 @@ def test_the_example_is_the_papers_pair() -> None:
         ),
         (InputError("effects.magic", "on", "known"), "effects.magic = 'on': must be known"),
         (
-            DynamicsInputError("bushings[0].radial_stiffness", -1.0, "0 or above"),
-            "bushings[0].radial_stiffness_n_per_m = -1.0: must be 0 or above",
+            DynamicsInputError("bushings[0].radial_stiffness", -1.0, at_least(0.0)),
+            "bushings[0].radial_stiffness_n_per_m = -1.0: must be at least 0",
         ),
         (
-            DynamicsInputError("gears[1].bore_diameter", 0.09, "below the outer diameter 0.08 m"),
+            DynamicsInputError("gears[1].bore_diameter", 0.09, below(0.08, "m", "the outer diameter")),
             "gears[1].bore_diameter_mm = 90.0: must be below the outer diameter 80 mm",
         ),
-        (DynamicsInputError("duration", -1.0, "0 or above"), "run.duration_s = -1.0"),
+        (DynamicsInputError("duration", -1.0, at_least(0.0)), "run.duration_s = -1.0"),
+        (
+            DynamicsInputError("planets[0].angles[1]", math.pi, below(math.pi / 2.0, "rad")),
+            "planets[0].angles_deg[1] = 180.0: must be below 90 deg",
+        ),
+        (
+            InputError("variables (high)", {"pinion.tip_relief": 2e-3}, Text.of("bounds with ", TOO_HIGH)),
+            "variables (high) = {'pinion.tip_relief_um': 2000.0}: must be bounds with "
+            "pair.pinion.tip_relief_um = 2000.0: must be at most 1000",
+        ),
+        (
+            DynamicsInputError("meshes[0].driven", Quantity(math.pi / 6.0, "rad"), "of the other hand"),
+            "meshes[0].driven = '30 deg': must be of the other hand",
+        ),
     ],
 )
 def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: str) -> None:
@@ -301,24 +335,27 @@ def test_errors_come_back_in_the_users_words_and_units(error: Exception, said: s
 @pytest.mark.parametrize(
     ("bound", "shown"),
     [
-        ("from 0.01 to 0.02", "from 10 to 20"),
-        ("above 0", "above 0"),
-        ("at least 0.01 and below 0.02", "at least 10 and below 20"),
-        ("0.001 or above", "1 or above"),
-        ("below the root diameter 0.07 m", "below the root diameter 70 mm"),
-        ("larger: the tips cut 1.2e-05 m deep", "larger: the tips cut 12 um deep"),
+        (between(0.01, 0.02), "from 10 to 20"),
+        (above(0.0), "above 0"),
+        (Bound(0.01, 0.02, high_open=True), "from 10 to below 20"),
+        (Bound(0.01, 0.02, low_open=True, high_open=True), "above 10 and below 20"),
+        (at_least(0.001), "at least 1"),
+        (exactly(0.0305), "30.5"),
+        (below(0.07, "m", "the root diameter"), "below the root diameter 70 mm"),
+        (Text.of("larger: the tips cut ", Quantity(1.2e-5, "m"), " deep"), "larger: the tips cut 12 um deep"),
+        (Text.of("at a place ", between(0.0, 0.02, "m")), "at a place from 0 mm to 20 mm"),
         ("smaller: the contact ratio is 0.93, below 1", "smaller: the contact ratio is 0.93, below 1"),
         ("a finite number", "a finite number"),
     ],
 )
-def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: str, shown: str) -> None:
+def test_numbers_of_a_bound_are_converted_by_what_they_are(bound: Words, shown: str) -> None:
     found = translated(InputError("center_distance", 0.08, bound))
     assert isinstance(found, BadInput)
     assert found.faults[0].bound == shown
 
 
 def test_suggestions_never_explain_si_to_someone_who_does_not_use_it() -> None:
-    found = translated(InputError("pinion.face_width", -0.025, "above 0", "In m: 25 mm is 0.025."))
+    found = translated(InputError("pinion.face_width", -0.025, above(0.0), SiNote("In m: 25 mm is 0.025.")))
     assert found is not None and "In m" not in str(found) and "Face width in mm" in str(found)
 
 

@@ -34,7 +34,7 @@ NONSENSE: list[tuple[str, dict[str, Any], dict[str, Any], str, str | None, str]]
         None,
         "",
     ),
-    ("shafts without mass", {"weightless": True}, {}, "inertia of output.rotation", None, ""),
+    ("shafts without mass", {"weightless": True}, {}, "shafts[1].inertia.polar_kg_m2", None, ""),
     (
         "inertia without mass",
         {"weightless": True, "gears.1.inertia.polar_kg_m2": 1e-3},

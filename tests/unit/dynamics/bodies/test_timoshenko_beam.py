@@ -199,7 +199,7 @@ def test_a_bearing_at_the_end_of_added_lengths_is_at_the_end():
     ends = tuple(Grip(place, True, True, True, True) for place in (0.0, 5.4))
     elastic = elastic_shaft(shaft.sections, (), ends, 100.0, 0.0)
     np.testing.assert_array_equal(elastic.motion(5.4), elastic.motion(float(elastic.position[-1])))
-    with pytest.raises(InputError, match=r"on the beam, from 0 to 5\.4 m"):
+    with pytest.raises(InputError, match=r"on the beam, from 0 m to 5\.4 m"):
         timoshenko_beam(pieces, stations=[5.400001])
 
 

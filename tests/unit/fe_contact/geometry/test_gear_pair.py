@@ -172,7 +172,7 @@ def test_refusal_of_jamming_teeth_tells_what_would_fit(make_gear: Callable[..., 
     gear = make_gear(teeth=25, profile_shift_coefficient=0.2)
     with pytest.raises(InfeasibleGeometry) as caught:
         GearPair(gear, gear, 0.1008)
-    words = caught.value.suggestion.rstrip(".").replace(",", "").split()
+    words = str(caught.value.suggestion).rstrip(".").replace(",", "").split()
     distance, shift_sum = float(words[words.index("m") - 1]), float(words[words.index("instead") - 1])
     assert 0.0 <= GearPair(gear, gear, distance).transverse_base_backlash < 1e-7  # the last of seven digits
     fitting = make_gear(teeth=25, profile_shift_coefficient=0.5 * shift_sum)
@@ -192,7 +192,7 @@ def test_tip_that_just_meets_the_form_circle_is_accepted(make_gear: Callable[...
     pinion = make_gear(teeth=10)
     with pytest.raises(InfeasibleGeometry) as caught:
         GearPair(pinion, make_gear(teeth=60))
-    largest = float(caught.value.bound.split()[2])
+    largest = float(str(caught.value.bound).split()[2])
     pair = GearPair(pinion, make_gear(teeth=60, tip_diameter=largest - 1e-8))
     assert pair.path_of_contact.start == pytest.approx(pinion.form_roll_length, abs=1e-6)
 

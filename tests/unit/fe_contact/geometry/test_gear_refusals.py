@@ -43,7 +43,7 @@ def test_infeasible_gear_is_refused_by_name(
         make_gear(**refused)
     assert caught.value.name == name
     assert caught.value.field == field
-    assert caught.value.suggestion
+    assert str(caught.value.suggestion)
     make_gear(**feasible)
 
 

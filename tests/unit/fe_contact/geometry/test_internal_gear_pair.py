@@ -210,7 +210,7 @@ def test_pairs_that_cannot_run_are_refused_by_name(
 def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:
     with pytest.raises(InfeasibleGeometry) as caught:
         InternalGearPair(gear(), ring(), 0.1002)
-    distance, total = (float(number) for number in re.findall(r"= ([\d.e-]+)", caught.value.suggestion))
+    distance, total = (float(number) for number in re.findall(r"= ([\d.e-]+)", str(caught.value.suggestion)))
     assert (
         0.0 <= InternalGearPair(gear(), ring(), distance).transverse_base_backlash < 1e-7
     )  # a seventh digit
@@ -223,12 +223,12 @@ def test_refusal_of_jamming_teeth_tells_what_would_fit() -> None:
 def test_refusal_of_a_tip_tells_the_tip_diameter_that_fits() -> None:
     with pytest.raises(InfeasibleGeometry) as caught:
         InternalGearPair(gear(), ring(addendum_coefficient=1.0))
-    smallest = float(caught.value.bound.split()[2])
+    smallest = float(str(caught.value.bound).split()[2])
     pair = InternalGearPair(gear(), ring(tip_diameter=smallest + 1e-8))
     assert pair.path_of_contact.start == pytest.approx(pair.pinion.form_roll_length, abs=1e-7)
     with pytest.raises(InfeasibleGeometry) as caught:
         InternalGearPair(gear(addendum_coefficient=1.24), ring())
-    largest = float(caught.value.bound.split()[2])
+    largest = float(str(caught.value.bound).split()[2])
     pair = InternalGearPair(gear(tip_diameter=largest - 1e-8), ring())
     assert pair.roll_lengths(pair.position(pair.path_of_contact.end))[1] == pytest.approx(
         pair.wheel.form_roll_length, abs=1e-7

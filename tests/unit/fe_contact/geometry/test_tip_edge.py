@@ -142,7 +142,7 @@ def test_the_largest_edge_that_is_named_is_accepted(make_gear: Callable[..., Gea
         with pytest.raises(InputError) as caught:
             gear_of(kind, make_gear, **{field: 20e-3})
         assert caught.value.field == f"modification.{field}"
-        largest = float(caught.value.bound.rpartition(" ")[2])
+        largest = float(str(caught.value.bound).rpartition(" ")[2])
         gear = gear_of(kind, make_gear, **{field: largest})
         assert abs(gear.tip_form_radius - gear.form_radius) > 0.0
         with pytest.raises(InputError):
@@ -156,7 +156,7 @@ def test_a_chamfer_that_turns_back_from_the_tip_is_refused_by_its_angle(
     with pytest.raises(InputError) as caught:
         gear_of(kind, make_gear, tip_chamfer=0.1e-3, tip_chamfer_angle=math.radians(80.0))
     assert caught.value.field == "modification.tip_chamfer_angle"
-    largest = float(caught.value.bound.rpartition(" ")[2])
+    largest = float(str(caught.value.bound).rpartition(" ")[2])
     assert math.radians(50.0) < largest < math.radians(80.0)
     gear_of(kind, make_gear, tip_chamfer=1e-6, tip_chamfer_angle=largest)
 

@@ -269,7 +269,10 @@ def test_the_map_runs_over_all_torques(pair: GearPair, compliances: Path) -> Non
         ({"variables": [FREE[0]]}, "variables.pinion.tip_relief"),  # no length
         ({"variables": [*FREE, FREE[0]]}, "variables"),
         ({"variables": [DesignVariable(LENGTH, 1e-3, 0.1)]}, "variables (high)"),
-        ({"variables": [DesignVariable("pinion.helix_crowning", 0.0, 1e-5)]}, "pinion.modification"),
+        (
+            {"variables": [DesignVariable("pinion.helix_crowning", 0.0, 1e-5)]},
+            "pinion.modification.helix_crowning",
+        ),
         ({"effects": {"profile_modification": "off"}}, "effects.profile_modification"),
         ({"scatter": Scatter(1e-5)}, "misalignments"),
         ({"objective": WeightedMean((1.0, 2.0))}, "objective.weights"),

@@ -167,7 +167,7 @@ class TestLoadShare:
     [
         ({}, "exactly one of the two"),
         ({"torque": 10.0, "force": 10.0}, "exactly one of the two"),
-        ({"torque": 1000.0}, "torque = 1000.0: must be at most 399.936 N m"),
+        ({"torque": 1000.0}, "torque = 1000.0: must be at most 399.9363 N m"),
         ({"force": 2e4}, "force = 20000.0: must be at most 10640 N"),
         ({"force": 0.0}, "force = 0.0: must be above 0"),
         ({"torque": -5.0}, "torque = -5.0: must be above 0"),

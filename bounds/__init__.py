@@ -1,0 +1,36 @@
+"""What a field accepts, as data: bounds, quantities in words, checks of single values, and their error.
+
+Both libraries raise their input errors through this package, which knows neither of them. It depends on numpy
+alone.
+"""
+
+from __future__ import annotations
+
+from bounds.bound import Bound, Choice, above, at_least, at_most, below, between, exactly, integers, one_of
+from bounds.checks import LIMIT_SLACK, Checks
+from bounds.reader import Reader
+from bounds.refused import RefusedValue
+from bounds.text import Quantity, SiNote, Text, Words
+from bounds.unit import Unit
+
+__all__ = [
+    "LIMIT_SLACK",
+    "Bound",
+    "Checks",
+    "Choice",
+    "Quantity",
+    "Reader",
+    "RefusedValue",
+    "SiNote",
+    "Text",
+    "Unit",
+    "Words",
+    "above",
+    "at_least",
+    "at_most",
+    "below",
+    "between",
+    "exactly",
+    "integers",
+    "one_of",
+]

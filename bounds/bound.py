@@ -1,0 +1,121 @@
+"""Bounds as data: the ends of a range in SI, or a choice of names."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+from bounds.reader import Reader
+from bounds.text import NOTHING, Text, Words
+
+
+@dataclass(frozen=True)
+class Bound:
+    """The range of values that a field accepts.
+
+    Its ends are written with seven digits, rounded to the side that is accepted, in the unit of the field;
+    where they are one, that value is written with twelve.
+
+    Attributes
+    ----------
+    low, high : float or None
+        Ends in SI; None is no end.
+    low_open, high_open : bool
+        Whether the end itself is refused.
+    integer : bool
+        Whether only integers are accepted.
+    unit : str
+        Symbol of the field's SI unit if it is to be written, e.g. ``"m"``.
+    low_name, high_name : str
+        What an end is, written before it, e.g. ``"the bore diameter"``.
+    note : Text
+        What follows, e.g. ``", where the fillet ends"``.
+    """
+
+    low: float | None = None
+    high: float | None = None
+    low_open: bool = False
+    high_open: bool = False
+    integer: bool = False
+    unit: str = ""
+    low_name: str = ""
+    high_name: str = ""
+    note: Text = NOTHING
+
+    def worded(self, reader: Reader) -> str:
+        """Return the bound, to be read after "must be"."""
+        unit = reader.own_unit(self.unit)
+        if self.low is not None and self.low == self.high:
+            return f"{unit.exact(self.low)}{self.note.worded(reader)}"
+        low = "" if self.low is None else f"{self.low_name} {unit.low(self.low)}".lstrip()
+        high = "" if self.high is None else f"{self.high_name} {unit.high(self.high)}".lstrip()
+        kind = "an integer " if self.integer else ""
+        return f"{kind}{self._range(low, high)}{self.note.worded(reader)}"
+
+    def _range(self, low: str, high: str) -> str:
+        """Say between which ends."""
+        if low and high and not self.low_open:
+            return f"from {low} to {'below ' if self.high_open else ''}{high}"
+        sides = (
+            f"{'above' if self.low_open else 'at least'} {low}" if low else "",
+            f"{'below' if self.high_open else 'at most'} {high}" if high else "",
+        )
+        return " and ".join(side for side in sides if side)
+
+    def __str__(self) -> str:
+        return self.worded(Reader())
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A choice of names."""
+
+    names: tuple[str, ...]
+
+    def worded(self, reader: Reader) -> str:
+        """Return the names in quotes."""
+        names = ", ".join(f'"{name}"' for name in self.names)
+        return f"one of {names}" if names else "absent"
+
+    def __str__(self) -> str:
+        return self.worded(Reader())
+
+
+def above(low: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
+    """Return the bound above `low`, which is the quantity called `name`."""
+    return Bound(low=low, low_open=True, unit=unit, low_name=name, note=Text.of(note))
+
+
+def at_least(low: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
+    """Return the bound from `low`, which is the quantity called `name`."""
+    return Bound(low=low, unit=unit, low_name=name, note=Text.of(note))
+
+
+def below(high: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
+    """Return the bound below `high`, which is the quantity called `name`."""
+    return Bound(high=high, high_open=True, unit=unit, high_name=name, note=Text.of(note))
+
+
+def at_most(high: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
+    """Return the bound up to `high`, which is the quantity called `name`."""
+    return Bound(high=high, unit=unit, high_name=name, note=Text.of(note))
+
+
+def between(low: float, high: float, unit: str = "", high_name: str = "", note: Words = "") -> Bound:
+    """Return the bound from `low` to `high`, both accepted; `high` is the quantity called `high_name`."""
+    return Bound(low=low, high=high, unit=unit, high_name=high_name, note=Text.of(note))
+
+
+def exactly(value: float, note: Words = "") -> Bound:
+    """Return the bound that only `value` meets."""
+    return Bound(low=value, high=value, note=Text.of(note))
+
+
+def integers(low: int, high: int) -> Bound:
+    """Return the integers from `low` to `high`."""
+    return Bound(low=low, high=high, integer=True)
+
+
+def one_of(names: Collection[str]) -> Choice:
+    """Return the choice of `names`."""
+    return Choice(tuple(names))

@@ -1,0 +1,89 @@
+"""Checks of single values, each raising one clear error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bounds.bound import above, at_least, between, integers, one_of
+from bounds.refused import RefusedValue
+from bounds.text import Words
+
+LIMIT_SLACK = 1e-12
+"""Relative rounding of a computed limit, which its printed form does not show."""
+
+FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Checks:
+    """The checks of a library.
+
+    Every one takes the name of the field, the value in SI and what to try if it is refused.
+
+    Attributes
+    ----------
+    refused : type
+        The library's error of a value that is refused.
+    """
+
+    refused: type[RefusedValue]
+
+    def finite(self, field: str, value: float, suggestion: Words = "") -> float:
+        """Return `value` as a float if it is a finite number."""
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, int | float | np.number)
+            or not math.isfinite(value)
+        ):
+            raise self.refused(field, value, "a finite number", suggestion)
+        return float(value)
+
+    def within(self, field: str, value: float, low: float, high: float, suggestion: Words = "") -> float:
+        """Return `value` if low <= value <= high, but for rounding."""
+        number = self.finite(field, value, suggestion)
+        if not low - LIMIT_SLACK * abs(low) <= number <= high + LIMIT_SLACK * abs(high):
+            raise self.refused(field, value, between(low, high), suggestion)
+        return number
+
+    def positive(self, field: str, value: float, suggestion: Words = "") -> float:
+        """Return `value` if it is finite and above zero."""
+        number = self.finite(field, value, suggestion)
+        if number <= 0.0:
+            raise self.refused(field, value, above(0.0), suggestion)
+        return number
+
+    def not_negative(self, field: str, value: float, suggestion: Words = "") -> float:
+        """Return `value` if it is finite and zero or above."""
+        number = self.finite(field, value, suggestion)
+        if number < 0.0:
+            raise self.refused(field, value, at_least(0.0), suggestion)
+        return number
+
+    def integer(self, field: str, value: int, low: int, high: int, suggestion: Words = "") -> int:
+        """Return `value` if it is an integer from `low` to `high`."""
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or not low <= value <= high:
+            raise self.refused(field, value, integers(low, high), suggestion)
+        return int(value)
+
+    def one_of(self, field: str, value: str, names: Collection[str], suggestion: Words = "") -> str:
+        """Return `value` if it is one of `names`."""
+        if value not in names:
+            raise self.refused(field, value, one_of(names), suggestion)
+        return value
+
+    def increasing(
+        self, field: str, values: Sequence[float] | FloatArray, suggestion: Words = ""
+    ) -> FloatArray:
+        """Return `values` as a 1-D array if it is non-empty, finite and strictly increasing."""
+        array = np.atleast_1d(np.asarray(values, dtype=float))
+        if array.ndim != 1 or array.size == 0 or not np.all(np.isfinite(array)):
+            raise self.refused(field, values, "a non-empty list of finite numbers", suggestion)
+        if np.any(np.diff(array) <= 0.0):
+            advice = suggestion or "Sort the list and drop repeats."
+            raise self.refused(field, values, "strictly increasing", advice)
+        return array

@@ -1,0 +1,80 @@
+"""Text of messages, whose numbers stay numbers until somebody reads it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from bounds.reader import Reader, Worded
+from bounds.unit import DIGITS
+
+Words = str | Worded
+"""Words without numbers that carry a unit, or anything that can be put into words."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number inside a message.
+
+    Attributes
+    ----------
+    value : float
+        In SI.
+    unit : str
+        Symbol of its SI unit, e.g. ``"m"``, ``"N/m^3"``; empty for a pure number.
+    digits : int
+        Significant digits to write.
+    side : "", "low" or "high"
+        "low" and "high": a limit, rounded to the side that is accepted when it is typed.
+    """
+
+    value: float
+    unit: str = ""
+    digits: int = DIGITS
+    side: Literal["", "low", "high"] = ""
+
+    def worded(self, reader: Reader) -> str:
+        """Return the number in the reader's unit."""
+        unit = reader.unit(self.value, self.unit)
+        if self.side:
+            return unit.low(self.value) if self.side == "low" else unit.high(self.value)
+        return unit.after(f"{self.value / unit.factor:.{self.digits}g}")
+
+
+@dataclass(frozen=True)
+class SiNote:
+    """A remark on SI units, such as "In m: 25 mm is 0.025."; readers with other units are spared it."""
+
+    text: str
+
+    def worded(self, reader: Reader) -> str:
+        """Return the remark, or nothing."""
+        return self.text if reader.knows_si else ""
+
+
+@dataclass(frozen=True)
+class Text:
+    """Words and quantities in a row.
+
+    Attributes
+    ----------
+    parts : tuple of str and Worded
+        Plain words, `Quantity`, `SiNote`, `Bound`, another `Text` or a whole `RefusedValue`.
+    """
+
+    parts: tuple[Words, ...] = ()
+
+    @classmethod
+    def of(cls, *parts: Words) -> Text:
+        """Return the text of `parts`, one after the other without space between them."""
+        return cls(parts)
+
+    def worded(self, reader: Reader) -> str:
+        """Return the text in the reader's units and names."""
+        return "".join(part if isinstance(part, str) else part.worded(reader) for part in self.parts)
+
+    def __str__(self) -> str:
+        return self.worded(Reader())
+
+
+NOTHING = Text()

@@ -1,0 +1,57 @@
+"""Units, and numbers as they are written in one."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+
+DIGITS = 7
+"""Digits of a number in a message, unless it says otherwise."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit as it is written.
+
+    Attributes
+    ----------
+    name : str
+        Its symbol, e.g. ``"mm"``; empty for none.
+    factor : float
+        SI value of one.
+    si : str
+        Symbol of the SI unit of what it measures, e.g. ``"m"``.
+    """
+
+    name: str = ""
+    factor: float = 1.0
+    si: str = ""
+
+    def after(self, number: str) -> str:
+        """Return a number with the symbol."""
+        return f"{number} {self.name}".rstrip()
+
+    def exact(self, value: float) -> str:
+        """Return a value, in SI, as it was typed."""
+        return self.after(f"{value / self.factor + 0.0:.12g}")
+
+    def low(self, limit: float) -> str:
+        """Return a lower limit, in SI, as text that is accepted when it is typed."""
+        return self.after(_rounded(limit, self.factor, ROUND_CEILING))
+
+    def high(self, limit: float) -> str:
+        """Return an upper limit, in SI, as text that is accepted when it is typed."""
+        return self.after(_rounded(limit, self.factor, ROUND_FLOOR))
+
+
+def _rounded(limit: float, factor: float, direction: str) -> str:
+    """Return seven digits, rounding of the limit's own computation left aside; integers are written out."""
+    if isinstance(limit, int) and factor == 1.0:
+        return str(limit)
+    number = limit / factor + 0.0  # no -0
+    if not math.isfinite(number):
+        return f"{number:g}"
+    exact = Decimal(f"{number:.13g}")
+    last_digit = Decimal(1).scaleb(exact.adjusted() - DIGITS + 1)
+    return f"{float(exact.quantize(last_digit, rounding=direction)):.{DIGITS}g}"

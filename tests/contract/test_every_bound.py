@@ -1,0 +1,293 @@
+"""Every bound of every number of cases and scenes, at every door: field, value, and a bound that holds."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+import warnings
+from collections.abc import Iterator
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import pytest
+from bad_scenes import good_scene
+from bound_walk import LONGEST_CHAIN, Trial, chains, dotted, is_field
+from fastapi.testclient import TestClient
+from toml_text import toml_text
+
+from fe_contact.ste import PairFacts
+from service.app import create_app
+from service.convert.checks import check_case
+from service.convert.scene import check_scene
+from service.convert.topology import facts_of
+from service.problems import BadInput, Fault
+from service.schemas import Case, read_model, validated
+from service.schemas.request_examples import SCENE
+from service.schemas.scene import SceneInput
+from service.settings import Settings
+
+Table = dict[str, Any]
+
+GEAR: Table = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
+BODY: Table = {
+    "shaft": {"length_mm": 200.0, "diameter_mm": 40.0, "position_mm": 60.0},
+    "blank": {"rim_thickness_mm": 8.0, "web_thickness_mm": 10.0, "hub_diameter_mm": 45.0},
+    "seat": {"tangential_foundation_n_per_mm3": 1e4, "width_mm": 20.0, "key": {"width_mm": 12.0}},
+    "material": {},
+}
+FLANK: Table = {
+    "tip_relief_um": 20.0,
+    "tip_relief_length_mm": 1.0,
+    "root_relief_um": 10.0,
+    "root_relief_length_mm": 1.0,
+    "end_relief_um": 5.0,
+    "end_relief_length_mm": 2.0,
+    "pitch_deviation_um": [0.0, 3.0, *[0.0] * 18],
+    "flank_grid": {
+        "roll_length_mm": [4.0, 20.0],
+        "face_position_mm": [-12.5, 12.5],
+        "removed_um": [[0.0, 0.0], [5.0, 7.0]],
+    },
+}
+EXTERNAL: Table = {
+    "pair": {
+        "normal_module_mm": 4.0,
+        "center_distance_mm": 80.2,
+        "pinion": GEAR | BODY | FLANK,
+        "wheel": GEAR,
+    },
+    "material": {},
+    "load": {"torque_n_m": [10.0, 100.0]},
+    "errors": {"misalignment_um": [0.0, 30.0], "center_distance_change_mm": [-0.1, 0.1]},
+    "accuracy": {"tolerance": 0.01},
+}
+RING: Table = {
+    "teeth": 60,
+    "face_width_mm": 25.0,
+    "internal": True,
+    "rim_diameter_mm": 280.0,
+    "addendum_coefficient": 0.75,
+}
+INTERNAL: Table = {
+    "pair": {"normal_module_mm": 4.0, "center_distance_mm": 79.8, "pinion": GEAR, "wheel": RING},
+    "load": {"normal_force_n": [100.0, 1000.0]},
+    "accuracy": {"time_budget_s": 10.0},
+}
+DEPEND_ON_OTHERS = (
+    *(
+        "center_distance_mm",
+        "face_width_mm",
+        "bore_diameter_mm",
+        "tip_diameter_mm",
+        "root_radius_coefficient",
+    ),
+    *("thickness_allowance_um", "tip_rounding_mm", "tip_chamfer_mm", "pitches", "tolerance", "time_budget_s"),
+    *("tip_relief_length_mm", "root_relief_length_mm", "end_relief_length_mm", "position_mm", "diameter_mm"),
+    *("rim_thickness_mm", "web_thickness_mm", "hub_diameter_mm", "web_offset_mm", "width_mm", "offset_mm"),
+    *("rim_diameter_mm", "cutter_teeth", "cutter_profile_shift_coefficient", "center_distance_change_mm"),
+    *("teeth", "duration_s", "torsional_stiffness_n_m_per_rad", "dedendum_coefficient", "polar_kg_m2"),
+    *("tip_chamfer_angle_deg", "angles_deg"),
+)
+"""Numbers whose bounds follow from others too: what the schema says of them alone is not all."""
+
+
+def flexible_scene() -> Table:
+    """Return a scene with everything a scene can have but planets."""
+    scene = copy.deepcopy(SCENE)
+    inertia = {"mass_kg": 2.0, "polar_kg_m2": 1e-3, "transverse_kg_m2": 7e-3}
+    sections = [
+        {"length_mm": 80.0, "outer_diameter_mm": 40.0},
+        {"length_mm": 120.0, "outer_diameter_mm": 50.0},
+    ]
+    scene["shafts"][0].pop("diameter_mm")
+    scene["shafts"][0] |= {"sections": sections}
+    scene["shafts"].append(
+        {"name": "fan", "length_mm": 100.0, "origin_mm": [80.0, 0.0, 300.0], "inertia": inertia}
+    )
+    scene["gears"][0] |= {"inertia": dict(inertia)}
+    tilts = {"direction": "tilt_x", "tilt_mrad": [-1.0, 0.0, 1.0], "moment_n_m": [-50.0, 0.0, 50.0]}
+    ways = {"direction": "x", "displacement_um": [-40.0, 0.0, 40.0], "force_n": [-60.0, 0.0, 60.0]}
+    scene["bushings"][0] |= {"rolling_contact": {"stiffness_n_per_m_n": 5e8}, "spring_curves": [ways, tilts]}
+    scene["bushings"][1] |= {"preload_force_n": [0.0, 0.0, 5.0], "preload_moment_n_m": [0.0, 0.0]}
+    bearing = {"shaft": "fan", "radial_stiffness_n_per_m": 1e8, "axial_stiffness_n_per_m": 1e8}
+    scene["bushings"] += [bearing | {"name": f"fan {z:g}", "position_mm": z} for z in (0.0, 100.0)]
+    scene["couplings"] = [
+        {"name": "joint", "first": "output", "second": "fan", "torsional_stiffness_n_m_per_rad": 5e4}
+    ]
+    curve = {
+        "name": "air",
+        "shaft": "fan",
+        "kind": "table",
+        "speed_rpm": [0.0, 1500.0],
+        "torque_n_m": [0.0, 9.0],
+    }
+    scene["meshes"][0] |= {"coast_flank": {"backlash_um": 80.0}}
+    return scene | {"speed_torques": [curve], "integration": {}, "accuracy": {}}
+
+
+def planetary_scene() -> Table:
+    """Return the planetary example with the angles of its planets and errors of their pins."""
+    scene = good_scene()
+    number = scene["planets"][0]["number"]
+    scene["planets"][0]["angles_deg"] = [360.0 / number * index for index in range(number)]
+    scene["planets"][0] |= {"radial_errors_um": [0.0] * number, "tangential_errors_um": [0.0] * number}
+    return scene
+
+
+TABLES: dict[str, Table] = {
+    "external": EXTERNAL,
+    "internal": INTERNAL,
+    "flexible": flexible_scene(),
+    "planetary": planetary_scene(),
+}
+
+
+@cache
+def pair_facts(case: str) -> PairFacts:
+    """Return the facts of the pair of a case as JSON."""
+    return facts_of(check_case(Case.model_validate_json(case)))
+
+
+def check(given: Case | SceneInput) -> None:
+    """Check a case or a scene as the doors do."""
+    if isinstance(given, Case):
+        check_case(given)
+        return
+    cases = {mesh.name: mesh.case for mesh in given.meshes if mesh.case is not None}
+    check_scene(given, {name: pair_facts(case.model_dump_json()) for name, case in cases.items()})
+
+
+def kind_of(table: Table) -> type[Case] | type[SceneInput]:
+    """Return the schema of a table."""
+    return SceneInput if "run" in table else Case
+
+
+def refusal(table: Table) -> Fault | None:
+    """Return why a table is refused, None if it is accepted."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what is implausible is accepted
+            check(validated(kind_of(table), table))
+    except BadInput as error:
+        return error.faults[0]
+    return None
+
+
+@cache
+def walked(name: str) -> list[list[Trial]]:
+    """Return the chains of a table; the cases of a scene's meshes are walked on their own."""
+    table = TABLES[name]
+    assert refusal(table) is None
+    return list(chains(kind_of(table), table, refusal, leave_out="case"))
+
+
+EVERY = pytest.mark.parametrize("name", TABLES)
+
+
+def own(trial: Trial) -> bool:
+    """Whether a trial is refused by its own field."""
+    return trial.fault is not None and trial.fault.field == dotted(trial.place)
+
+
+@EVERY
+def test_a_value_far_off_is_refused_by_the_callers_field_as_the_caller_wrote_it(name: str) -> None:
+    for chain in walked(name):
+        assert own(chain[0]), f"{chain[0].value} for {dotted(chain[0].place)}: {chain[0].fault}"
+        for trial in (trial for trial in chain if own(trial)):
+            assert trial.fault is not None and isinstance(trial.fault.value, int | float)
+            assert math.isclose(trial.fault.value, trial.value, rel_tol=1e-11, abs_tol=0.0), trial
+            assert trial.fault.bound and trial.fault.suggestion, trial
+
+
+@EVERY
+def test_every_error_names_a_field_that_a_caller_can_write(name: str) -> None:
+    for trial in (trial for chain in walked(name) for trial in chain if trial.fault is not None):
+        assert trial.fault is not None and is_field(kind_of(trial.table), trial.fault.field), trial.fault
+
+
+@EVERY
+def test_the_number_of_a_bound_is_accepted_as_it_is_printed(name: str) -> None:
+    for chain in walked(name):
+        assert len(chain) < LONGEST_CHAIN, chain
+        told = [trial.fault.bound for trial in chain[:-1] if own(trial) and trial.fault is not None]
+        assert len(told) == len(set(told)), f"{dotted(chain[0].place)} is told the same again: {chain}"
+
+
+@EVERY
+def test_a_bound_that_depends_on_nothing_else_is_told_at_once(name: str) -> None:
+    for chain in walked(name):
+        refused = [trial for trial in chain[:-1] if own(trial)]
+        field = str(next(part for part in reversed(chain[0].place) if isinstance(part, str)))
+        assert len(refused) <= 1 or field in DEPEND_ON_OTHERS, [trial.fault for trial in refused]
+
+
+@EVERY
+def test_just_beyond_a_bound_a_value_is_refused(name: str) -> None:
+    for chain in walked(name):
+        for inside, beyond in pairwise(chain):
+            if inside.fault is None:
+                assert beyond.fault is not None, f"{dotted(beyond.place)} = {beyond.value}"
+
+
+@EVERY
+def test_the_file_says_the_same(name: str, tmp_path: Path) -> None:
+    file = tmp_path / "input.toml"
+    for trial in (trial for chain in walked(name) for trial in chain[:2]):
+        file.write_text(toml_text(trial.table))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            try:
+                check(read_model(kind_of(trial.table), file))
+                assert trial.fault is None, trial
+            except BadInput as error:
+                assert error.faults[0] == trial.fault
+
+
+@EVERY
+def test_http_says_the_same(name: str, client: TestClient) -> None:
+    process, key = ("simulate", "scene") if "run" in TABLES[name] else ("analyze", "case")
+    for trial in (trial for chain in walked(name) for trial in chain):
+        if trial.fault is None:
+            continue
+        body = json.dumps({"inputs": {key: trial.table}})
+        headers = {"Content-Type": "application/json"}
+        answer = client.post(f"/v1/processes/{process}/execution", content=body, headers=headers)
+        assert answer.status_code == 422, answer.text
+        assert answer.json()["errors"][0] == trial.fault.as_json()
+
+
+@pytest.fixture(scope="module")
+def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A client of a running app."""
+    with TestClient(create_app(Settings(data_directory=tmp_path_factory.mktemp("data")))) as found:
+        yield found
+        assert found.get("/v1/jobs").json()["jobs"] == []
+
+
+def test_a_table_in_a_list_is_told_both_ends_and_what_the_field_is() -> None:
+    table = copy.deepcopy(TABLES["flexible"])
+    table["shafts"][0]["sections"][1]["length_mm"] = -1.0
+    fault = refusal(table)
+    assert fault is not None
+    assert (fault.bound, fault.suggestion) == ("above 0 and at most 1e+06", "Length in mm. For example 80.0.")
+
+
+def test_a_thin_web_is_told_its_bound_in_mm() -> None:
+    table = copy.deepcopy(EXTERNAL)
+    table["pair"]["pinion"]["blank"]["web_thickness_mm"] = 0.3
+    fault = refusal(table)
+    assert fault is not None
+    assert str(fault).startswith(
+        "pair.pinion.blank.web_thickness_mm = 0.3: must be from 0.5 mm to the face width 25 mm"
+    )
+
+
+def test_advice_on_a_foundation_is_in_its_unit() -> None:
+    table = copy.deepcopy(EXTERNAL)
+    table["pair"]["pinion"]["seat"].pop("tangential_foundation_n_per_mm3")
+    fault = refusal(table)
+    assert fault is not None and fault.field == "pair.pinion.seat.tangential_foundation_n_per_mm3"
+    assert fault.suggestion == "About G / h for a key of height h: 10000 N/mm^3 for 8 mm of steel."
