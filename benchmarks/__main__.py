@@ -16,6 +16,7 @@ from benchmarks import (
     error_honesty,
     finite_width,
     full_contact_cost,
+    full_contact_coverage,
     live_honesty,
     long_phase,
     other_engine,
@@ -84,6 +85,8 @@ def main(arguments: Sequence[str]) -> int:
         _publish(record, tuple(names))
         if "error_honesty" in record:
             error_honesty.publish(error_honesty.judged(), machine)
+        if "full_contact_coverage" in record:
+            full_contact_coverage.publish(full_contact_coverage.assessed(), machine)
         if "live_honesty" in record:
             live_honesty.publish(live_honesty.judged(), machine)
         if "tolerance_promise" in record:

@@ -157,8 +157,8 @@ class TestUnreadable:
         message = self.rewritten(
             stored[1], lambda dataset: dataset.assign_attrs(schema_version=SCHEMA_VERSION + 1)
         )
-        assert "schema version 2" in message
-        assert "reads 1 to 1" in message
+        assert f"schema version {SCHEMA_VERSION + 1}" in message
+        assert f"reads 1 to {SCHEMA_VERSION}" in message
 
     def test_changed_number(self, stored):
         assert "checksum" in self.rewritten(stored[1], lambda d: d.assign(torque=d.torque * (1 + 1e-15)))
