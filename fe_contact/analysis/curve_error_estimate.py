@@ -12,13 +12,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from fe_contact.analysis.error_estimate import CORRECTION_ERROR, LEFT_BY_TILT, Nested, contact_error
+from fe_contact.analysis.error_estimate import CORRECTION_ERROR, Nested, contact_error
 from fe_contact.analysis.held_out_axes import AxisError
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import FaceDiscretisation, Plan
+from fe_contact.planning.flank_tilt import LEFT_BY_TILT, RIPPLE_BY_TILT
 from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES, SOURCES
 from fe_contact.ste.curve_quantities import (
     FIRST_HARMONIC,
@@ -44,9 +45,6 @@ standard."""
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
 slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""
-RIPPLE_BY_TILT = 8.0
-"""Error of peak-to-peak and harmonics in parts of them, over the part that the tilt of the flanks takes off
-the mean: 8 on a soft gear on steel against full contact, 2 on steel."""
 SHOWN = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIRST_HARMONIC}
 
 

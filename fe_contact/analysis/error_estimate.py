@@ -21,16 +21,14 @@ from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactSolution
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.geometry.parallel_axes import ParallelAxes
-from fe_contact.planning import Plan, PlaneDiscretisation, flank_tilt
+from fe_contact.planning import Plan, PlaneDiscretisation
+from fe_contact.planning.flank_tilt import LEFT_BY_TILT, flank_tilt
 from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03
 """Error of the correction for a finite width in parts of the correction itself. The largest seen of mean,
 peak-to-peak and harmonics on the cases of docs/accuracy.md that are not held out is 0.033, of peak-to-peak at
 a face of 1.2 modules, of which the mesh covers its part."""
-LEFT_BY_TILT = 2.0
-"""Error of STE over what the tilt of the flanks takes off it; full contact of a soft gear on steel asks for
-1.1 with small displacements, and large ones have the other sign (docs/theory/contact.md)."""
 
 
 @dataclass(frozen=True)
