@@ -177,7 +177,7 @@ def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
     barrier = _barrier(begun, finest)
     if barrier is not None:
         if barrier == _WIDTH and (model := next_model(decided.checked)):
-            return _of_model(model, decided)
+            return _of_model(model, begun)
         return _no_way(finest, barrier)
     finer = _refined(replace(begun, level_left=1))
     reason = f"{AT_NODES[source]} takes {begun.sources[source]:.2g} of the tolerance"
@@ -212,11 +212,11 @@ def _barrier(begun: _Resolution, finest: _Resolution) -> int | None:
     return int(np.argmax(finest.sources)) if finest.used > HOPELESS or nothing_left else None
 
 
-def _of_model(model: Decided, before: Decided) -> Refinement:
-    """Return the pass of a more exact model."""
-    said = f"model {model_name(before.checked)} -> {model_name(model.checked)}"
-    tolerance = before.checked.request.accuracy.allowed.relative
-    expected = model.mesh.option.error.total / tolerance
+def _of_model(model: Decided, begun: _Resolution) -> Refinement:
+    """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
+    said = f"model {model_name(begun.decided.checked)} -> {model_name(model.checked)}"
+    tolerance = model.checked.request.accuracy.allowed.relative
+    expected = float(np.hypot(model.mesh.option.error.total / tolerance, begun.shares[_POSITION].max()))
     return Refinement(model, AT_NODES[_WIDTH], (said,), expected)
 
 

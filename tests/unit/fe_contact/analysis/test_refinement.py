@@ -166,6 +166,8 @@ def test_a_width_that_was_left_out_is_corrected_for():
     made = refined(loose, finite_width=1.5)
     assert made.steps == ("model plane strain -> plane strain corrected for the finite width",)
     assert made.decided.checked.model.finite_width
+    fixed = refined(loose, finite_width=1.5, position=0.7)
+    assert fixed.expected == pytest.approx(math.hypot(made.expected, 0.7))
 
 
 def test_every_source_has_its_way_or_its_reason(helical):
