@@ -40,9 +40,9 @@ WIDTH_SHARE = 0.8
 peak-to-peak read 0.8 of what is measured in the median (docs/effects/worth.md)."""
 
 
-TRIED, CHEAP = 2.0, 0.1
-"""Expected error over the tolerance at which a mesh is tried, and its work over that of what is expected to
-meet it."""
+TRIED = ((2.0, 0.1), (1.25, 0.5))
+"""Expected error over the tolerance up to which a mesh is tried, and its work over that of what is expected
+to meet it: a pass in vain costs less than what is saved where it is enough."""
 
 
 @dataclass(frozen=True)
@@ -108,16 +108,17 @@ def decide(
     keep_model : bool
         Choose mesh and slices only: what is asked for is more than the transmission error.
     tried : bool
-        The run measures its errors and is refined where they are too large: what is expected to err by up to
-        `TRIED` times the tolerance is tried first where it costs next to nothing.
+        The run measures its errors and is refined where they are too large: what is expected to err by
+        somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
     """
     models = [checked] if keep_model else alternatives(checked)
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache, 1.0))
     if tried and checked.request.accuracy.tolerance is not None:
-        first = _best(_meshes(models, curves, cache, TRIED))
-        if first[1].met and first[1].option.effort <= CHEAP * chosen[1].option.effort:
-            return _planned(first[0], _said_tried(*chosen, first[1]))
+        for stretch, share in TRIED:
+            first = _best(_meshes(models, curves, cache, stretch))
+            if first[1].met and first[1].option.effort <= share * chosen[1].option.effort:
+                return _planned(first[0], _said_tried(*chosen, first[1]))
     return _planned(*chosen)
 
 
@@ -137,7 +138,8 @@ def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> Mesh
     """Say why something cheaper is tried first than what is expected to meet the tolerance."""
     said = f"{model_name(checked)}, {chosen.option.name}"
     error = f"{100.0 * first.option.error.total:.2g} %"
-    reason = f"expected error {error}, tried first: it costs less than a tenth of {said}"
+    part = f"{100.0 * first.option.effort / chosen.option.effort:.2g} %"
+    reason = f"expected error {error}, tried first: it costs {part} of {said}"
     return MeshChoice(first.option, chosen.met, reason)
 
 

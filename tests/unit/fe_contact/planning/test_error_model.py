@@ -10,7 +10,7 @@ import pytest
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
 from fe_contact.analysis import check_request
-from fe_contact.analysis.model_choice import CHEAP, TRIED, decide
+from fe_contact.analysis.model_choice import TRIED, decide
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
@@ -111,15 +111,17 @@ def test_a_stretched_tolerance_allows_more_of_the_same_scale():
     assert np.isfinite(AllowedError(0.01, 0.9e-3).stretched(2.0).floor)
 
 
-def test_what_costs_next_to_nothing_is_tried_first():
+def test_what_costs_much_less_is_tried_first():
     """A run measures its errors: the corrected plane may do where only three dimensions are expected to."""
     narrow = pair(width=2e-3, material=Material(youngs_modulus=206e9, poissons_ratio=0.45))
     asked = check_request(narrow, normal_forces=[100.0], tolerance=AllowedError(0.0045, 0.0))
     promised, tried = decide(asked), decide(asked, tried=True)
     assert promised.checked.model.across_face
     assert not tried.checked.model.across_face
-    assert tried.mesh.option.effort < CHEAP * promised.mesh.option.effort
-    assert 0.0045 < tried.mesh.option.error.total < TRIED * 0.0045
+    error = tried.mesh.option.error.total / 0.0045
+    work = tried.mesh.option.effort / promised.mesh.option.effort
+    assert error > 1.0
+    assert any(error <= most and work <= share for most, share in TRIED)
     assert tried.mesh.met is promised.mesh.met
     assert "tried first" in tried.mesh.reason
     loose = check_request(pair(), torques=[40.0], tolerance=0.01)
