@@ -10,9 +10,9 @@ from pathlib import Path
 
 from fe_contact.analysis.assumptions import check_assumptions
 from fe_contact.analysis.contact_receipt import contact_receipt
+from fe_contact.analysis.decided import Decided
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
-from fe_contact.analysis.model_choice import Decided
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, solve_table

@@ -8,32 +8,25 @@ model, or an explicit choice of one of the two effects that tell the models apar
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from fe_contact.analysis.decided import FACE, WIDTH, Decided, model_name
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.ripple import expected_curves
-from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
+from fe_contact.effects import EFFECTS
 from fe_contact.effects.worth import estimate_worth
 from fe_contact.geometry.finite_width import finite_width_excess
 from fe_contact.planning import (
     LEFT_OUT,
     LEVELS,
     ExpectedCurves,
-    FaceDiscretisation,
     MeshChoice,
-    MeshOption,
-    NodeRule,
-    Plan,
     chosen_mesh,
-    expected_error,
     make_plan,
 )
-from fe_contact.planning.effort import effort
-from fe_contact.types import Json
 
-FACE, WIDTH = FaceLoadDistribution.name, FiniteWidth.name
 _TELL = (FACE, WIDTH)
 WIDTH_SHARE = 0.8
 """Part of the tolerance up to which the finite width may be estimated: estimates of its change of
@@ -43,56 +36,6 @@ peak-to-peak read 0.8 of what is measured in the median (docs/effects/worth.md).
 TRIED = ((2.0, 0.1), (1.25, 0.5))
 """Expected error over the tolerance up to which a mesh is tried, and its work over that of what is expected
 to meet it: a pass in vain costs less than what is saved where it is enough."""
-
-
-@dataclass(frozen=True)
-class Decided:
-    """A request with its model and mesh.
-
-    Attributes
-    ----------
-    checked : Checked
-        With the chosen model, and a ledger that says why.
-    mesh : MeshChoice
-    plan : Plan
-    """
-
-    checked: Checked
-    mesh: MeshChoice
-    plan: Plan
-
-    def in_slices(self, count: int) -> Decided:
-        """Return the same model and mesh in another number of slices; itself in the plane."""
-        if not isinstance(self.plan.discretisation, FaceDiscretisation):
-            return self
-        made = self.plan.discretisation.in_slices(count)
-        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=made.slices))
-        return replace(self, mesh=mesh, plan=replace(self.plan, discretisation=made))
-
-    @property
-    def usual_nodes(self) -> NodeRule:
-        """How positions are placed before any refinement."""
-        return self._plan(self.plan.level, None).nodes
-
-    def refined(self, level: str, slices: int, nodes: NodeRule, reason: str) -> Decided:
-        """Return the same model on another mesh, in other slices, with its positions placed by `nodes`."""
-        plan = replace(self._plan(level, slices), nodes=nodes)
-        request, model = self.checked.request, self.checked.model
-        error = expected_error(
-            request.pair, plan, expected_curves(self.checked), width_counts=WIDTH in request.spared
-        )
-        work = effort(request.pair, plan, model, request.alignments)
-        option = MeshOption(level, plan.discretisation.slices, error, work)
-        return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
-
-    def _plan(self, level: str, slices: int | None) -> Plan:
-        """Plan the request on another mesh."""
-        request = self.checked.request
-        return make_plan(request.pair, request.load, request.accuracy, self.checked.model, level, slices)
-
-    def to_json(self) -> Json:
-        """Return what was chosen, as plain JSON."""
-        return {"model": model_name(self.checked)} | self.mesh.to_json()
 
 
 def decide(
@@ -195,16 +138,6 @@ def _width_is_small(checked: Checked) -> bool:
 def _again(request: Request) -> Checked:
     """Compose a request anew; nothing more is spared."""
     return check_asked(request, spare=False)
-
-
-def model_name(checked: Checked) -> str:
-    """Name the model of a request in words."""
-    if checked.model.across_face:
-        return "three dimensions"
-    if checked.request.accuracy.model == "plane_stress":
-        return "plane stress"
-    corrected = "plane strain corrected for the finite width"
-    return corrected if checked.model.finite_width else "plane strain"
 
 
 def plane_strain_error(checked: Checked) -> float:

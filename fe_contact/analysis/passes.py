@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from fe_contact.analysis.model_choice import Decided, model_name
+from fe_contact.analysis.decided import Decided, model_name
 from fe_contact.analysis.refinement import Refinement
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.model_choice import Decided, model_name, next_model
+from fe_contact.analysis.decided import Decided, model_name
+from fe_contact.analysis.model_choice import next_model
 from fe_contact.planning import LEVELS, FaceDiscretisation, NodeRule
 from fe_contact.planning.discretisation import FINER_SLICES, SLICE_ORDER, SLICES, face_discretisation
 from fe_contact.planning.plan import CLOSEST

@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.decided import WIDTH, model_name
 from fe_contact.analysis.effect_ledger import effect_ledger
-from fe_contact.analysis.model_choice import WIDTH, decide, model_name
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.ripple import expected_curves

@@ -12,7 +12,8 @@ import pytest
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis import check_request, kept_tolerance
 from fe_contact.analysis.compute_database import Computed, compute_database, compute_pass
-from fe_contact.analysis.model_choice import Decided, decide
+from fe_contact.analysis.decided import Decided
+from fe_contact.analysis.model_choice import decide
 from fe_contact.errors import MeshError, SolveError
 from fe_contact.ste.fields import DIMENSIONS
 

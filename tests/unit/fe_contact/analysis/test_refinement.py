@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material
-from fe_contact.analysis.model_choice import Decided, decide
+from fe_contact.analysis.decided import Decided
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.refinement import AIM, MESH_STEP, Refinement, next_pass
 from fe_contact.analysis.request_check import check_request
 from fe_contact.planning.discretisation import SLICE_ORDER
