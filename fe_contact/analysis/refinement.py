@@ -21,8 +21,8 @@ from fe_contact.types import FloatArray
 
 AIM = 0.9
 """Part of the tolerance that a pass is planned to use; the rest is for what predictions miss."""
-HOPELESS = 2.0
-"""Predicted use of the finest mesh above which no pass is begun: predictions are right within that factor."""
+DOUBT = 2.0
+"""Factor within which predictions are right: no pass begins where even the finest is too far off by it."""
 SMALL = 0.3
 """Part of the tolerance that is not worth refining: a tenth of what may be used."""
 MESH_STEP = {"plane": {"draft": 0.45, "standard": 0.2}, "face": {"draft": 0.4, "standard": 0.45}}
@@ -142,7 +142,7 @@ class _Resolution:
         """Return the same with one source a part of what it was."""
         factors = np.ones(len(AT_NODES))
         factors[source] = part
-        shares = self.shares * factors.reshape(-1, *[1] * (self.shares.ndim - 1))
+        shares = self.shares * _by_source(factors, self.shares)
         return replace(self, shares=shares, steps=(*self.steps, said))
 
 
@@ -190,8 +190,6 @@ def _refined(resolution: _Resolution) -> _Resolution:
     """Refine what dominates until the tolerance is predicted to be kept, or nothing is left to refine."""
     while resolution.used > AIM:
         order = np.argsort(-resolution.sources, kind="stable")
-        if resolution.sources[order[0]] > 1.0:
-            order = order[:1]  # nothing else helps
         order = order[resolution.sources[order] > SMALL]
         finer = next((step for source in order if (step := resolution.step(int(source)))), None)
         if finer is None:
@@ -203,14 +201,16 @@ def _refined(resolution: _Resolution) -> _Resolution:
 def _barrier(begun: _Resolution, finest: _Resolution) -> int | None:
     """Return the source that keeps even the finest resolution from the tolerance; None if it may be kept.
 
-    What was measured stands in the way above 1; what is predicted, above `HOPELESS`.
+    What is measured stands as it is; what is predicted may turn out less by a factor `DOUBT`.
     """
-    for source in np.argsort(-finest.sources, kind="stable"):
-        measured = np.array_equal(begun.shares[source], finest.shares[source])
-        if finest.shares[source].max() > (1.0 if measured else HOPELESS) and finest.step(int(source)) is None:
-            return int(source)
-    nothing_left = finest.used > 1.0 and not finest.steps
-    return int(np.argmax(finest.sources)) if finest.used > HOPELESS or nothing_left else None
+    changed = np.array([not np.array_equal(*both) for both in zip(begun.shares, finest.shares, strict=True)])
+    hoped = replace(finest, shares=finest.shares / _by_source(np.where(changed, DOUBT, 1.0), finest.shares))
+    return int(np.argmax(hoped.sources)) if hoped.used > 1.0 else None
+
+
+def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
+    """Return a value of each source in the shape of the shares."""
+    return values.reshape(-1, *[1] * (shares.ndim - 1))
 
 
 def _of_model(model: Decided, begun: _Resolution) -> Refinement:

@@ -134,6 +134,12 @@ def test_the_finest_is_tried_where_it_may_be_enough_and_not_twice(helical):
     assert "mesh fine is the finest" in next_pass(fine, shares(discretisation=1.3))
 
 
+def test_what_stays_leaves_room_for_the_rest_or_ends_it(helical):
+    """0.97 measured and 0.6 left of the mesh, at best 0.3, are too much; 0.9 and 0.3 may do."""
+    assert "mended by no refinement" in next_pass(helical, shares(contact_solver=0.97, discretisation=1.34))
+    assert refined(helical, contact_solver=0.9, discretisation=1.34).steps == ("mesh standard -> fine",)
+
+
 def test_positions_that_were_asked_for_stay():
     fixed = ran(pair(0.3), "standard", 15, positions=16)
     reason = next_pass(fixed, shares(position=3.0, discretisation=0.5))
