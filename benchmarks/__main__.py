@@ -43,6 +43,7 @@ SUBJECTS = (
     reference_errors,
     static_table,
     full_contact_cost,
+    full_contact_coverage,
     finite_width,
     run_up,
     long_phase,

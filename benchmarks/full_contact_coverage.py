@@ -14,8 +14,8 @@ from benchmarks.figures import Figure
 from benchmarks.full_contact_cases import FullContactCase, full_contact_cases
 from benchmarks.marked_section import replace_section
 from fe_contact import SteDatabase, analyze
-from fe_contact.analysis.model_error import in_small_displacements
 from fe_contact.geometry import ParallelAxes
+from fe_contact.planning.model_error import in_small_displacements
 from fe_contact.ste.curve_errors import AT_NODES, all_sources
 from fe_contact.types import FloatArray
 

@@ -20,7 +20,8 @@ from benchmarks.finest_rung import finest
 from benchmarks.honesty_cases import HonestyCase
 from fe_contact.analysis import check_request
 from fe_contact.analysis.compute_database import compute_database
-from fe_contact.analysis.model_choice import Decided, decide
+from fe_contact.analysis.decided import Decided
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.warm_up import warm_up
 from fe_contact.stage_clock import StageClock

@@ -10,8 +10,8 @@ from bounds import SiNote
 from fe_contact.checks import within
 from fe_contact.types import FloatArray
 
-LARGEST_FLOOR = 1e-3
-"""m."""
+LARGEST_RELATIVE, LARGEST_FLOOR = 0.5, 1e-3
+"""Parts of the quantity, and m."""
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class AllowedError:
     floor: float = 20e-9
 
     def __post_init__(self) -> None:
-        within("tolerance", self.relative, 1e-4, 0.5, "0.01 means one per cent.")
+        within("tolerance", self.relative, 1e-4, LARGEST_RELATIVE, "0.01 means one per cent.")
         within(
             "tolerance_floor", self.floor, 0.0, LARGEST_FLOOR, SiNote("In m: 20 nm is 2e-8; 0 means none.")
         )
@@ -51,6 +51,11 @@ class AllowedError:
     def scale(self, value: FloatArray) -> FloatArray:
         """Return the size in m of which errors of quantities in m are parts: `relative` of it is allowed."""
         return np.maximum(np.abs(value), self.least_scale)
+
+    def stretched(self, factor: float) -> AllowedError:
+        """Return what allows so many times the error, up to the largest there is, of the same scale."""
+        most = min(self.relative * factor, LARGEST_RELATIVE) / self.relative
+        return AllowedError(self.relative * most, min(self.floor * most, LARGEST_FLOOR))
 
     @property
     def least_scale(self) -> float:

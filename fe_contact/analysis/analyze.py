@@ -7,6 +7,7 @@ from pathlib import Path
 
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import compute_database, solved_findings
+from fe_contact.analysis.kept_tolerance import OnDraft, kept_tolerance
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
@@ -34,6 +35,7 @@ def analyze(
     on_violation: str = "repeat",
     case: Json | None = None,
     progress: Progress | None = None,
+    on_draft: OnDraft | None = None,
     cache: Path | None = None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteDatabase:
@@ -47,7 +49,9 @@ def analyze(
         Torques on the driving gear in N m, increasing, > 0; or `normal_forces` in N.
     tolerance, level, time_budget
         Asked accuracy, at most one: error of mean and peak-to-peak, relative or 20 nm, the larger of both
-        (`AllowedError` has another floor); "draft" | "standard" | "fine"; or seconds.
+        (`AllowedError` has another floor); "draft" | "standard" | "fine"; or seconds. Under a tolerance the
+        table is refined by its measured errors, in at most four passes: `receipt["passes"]`, and
+        `receipt["tolerance"]` says whether it is met, or why not.
     model : str
         "auto" (three dimensions where the scene acts across the face, else plane strain corrected for
         the finite face width), "plane_strain", "plane_stress" or "3d".
@@ -72,7 +76,10 @@ def analyze(
         The case as the caller phrased it, echoed into the result and hashed; default: the request in SI
         units.
     progress : callable, optional
-        Called as progress(stage, fraction).
+        Called as progress(stage, fraction); under a tolerance once more by every pass.
+    on_draft : callable, optional
+        Called as on_draft(table, refining) with the table of every pass that does not meet the tolerance and
+        is refined: first answers with their errors, while the next pass runs.
     cache : Path, optional
         Directory of flank compliances.
     workers : Workers
@@ -117,11 +124,18 @@ def analyze(
         on_violation=on_violation,
     )
     phrased = case or checked.request.to_json()
-    database = compute_database(checked, phrased, progress or _silent, cache, workers=workers)
-    request = checked.request
+    request, report = checked.request, progress or _silent
+    if request.accuracy.refines:
+        database = kept_tolerance(checked, phrased, report, cache, on_draft or _unread, workers)
+    else:
+        database = compute_database(checked, phrased, report, cache, workers=workers)
     warn_of(unexpected(request.findings, solved_findings(request, database)))
     return database
 
 
 def _silent(stage: str, fraction: float) -> None:
     """Report no progress."""
+
+
+def _unread(table: SteDatabase, refining: str) -> None:
+    """Pass over a draft."""

@@ -1,18 +1,18 @@
-"""The main flow: from a checked request to the STE database."""
+"""The main flow: from a checked request to the STE database, in one pass."""
 
 from __future__ import annotations
 
 import platform
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
 from fe_contact.analysis.assumptions import check_assumptions
 from fe_contact.analysis.contact_receipt import contact_receipt
+from fe_contact.analysis.decided import Decided
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
-from fe_contact.analysis.model_choice import Decided
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, solve_table
@@ -27,8 +27,16 @@ from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
 from fe_contact.workers import InProcess, Workers
 
-SOLVER_VERSION = "10"
+SOLVER_VERSION = "11"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
+
+
+@dataclass(frozen=True)
+class Computed:
+    """A table, and what it was computed with: effects that turned out to be needed included."""
+
+    table: SteDatabase
+    decided: Decided
 
 
 def compute_database(
@@ -39,7 +47,20 @@ def compute_database(
     decided: Decided | None = None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SteDatabase:
-    """Compute the table of a checked request.
+    """Compute the table of a checked request; parameters of `compute_pass`."""
+    return compute_pass(checked, case, report, cache, decided, workers).table
+
+
+def compute_pass(
+    checked: Checked,
+    case: Json,
+    report: Progress,
+    cache: Path | None,
+    decided: Decided | None = None,
+    workers: Workers = InProcess(),  # noqa: B008 (frozen)
+    clock: StageClock | None = None,
+) -> Computed:
+    """Compute the table of a checked request once.
 
     Parameters
     ----------
@@ -54,13 +75,15 @@ def compute_database(
         Model and discretisation; default: those that the accuracy asks for.
     workers : Workers
         Who condenses the gears and solves the contact; the table does not depend on them.
+    clock : StageClock, optional
+        That of the workers' cost, with what was spent on this pass before it began; default: a new one.
 
     Raises
     ------
     SolveError
         An assumption of the run does not hold and `on_violation` is "fail".
     """
-    clock, before = StageClock(workers.spent), replace(workers.spent)
+    clock, before = clock or StageClock(workers.spent), replace(workers.spent)
     full = checked.request.accuracy.receipt == "full"
     planned = solve_table(checked, clock, report, cache, decided=decided, workers=workers)
     run, found, repeated = settled(
@@ -99,7 +122,7 @@ def compute_database(
         kept = tolerance_receipt(table, request.accuracy.tolerance)
         metadata.receipt["tolerance"] = kept
         metadata.receipt["choice"]["met"] = kept["met"]
-    return table
+    return Computed(table, run.decided)
 
 
 def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:

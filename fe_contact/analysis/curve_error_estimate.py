@@ -14,12 +14,12 @@ import numpy as np
 
 from fe_contact.analysis.error_estimate import CORRECTION_ERROR, Nested, contact_error
 from fe_contact.analysis.held_out_axes import AxisError
-from fe_contact.analysis.model_error import model_errors, of_bending
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import LEFT_OUT, FaceDiscretisation, Plan, left_out
+from fe_contact.planning.model_error import model_errors, of_bending
 from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES, SOURCES
 from fe_contact.ste.curve_quantities import (
     FIRST_HARMONIC,

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.analysis.model_error import point_error
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import LEFT_OUT, Plan, left_out
+from fe_contact.planning.model_error import point_error
 from fe_contact.types import FloatArray, Json, Status
 
 CORRECTION_ERROR = 0.03

@@ -8,53 +8,37 @@ model, or an explicit choice of one of the two effects that tell the models apar
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from fe_contact.analysis.decided import FACE, WIDTH, Decided, model_name
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.request_check import check_asked
-from fe_contact.analysis.ripple import expected_ripple
-from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
+from fe_contact.analysis.ripple import expected_curves
+from fe_contact.effects import EFFECTS
 from fe_contact.effects.worth import estimate_worth
-from fe_contact.planning import LEVELS, FaceDiscretisation, MeshChoice, Plan, chosen_mesh, make_plan
-from fe_contact.types import Json
+from fe_contact.planning import (
+    LEVELS,
+    ExpectedCurves,
+    MeshChoice,
+    chosen_mesh,
+    make_plan,
+)
 
-FACE, WIDTH = FaceLoadDistribution.name, FiniteWidth.name
+_TELL = (FACE, WIDTH)
 WIDTH_SHARE = 0.8
 """Part of the tolerance up to which the finite width may be estimated: estimates of its change of
 peak-to-peak read 0.8 of what is measured in the median (docs/effects/worth.md)."""
 
 
-@dataclass(frozen=True)
-class Decided:
-    """A request with its model and mesh.
-
-    Attributes
-    ----------
-    checked : Checked
-        With the chosen model, and a ledger that says why.
-    mesh : MeshChoice
-    plan : Plan
-    """
-
-    checked: Checked
-    mesh: MeshChoice
-    plan: Plan
-
-    def in_slices(self, count: int) -> Decided:
-        """Return the same model and mesh in another number of slices; itself in the plane."""
-        if not isinstance(self.plan.discretisation, FaceDiscretisation):
-            return self
-        made = self.plan.discretisation.in_slices(count)
-        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=made.slices))
-        return replace(self, mesh=mesh, plan=replace(self.plan, discretisation=made))
-
-    def to_json(self) -> Json:
-        """Return what was chosen, as plain JSON."""
-        return {"model": model_name(self.checked)} | self.mesh.to_json()
+TRIED = ((2.0, 0.1), (1.25, 0.5))
+"""Expected error over the tolerance up to which a mesh is tried, and its work over that of what is expected
+to meet it: a pass in vain costs less than what is saved where it is enough."""
 
 
-def decide(checked: Checked, cache: Path | None = None, *, keep_model: bool = False) -> Decided:
+def decide(
+    checked: Checked, cache: Path | None = None, *, keep_model: bool = False, tried: bool = False
+) -> Decided:
     """Choose model, mesh and slices by the accuracy of a request.
 
     Parameters
@@ -64,28 +48,76 @@ def decide(checked: Checked, cache: Path | None = None, *, keep_model: bool = Fa
         Directory of compliances and of what is known of the host: a time depends on them.
     keep_model : bool
         Choose mesh and slices only: what is asked for is more than the transmission error.
+    tried : bool
+        The run measures its errors and is refined where they are too large: what is expected to err by
+        somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
     """
     models = [checked] if keep_model else alternatives(checked)
+    curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
+    chosen = _best(_meshes(models, curves, cache, 1.0))
+    if tried and checked.request.accuracy.tolerance is not None:
+        for stretch, share in TRIED:
+            first = _best(_meshes(models, curves, cache, stretch))
+            if first[1].met and first[1].option.effort <= share * chosen[1].option.effort:
+                return _planned(first[0], _said_tried(*chosen, first[1]))
+    return _planned(*chosen)
+
+
+def _meshes(
+    models: Sequence[Checked], curves: ExpectedCurves | None, cache: Path | None, stretch: float
+) -> list[tuple[Checked, MeshChoice]]:
+    """Choose a mesh for every model, by `stretch` times the tolerance."""
     found: list[tuple[Checked, MeshChoice]] = []
     for one in models:
         # what the coarsest mesh in the plane meets, three dimensions meet no cheaper
         if not (one.model.across_face and any(mesh.met and mesh.level == LEVELS[0] for _, mesh in found)):
-            found.append((one, _mesh(one, cache)))
-    return _planned(*_best(found))
+            found.append((one, _mesh(one, curves, cache, stretch)))
+    return found
+
+
+def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> MeshChoice:
+    """Say why something cheaper is tried first than what is expected to meet the tolerance."""
+    said = f"{model_name(checked)}, {chosen.option.name}"
+    error = f"{100.0 * first.option.error.total:.2g} %"
+    part = f"{100.0 * first.option.effort / chosen.option.effort:.2g} %"
+    reason = f"expected error {error}, tried first: it costs {part} of {said}"
+    return MeshChoice(first.option, chosen.met, reason)
+
+
+def _wishes(checked: Checked) -> bool:
+    """Whether an error or a time is asked for."""
+    accuracy = checked.request.accuracy
+    return accuracy.tolerance is not None or accuracy.time_budget is not None
 
 
 def alternatives(checked: Checked) -> list[Checked]:
     """Return the request with every model that may stand in for its own; itself where it is bound."""
     request = checked.request
-    wish = request.accuracy.tolerance is not None or request.accuracy.time_budget is not None
-    chosen = {name for name in (FACE, WIDTH) if request.asked_choices.get(name, "auto") != "auto"}
-    decided = {FACE, WIDTH} & {*request.spared, *request.turned_on}
-    if not wish or chosen or decided or checked.model.across_face:
+    chosen = {name for name in _TELL if request.asked_choices.get(name, "auto") != "auto"}
+    decided = set(_TELL) & {*request.spared, *request.turned_on}
+    if not _wishes(checked) or chosen or decided or checked.model.across_face:
         return [checked]
     plain = replace(request, spared={**request.spared, WIDTH: "left out"})
     solid = replace(request, turned_on={**request.turned_on, FACE: "taken"})
     flat = [_again(plain)] if _width_is_small(checked) else []
     return [*flat, checked, _again(solid)]
+
+
+def next_model(checked: Checked) -> Decided | None:
+    """Return the request in the next more exact model that is expected to meet its tolerance.
+
+    None where there is none, or where the caller chose the model or one of the effects that tell it.
+    """
+    request = checked.request
+    if checked.model.across_face or any(request.asked_choices.get(name, "auto") != "auto" for name in _TELL):
+        return None
+    spared = {name: reason for name, reason in request.spared.items() if name not in _TELL}
+    kept = {name: reason for name, reason in request.turned_on.items() if name not in _TELL}
+    effects = (WIDTH, FACE) if WIDTH in request.spared else (FACE,)
+    models = [_again(replace(request, spared=spared, turned_on={**kept, name: "taken"})) for name in effects]
+    curves = expected_curves(checked)
+    found = [(one, _mesh(one, curves, None)) for one in models]
+    return next((_planned(*_said(one)) for one in found if one[1].met), None)
 
 
 def _width_is_small(checked: Checked) -> bool:
@@ -106,23 +138,15 @@ def _again(request: Request) -> Checked:
     return check_asked(request, spare=False)
 
 
-def model_name(checked: Checked) -> str:
-    """Name the model of a request in words."""
-    if checked.model.across_face:
-        return "three dimensions"
-    if checked.request.accuracy.model == "plane_stress":
-        return "plane stress"
-    corrected = "plane strain corrected for the finite width"
-    return corrected if checked.model.finite_width else "plane strain"
-
-
-def _mesh(checked: Checked, cache: Path | None) -> MeshChoice:
+def _mesh(
+    checked: Checked, curves: ExpectedCurves | None, cache: Path | None, stretch: float = 1.0
+) -> MeshChoice:
     """Choose the mesh of one model."""
     asked, accuracy = checked.request, checked.request.accuracy
-    wish = accuracy.tolerance is not None or accuracy.time_budget is not None
-    ripple = expected_ripple(checked) if wish and checked.model.across_face else None
+    if accuracy.tolerance is not None:
+        accuracy = replace(accuracy, tolerance=accuracy.tolerance.stretched(stretch))
     wanted = asked.pair, asked.load, accuracy, checked.model
-    return chosen_mesh(*wanted, asked.alignments, cache, ripple)
+    return chosen_mesh(*wanted, asked.alignments, cache, curves)
 
 
 def _best(found: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshChoice]:
@@ -152,7 +176,7 @@ def _said(found: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
 
 def _reason(name: str, text: str, parts: str) -> str:
     """Say why one of the two effects was turned here; reasons of others stay."""
-    mine = name in (FACE, WIDTH) and text in ("taken", "left out")
+    mine = name in _TELL and text in ("taken", "left out")
     return f"{text} for the asked accuracy: expected error {parts}" if mine else text
 
 

@@ -7,20 +7,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.decided import model_name
 from fe_contact.analysis.effect_ledger import effect_ledger
-from fe_contact.analysis.model_choice import decide, model_name
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_request
-from fe_contact.analysis.ripple import expected_ripple
+from fe_contact.analysis.ripple import expected_curves
 from fe_contact.checks import positive
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import (
     Accuracy,
+    ExpectedCurves,
     ExpectedError,
     MeshChoice,
     Plan,
     Prediction,
-    Ripple,
     expected_error,
     make_plan,
     predict_run,
@@ -134,11 +135,11 @@ def plan_run(
         center_distance_changes=center_distance_changes,
         effects=effects,
     )
-    decided = decide(checked, cache)
+    decided = decide(checked, cache, tried=True)
     checked, choice = decided.checked, decided.mesh
-    ripple = expected_ripple(checked) if checked.model.across_face else None
+    curves = expected_curves(checked)
     levels = tuple(
-        _planned(checked, name, choice.slices if name == choice.level else None, ripple, cache)
+        _planned(checked, name, choice.slices if name == choice.level else None, curves, cache)
         for name in LEVELS
     )
     conflict, asked = "", checked.request.accuracy.tolerance
@@ -148,17 +149,18 @@ def plan_run(
 
 
 def _planned(
-    checked: Checked, level: str, slices: int | None, ripple: Ripple | None, cache: Path | None
+    checked: Checked, level: str, slices: int | None, curves: ExpectedCurves | None, cache: Path | None
 ) -> PlannedLevel:
     """Predict one mesh level of the request's model, in so many slices or in the usual ones.
 
-    With the case's own ripple, as its mesh is chosen by: both must tell the same error.
+    With the case's own curves, as its mesh is chosen by: both must tell the same error.
     """
     asked = checked.request
     accuracy: Accuracy = replace(asked.accuracy, tolerance=None, time_budget=None, level=level)
     plan = make_plan(asked.pair, asked.load, accuracy, checked.model, slices=slices)
     cost = predict_run(asked.pair, plan, checked.model, asked.alignments, cache)
-    return PlannedLevel(level, plan.discretisation.slices, cost, expected_error(asked.pair, plan, ripple))
+    error = expected_error(asked.pair, plan, curves)
+    return PlannedLevel(level, plan.discretisation.slices, cost, error)
 
 
 def _conflict(

@@ -9,7 +9,8 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from fe_contact.analysis.model_choice import Decided, decide
+from fe_contact.analysis.decided import Decided
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked, Request

@@ -10,7 +10,8 @@ import numpy as np
 
 from bounds import SiNote
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.model_choice import Decided, decide
+from fe_contact.analysis.decided import Decided
+from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked, check_request

@@ -4,7 +4,14 @@ from fe_contact.planning.accuracy import LEVELS, Accuracy
 from fe_contact.planning.cost_model import Prediction, predict_run
 from fe_contact.planning.cycle_cost import MOST_ROWS, CycleCost, cycle_cost, refuse_long_cycle
 from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
-from fe_contact.planning.error_model import LEFT_OUT, ExpectedError, Ripple, expected_error, left_out
+from fe_contact.planning.error_model import (
+    LEFT_OUT,
+    ExpectedError,
+    expected_error,
+    left_out,
+    usual_mesh_error,
+)
+from fe_contact.planning.expected_curves import ExpectedCurves, usual_curves
 from fe_contact.planning.flank_tilt import flank_tilt
 from fe_contact.planning.mesh_choice import MeshChoice, MeshOption
 from fe_contact.planning.plan import NodeRule, Plan, make_plan
@@ -17,6 +24,7 @@ __all__ = [
     "MOST_ROWS",
     "Accuracy",
     "CycleCost",
+    "ExpectedCurves",
     "ExpectedError",
     "FaceDiscretisation",
     "FaceRootMeshes",
@@ -27,7 +35,6 @@ __all__ = [
     "PlaneDiscretisation",
     "PlaneRootMeshes",
     "Prediction",
-    "Ripple",
     "chosen_mesh",
     "cycle_cost",
     "expected_error",
@@ -38,4 +45,6 @@ __all__ = [
     "predict_run",
     "refuse_long_cycle",
     "root_meshes",
+    "usual_curves",
+    "usual_mesh_error",
 ]

@@ -63,3 +63,8 @@ class Accuracy:
     def allowed(self) -> AllowedError:
         """What a run takes as small: the tolerance, without one a part of each quantity."""
         return self.tolerance or RELATIVE
+
+    @property
+    def refines(self) -> bool:
+        """Whether a table is refined by its measured errors: those of a minimal receipt are not known."""
+        return self.tolerance is not None and self.receipt == "full"

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
+from fe_contact.allowed_error import AllowedError
 from fe_contact.checks import increasing
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactModel, PatchRule
@@ -62,12 +63,23 @@ class NodeRule:
     judged_pitches: int = 3
     least_ripple: float = 0.0
 
+    def for_tolerance(self, allowed: AllowedError) -> NodeRule:
+        """Return the rule by which positions take their share of a tolerance, and no more than usual."""
+        closer = min(max(POSITION_SHARE * allowed.relative / self.tolerance, CLOSEST), 1.0)
+        most = round(self.most / math.sqrt(closer))
+        least = FLOOR_SHARE * allowed.least_scale
+        return replace(self, tolerance=closer * self.tolerance, most=most, least_ripple=least)
+
     def ripple(self, curves: FloatArray) -> FloatArray:
         """Return the peak-to-peak STE (C,) in m of curves (P, C) in m that the tolerance is a part of."""
         least = np.maximum(self.least_ripple, _ROUNDING * np.abs(curves).max(axis=0))
         return np.asarray(np.maximum(np.ptp(curves, axis=0), least))
 
 
+POSITION_SHARE = 0.5
+"""Part of a tolerance that the search of positions allows between them: 0.2 to 0.8 of it is left."""
+CLOSEST = 1.0 / 16.0
+"""Least of what a search allows over the usual."""
 FLOOR_SHARE = 0.5
 """Part of the floor of a tolerance that positions go by: meshes and slices take most of what is allowed."""
 _ROUNDING = 1e-6
@@ -168,7 +180,7 @@ def make_plan(
     patch = _patch_rule(pair, float(levels[-1]), discretisation)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     if accuracy.tolerance is not None:
-        nodes = replace(nodes, least_ripple=FLOOR_SHARE * accuracy.tolerance.least_scale)
+        nodes = nodes.for_tolerance(accuracy.tolerance)
     support = _support_loads(levels)
     return Plan(
         discretisation,

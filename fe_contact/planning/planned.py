@@ -10,7 +10,8 @@ from fe_contact.planning.accuracy import LEVELS, Accuracy
 from fe_contact.planning.cost_model import predict_run
 from fe_contact.planning.discretisation import FINER_SLICES, FaceDiscretisation
 from fe_contact.planning.effort import effort
-from fe_contact.planning.error_model import Ripple, expected_error
+from fe_contact.planning.error_model import expected_error
+from fe_contact.planning.expected_curves import ExpectedCurves
 from fe_contact.planning.mesh_choice import MeshChoice, MeshOption, mesh_for_time, mesh_for_tolerance
 from fe_contact.planning.plan import Plan, make_plan
 from fe_contact.types import FloatArray
@@ -39,7 +40,7 @@ def chosen_mesh(
     model: ContactModel,
     alignments: tuple[int, int] = (1, 1),
     cache: Path | None = None,
-    ripple: Ripple | None = None,
+    curves: ExpectedCurves | None = None,
 ) -> MeshChoice:
     """Choose mesh and slices by the accuracy.
 
@@ -55,14 +56,14 @@ def chosen_mesh(
     cache : Path, optional
         Directory of compliances and of what is known of the host: a time depends on them, a tolerance does
         not.
-    ripple : Ripple, optional
-        What is known of the ripple of the case.
+    curves : ExpectedCurves, optional
+        What is known of the transmission error of the case.
     """
 
     def option(level: str, slices: int | None = None) -> MeshOption:
         plan = make_plan(pair, load, accuracy, model, level, slices)
-        work = effort(pair, plan, model, alignments)
-        return MeshOption(level, plan.discretisation.slices, expected_error(pair, plan, ripple), work)
+        error = expected_error(pair, plan, curves)
+        return MeshOption(level, plan.discretisation.slices, error, effort(pair, plan, model, alignments))
 
     def seconds(choice: MeshOption) -> float:
         plan = make_plan(pair, load, accuracy, model, choice.level, choice.slices)

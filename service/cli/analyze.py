@@ -11,13 +11,14 @@ from fe_contact.workers import InProcess, Workers
 from service.cli.effects import assumption_lines, ledger_lines
 from service.cli.judged_case import judged_case
 from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar, table
+from service.cli.tolerance_lines import print_draft, tolerance_lines, tolerance_warnings
 from service.cli.warned import warn
 from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
 from service.convert.plausibility import phrased_database
 from service.convert.task_workers import Hands, working_hands
-from service.convert.units import NM, UM
+from service.convert.units import UM
 from service.directories import cache_home
 from service.problems import JobFailed
 from service.schemas import Case
@@ -31,7 +32,7 @@ def run_analyze(file: Path, output: Path, hands: Hands, *, as_json: bool) -> Non
     check_netcdf_output(output)
     with working_hands(hands) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)
-    warn(database.metadata.warnings)
+    warn([*database.metadata.warnings, *tolerance_warnings(database.metadata.receipt)])
     database.to_netcdf(output)
     summary = {"file": str(output), **summary_json(database)}
     if as_json:
@@ -56,6 +57,7 @@ def analyzed(
             case=case_json(case),
             cache=cache_home() / "compliance",
             progress=report,
+            on_draft=print_draft,
             workers=workers,
         )
     return phrased_database(database, case)
@@ -93,8 +95,8 @@ def _cost(receipt: dict[str, Any]) -> str:
     held_out = _held_out(receipt.get("held_out", {}))
     if held_out:
         text += f"\nlargest error at held-out points between the nodes: {held_out} (in the errors there)"
-    if kept := receipt.get("tolerance"):
-        text += f"\n{_tolerance(kept)}"
+    for line in tolerance_lines(receipt):
+        text += f"\n{line}"
     outgrown = receipt.get("patch_outgrown_points", 0)
     if outgrown:
         text += f"\ncontact outgrew its load patch at {outgrown} points: the load is far beyond the usual"
@@ -105,15 +107,6 @@ def _cost(receipt: dict[str, Any]) -> str:
     if left_out:
         text += f"\nthe plane leaves out a finite width: {100 * left_out:.2g} % of the mean, in the errors"
     return text
-
-
-def _tolerance(kept: dict[str, Any]) -> str:
-    """Return whether the tolerance is met by the errors as measured."""
-    asked = f"tolerance {100 * kept['relative']:.3g} % or {kept['floor_m'] / NM:.3g} nm"
-    if kept["met"] is None:
-        return f"{asked}: errors not estimated"
-    share = "" if kept["used"] is None else f", largest error {kept['used']:.2g} of it"
-    return f"{asked}: {'met' if kept['met'] else 'NOT met'}{share}"
 
 
 def _held_out(axes: dict[str, Any]) -> str:

@@ -19,7 +19,8 @@ from service.problems import EXIT_INTERRUPTED, EXIT_WARNINGS, ServiceError, Unex
 
 P = ParamSpec("P")
 R = TypeVar("R")
-Strict = Annotated[bool, typer.Option("--strict", help="End with exit code 3 if anything is implausible.")]
+_STRICT = "End with exit code 3 if anything is implausible, or a tolerance not met."
+Strict = Annotated[bool, typer.Option("--strict", help=_STRICT)]
 
 
 def computing(verb: Callable[..., R]) -> Callable[..., R]:

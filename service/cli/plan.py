@@ -10,6 +10,7 @@ from service.cli.effects import ledger_lines
 from service.cli.judged_case import judged_case
 from service.cli.output import console, print_json, table
 from service.convert.plan import plan_of
+from service.convert.units import UM
 from service.directories import cache_home
 
 
@@ -25,7 +26,7 @@ def run_plan(file: Path, time_budget_s: float | None, *, as_json: bool) -> None:
 def _show(found: RunPlan) -> None:
     """Print the plan for people."""
     out = console()
-    head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", ""]
+    head = ["mesh", "CPU s", *STAGES, "memory MiB", "error %", "of which model %", "mean um", "p-p um", ""]
     rows = [
         [
             entry.level if entry.slices == 1 else f"{entry.level}, {entry.slices} slices",
@@ -34,6 +35,7 @@ def _show(found: RunPlan) -> None:
             f"{entry.cost.memory_bytes / 2**20:.0f}",
             f"{100.0 * entry.error.total:.2g}",
             f"{100.0 * entry.error.model:.2g}",
+            *(_micrometres(error) for error in (entry.error.mean, entry.error.peak_to_peak)),
             "chosen" if entry is found.chosen else "",
         ]
         for entry in found.levels
@@ -49,3 +51,8 @@ def _show(found: RunPlan) -> None:
         out.print(f"cannot be had: {found.conflict or found.choice.reason}", highlight=False)
     for line in ledger_lines(found.to_json()["effect_ledger"]):
         out.print(line, highlight=False)
+
+
+def _micrometres(error: float | None) -> str:
+    """Return an expected error in um: per cent of a small ripple mean little; none where no size is known."""
+    return "" if error is None else f"{error / UM:.2g}"

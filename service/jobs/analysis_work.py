@@ -9,6 +9,7 @@ from fe_contact.ste import SteDatabase
 from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
 from service.convert.plausibility import phrased_database
 from service.jobs.cluster import table_workers
+from service.jobs.drafted_progress import DraftedProgress
 from service.jobs.order import Product, Progress, WorkOrder
 from service.schemas import Case
 
@@ -23,13 +24,15 @@ def analyze_case(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
 
 def database_of(case: Case, order: WorkOrder, progress: Progress) -> SteDatabase:
     """Return the STE database of a case of an order; condensed gears are kept in the service's cache."""
+    drafted = DraftedProgress(progress)
     with boundary_errors(), table_workers(order) as workers:
         database = analyze(
             gear_pair(case),
             **analysis_arguments(case),
             case=case_json(case),
             cache=order.data_directory / "compliance",
-            progress=progress,
+            progress=drafted,
+            on_draft=drafted.draft,
             workers=workers,
         )
     return phrased_database(database, case)

@@ -79,7 +79,9 @@ def _table(
         return SteDatabase.from_netcdf(file)
 
     def part(stage: str, fraction: float) -> None:
-        progress("analysis", ANALYZE.overall(stage, fraction) or 0.0)
+        overall = ANALYZE.overall(stage, fraction)
+        if overall is not None:  # a refined pass begins anew, the work does not
+            progress("analysis", overall)
 
     try:
         database = database_of(mesh.case, order, part)

@@ -1,0 +1,81 @@
+"""A request with the model and the mesh that were decided for it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from fe_contact.analysis.request import Checked
+from fe_contact.analysis.ripple import expected_curves
+from fe_contact.effects import FaceLoadDistribution, FiniteWidth
+from fe_contact.planning import (
+    FaceDiscretisation,
+    MeshChoice,
+    MeshOption,
+    NodeRule,
+    Plan,
+    expected_error,
+    make_plan,
+)
+from fe_contact.planning.effort import effort
+from fe_contact.types import Json
+
+FACE, WIDTH = FaceLoadDistribution.name, FiniteWidth.name
+"""The effects that tell the models apart."""
+
+
+@dataclass(frozen=True)
+class Decided:
+    """A request with its model and mesh.
+
+    Attributes
+    ----------
+    checked : Checked
+        With the chosen model, and a ledger that says why.
+    mesh : MeshChoice
+    plan : Plan
+    """
+
+    checked: Checked
+    mesh: MeshChoice
+    plan: Plan
+
+    def in_slices(self, count: int) -> Decided:
+        """Return the same model and mesh in another number of slices; itself in the plane."""
+        if not isinstance(self.plan.discretisation, FaceDiscretisation):
+            return self
+        made = self.plan.discretisation.in_slices(count)
+        mesh = replace(self.mesh, option=replace(self.mesh.option, slices=made.slices))
+        return replace(self, mesh=mesh, plan=replace(self.plan, discretisation=made))
+
+    @property
+    def usual_nodes(self) -> NodeRule:
+        """How positions are placed before any refinement."""
+        return self._plan(self.plan.level, None).nodes
+
+    def refined(self, level: str, slices: int, nodes: NodeRule, reason: str) -> Decided:
+        """Return the same model on another mesh, in other slices, with its positions placed by `nodes`."""
+        plan = replace(self._plan(level, slices), nodes=nodes)
+        request, model = self.checked.request, self.checked.model
+        error = expected_error(request.pair, plan, expected_curves(self.checked))
+        work = effort(request.pair, plan, model, request.alignments)
+        option = MeshOption(level, plan.discretisation.slices, error, work)
+        return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
+
+    def _plan(self, level: str, slices: int | None) -> Plan:
+        """Plan the request on another mesh."""
+        request = self.checked.request
+        return make_plan(request.pair, request.load, request.accuracy, self.checked.model, level, slices)
+
+    def to_json(self) -> Json:
+        """Return what was chosen, as plain JSON."""
+        return {"model": model_name(self.checked)} | self.mesh.to_json()
+
+
+def model_name(checked: Checked) -> str:
+    """Name the model of a request in words."""
+    if checked.model.across_face:
+        return "three dimensions"
+    if checked.request.accuracy.model == "plane_stress":
+        return "plane stress"
+    corrected = "plane strain corrected for the finite width"
+    return corrected if checked.model.finite_width else "plane strain"

@@ -1,0 +1,68 @@
+"""What `loa analyze` says of a tolerance: drafts while it refines, its passes, and whether it is met."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from fe_contact.ste import SteDatabase
+from service.convert.drafts import draft_line
+from service.convert.units import MM, NM, UM
+
+Json = dict[str, Any]
+_AXES = {
+    "force": ("loads", 1.0, "N"),
+    "misalignment": ("misalignments", UM, "um"),
+    "center_distance_change": ("centre distance changes", MM, "mm"),
+}
+
+
+def print_draft(table: SteDatabase, refining: str) -> None:
+    """Print the figures of a table that is being refined, on standard error: they are progress."""
+    sys.stderr.write(f"{draft_line(table, refining)}\n")
+    sys.stderr.flush()
+
+
+def tolerance_lines(receipt: Json) -> Iterator[str]:
+    """Yield whether the tolerance is met by the errors as measured, why not, and the passes if several."""
+    kept = receipt.get("tolerance")
+    if not kept:
+        return
+    yield _verdict(kept)
+    passes = receipt.get("passes", ())
+    if len(passes) > 1:
+        yield from (_pass(number, one) for number, one in enumerate(passes, 1))
+    for beyond in kept.get("between_nodes", ()):
+        name, unit, symbol = _AXES[beyond["axis"]]
+        low, high = (f"{value / unit:.6g}" for value in beyond["between"])
+        yield (
+            f"between the {name} {low} and {high} {symbol} interpolation takes {beyond['used']:.2g} of it: "
+            "add a value there"
+        )
+
+
+def tolerance_warnings(receipt: Json) -> Iterable[Json]:
+    """Return one warning where errors were measured and the tolerance is not met."""
+    kept = receipt.get("tolerance")
+    if not kept or kept["met"] is not False:
+        return []
+    reason = f" ({kept['reason']})" if kept.get("reason") else ""
+    return [{"check": "tolerance", "message": f"{_verdict(kept)}{reason}"}]
+
+
+def _verdict(kept: Json) -> str:
+    """Return whether the tolerance is met."""
+    asked = f"tolerance {100 * kept['relative']:.3g} % or {kept['floor_m'] / NM:.3g} nm"
+    if kept["met"] is None:
+        return f"{asked}: errors not estimated"
+    share = "" if kept["used"] is None else f", largest error {kept['used']:.2g} of it"
+    return f"{asked}: {'met' if kept['met'] else 'NOT met'}{share}"
+
+
+def _pass(number: int, one: Json) -> str:
+    """Return what one pass ran, cost and used."""
+    mesh = one["level"] if one["slices"] == 1 else f"{one['level']}, {one['slices']} slices"
+    used = "failed" if one["used"] is None else f"used {one['used']:.2g}"
+    refined = f", refined {', '.join(one['refined'])}" if one["refined"] else ""
+    return f"pass {number}: {one['model']}, {mesh}, {one['cpu_seconds']:.2g} CPU s, {used}{refined}"

@@ -1,0 +1,129 @@
+"""The plan predicts the errors that a run will state, in parts and in um."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
+from fe_contact.analysis import check_request
+from fe_contact.analysis.model_choice import TRIED, decide
+from fe_contact.analysis.run_plan import plan_run
+from fe_contact.geometry import InternalGearPair
+from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.planning.discretisation import SLICE_ORDER
+from fe_contact.planning.plan import CLOSEST, FACE_NODES, PLANE_NODES, POSITION_SHARE
+
+FACTOR = 3.0
+
+
+def pair(
+    helix: float = 0.0, width: float = 12e-3, material: Material | None = None, **modification
+) -> GearPair:
+    more = {} if material is None else {"material": material}
+    modified = FlankModification(**modification)
+    gear = Gear(20, 2e-3, width, 20e-3, helix_angle=helix, modification=modified, **more)
+    mate = dataclasses.replace(gear, helix_angle=-helix, modification=FlankModification())
+    return GearPair(gear, mate, 40e-3 / math.cos(helix))
+
+
+def stated(table: SteDatabase) -> tuple[float, float, float]:
+    """Largest relative error, and the largest of mean and peak-to-peak in m."""
+    means, ripples = ([f(force=float(x)) for x in table.force] for f in (table.mean, table.peak_to_peak))
+    relative = max(one.error / abs(one.value) for one in (*means, *ripples))
+    return relative, max(one.error for one in means), max(one.error for one in ripples)
+
+
+@pytest.mark.parametrize(
+    "gears",
+    [
+        pair(),
+        pair(tip_relief=8e-6, tip_relief_length=1e-3),
+        pair(0.3),
+        pair(0.3, tip_relief=6e-6, tip_relief_length=1e-3, helix_crowning=4e-6),
+    ],
+    ids=["spur", "relieved spur", "helical", "relieved and crowned helical"],
+)
+def test_a_draft_is_predicted_within_a_factor_3(gears, tmp_path):
+    asked = {"torques": [15.0, 40.0], "level": "draft"}
+    error = plan_run(gears, **asked).chosen.error
+    predicted = error.total, error.mean, error.peak_to_peak
+    for expected, measured in zip(predicted, stated(analyze(gears, **asked, cache=tmp_path)), strict=True):
+        assert 1.0 / FACTOR < expected / measured < FACTOR
+
+
+def test_errors_in_um_grow_with_the_load_where_those_in_parts_hardly_do():
+    low, high = (
+        plan_run(pair(0.15), torques=[torque], level="draft").chosen.error for torque in (20.0, 80.0)
+    )
+    for name in ("mean", "peak_to_peak"):
+        assert 2.0 < getattr(high, name) / getattr(low, name) < 6.0  # large displacements by the square
+    assert 0.5 < high.total / low.total < 1.5
+
+
+def test_finer_meshes_and_more_slices_err_less_and_by_their_order():
+    levels = plan_run(pair(0.3), torques=[40.0], level="fine").levels
+    for name in ("mean", "peak_to_peak"):
+        errors = [getattr(entry.error, name) for entry in levels]
+        assert errors == sorted(errors, reverse=True)
+    fine = decide(check_request(pair(0.3), torques=[40.0], level="fine"))
+    few, many = (fine.refined("fine", n, fine.plan.nodes, "").mesh.option.error for n in (15, 23))
+    assert few.slices / many.slices == pytest.approx((23 / 15) ** SLICE_ORDER)
+
+
+def test_plane_strain_leaves_out_as_much_whoever_chose_it():
+    named = plan_run(pair(), torques=[40.0], level="draft", model="plane_strain").chosen.error
+    taken = decide(check_request(pair(), torques=[40.0], tolerance=0.06)).mesh.option.error
+    assert named.model == pytest.approx(taken.model, rel=1e-9)
+    assert taken.model > 0.02
+
+
+def test_what_slices_cannot_tell_has_no_size():
+    ring = RingGear(60, 2e-3, 12e-3, rim_diameter=0.144, tip_diameter=0.117)
+    gears = InternalGearPair(Gear(20, 2e-3, 12e-3, 20e-3), ring, 40e-3)
+    error = plan_run(gears, torques=[20.0], level="draft").chosen.error
+    assert (error.mean, error.peak_to_peak) == (None, None)
+    assert 0.0 < error.total < 0.02
+    assert error.to_json()["mean_m"] is None
+
+
+def test_positions_follow_a_tolerance_that_is_smaller_than_usual():
+    def search(tolerance: float, helix: float):
+        bound = {} if helix else {"effects": {"finite_width": "on"}}
+        return decide(check_request(pair(helix), torques=[40.0], tolerance=tolerance, **bound)).plan.nodes
+
+    for helix, usual in ((0.0, PLANE_NODES), (0.3, FACE_NODES)):
+        assert search(0.05, helix).tolerance == usual.tolerance
+        tight = search(0.001, helix)
+        assert tight.tolerance == pytest.approx(POSITION_SHARE * 0.001)
+        assert tight.most > usual.most
+        assert search(1e-4, helix).tolerance == pytest.approx(max(CLOSEST * usual.tolerance, 5e-5))
+
+
+def test_a_stretched_tolerance_allows_more_of_the_same_scale():
+    allowed = AllowedError(0.01, 20e-9)
+    more = allowed.stretched(2.0)
+    assert (more.relative, more.floor) == (0.02, 40e-9)
+    assert more.least_scale == allowed.least_scale
+    assert AllowedError(0.4).stretched(2.0).relative == 0.5
+    assert np.isfinite(AllowedError(0.01, 0.9e-3).stretched(2.0).floor)
+
+
+def test_what_costs_much_less_is_tried_first():
+    """A run measures its errors: the corrected plane may do where only three dimensions are expected to."""
+    narrow = pair(width=2e-3, material=Material(youngs_modulus=206e9, poissons_ratio=0.45))
+    asked = check_request(narrow, normal_forces=[100.0], tolerance=AllowedError(0.0045, 0.0))
+    promised, tried = decide(asked), decide(asked, tried=True)
+    assert promised.checked.model.across_face
+    assert not tried.checked.model.across_face
+    error = tried.mesh.option.error.total / 0.0045
+    work = tried.mesh.option.effort / promised.mesh.option.effort
+    assert error > 1.0
+    assert any(error <= most and work <= share for most, share in TRIED)
+    assert tried.mesh.met is promised.mesh.met
+    assert "tried first" in tried.mesh.reason
+    loose = check_request(pair(), torques=[40.0], tolerance=0.01)
+    assert decide(loose, tried=True).mesh == decide(loose).mesh
