@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -10,10 +9,11 @@ from fe_contact.full_contact.calculix import Run, run_calculix
 from fe_contact.full_contact.input_deck import Loading, input_deck, numbered_bodies
 from fe_contact.full_contact.meshing import FullContactMesh
 from fe_contact.full_contact.placed_pair import PlacedPair, no_load_gap, placed_pair
+from fe_contact.full_contact.point import FullContactPoint
 from fe_contact.full_contact.result_file import read_printed
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz.line_contact import contact_modulus, peak_pressure
-from fe_contact.types import Json, Status
+from fe_contact.types import Status
 
 OVERLAP_PART = 1e-4
 """Of the deflection that the overlap of the penalty may take: 1 nm in 10 um."""
@@ -21,47 +21,6 @@ START_PART = 0.01
 """Of the deflection by which teeth overlap at the start: more costs iterations, none leaves gear 1 loose."""
 MESH_MODULUS = 20e9 / 210e9
 """Deflection of steel teeth, about 20 N/(mm um), over the modulus of elasticity: a first guess."""
-
-
-@dataclass(frozen=True)
-class FullContactPoint:
-    """One solved position, or why there is none.
-
-    Attributes
-    ----------
-    position : float
-        By the driving gear, base pitches; NaN without a solution.
-    transmission_error : float
-        m, >= 0 under load; NaN without a solution.
-    status : Status
-    reason : str
-        Empty if it converged.
-    iterations : int
-    residual : float
-        Equilibrium: moment of the contact forces about gear 1's centre over the torque, less 1.
-    torque_ratio : float
-        Torque of gear 2 over that of gear 1.
-    """
-
-    position: float
-    transmission_error: float
-    status: Status
-    reason: str
-    iterations: int
-    residual: float
-    torque_ratio: float
-
-    def to_json(self) -> Json:
-        """Return plain JSON; a point without a solution has its status and reason only."""
-        facts = {"status": self.status.name.lower(), "iterations": self.iterations}
-        if not self.status.usable:
-            return facts | {"reason": self.reason}
-        return facts | {
-            "position": self.position,
-            "transmission_error_m": self.transmission_error,
-            "equilibrium_residual": self.residual,
-            "torque_ratio": self.torque_ratio,
-        }
 
 
 def solve_position(
@@ -139,5 +98,4 @@ def _point(
 
 def _failed(run: Run) -> FullContactPoint:
     """Return a point without a solution."""
-    nothing = float("nan")
-    return FullContactPoint(nothing, nothing, run.status, run.reason, run.iterations, nothing, nothing)
+    return FullContactPoint.failed(run.status, run.reason, run.iterations)
