@@ -6,18 +6,15 @@ They share geometry and mesher with the rest of the project, and nothing of its 
 from fe_contact.full_contact.calculix import Run, find_calculix, run_calculix, version_of
 from fe_contact.full_contact.condensation import FullContactTable, Resolution, solve_full_contact
 from fe_contact.full_contact.loaded_position import solve_position
-from fe_contact.full_contact.meshing import FullContactMesh, full_contact_mesh
 from fe_contact.full_contact.point import FullContactPoint
 from fe_contact.full_contact.validity import refusal
 
 __all__ = [
-    "FullContactMesh",
     "FullContactPoint",
     "FullContactTable",
     "Resolution",
     "Run",
     "find_calculix",
-    "full_contact_mesh",
     "refusal",
     "run_calculix",
     "solve_full_contact",

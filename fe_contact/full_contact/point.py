@@ -36,7 +36,8 @@ class FullContactPoint:
     load_share : mapping of int to float
         Share of each pair in the torque on gear 1, by pair index; empty if not known.
     max_pressure : float
-        Pa; under a tip edge it grows without bound as the mesh is refined. NaN if not known.
+        Over the length of an element, Pa; under a tip edge it grows without bound as the mesh is refined. NaN
+        if not known.
     error_estimate : float
         Half-width of the discretisation's error band, m; NaN if not asked for.
     """

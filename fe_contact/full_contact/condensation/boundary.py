@@ -76,7 +76,8 @@ def _size_near(gear: Toothing, strips: Mapping[int, SizedStrip], resolution: Res
     pitch = tooth_profile(gear).pitch_angle
     points, sizes = [], []
     for tooth, strip in strips.items():
-        points.append(rotated(modified_flank(gear, strip.at), tooth * pitch))
+        at = np.clip(strip.at, tooth_profile(gear).s_space, tooth_profile(gear).s_tip)
+        points.append(rotated(modified_flank(gear, at), tooth * pitch))
         sizes.append(strip.size)
     largest = resolution.part(BODY, gear.normal_module)
     return spread(np.concatenate(points), np.concatenate(sizes), resolution.growth, largest)

@@ -141,8 +141,8 @@ def _turned_back(forces: FloatArray, turn: FloatArray) -> FloatArray:
 def _full_weights(geometry: PairGeometry, site: ContactSite) -> FloatArray:
     """Return the lengths of the hats of a site's slave, m."""
     body = geometry.bodies[site.slave]
-    corners = body.points[body.columns[site.ahead]][::2]
-    lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+    nodes = body.points[body.columns[site.ahead]]
+    lengths = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
     return np.asarray(0.5 * (np.append(lengths, 0.0) + np.insert(lengths, 0, 0.0)))
 
 
@@ -150,6 +150,6 @@ def _at_end(geometry: PairGeometry, site: ContactSite) -> BoolArray:
     """Say which hats of a site are at an end of its strip that is no tip edge."""
     s = geometry.bodies[site.slave].body.strips[site.ahead].s
     gear = (geometry.pair.pinion, geometry.pair.wheel)[site.slave]
-    ends = np.zeros(len(s) // 2 + 1, dtype=bool)
+    ends = np.zeros(len(s), dtype=bool)
     ends[0], ends[-1] = True, s[-1] < tooth_profile(gear).s_tip
     return ends

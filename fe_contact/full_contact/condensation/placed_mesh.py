@@ -90,7 +90,7 @@ def placed_bodies(
     boundaries = [
         gear_boundary(
             gear,
-            real_teeth(gear.teeth, _teeth(pair, gear)),
+            real_teeth(gear.teeth, _teeth(pair, gear, sites)),
             {AHEAD[number] * site.ahead: site.strips[number] for site in sites},
             resolution,
         )
@@ -111,10 +111,11 @@ def placed_bodies(
     return bodies[0], bodies[1]
 
 
-def _teeth(pair: ParallelAxes, gear: Toothing) -> int:
-    """Return how many teeth of a gear are real."""
+def _teeth(pair: ParallelAxes, gear: Toothing, sites: Sequence[ContactSite]) -> int:
+    """Return how many teeth of a gear are real: one more to either side than may touch, at least."""
     many = gear.sign < 0 or pair.transverse_contact_ratio > 2.0
-    return MANY_TEETH if many else FEW_TEETH
+    touching = 2 * max(abs(site.ahead) for site in sites) + 3
+    return max(MANY_TEETH if many else FEW_TEETH, touching)
 
 
 def _strip(

@@ -30,7 +30,7 @@ class Resolution:
     corner: float = 8.0
 
     def __post_init__(self) -> None:
-        within("per_half_width", self.per_half_width, 1.5, 16.0, "4 is usual.")
+        within("per_half_width", self.per_half_width, 1.5, 16.0, "6 is usual.")
         within("corner", self.corner, 1.0, 32.0, "8 is usual.")
 
     @property
@@ -41,7 +41,7 @@ class Resolution:
     @property
     def inner_growth(self) -> float:
         """Growth from the boundary inwards."""
-        return min(0.5, INNER_GROWTH / self.per_half_width)
+        return min(0.3, INNER_GROWTH / self.per_half_width)
 
     def edge_size(self, least: float, largest: float) -> float:
         """Return the size at a tip edge, m, from the half-widths of least and largest load."""

@@ -18,6 +18,8 @@ from fe_contact.types import FloatArray
 
 STRIP, MATE_STRIP = 2.0, 2.5
 """Half-lengths of the strips on slave and master, in Hertz half-widths of the whole load on one pair."""
+TOUCHING, MARGINS = 1.6, (0.4, 0.9)
+"""On the path: how far apart flanks are at the ends of strips, as such widths; what is added to either."""
 SEARCHED, SAMPLES, EVERY = 12.0, 1201, 8
 """Half-widths on either side in which the closest place is searched; samples, and those that carry a size."""
 NEAR_EDGE, PER_DISTANCE = 2.5, 0.1
@@ -175,12 +177,12 @@ def _on_path(
     path = pair.path_of_contact
     slave = 0 if roll < 0.5 * (path.start + path.end) else 1
     size = np.clip(reached, widths.least, widths.largest) / resolution.per_half_width
-    within = np.flatnonzero(reached < STRIP * widths.alone)
+    within = np.flatnonzero(reached < TOUCHING * widths.alone)
     to_edge = tooth_profile(gears[1 - slave]).s_tip - places[1 - slave][np.argmin(gap)]
     strips = []
     for number, s in enumerate(places):
         edge = tooth_profile(gears[number]).s_tip
-        more = 0.0 if number == slave else (MATE_STRIP - STRIP) * widths.alone
+        more = MARGINS[number != slave] * widths.alone  # past the mate's edge too: the flanks slide
         low, high = float(s[within].min()) - more, min(float(s[within].max()) + more, edge)
         at, sizes = s[within][::EVERY], size[within][::EVERY]
         if to_edge < NEAR_EDGE * widths.alone:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.checks import positive
+from fe_contact.checks import finite, positive
 from fe_contact.errors import InputError
 from fe_contact.full_contact.condensation.resolution import Resolution
 from fe_contact.full_contact.condensation.solved_position import SolvedPosition, solve_position
@@ -62,8 +62,7 @@ def solve_full_contact(
     """
     if (reason := refusal(pair)) is not None:
         raise InputError("pair", "this pair", f"one that full contact in the plane holds; {reason}")
-    for torque in torques:
-        positive("torque", torque, "On gear 1, in N m.")
+    _check(torques, positions)
     chosen = resolution or Resolution()
     solved: list[SolvedPosition] = []
     seconds = []
@@ -84,6 +83,17 @@ def solve_full_contact(
         unknowns=np.array([position.unknowns for position in solved], dtype=np.int64),
         cpu_seconds=np.array(seconds),
     )
+
+
+def _check(torques: Sequence[float], positions: Sequence[float]) -> None:
+    """Refuse torques and positions that cannot be solved."""
+    for name, values in (("torques", torques), ("positions", positions)):
+        if len(values) == 0:
+            raise InputError(name, "none", "at least one number")
+    for torque in torques:
+        positive("torques", torque, "On gear 1, in N m.")
+    for position in positions:
+        finite("positions", position, "By the driving gear, in base pitches.")
 
 
 def _with_error(fine: SolvedPosition, coarse: SolvedPosition) -> SolvedPosition:

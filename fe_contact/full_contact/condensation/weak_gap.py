@@ -1,12 +1,13 @@
 """Weak gap of one tooth pair by segment integration: linear hats of pressure on the slave, no penalty.
 
-Hats phi_i stand on the corners of the slave's elements. With the outward normal n of the slave, the gap g
-along it to the master and the points x_s, x_m that face each other,
+Hats phi_i stand on the nodes of the slave's elements, the mid-side ones too. With the outward normal n of the
+slave, the gap g along it to the master and the points x_s, x_m that face each other,
 
     G_i = integral of phi_i g,   forces of hat i: -phi_i n on the slave, +phi_i n on the master,
 
 so that what these forces do to the displacements is dG_i: action is reaction, and the compliance symmetric.
-Segments end at the corners of both strips and at the master's tip edge, beyond which nothing touches.
+Segments end at the hats, at the corners of the mate's elements, and at the master's tip edge, beyond which
+nothing touches.
 """
 
 from __future__ import annotations
@@ -93,7 +94,7 @@ def _facing(slave: FlankCurve, master: FlankCurve, reference: FlankCurve) -> _Fa
     """Return the quadrature points of all segments."""
     feet = slave.foot_of(master.nodes[::2], reference)
     low, high = np.clip([feet.min(), feet.max()], 0.0, slave.pieces)
-    breaks = np.concatenate([np.arange(slave.pieces + 1.0), feet])
+    breaks = np.concatenate([0.5 * np.arange(2 * slave.pieces + 1.0), feet])
     breaks = np.unique(np.clip(breaks, low, high))
     middle, half = 0.5 * (breaks[1:] + breaks[:-1]), 0.5 * np.diff(breaks)
     t = (middle[:, None] + half[:, None] * _GAUSS).ravel()
@@ -104,8 +105,8 @@ def _facing(slave: FlankCurve, master: FlankCurve, reference: FlankCurve) -> _Fa
     points, t, weights = slave.points(t[hit]), t[hit], weights[hit]
     undeformed = reference.points(t)
     lengths = weights * np.linalg.norm(undeformed.slope, axis=1)
-    corners = np.arange(slave.pieces + 1.0)
-    hats = np.maximum(1.0 - np.abs(t[:, None] - corners), 0.0)
+    nodes = 0.5 * np.arange(2 * slave.pieces + 1.0)
+    hats = np.maximum(1.0 - 2.0 * np.abs(t[:, None] - nodes), 0.0)
     return _Facing(points, master.points(met[hit]), undeformed.normals, hats, lengths)
 
 
