@@ -17,8 +17,8 @@ Solution = tuple[LinearizedContact, FloatArray, float]
 def bore_checks(geometry: PairGeometry, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
     """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1.
 
-    The moment of the reactions at gear 1's bore is the torque, at gear 2's bore that of the contact forces; the
-    work u f of both gears is p C p. Nothing condensed enters the reactions: all nodes are solved for.
+    The moment of the reactions at gear 1's bore is the torque, at gear 2's bore that of the contact forces;
+    the work u f of both gears is p C p. Nothing condensed enters the reactions: all nodes are solved for.
     """
     reactions, work = zip(*(_of_body(geometry, number, solutions) for number in range(2)), strict=True)
     found = []
