@@ -1,18 +1,23 @@
-"""Full finite-element contact of a spur pair by CalculiX: a peer that shares the mesher and nothing else."""
+"""Full finite-element contact of spur pairs: a condensed peer, and CalculiX that checks it.
+
+They share geometry and mesher with the rest of the project, and nothing of its contact.
+"""
 
 from fe_contact.full_contact.calculix import Run, find_calculix, run_calculix, version_of
-from fe_contact.full_contact.loaded_position import FullContactPoint, solve_position
-from fe_contact.full_contact.meshing import FullContactMesh, full_contact_mesh
+from fe_contact.full_contact.condensation import FullContactTable, Resolution, solve_full_contact
+from fe_contact.full_contact.loaded_position import solve_position
+from fe_contact.full_contact.point import FullContactPoint
 from fe_contact.full_contact.validity import refusal
 
 __all__ = [
-    "FullContactMesh",
     "FullContactPoint",
+    "FullContactTable",
+    "Resolution",
     "Run",
     "find_calculix",
-    "full_contact_mesh",
     "refusal",
     "run_calculix",
+    "solve_full_contact",
     "solve_position",
     "version_of",
 ]

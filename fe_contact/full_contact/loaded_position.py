@@ -2,96 +2,68 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from fe_contact.full_contact.calculix import Run, run_calculix
+from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
+from fe_contact.full_contact.condensation.resolution import Resolution
+from fe_contact.full_contact.condensation.sites import Range, contact_sites
 from fe_contact.full_contact.input_deck import Loading, input_deck, numbered_bodies
-from fe_contact.full_contact.meshing import FullContactMesh
 from fe_contact.full_contact.placed_pair import PlacedPair, no_load_gap, placed_pair
+from fe_contact.full_contact.point import FullContactPoint
 from fe_contact.full_contact.result_file import read_printed
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz.line_contact import contact_modulus, peak_pressure
-from fe_contact.types import Json, Status
+from fe_contact.types import Status
 
 OVERLAP_PART = 1e-4
 """Of the deflection that the overlap of the penalty may take: 1 nm in 10 um."""
 START_PART = 0.01
 """Of the deflection by which teeth overlap at the start: more costs iterations, none leaves gear 1 loose."""
+REACHED = 2.0
+"""Deflections by which teeth off the path of contact may come to touch."""
 MESH_MODULUS = 20e9 / 210e9
 """Deflection of steel teeth, about 20 N/(mm um), over the modulus of elasticity: a first guess."""
-
-
-@dataclass(frozen=True)
-class FullContactPoint:
-    """One solved position, or why there is none.
-
-    Attributes
-    ----------
-    position : float
-        By the driving gear, base pitches; NaN without a solution.
-    transmission_error : float
-        m, >= 0 under load; NaN without a solution.
-    status : Status
-    reason : str
-        Empty if it converged.
-    iterations : int
-    residual : float
-        Equilibrium: moment of the contact forces about gear 1's centre over the torque, less 1.
-    torque_ratio : float
-        Torque of gear 2 over that of gear 1.
-    """
-
-    position: float
-    transmission_error: float
-    status: Status
-    reason: str
-    iterations: int
-    residual: float
-    torque_ratio: float
-
-    def to_json(self) -> Json:
-        """Return plain JSON; a point without a solution has its status and reason only."""
-        facts = {"status": self.status.name.lower(), "iterations": self.iterations}
-        if not self.status.usable:
-            return facts | {"reason": self.reason}
-        return facts | {
-            "position": self.position,
-            "transmission_error_m": self.transmission_error,
-            "equilibrium_residual": self.residual,
-            "torque_ratio": self.torque_ratio,
-        }
 
 
 def solve_position(
     program: str,
     pair: ParallelAxes,
-    mesh: FullContactMesh,
     normal_force: float,
     position: float,
     cpu_limit: float,
+    resolution: Resolution | None = None,
 ) -> FullContactPoint:
-    """Solve one position.
+    """Solve one position on a mesh of its own: that of the condensed peer.
 
     Parameters
     ----------
     program : str
         CalculiX.
-    pair : GearPair
+    pair : GearPair or InternalGearPair
         Without `refusal`.
-    mesh : FullContactMesh
     normal_force : float
         N; its torque is that of gear 1.
     position : float
         By the driven gear, base pitches; any.
     cpu_limit : float
         CPU seconds.
+    resolution : Resolution, optional
+
+    Raises
+    ------
+    MeshError
+        There is no mesh.
     """
-    turn = round(position)
-    guess = normal_force / pair.face_width / (MESH_MODULUS * pair.pinion.material.youngs_modulus)
-    gap = no_load_gap(pair, mesh.reach, position - turn)
-    placed = placed_pair(pair, mesh, position - turn, gap + START_PART * guess)
+    phase = position - round(position)
+    line_load = normal_force / pair.face_width
+    guess = line_load / (MESH_MODULUS * pair.pinion.material.youngs_modulus)
+    gap = no_load_gap(pair, phase)
+    held = Range((line_load, line_load), gap + REACHED * guess)
+    fineness = resolution or Resolution()
+    bodies = placed_bodies(pair, phase, contact_sites(pair, phase, held, fineness), fineness)
+    placed = placed_pair(pair, bodies, gap + START_PART * guess)
     loading = _loading(pair, normal_force, guess)
     with TemporaryDirectory(prefix="full_contact_") as folder:
         run = run_calculix(program, input_deck(placed, loading), Path(folder), cpu_limit)
@@ -133,11 +105,10 @@ def _point(
         reason="",
         iterations=run.iterations,
         residual=printed.moment(points, driving.center) / torque - 1.0,
-        torque_ratio=-printed.moment(points, driven.center) / torque,
+        torque_ratio=abs(printed.moment(points, driven.center)) / torque,
     )
 
 
 def _failed(run: Run) -> FullContactPoint:
     """Return a point without a solution."""
-    nothing = float("nan")
-    return FullContactPoint(nothing, nothing, run.status, run.reason, run.iterations, nothing, nothing)
+    return FullContactPoint.failed(run.status, run.reason, run.iterations)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from fe_contact.geometry import CLAMPED, Gear, GearPair, ParallelAxes
+from fe_contact.geometry import CLAMPED, ParallelAxes, Toothing
 
 
 def refusal(pair: ParallelAxes) -> str | None:
-    """Say why a pair is not one of the two clamped, solid, external spur gears it takes; None if it is."""
-    if not isinstance(pair, GearPair):
-        return "set up for external pairs"
+    """Say why a pair is not one of two clamped, solid spur gears; None if it is."""
     if pair.pinion.helix_angle != 0.0:
         return "helical: plane strain holds spur pairs only"
     if pair.shafts != (None, None):
@@ -19,9 +17,9 @@ def refusal(pair: ParallelAxes) -> str | None:
     return None
 
 
-def _of_gear(gear: Gear) -> str | None:
+def _of_gear(gear: Toothing) -> str | None:
     """Say what of a gear it has no room for."""
-    if gear.blank is not None:
+    if gear.web is not None:
         return "rim, web and hub: one section stands for the whole face"
     if gear.seat != CLAMPED:
         return "seat of the bore: it is rigid"

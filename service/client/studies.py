@@ -74,6 +74,7 @@ class Studies(JobClient):
         progress: Watch | None = None,
         *,
         rungs: Sequence[str] | None = None,
+        full_contact: int | None = None,
     ) -> dict[str, Any]:
         """Return the error of each rung of the accuracy ladder against its time: submit, wait, fetch.
 
@@ -84,13 +85,17 @@ class Studies(JobClient):
         progress : callable, optional
         rungs : sequence of str, optional
             Rungs to run, at least two; default all that are valid.
+        full_contact : int, optional
+            Positions of a case, 1 to 64, at which full finite-element contact is run beside the ladder.
 
         Returns
         -------
         dict
             As ``loa frontier --json`` prints it; times are those of the service's machine.
         """
-        return self._json("frontier", given, progress, {} if rungs is None else {"rungs": list(rungs)})
+        asked: dict[str, Any] = {} if rungs is None else {"rungs": list(rungs)}
+        beside = {} if full_contact is None else {"full_contact": full_contact}
+        return self._json("frontier", given, progress, asked | beside)
 
     def optimise(
         self, case: CaseLike, study: Mapping[str, Any], progress: Watch | None = None

@@ -20,7 +20,7 @@ def frontier_of(
 ) -> Frontier:
     """Run the ladder on a case, over all pitches that differ, with the whole receipt.
 
-    `full_contact` positions are run by CalculiX beside it.
+    `full_contact` positions are run by full finite-element contact beside it.
 
     Raises
     ------

@@ -25,6 +25,7 @@ def climb_ladder(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
         found = run_frontier_of(ordered.scene, order.inputs["rungs"], progress)
     else:
         case = Case.model_validate_json(json.dumps(order.inputs["case"]))
-        found = frontier_of(case, order.inputs["rungs"], progress)
+        full_contact = order.inputs.get("full_contact")
+        found = frontier_of(case, order.inputs["rungs"], progress, full_contact=full_contact)
     file.write_text(f"{json.dumps(found.to_json(), allow_nan=False)}\n", encoding="utf-8")
     return (*products, Product(order.key, "frontier", file, warnings))

@@ -84,7 +84,8 @@ def prepare_frontier(inputs: BoundaryModel, store: ResultStore) -> Json:
     """Check what the ladder is run on; return it with all defaults and the rungs in their order."""
     assert isinstance(inputs, FrontierInput)
     given = _case_or_scene(inputs, store)
-    return {**given, "rungs": rungs_asked(inputs.rungs, of_scene="scene" in given)}
+    beside = {} if inputs.full_contact is None else {"full_contact": inputs.full_contact}
+    return {**given, "rungs": rungs_asked(inputs.rungs, of_scene="scene" in given), **beside}
 
 
 def prepare_optimisation(inputs: BoundaryModel, _store: ResultStore) -> Json:

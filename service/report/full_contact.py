@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_contact.analysis.frontier import Frontier
 from fe_contact.analysis.ladder.full_contact import ORIGIN
-from fe_contact.analysis.measured_full_contact import MeasuredFullContact
+from fe_contact.analysis.measured_full_contact import PROGRAM, MeasuredFullContact
 from service.report import palette
 from service.report.figure import Line, Note, number
 
@@ -59,8 +59,15 @@ def _live_row(found: Frontier, measured: MeasuredFullContact) -> tuple[str, ...]
     errors = (measured.mean_error, measured.peak_to_peak_error)
     mean, swing = (number(100.0 * error, 2) if np.isfinite(error) else "" for error in errors)
     title = f"full contact of this case, {measured.unknowns // 1000} k unknowns"
-    mark = f"run at {len(measured.solved)} of {len(measured.points)} positions"
+    mark = f"{len(measured.solved)} of {len(measured.points)} positions x loads solved"
     return title, number(measured.seconds(found.solves), 3), mean, swing, "", mark
+
+
+def _own(measured: MeasuredFullContact) -> str:
+    """Say what error the peer states of itself."""
+    if not np.isfinite(measured.own_error):
+        return ""
+    return f" Its own meshes differ by at most {number(100.0 * measured.own_error, 2)} %."
 
 
 def caption(found: Frontier) -> str:
@@ -77,9 +84,9 @@ def caption(found: Frontier) -> str:
         else ""
     )
     return (
-        f"{known}On this case {measured.program} ran {len(measured.points)} positions at "
-        f"{measured.torque:.4g} N m in plane strain ({measured.unknowns // 1000} k unknowns, "
-        f"{number(measured.cpu_seconds, 3)} CPU s): its errors are those of these positions at this load "
-        f"and hold what plane strain leaves out; its time is extrapolated, the mean of a position times "
-        f"{found.solves}.{beside}"
+        f"{known}On this case {PROGRAM} solved {measured.positions} positions under all loads in plane "
+        f"strain ({measured.unknowns // 1000} k unknowns, {number(measured.cpu_seconds, 3)} CPU s): its "
+        f"errors are those at these positions, the worst of all loads, and hold what plane strain leaves "
+        f"out; its time is extrapolated, the mean of a position and load times {found.solves}."
+        f"{_own(measured)}{beside}"
     )

@@ -114,6 +114,17 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(
     assert progress[-1] == pytest.approx(1.0)
 
 
+def test_full_contact_runs_beside_the_ladder_of_a_case(tmp_path: Path) -> None:
+    made, _ = worked(prepared(FRONTIER, case=CASE, rungs=CLOSED, full_contact=1), tmp_path, tmp_path)
+    beside = made["full_contact"]
+    assert (beside["positions_run"], beside["positions_solved"]) == (1, 1)
+    assert beside["torques_n_m"] == pytest.approx([20.0, 40.0])
+    assert beside["own_error_estimate"] < 5e-3
+    assert FRONTIER.key(prepared(FRONTIER, case=CASE, full_contact=1)) != FRONTIER.key(
+        prepared(FRONTIER, case=CASE)
+    )
+
+
 def test_equal_questions_in_other_words_are_one_result() -> None:
     everything = [rung.name for rung in RUNGS]
     keys = [
@@ -132,6 +143,8 @@ def test_equal_questions_in_other_words_are_one_result() -> None:
         ({"case": CASE, "rungs": ["iso6336", "4d"]}, "rungs"),
         ({"case": CASE, "rungs": [SCENE_RUNGS[0].name, *CLOSED]}, "rungs"),
         ({"case": CASE, "rung": CLOSED}, "rung"),
+        ({"case": CASE, "full_contact": 0}, "full_contact"),
+        ({"case": CASE, "full_contact": 65}, "full_contact"),
         ({"case": CASE | {"load": {"torque_n_m": [-1.0]}}}, "load.torque_n_m"),
     ],
 )

@@ -42,7 +42,7 @@ def frontier(
     full_contact: Annotated[
         int | None,
         typer.Option(
-            help="Positions of a spur pair to run by full contact in CalculiX: half a CPU minute each."
+            help="Positions of a spur pair to run by full finite-element contact: about 3 CPU s each."
         ),
     ] = None,
     json: AsJson = False,

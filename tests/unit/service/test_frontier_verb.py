@@ -12,7 +12,7 @@ from fe_contact.analysis.frontier import Frontier
 from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, MEASURED_GEAR, known_full_contact
 from fe_contact.analysis.measured_full_contact import MeasuredFullContact
 from fe_contact.analysis.rung_result import RungResult
-from fe_contact.full_contact import FullContactPoint
+from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status
 from service.cli.commands import app
@@ -79,19 +79,24 @@ def test_full_contact_is_known_of_the_very_pair_alone() -> None:
 
 
 def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) -> None:
-    point = FullContactPoint(0.0, 7.8e-6, Status.CONVERGED, "", 9, 1e-8, 1.0)
-    points = (point, dataclasses.replace(point, status=Status.NOT_COMPUTED))
-    errors = {"mean_error": 0.03, "plane_strain_mean": 0.002}
-    live = MeasuredFullContact("CalculiX 2.20", 90_000, 100.0, points, 60.0, 2.0, 50.0, **errors)
+    point = FullContactPoint(0.0, 7.8e-6, Status.CONVERGED, "", 9, 1e-8, 1.0, error_estimate=7.8e-9)
+    points = (point, FullContactPoint.failed(Status.NOT_COMPUTED, "no mesh"))
+    one = np.ones(1)
+    table = FullContactTable(
+        0.0 * one, 100.0 * one, ((points[0],), (points[1],)), np.array([90_000]), 60.0 * one
+    )
+    table = dataclasses.replace(table, position=np.array([0.0, 0.5]))
+    live = MeasuredFullContact(table, 50.0, mean_error=0.03, plane_strain_mean=0.002)
     figure = frontier_figure(dataclasses.replace(found, full_contact=live))
     mean, swing = figure.content
     drawn = {line.name: line for line in mean.lines}["full contact, run on this case"]
-    assert (drawn.x.tolist(), drawn.y.tolist()) == ([pytest.approx(2.0 + 30.0 * 64)], [pytest.approx(3.0)])
+    assert (drawn.x.tolist(), drawn.y.tolist()) == ([pytest.approx(30.0 * 64)], [pytest.approx(3.0)])
     assert mean.notes[-1].text == "full contact"
     assert "full contact" not in [note.text for note in swing.notes]  # one position has no peak-to-peak
-    assert "2 positions at 100 N m" in figure.caption and "differs from it by 0.20 %" in figure.caption
+    assert "2 positions under all loads" in figure.caption and "differs from it by 0.20 %" in figure.caption
+    assert "differ by at most 0.10 %" in figure.caption
     assert figure.table is not None
-    assert figure.table.rows[-1][-1] == "run at 1 of 2 positions"
+    assert figure.table.rows[-1][-1] == "1 of 2 positions x loads solved"
 
 
 def test_full_contact_is_for_cases(tmp_path: Path) -> None:

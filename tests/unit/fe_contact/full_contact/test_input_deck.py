@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair
+from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
+from fe_contact.full_contact.condensation.resolution import Resolution
+from fe_contact.full_contact.condensation.sites import Range, contact_sites
 from fe_contact.full_contact.input_deck import Loading, input_deck, numbered_bodies
-from fe_contact.full_contact.meshing import FullContactMesh
 from fe_contact.full_contact.placed_pair import PlacedPair, placed_pair
 from fe_contact.full_contact.result_file import read_printed
-from fe_contact.mesh import MeshRecipe, mesh_gear
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 LOADING = Loading((GEAR.material, GEAR.material), GEAR.base_radius, 25e-3, 2660.0, 1e18)
@@ -31,9 +31,9 @@ PRINTED = """
 
 @pytest.fixture(scope="module")
 def placed() -> PlacedPair:
-    recipe = replace(MeshRecipe.standard(GEAR), flank_size=0.8e-3, tip_size=0.4e-3, growth=0.8, real_teeth=5)
-    mesh = mesh_gear(GEAR, recipe)
-    return placed_pair(GearPair(GEAR, GEAR, 80e-3), FullContactMesh((mesh, mesh), 1), 0.3)
+    pair, coarse = GearPair(GEAR, GEAR, 80e-3), Resolution(1.5)
+    sites = contact_sites(pair, 0.3, Range((1e5, 1e5), 1e-6), coarse)
+    return placed_pair(pair, placed_bodies(pair, 0.3, sites, coarse), 0.0)
 
 
 def test_no_field_is_longer_than_calculix_reads(placed: PlacedPair) -> None:
@@ -60,7 +60,7 @@ def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed: PlacedPair) -> N
 
 def test_every_tooth_pair_has_its_surfaces_on_the_loaded_flanks(placed: PlacedPair) -> None:
     deck = input_deck(placed, LOADING)
-    assert deck.count("*CONTACT PAIR") == len(placed.meetings) == 3
+    assert deck.count("*CONTACT PAIR") == len(placed.meetings) == 2
     for number, (_, tooth) in enumerate(placed.meetings):
         surface = re.search(rf"NAME=GEAR2FLANK{number}, TYPE=ELEMENT\n((?:\d+,S\d\n)+)", deck)
         assert surface is not None

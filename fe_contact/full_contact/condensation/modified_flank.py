@@ -1,0 +1,39 @@
+"""The loaded flank with its modification: exact profile less the material removed along its normal."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fe_contact.geometry import Toothing, tooth_profile
+from fe_contact.types import FloatArray
+
+
+def material_removed(gear: Toothing, s: FloatArray) -> FloatArray:
+    """Return what is removed along the normal at flank coordinates, m; it fades out over the fillet."""
+    profile = tooth_profile(gear)
+    roll = profile.roll_length(np.clip(s, profile.s_form, profile.s_tip))
+    return removed_at_roll(gear, roll) * np.clip((s - profile.s_root) / profile.fillet_length, 0.0, 1.0)
+
+
+def removed_at_roll(gear: Toothing, roll: FloatArray) -> FloatArray:
+    """Return what is removed at roll lengths, m; beyond the ends of the involute as much as there."""
+    ends = gear.form_roll_length, gear.tip_roll_length
+    within = np.clip(roll, min(ends), max(ends))
+    return np.asarray(gear.modification.material_removed(gear, within, 0.0), dtype=float)
+
+
+def modified_flank(gear: Toothing, s: FloatArray) -> FloatArray:
+    """Return points (n, 2) of the loaded right flank in the tooth frame at flank coordinates (n,), m."""
+    profile = tooth_profile(gear)
+    return np.asarray(profile.flank(s) - material_removed(gear, s)[:, None] * profile.normal(s))
+
+
+def kinks(gear: Toothing) -> FloatArray:
+    """Return the flank coordinates where the slope or the curvature of the flank jumps, m, rising."""
+    profile = tooth_profile(gear)
+    starts = [start.roll_length for start in gear.modification.relief_starts(gear)]
+    reliefs = gear.sign * 0.5 * np.square(starts) / gear.base_radius
+    inner = np.concatenate([[profile.s_root, profile.s_form], reliefs])
+    close = 1e-6 * gear.normal_module
+    inner = np.unique(inner[(inner > profile.s_space + close) & (inner < profile.s_tip - close)])
+    return np.asarray(inner[np.diff(inner, prepend=-np.inf) > close])

@@ -1,0 +1,79 @@
+"""The transmission error of a pair at one position under one torque, by full finite-element contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fe_contact.types import Json, Status
+
+NOTHING = float("nan")
+
+
+@dataclass(frozen=True)
+class FullContactPoint:
+    """One solved position under one torque, or why there is none.
+
+    Attributes
+    ----------
+    position : float
+        By the driving gear, base pitches; NaN without a solution.
+    transmission_error : float
+        r_b1 theta_1 - r_b2 theta_2 in m, >= 0 under load; NaN without a solution.
+    status : Status
+    reason : str
+        Empty if it converged.
+    iterations : int
+    residual : float
+        Largest relative breach of the laws that are checked: the moment of the bore's reactions is the torque
+        and, for the condensed peer, u f = p C p, pressures and gaps are >= 0, and one of them is 0.
+    torque_ratio : float
+        Torque of gear 2 over that of gear 1.
+    torque : float
+        On gear 1, N m; NaN if not known.
+    load_share : mapping of int to float
+        Share of each pair in the torque on gear 1, by pair index; empty if not known.
+    max_pressure : float
+        Over the length of an element, Pa; under a tip edge it grows without bound as the mesh is refined. NaN
+        if not known.
+    error_estimate : float
+        Half-width of the discretisation's error band, m; NaN if not asked for.
+    """
+
+    position: float
+    transmission_error: float
+    status: Status
+    reason: str
+    iterations: int
+    residual: float
+    torque_ratio: float
+    torque: float = NOTHING
+    load_share: Mapping[int, float] = field(default_factory=dict)
+    max_pressure: float = NOTHING
+    error_estimate: float = NOTHING
+
+    @classmethod
+    def failed(
+        cls, status: Status, reason: str, iterations: int = 0, torque: float = NOTHING
+    ) -> FullContactPoint:
+        """Return a point without a solution."""
+        return cls(NOTHING, NOTHING, status, reason, iterations, NOTHING, NOTHING, torque)
+
+    def to_json(self) -> Json:
+        """Return plain JSON; a point without a solution has its status and reason only."""
+        facts: Json = {"status": self.status.name.lower(), "iterations": self.iterations}
+        if np.isfinite(self.torque):
+            facts["torque_n_m"] = self.torque
+        if not self.status.usable:
+            return facts | {"reason": self.reason}
+        facts |= {
+            "position": self.position,
+            "transmission_error_m": self.transmission_error,
+            "equilibrium_residual": self.residual,
+            "torque_ratio": self.torque_ratio,
+        }
+        if np.isfinite(self.error_estimate):
+            facts["error_estimate_m"] = self.error_estimate
+        return facts
