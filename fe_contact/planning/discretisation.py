@@ -22,8 +22,13 @@ SLICES = 15
 """Of the face; false orders of helical pairs are then about 1 nm."""
 FINER_SLICES = (23, 31)
 """What a tolerance may ask for beside them."""
+RESOLVED = 2.0
+"""Elements in the half-width of a load patch over the face."""
 SLICE_ORDER = 2.3
 """Of STE in the number of slices: measured 2.2 to 2.9 on helical pairs between 7 and 15."""
+SLICE_OVER_PATCH = 1.0
+"""Least width of a slice over the half-width of the load patches: of narrower ones the bodies less what is in
+the local law lose definiteness, and heavy loads have no unique solution."""
 COARSER = 1.5
 """Elements of the coarse mesh of a solid over those of its own."""
 
@@ -82,7 +87,8 @@ class FaceDiscretisation:
     slices : int
         Of the common face width.
     most_slices : int
-        Of two thirds of a layer of either gear: narrower ones would move the same freedoms of the bodies.
+        Of two thirds of a layer of either gear, narrower ones would move the same freedoms of the bodies, and
+        of `SLICE_OVER_PATCH`.
     """
 
     recipes: tuple[SectorRecipe, SectorRecipe]
@@ -126,7 +132,7 @@ class FaceDiscretisation:
     @property
     def least_patch(self) -> float:
         """Half-width in m that the mesh resolves along the profile and, as well as that, along the face."""
-        return 2.0 * max(recipe.flank_size for recipe in self.recipes)
+        return RESOLVED * max(recipe.flank_size for recipe in self.recipes)
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -161,9 +167,10 @@ def face_discretisation(pair: ParallelAxes, level: str, slices: int | None = Non
 
 
 def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:
-    """Return how many slices of the common face are as wide as two thirds of a layer; 1 at least."""
+    """Return how many slices of the common face a mesh tells apart, by its layers and load patches."""
     layers = recipe.layers * pair.face_width / gear.face_width
-    return max(math.floor(1.5 * layers * (1.0 + 1e-9)), 1)
+    patches = pair.face_width / (RESOLVED * recipe.flank_size)
+    return max(math.floor(min(1.5 * layers, patches / SLICE_OVER_PATCH) * (1.0 + 1e-9)), 1)
 
 
 def _coarser(recipe: SectorRecipe, gear: Toothing) -> SectorRecipe:
