@@ -17,6 +17,7 @@ from benchmarks import (
     finite_width,
     full_contact_cost,
     full_contact_coverage,
+    full_contact_picture,
     live_honesty,
     long_phase,
     other_engine,
@@ -88,6 +89,7 @@ def main(arguments: Sequence[str]) -> int:
             error_honesty.publish(error_honesty.judged(), machine)
         if "full_contact_coverage" in record:
             full_contact_coverage.publish(full_contact_coverage.assessed(), machine)
+            full_contact_picture.draw()
         if "live_honesty" in record:
             live_honesty.publish(live_honesty.judged(), machine)
         if "tolerance_promise" in record:

@@ -78,8 +78,8 @@ def _assessed(case: FullContactCase, level: str) -> Assessed:
     position, exact, error = reference(case.name)
     table = analyze(case.pair, normal_forces=case.forces, model="plane_strain", level=level)
     found = np.array([table.curve(force=force, at=position).ste for force in table.force]).T
-    value = _quantities(position, found)
-    true = np.abs(value - _quantities(position, exact))
+    value = quantities(position, found)
+    true = np.abs(value - quantities(position, exact))
     own = np.stack([np.mean(error, axis=0)] * len(QUANTITIES))
     return Assessed(case, level, value, stated(table, case.pair), true, own)
 
@@ -112,7 +112,7 @@ def reference(name: str) -> tuple[FloatArray, FloatArray, FloatArray]:
     return np.array(position), values[..., 0], values[..., 1]
 
 
-def _quantities(position: FloatArray, ste: FloatArray) -> FloatArray:
+def quantities(position: FloatArray, ste: FloatArray) -> FloatArray:
     """Return mean, peak-to-peak and three harmonics (5, loads) of STE (P, loads) at positions (P,)."""
     turns = 2.0 * np.pi * np.outer(position, np.arange(1, _FITTED + 1))
     waves = np.hstack([np.ones((len(position), 1)), np.cos(turns), np.sin(turns)])

@@ -75,7 +75,7 @@ def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, ke
     first, again = (client.post(f"/v1/databases/{key}/ste", json=question).json() for question in questions)
     for curve in again["curves"]:
         assert 0.0 < curve["peak_to_peak_error_um"] < 0.2 * curve["peak_to_peak_um"]
-        assert 0.0 < curve["mean_error_um"] < 0.05 * curve["mean_um"]
+        assert 0.0 < curve["mean_error_um"] < 0.08 * curve["mean_um"]  # plane strain was asked for
         assert len(curve["harmonics_error_um"]) == len(curve["harmonics_um"])
         by_source = curve["error_by_source_um"].values()
         total = sum(source["peak_to_peak"] ** 2 for source in by_source) ** 0.5
