@@ -118,6 +118,8 @@ class State(NamedTuple):
         Of the contacts under these motions: N, N/m.
     pressed : ndarray, shape (n,)
         Those forces on the slices N'F, N.
+    strip : ndarray, shape (m, 4)
+        The strips found last where gaps are no parabolas, or zeros; see `force_at`.
     """
 
     held: FloatArray
@@ -125,6 +127,14 @@ class State(NamedTuple):
     force: FloatArray
     slope: FloatArray
     pressed: FloatArray
+    strip: FloatArray
+
+
+@njit(cache=True, error_model="numpy")
+def state_of(force: FloatArray, slices: int) -> State:
+    """Return forces (m,) of the contacts in N before anything has moved; they are not copied."""
+    held, moved, pressed = np.zeros((3, slices))
+    return State(held, moved, force, np.zeros(force.size), pressed, np.zeros((force.size, 4)))
 
 
 @njit(cache=True, error_model="numpy")
@@ -139,8 +149,7 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
         state.force[q], state.slope[q] = 0.0, 0.0
         i = place[q]
         first, row = i // points * count, i % points
-        for a in range(count):
-            closer -= blend[row, a] * moved[first + a]
+        closer -= dot(blend[row], moved[first : first + count], count)
         if closer <= 0.0:
             continue
         half = plain_strip(curvature[i], length, closer)
@@ -148,7 +157,7 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
             line_load, stiffness = plain_load(curvature[i], length, modulus[i], half, closer)
             state.force[q], state.slope[q] = width[i] * line_load, width[i] * stiffness
         else:
-            state.force[q], state.slope[q] = force_at(problem.law, i, closer)
+            state.force[q], state.slope[q] = force_at(problem.law, i, closer, state.strip[q])
     press(problem, state.force, state.pressed)
 
 
