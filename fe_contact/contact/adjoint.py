@@ -33,7 +33,6 @@ from fe_contact.contact.point_problem import (
     point_problems,
     press,
     problem_at,
-    state_of,
 )
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.solution import ContactSolution
@@ -88,7 +87,7 @@ def _weigh(
 def _linearised(problem: PointProblem, force: FloatArray) -> tuple[State, NewtonSystem, int]:
     """Return the state of a solution, and Newton's equations there with their number."""
     n = problem.bodies.shape[0]
-    state, system = state_of(force, n), empty_system(n)
+    state, system = State(np.zeros(n), np.zeros(n), force, np.zeros(force.size), np.zeros(n)), empty_system(n)
     for q in range(force.size):
         if force[q] > 0.0:
             state.slope[q] = 1.0 / approach(problem.law, problem.place[q], force[q])[1]

@@ -37,19 +37,23 @@ def eliminate(a: FloatArray, right: FloatArray, n: int) -> bool:
             _swap(a[j], a[pivot], n)
             for each in right:
                 each[j], each[pivot] = each[pivot], each[j]
-        upper = a[j]
         for i in range(j + 1, n):
-            row = a[i]
-            if row[j] != 0.0:
-                part = row[j] / upper[j]
-                for k in range(j + 1, n):
-                    row[k] -= part * upper[k]
+            if a[i, j] != 0.0:
+                part = a[i, j] / a[j, j]
+                subtract(a[i, j + 1 : n], a[j, j + 1 : n], part)
                 for each in right:
                     each[i] -= part * each[j]
     for each in right:
         for i in range(n - 1, -1, -1):
             each[i] = (each[i] - dot(a[i, i + 1 : n], each[i + 1 : n], n - i - 1)) / a[i, i]
     return True
+
+
+@njit(cache=True, error_model="numpy")
+def subtract(x: FloatArray, y: FloatArray, part: float) -> None:
+    """Subtract a part of one row from another of the same length."""
+    for k in range(x.size):
+        x[k] -= part * y[k]
 
 
 @njit(cache=True, error_model="numpy")

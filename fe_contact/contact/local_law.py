@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from fe_contact.contact.strip import Gap, free_strip, half_strip, placed_load, strip_load, strip_middle
+from fe_contact.contact.strip import Gap, free_strip, half_strip, strip_load, strip_middle
 from fe_contact.types import FloatArray
 
 SMALLEST_STRIP = 1e-4
@@ -94,12 +94,10 @@ def carrying_strip(law: LocalLaw, i: int, force: float) -> tuple[float, float]:
 
 
 @njit(cache=True, error_model="numpy")
-def force_at(law: LocalLaw, i: int, value: float, last: FloatArray) -> tuple[float, float]:
+def force_at(law: LocalLaw, i: int, value: float) -> tuple[float, float]:
     """Force of contact `i` in N at a local approach in m, and its derivative in N/m; zero where flanks part.
 
-    The inverse of `approach`. `last` (4,) is the strip found at an approach near this one, or zeros: half
-    length and middle in m, the power of the half length with which the approach grows, and the approach in m.
-    The search starts there and puts its strip there. The force does not depend on it but for rounding.
+    The inverse of `approach`.
     """
     if value <= 0.0:
         return 0.0, 0.0
@@ -107,10 +105,10 @@ def force_at(law: LocalLaw, i: int, value: float, last: FloatArray) -> tuple[flo
     if half <= law.free[i]:
         load, slope = plain_load(law.gap.curvature[i], law.length, law.modulus[i], half, value)
     else:
-        half, following, carried, rigid = _strip_at(law, i, value, half, last)
+        _, least, _ = _limits(law, i)
+        half = _strip_at(law, i, value, max(half, least))
+        carried, rigid = strip_load(law.gap, i, half, law.modulus[i])
         load, slope = _load_on(half, carried, rigid, law.length, law.modulus[i], value)
-        if half > SMALLEST_STRIP * law.length:  # the load is stationary in the strip, its derivative is not
-            slope = 0.5 * math.pi * law.modulus[i] / (math.log(law.length / following) - 0.25)
     return law.width[i] * load, law.width[i] * slope
 
 
@@ -173,32 +171,24 @@ def free_strips(gap: Gap) -> FloatArray:
 
 
 @njit(cache=True, error_model="numpy")
-def _strip_at(
-    law: LocalLaw, i: int, value: float, half: float, last: FloatArray
-) -> tuple[float, float, float, float]:
-    """Return the half strip in m at an approach in m, a step on from it, line load in N/m and mean gap in m.
-
-    Load and gap are those on the former. The search starts at the `last` one, or else at a guess, and stays
-    within the limits of the law.
-    """
+def _strip_at(law: LocalLaw, i: int, value: float, half: float) -> float:
+    """Half strip in m at an approach in m, from a guess on; at the limits where it would be beyond them."""
     k, low, high = _limits(law, i)
     high = min(high, 0.5 * (law.gap.high[i] - law.gap.low[i]))
-    middle, power = 0.0, 2.0
-    if last[0] > 0.0:
-        half, middle, power = last[0] * (value / last[3]) ** (1.0 / last[2]), last[1], last[2]
-    half = max(min(max(half, low), high), 0.0) if high > low else high
-    below, above = low, high
-    last_half, last_error, following = 0.0, math.inf, half
+    if high <= low:
+        return float(high)
+    half = min(half, high)
+    below, above, power = low, high, 2.0
+    last_half, last_error = 0.0, math.inf
     for _ in range(_STEPS):
-        load, rigid, middle = placed_load(law.gap, i, half, law.modulus[i], middle)
+        load, rigid = strip_load(law.gap, i, half, law.modulus[i])
         error = math.log((rigid + k * load * (math.log(law.length / half) - 0.25)) / value)
         if error < 0.0:
             below = half
         else:
             above = half
         if below >= above:
-            following = half
-            break
+            return half
         if last_half > 0.0:
             power = max((error - last_error) / math.log(half / last_half), 0.3)
         following = half * math.exp(-error / power)
@@ -208,10 +198,7 @@ def _strip_at(
                 following = high
             elif below == low and error > 0.0 and half < 10.0 * low:
                 following = low
-        at_limit = following != half and (following <= low or following >= high)  # where the law changes
-        if abs(following - half) <= _TOLERANCE * half and not at_limit:
-            break
+        if abs(following - half) <= _TOLERANCE * half:
+            return following
         last_half, last_error, half = half, error, following
-    # a power above that of a parabola is of a break that holds the strip: beside it steps would be too short
-    last[0], last[1], last[2], last[3] = half, middle, min(power, 2.0), value
-    return half, following, load, rigid
+    return half

@@ -26,16 +26,7 @@ from numba import njit
 
 from fe_contact.contact.elimination import dot, eliminate
 from fe_contact.contact.local_law import approach
-from fe_contact.contact.point_problem import (
-    PointProblem,
-    State,
-    evaluate,
-    motion_at,
-    move,
-    press,
-    state_of,
-    stiffness,
-)
+from fe_contact.contact.point_problem import PointProblem, State, evaluate, motion_at, move, press, stiffness
 from fe_contact.types import FloatArray, IntArray
 
 CONVERGED, ITERATION_LIMIT, SINGULAR, OUT_OF_MODEL = 0, 1, 2, 3
@@ -112,49 +103,20 @@ def solve_point(
     beyond : bool
         Whether the strip of any contact outgrew the reference length.
     """
-    held = np.zeros(problem.bodies.shape[0])
-    return solve_near(problem, total, force, residual, held, math.nan)
-
-
-@njit(cache=True, error_model="numpy")
-def solve_near(
-    problem: PointProblem,
-    total: float,
-    force: FloatArray,
-    residual: FloatArray,
-    held: FloatArray,
-    deflection: float,
-) -> tuple[float, float, int, int, bool]:
-    """Solve one position at one load from a solution near it; else as `solve_point`.
-
-    Parameters
-    ----------
-    held : ndarray, shape (n,)
-        In: forces on the slices near the solution, N. Out: those of the solution.
-    deflection : float
-        m, near the solution. NaN starts from `force` instead.
-    """
     residual[:] = math.inf
     if force.size == 0:
         return math.nan, math.nan, OUT_OF_MODEL, 0, False
     touch = np.min(problem.gap / problem.motion_arm)
     gap = problem.gap - problem.motion_arm * touch  # from where the first contact touches
-    n = problem.bodies.shape[0]
+    m, n = force.size, problem.bodies.shape[0]
     if math.isnan(touch) or not 0.0 < np.trace(problem.bodies) < math.inf:
         force[:] = 0.0
         return math.nan, math.nan, SINGULAR, 0, False
-    state = state_of(force, n)
-    if math.isnan(deflection):
-        elastic = _start(problem, total, gap, state)
-    else:
-        elastic = deflection - touch
-        state.held[:] = held
-        move(problem, held, state.moved)
-        evaluate(problem, gap, elastic, state)
+    state = State(np.zeros(n), np.zeros(n), force, np.zeros(m), np.zeros(n))
+    elastic = _start(problem, total, gap, state)
     elastic, tangent, status, iterations = _iterate(problem, total, gap, elastic, state)
     if status == SINGULAR:
         return math.nan, math.nan, status, iterations, False
-    held[:] = state.held
     beyond = _residuals(problem, total, elastic, gap, state, residual)
     return touch + elastic, tangent, status, iterations, beyond
 
@@ -252,8 +214,6 @@ def _advance(
     fall = (dot(problem.torque_arm, state.force, gap.size) - total) * step
     fall += dot(motion, state.held - state.pressed, motion.size)
     low, high, at_low, at_high, length = 0.0, math.inf, fall, math.inf, 1.0
-    # what is left of a last step is rounding, and so is the energy along it
-    small = max(abs(step), np.abs(motion).max()) <= STEP_TOLERANCE * elastic
     for _ in range(_CUTS):
         elastic = before + length * step
         state.held[:] = held + length * change
@@ -261,7 +221,7 @@ def _advance(
         evaluate(problem, gap, elastic, state)
         rise = (dot(problem.torque_arm, state.force, gap.size) - total) * step
         rise += dot(motion, state.held - state.pressed, motion.size)
-        if small or not fall < 0.0 or abs(rise) <= -_LEVEL * fall or (rise < 0.0 and high == math.inf):
+        if not fall < 0.0 or abs(rise) <= -_LEVEL * fall or (rise < 0.0 and high == math.inf):
             break
         if rise > 0.0:
             high, at_high = length, rise
@@ -295,17 +255,16 @@ def newton_system(problem: PointProblem, state: State, system: NewtonSystem) -> 
         i = system.member[r]
         first = i // count * count
         system.right[0, r], system.right[1, r] = motion[i], state.pressed[i] - state.held[i]
-        row = system.matrix[r]
-        row[:size] = 0.0
+        system.matrix[r, :size] = 0.0
         for j in range(first, first + count):
-            part, moved = system.touching[max(i, j), min(i, j)], problem.bodies[j]
+            part = system.touching[max(i, j), min(i, j)]
             for s in range(0, size, count):
                 block = system.member[s]
                 for b in range(count):
-                    row[s + b] += part * moved[block + b]
+                    system.matrix[r, s + b] += part * problem.bodies[j, block + b]
             if any_left:
                 system.right[1, r] += part * dot(problem.bodies[j], left, left.size)
-        row[r] += 1.0
+        system.matrix[r, r] += 1.0
     return size
 
 

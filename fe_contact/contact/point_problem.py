@@ -118,8 +118,6 @@ class State(NamedTuple):
         Of the contacts under these motions: N, N/m.
     pressed : ndarray, shape (n,)
         Those forces on the slices N'F, N.
-    strip : ndarray, shape (m, 4)
-        The strips found last where gaps are no parabolas, or zeros; see `force_at`.
     """
 
     held: FloatArray
@@ -127,14 +125,6 @@ class State(NamedTuple):
     force: FloatArray
     slope: FloatArray
     pressed: FloatArray
-    strip: FloatArray
-
-
-@njit(cache=True, error_model="numpy")
-def state_of(force: FloatArray, slices: int) -> State:
-    """Return forces (m,) of the contacts in N before anything has moved; they are not copied."""
-    held, moved, pressed = np.zeros((3, slices))
-    return State(held, moved, force, np.zeros(force.size), pressed, np.zeros((force.size, 4)))
 
 
 @njit(cache=True, error_model="numpy")
@@ -149,7 +139,8 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
         state.force[q], state.slope[q] = 0.0, 0.0
         i = place[q]
         first, row = i // points * count, i % points
-        closer -= dot(blend[row], moved[first : first + count], count)
+        for a in range(count):
+            closer -= blend[row, a] * moved[first + a]
         if closer <= 0.0:
             continue
         half = plain_strip(curvature[i], length, closer)
@@ -157,7 +148,7 @@ def evaluate(problem: PointProblem, gap: FloatArray, elastic: float, state: Stat
             line_load, stiffness = plain_load(curvature[i], length, modulus[i], half, closer)
             state.force[q], state.slope[q] = width[i] * line_load, width[i] * stiffness
         else:
-            state.force[q], state.slope[q] = force_at(problem.law, i, closer, state.strip[q])
+            state.force[q], state.slope[q] = force_at(problem.law, i, closer)
     press(problem, state.force, state.pressed)
 
 

@@ -131,23 +131,16 @@ def half_strip(gap: Gap, i: int, line_load: float, modulus: float) -> tuple[floa
 @njit(cache=True, error_model="numpy")
 def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, float]:
     """Return the line load in N/m under a strip of this half length, and the mean gap over it in m."""
-    load, mean, _ = placed_load(gap, i, half, modulus, 0.0)
-    return load, mean
-
-
-@njit(cache=True, error_model="numpy")
-def placed_load(gap: Gap, i: int, half: float, modulus: float, middle: float) -> tuple[float, float, float]:
-    """Return what `strip_load` does, and the middle of the strip in m, looked for from `middle` on."""
     if half <= free_strip(gap, i):
         rise = 0.25 * gap.curvature[i] * half * half
-        return math.pi * modulus * rise, rise, 0.0
-    centre = strip_middle(gap, i, half, middle)
+        return math.pi * modulus * rise, rise
+    centre = strip_middle(gap, i, half)
     slope, first, mean, _ = _means(gap, i, centre, half)
     if gap.low[i] + half < centre < gap.high[i] - half:  # what is left of the slope is the middle's rounding
         first -= slope * _tilting(gap, i, centre, half)
     else:
         first += abs(slope)
-    return 0.5 * math.pi * modulus * half * first, mean, centre
+    return 0.5 * math.pi * modulus * half * first, mean
 
 
 @njit(cache=True, error_model="numpy")
@@ -171,16 +164,13 @@ def _tilting(gap: Gap, i: int, centre: float, half: float) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def strip_middle(gap: Gap, i: int, half: float, start: float = 0.0) -> float:
-    """Return the middle of a strip in m: where pressure vanishes at both ends, or one end is at an edge.
-
-    It is looked for from `start` on.
-    """
+def strip_middle(gap: Gap, i: int, half: float) -> float:
+    """Return the middle of a strip in m: where pressure vanishes at both ends, or one end is at an edge."""
     low: float = max(-half, gap.low[i] + half)
     high: float = min(half, gap.high[i] - half)
     if low >= high:
         return 0.5 * (low + high)
-    centre, before = min(max(start, low), high), math.inf
+    centre, before = min(max(0.0, low), high), math.inf
     for _ in range(_STEPS):
         slope, _, _, bend = _means(gap, i, centre, half)
         if slope > 0.0:
@@ -188,8 +178,6 @@ def strip_middle(gap: Gap, i: int, half: float, start: float = 0.0) -> float:
         else:
             low = centre
         following = centre - slope / bend
-        if low <= following <= high and abs(following - centre) <= 1e-3 * _TOLERANCE * half:
-            return following  # began there
         if not low < following < high:
             end = high if slope < 0.0 else low
             at_end = _means(gap, i, end, half)[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from fe_contact.contact.newton import CONVERGED, solve_near
+from fe_contact.contact.newton import CONVERGED, solve_point
 from fe_contact.contact.point_problem import PointProblems, point_problems, problem_at
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.contact.solution import ContactSolution
@@ -60,40 +60,19 @@ def _sweep(
     residuals: FloatArray,
     beyond: BoolArray,
 ) -> None:
-    """Fill the result arrays, started from the `first` forces, or from the solutions beside each."""
-    near = np.full((2, loads.size), np.nan)  # deflections of the last position and this one
-    held = np.zeros((2, loads.size, every.present.shape[1]))
+    """Fill the result arrays, started from the `first` forces, or each load from the one below it."""
     for p in range(every.gap.shape[0]):
         point, here = problem_at(every, p)
-        slices = np.flatnonzero(every.present[p % every.present.shape[0]])
-        near[0], held[0] = near[1], held[1]
-        if p % every.present.shape[0] == 0 or every.blend.shape[1] == 1 or first.shape[0] > 0:
-            near[0] = np.nan  # the next pitch counts its teeth anew; in the plane the load below is nearer
-        near[1], held[1] = np.nan, 0.0
         start = np.zeros(here.size)
         for k in range(loads.size):
-            guess, pressed = _beside(near, held, k)
             if first.shape[0] > 0:
                 start = first[p, k][here]
             elif k > 0:
                 start *= loads[k] / loads[k - 1]
-            on = pressed[slices]
-            d, t, code, count, over = solve_near(point, loads[k], start, residuals[p, k], on, guess)
+            d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
             status[p, k], iterations[p, k], beyond[p, k] = code, count, over
             if code == CONVERGED:
                 deflection[p, k], tangent[p, k] = d, t
                 force[p, k][here] = start
-                near[1, k], held[1, k][slices] = d, on
             else:
                 start = np.zeros(here.size)
-
-
-@njit(cache=True, error_model="numpy")
-def _beside(near: FloatArray, held: FloatArray, k: int) -> tuple[float, FloatArray]:
-    """Return deflection and forces on the slices near those at load k, NaN and zeros where none are known.
-
-    What the load adds is what it added at the last position.
-    """
-    if k == 0:
-        return near[0, 0], held[0, 0].copy()
-    return near[1, k - 1] + near[0, k] - near[0, k - 1], held[1, k - 1] + held[0, k] - held[0, k - 1]

@@ -159,10 +159,10 @@ def test_the_force_at_an_approach_is_its_inverse(slope):
     law = law_of(slope)
     for p in np.geomspace(1e-3 * low(law), 1e2 * high(law), 200):
         value, stiffness, _ = approach(law, 0, p * WIDTH)
-        force, per_approach = force_at(law, 0, value, np.zeros(4))
+        force, per_approach = force_at(law, 0, value)
         assert force == pytest.approx(p * WIDTH, rel=1e-11, abs=0.0)
         assert per_approach * stiffness == pytest.approx(1.0, rel=1e-6, abs=0.0)
-    assert force_at(law, 0, -1e-9, np.zeros(4)) == (0.0, 0.0)
+    assert force_at(law, 0, -1e-9) == (0.0, 0.0)
 
 
 def test_a_parabola_needs_no_search():
@@ -173,9 +173,7 @@ def test_a_parabola_needs_no_search():
         value = approach(law, 0, p * WIDTH)[0]
         half = plain_strip(curvature, LENGTH, value)
         load, stiffness = plain_load(curvature, LENGTH, law.modulus[0], half, value)
-        assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(
-            force_at(law, 0, value, np.zeros(4)), rel=1e-12
-        )
+        assert (WIDTH * load, WIDTH * stiffness) == pytest.approx(force_at(law, 0, value), rel=1e-12)
     assert free_strips(gap)[0] == math.inf
     assert free_strips(gap._replace(slope=np.array([0.01])))[0] == 0.0
     assert free_strips(gap._replace(low=np.array([-2e-4]), high=np.array([1e-4])))[0] == 1e-4
@@ -213,23 +211,3 @@ def test_blunt_wedge_keeps_its_digits():
     assert approach(law, 0, p * WIDTH)[1] * WIDTH == pytest.approx(
         2.0 * k * (math.log(patch / half_width_at_edge) - 0.75), rel=1e-10, abs=0.0
     )
-
-
-@pytest.mark.parametrize("slope", [v for v in SLOPES if not math.isnan(v)])
-def test_the_force_does_not_depend_on_the_strip_found_last(slope):
-    # near, far, at the same approach, and on either side of the limits of the law
-    law = law_of(slope)
-    limits = [
-        limit * LENGTH * side for limit in (SMALLEST_STRIP, LARGEST_STRIP) for side in (1 - 1e-10, 1 + 1e-10)
-    ]
-    values = [value(law, p) for p in np.geomspace(1e-3 * low(law), 1e2 * high(law), 40)]
-    for here in values:
-        alone = force_at(law, 0, here, np.zeros(4))
-        found = [np.zeros(4) for _ in range(3 + len(values[::6]))]
-        for last, beside in zip(found, (here, 1.001 * here, 0.9 * here, *values[::6]), strict=True):
-            force_at(law, 0, beside, last)
-        for last in (*found, *(np.array([half, 0.0, 2.0, here]) for half in limits)):
-            for _ in range(2):
-                force, stiffness = force_at(law, 0, here, last)
-                assert force == pytest.approx(alone[0], rel=1e-12, abs=0.0)
-                assert stiffness == pytest.approx(alone[1], rel=1e-8, abs=0.0)

@@ -14,7 +14,7 @@ from fe_contact.contact.elimination import eliminate
 from fe_contact.contact.local_law import LocalLaw, approach, free_strips
 from fe_contact.contact.newton import _residuals, solve_point
 from fe_contact.contact.patch import Patches
-from fe_contact.contact.point_problem import PointProblem, state_of
+from fe_contact.contact.point_problem import PointProblem, State
 from fe_contact.contact.strip import Gap
 from fe_contact.types import Status
 
@@ -134,9 +134,10 @@ def test_residuals_measure_what_they_say():
     # a state that violates each condition by a known amount
     problem = point([[STIFF, 0.0], [0.0, STIFF]], [0.0, 5e-6])
     force, elastic, total = np.array([2000.0, -20.0]), 4e-6, 2200.0
-    residual, state = np.full(4, np.nan), state_of(force, 2)
-    state.pressed[:] = force
-    _residuals(problem, total, elastic, problem.gap, state, residual)
+    residual, zeros = np.full(4, np.nan), np.zeros(2)
+    _residuals(
+        problem, total, elastic, problem.gap, State(zeros, zeros.copy(), force, zeros, force), residual
+    )
     moved = [STIFF * f + (approach(problem.law, i, f)[0] if f > 0.0 else 0.0) for i, f in enumerate(force)]
     slack = [(problem.gap[i] - elastic + moved[i]) / elastic for i in range(2)]
     assert slack[0] > 0.0

@@ -89,22 +89,3 @@ def test_pairs_that_were_not_there_start_unloaded() -> None:
     carried = Start(fewer, np.ones((1, 1, fewer.pair.size))).on(here)[0, 0]
     assert np.all(carried[:points] == 0.0)
     assert np.all(carried[points:] == 1.0)
-
-
-def test_positions_do_not_depend_on_those_solved_before_them(problem: ContactProblem) -> None:
-    """Each is started from the last one, and is the same alone and in any order."""
-    whole = solve_contact(problem, LOADS)
-    order = np.array([4, 0, 3, 5, 1, 2])
-    others = solve_contact(problem.rows(order), LOADS)
-    for k, row in enumerate(order):
-        alone = solve_contact(problem.rows(np.array([row])), LOADS)
-        for found, of in ((alone, 0), (others, k)):
-            assert found.deflection[of] == pytest.approx(whole.deflection[row], rel=1e-12, abs=0.0)
-            assert found.tangent[of] == pytest.approx(whole.tangent[row], rel=1e-8, abs=0.0)
-            assert found.force[of] == pytest.approx(whole.force[row], abs=1e-10 * LOADS[0])
-
-
-def test_close_positions_spare_iterations_for_each_other(problem: ContactProblem) -> None:
-    row = np.zeros(8, dtype=int)
-    same = solve_contact(problem.rows(row), LOADS)
-    assert same.iterations[1:].max() <= 2 < same.iterations[0].min()
