@@ -70,10 +70,10 @@ def figures() -> list[Figure]:
 @cache
 def assessed() -> tuple[Assessed, ...]:
     """Hold every pair at every level against full contact."""
-    return tuple(_assessed(case, level) for case in full_contact_cases() for level in LEVELS)
+    return tuple(assess(case, level) for case in full_contact_cases() for level in LEVELS)
 
 
-def _assessed(case: FullContactCase, level: str) -> Assessed:
+def assess(case: FullContactCase, level: str) -> Assessed:
     """Hold one table against full contact at the same positions."""
     position, exact, error = reference(case.name)
     table = analyze(case.pair, normal_forces=case.forces, model="plane_strain", level=level)

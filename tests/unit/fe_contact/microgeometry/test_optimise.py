@@ -74,7 +74,7 @@ def test_it_is_judged_by_what_analyze_finds(
 
 def test_a_relieved_spur_pair_loses_most_of_its_ripple(found: Optimisation) -> None:
     assert found.outcome is Outcome.IMPROVED
-    assert found.gain.error < 0.05 * found.gain.value
+    assert found.gain.error < 0.15 * found.gain.value  # the finite width counts at both ends
     assert found.start.objective.value > 4.0 * found.optimum.objective.value
 
 
