@@ -16,7 +16,7 @@ def error_shares(table: SteDatabase, allowed: AllowedError) -> FloatArray:
 
     Returns
     -------
-    ndarray, shape (8, 2, F, M, D)
+    ndarray, shape (9, 2, F, M, D)
         Sources in the order of `SOURCES`; those between nodes stand at the lower node of their interval. NaN
         where not estimated and at failed points.
     """

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from fe_contact.full_contact.placed_pair import PlacedGear, PlacedPair
+from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
+from fe_contact.full_contact.placed_pair import PlacedPair, flank_sides
 from fe_contact.material import Material
 from fe_contact.types import FloatArray, IntArray
 
@@ -52,7 +53,7 @@ def input_deck(placed: PlacedPair, loading: Loading) -> str:
     for gear, body in zip(gears, bodies, strict=True):
         lines += _nodes(gear.points, body)
     lines += [f"{turning},0.,0.,0.", f"*NSET, NSET={TURNING}", f"{turning}"]
-    lines += [f"*NSET, NSET={HELD}", *_list(bodies[1].first_node + gears[1].bore_nodes)]
+    lines += [f"*NSET, NSET={HELD}", *_list(bodies[1].first_node + gears[1].held)]
     for gear, body, material in zip(gears, bodies, loading.materials, strict=True):
         lines += _body(gear, body, material, loading.face_width)
     lines += _contact(placed, bodies, loading.penalty)
@@ -71,7 +72,7 @@ class NumberedBody:
     last_node: int
 
 
-def numbered_bodies(gears: Sequence[PlacedGear]) -> tuple[NumberedBody, ...]:
+def numbered_bodies(gears: Sequence[PlacedBody]) -> tuple[NumberedBody, ...]:
     """Return the numbers of the gears, one after the other, from 1."""
     node, element, bodies = 1, 1, []
     for count, gear in enumerate(gears, start=1):
@@ -86,7 +87,7 @@ def _nodes(points: FloatArray, body: NumberedBody) -> Iterable[str]:
     return (f"{body.first_node + i},{_number(x)},{_number(y)},0." for i, (x, y) in enumerate(rows))
 
 
-def _body(gear: PlacedGear, body: NumberedBody, material: Material, face_width: float) -> list[str]:
+def _body(gear: PlacedBody, body: NumberedBody, material: Material, face_width: float) -> list[str]:
     """Elements, material and section of a gear."""
     rows = (gear.triangles + body.first_node).tolist()
     return [
@@ -106,7 +107,9 @@ def _contact(placed: PlacedPair, bodies: Sequence[NumberedBody], penalty: float)
     for number, meeting in enumerate(placed.meetings):
         for gear, body, tooth in zip(placed.gears, bodies, meeting, strict=True):
             lines.append(f"*SURFACE, NAME={body.name}FLANK{number}, TYPE=ELEMENT")
-            lines += [f"{body.first_element + e},S{side + 1}" for e, side in gear.flanks[tooth].tolist()]
+            lines += [
+                f"{body.first_element + e},S{side + 1}" for e, side in flank_sides(gear, tooth).tolist()
+            ]
     lines += ["*SURFACE INTERACTION, NAME=FLANKS", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"]
     lines.append(_number(penalty * MPA / MM))
     for number in range(len(placed.meetings)):
@@ -115,11 +118,11 @@ def _contact(placed: PlacedPair, bodies: Sequence[NumberedBody], penalty: float)
     return lines
 
 
-def _rigid_bore(gear: PlacedGear, body: NumberedBody, turning: int, base_radius: float) -> list[str]:
+def _rigid_bore(gear: PlacedBody, body: NumberedBody, turning: int, base_radius: float) -> list[str]:
     """Tie the bore to the turning node: clockwise, u = (y, -x) theta, linear as displacements are small."""
-    arms = ((gear.points[gear.bore_nodes] - gear.center) / base_radius).tolist()
+    arms = ((gear.points[gear.held] - gear.center) / base_radius).tolist()
     lines = []
-    for node, (x, y) in zip((gear.bore_nodes + body.first_node).tolist(), arms, strict=True):
+    for node, (x, y) in zip((gear.held + body.first_node).tolist(), arms, strict=True):
         lines += ["*EQUATION", "2", f"{node},1,1.,{turning},1,{_number(-y)}"]
         lines += ["*EQUATION", "2", f"{node},2,1.,{turning},1,{_number(x)}"]
     return lines

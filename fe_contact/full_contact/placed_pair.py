@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,32 +10,7 @@ from fe_contact.full_contact.condensation.modified_flank import removed_at_roll
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh.quadratic import SIDES, rotated
-from fe_contact.types import FloatArray, IntArray
-
-
-@dataclass(frozen=True)
-class PlacedGear:
-    """One gear's mesh in the frame of the pair: gear 1's centre is the origin, the teeth meet on +y.
-
-    Attributes
-    ----------
-    points : (n, 2) array
-        Nodes, m.
-    triangles : (m, 6) int array
-        Six-node triangles, corners counter-clockwise, then the middles of sides 0-1, 1-2, 2-0.
-    bore_nodes : (b,) int array
-        Nodes of the bore, or of the outside of a ring gear's rim.
-    center : (2,) array
-        m.
-    flanks : mapping of int to (e, 2) int array
-        By pair: elements along the flank, and which of their sides lies on it.
-    """
-
-    points: FloatArray
-    triangles: IntArray
-    bore_nodes: IntArray
-    center: FloatArray
-    flanks: dict[int, IntArray]
+from fe_contact.types import IntArray
 
 
 @dataclass(frozen=True)
@@ -44,7 +19,7 @@ class PlacedPair:
 
     Attributes
     ----------
-    gears : (PlacedGear, PlacedGear)
+    gears : (PlacedBody, PlacedBody)
         Driving and driven. The driving gear turns clockwise.
     meetings : tuple of (int, int)
         Flanks of gear 1 and gear 2 that may touch.
@@ -52,7 +27,7 @@ class PlacedPair:
         Part of the transmission error, in m, by which the driving gear is turned already.
     """
 
-    gears: tuple[PlacedGear, PlacedGear]
+    gears: tuple[PlacedBody, PlacedBody]
     meetings: tuple[tuple[int, int], ...]
     approach: float
 
@@ -83,16 +58,15 @@ def no_load_gap(pair: ParallelAxes, position: float) -> float:
     return float(np.min(gap[on_path]))
 
 
-def _placed(body: PlacedBody, turn: float) -> PlacedGear:
+def _placed(body: PlacedBody, turn: float) -> PlacedBody:
     """Turn a body about its centre."""
-    points = rotated(body.points - body.center, turn) + body.center
-    flanks = {ahead: _sides(body.triangles, strip.nodes) for ahead, strip in body.strips.items()}
-    return PlacedGear(points, body.triangles, body.held, body.center, flanks)
+    return replace(body, points=rotated(body.points - body.center, turn) + body.center)
 
 
-def _sides(triangles: IntArray, nodes: IntArray) -> IntArray:
-    """Elements with a side on a line of nodes, and the number of that side, (e, 2)."""
-    on_line = np.isin(triangles, nodes)
+def flank_sides(body: PlacedBody, ahead: int) -> IntArray:
+    """Return the elements along a flank, and the number of their side that lies on it, (e, 2)."""
+    triangles = body.triangles
+    on_line = np.isin(triangles, body.strips[ahead].nodes)
     found = []
     for number, (a, b) in enumerate(SIDES):
         elements = np.flatnonzero(on_line[:, a] & on_line[:, b] & on_line[:, 3 + number])

@@ -73,9 +73,7 @@ def of_bending(pair: ParallelAxes, own: FloatArray) -> FloatArray:
 
 def point_error(pair: ParallelAxes, force: FloatArray, deflection: FloatArray) -> FloatArray:
     """Return the error at points (P, F) whose STE is `deflection`, m."""
-    strain = np.abs(deflection) / pair.pinion.normal_module
-    moved = np.maximum(LARGE_DISPLACEMENT[0] * strain, TILT[0] * flank_tilt(pair, force))
-    return np.asarray(AT_A_POINT * (FLOOR[0] + moved) * np.abs(deflection))
+    return np.asarray(AT_A_POINT * model_errors(pair, force, np.abs(deflection).T[None])[0].T)
 
 
 def _by_quantity(part: tuple[float, float, float], own: FloatArray) -> FloatArray:

@@ -12,7 +12,7 @@ from fe_contact.full_contact.condensation.placed_mesh import placed_bodies
 from fe_contact.full_contact.condensation.resolution import Resolution
 from fe_contact.full_contact.condensation.sites import Range, contact_sites
 from fe_contact.full_contact.input_deck import Loading, input_deck, numbered_bodies
-from fe_contact.full_contact.placed_pair import PlacedPair, placed_pair
+from fe_contact.full_contact.placed_pair import PlacedPair, flank_sides, placed_pair
 from fe_contact.full_contact.result_file import read_printed
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -47,7 +47,7 @@ def test_the_bore_of_gear_1_turns_rigidly_and_clockwise(placed: PlacedPair) -> N
     deck = input_deck(placed, LOADING)
     ties = re.findall(r"\*EQUATION\n2\n(\d+),(\d),1\.,(\d+),1,(\S+)", deck)
     gear, (first, second) = placed.gears[0], numbered_bodies(placed.gears)
-    assert len(ties) == 2 * len(gear.bore_nodes)
+    assert len(ties) == 2 * len(gear.held)
     assert {int(tie[2]) for tie in ties} == {second.last_node + 1}
     lag = 1e-5  # of the turning node: every node moves by lag / r_b1 times its arm, at right angles to it
     for node, axis, _, factor in ties:
@@ -64,7 +64,7 @@ def test_every_tooth_pair_has_its_surfaces_on_the_loaded_flanks(placed: PlacedPa
     for number, (_, tooth) in enumerate(placed.meetings):
         surface = re.search(rf"NAME=GEAR2FLANK{number}, TYPE=ELEMENT\n((?:\d+,S\d\n)+)", deck)
         assert surface is not None
-        assert len(surface.group(1).split()) == len(placed.gears[1].flanks[tooth])
+        assert len(surface.group(1).split()) == len(flank_sides(placed.gears[1], tooth))
     assert "\n1.000000000000e+09\n" in deck  # 1e18 Pa/m in N/mm^3
 
 
