@@ -124,6 +124,7 @@ def stop_between_transactions(pid: int, other: Bench) -> None:
     file = Path(str(other.engine.url.database))
     while True:
         os.kill(pid, signal.SIGSTOP)
+        os.waitpid(pid, os.WUNTRACED)  # a thread inside a system call may still take the lock until then
         if other.engine.dialect.name != "sqlite":
             return
         with closing(sqlite3.connect(file, timeout=0.2, isolation_level=None)) as connection:
