@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.ripple import expected_curves
@@ -13,8 +14,10 @@ from fe_contact.planning import (
     MeshOption,
     NodeRule,
     Plan,
+    Prediction,
     expected_error,
     make_plan,
+    predict_run,
 )
 from fe_contact.planning.effort import effort
 from fe_contact.types import Json
@@ -60,6 +63,11 @@ class Decided:
         work = effort(request.pair, plan, model, request.alignments)
         option = MeshOption(level, plan.discretisation.slices, error, work)
         return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
+
+    def predicted(self, cache: Path | None) -> Prediction:
+        """Predict what the run costs, with the compliances that are in the cache."""
+        request = self.checked.request
+        return predict_run(request.pair, self.plan, self.checked.model, request.alignments, cache)
 
     def _plan(self, level: str, slices: int | None) -> Plan:
         """Plan the request on another mesh."""

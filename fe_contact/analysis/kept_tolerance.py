@@ -1,8 +1,8 @@
-"""Plan, run, measure, refine what dominates: until the tolerance is met, or no pass is worth while."""
+"""Plan, run, measure, refine what dominates: until the tolerance is met, or nothing brings it nearer."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -109,8 +109,8 @@ def _passes(checked: Checked, run: _Run) -> SteDatabase:
         clock = StageClock(run.workers.spent)
         with clock.stage("planning"):
             made = _following(table, best)
-        if isinstance(made, str) or len(passes) == MOST_PASSES:
-            reason = made if isinstance(made, str) else f"{MOST_PASSES} passes are the most"
+            reason = made if isinstance(made, str) else _ended(made, passes, run.cache)
+        if isinstance(made, str) or reason:
             return of_all_passes(passes, table, reason)
         run.on_draft(table, made.words)
         last = run.refined(made, clock)
@@ -131,3 +131,19 @@ def _following(table: SteDatabase, last: Pass) -> Refinement | str:
     if table.n_failed:
         return f"{table.n_failed} points failed"
     return next_pass(last.decided, error_shares(table, tolerance))
+
+
+def _ended(made: Refinement, passes: Sequence[Pass], cache: Path) -> str:
+    """Say why a refinement does not begin, of passes or of time; empty if it may."""
+    if len(passes) == MOST_PASSES:
+        return f"{MOST_PASSES} passes are the most"
+    budget = made.decided.checked.request.accuracy.time_budget
+    if budget is None:
+        return ""
+    left = budget - sum(one.cost["cpu_seconds"] for one in passes)
+    needed = made.decided.predicted(cache).cpu_seconds
+    if needed <= left:
+        return ""
+    return (
+        f"{made.words} is predicted to take {needed:.2g} CPU s; {max(left, 0.0):.2g} of {budget:.3g} are left"
+    )

@@ -19,6 +19,7 @@ from fe_contact.effects import EFFECTS
 from fe_contact.effects.worth import estimate_worth
 from fe_contact.planning import (
     LEVELS,
+    Accuracy,
     ExpectedCurves,
     MeshChoice,
     chosen_mesh,
@@ -52,15 +53,39 @@ def decide(
         The run measures its errors and is refined where they are too large: what is expected to err by
         somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
     """
+    accuracy = checked.request.accuracy
+    if accuracy.tolerance is not None and accuracy.time_budget is not None:
+        return _within_time(checked, cache, keep_model=keep_model, tried=tried)
     models = [checked] if keep_model else alternatives(checked)
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache, 1.0))
-    if tried and checked.request.accuracy.tolerance is not None:
+    if tried and accuracy.tolerance is not None:
         for stretch, share in TRIED:
             first = _best(_meshes(models, curves, cache, stretch))
             if first[1].met and first[1].option.effort <= share * chosen[1].option.effort:
                 return _planned(first[0], _said_tried(*chosen, first[1]))
     return _planned(*chosen)
+
+
+def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, tried: bool) -> Decided:
+    """Choose by the tolerance what fits into the time budget; else the most exact that fits."""
+    accuracy = checked.request.accuracy
+    budget = accuracy.time_budget or 0.0
+
+    def chosen(wish: Accuracy) -> Decided:
+        request = replace(checked.request, accuracy=wish)
+        made = decide(replace(checked, request=request), cache, keep_model=keep_model, tried=tried)
+        request = replace(made.checked.request, accuracy=accuracy)
+        return replace(made, checked=replace(made.checked, request=request))
+
+    wished = chosen(replace(accuracy, time_budget=None))
+    seconds = wished.predicted(cache).cpu_seconds
+    if seconds <= budget:
+        return wished
+    fits = chosen(replace(accuracy, tolerance=None))
+    needs = f"{wished.mesh.option.name} is predicted to take {seconds:.2g} CPU s of {budget:.3g}"
+    error = f"expected error {100.0 * fits.mesh.option.error.total:.2g} %"
+    return replace(fits, mesh=MeshChoice(fits.mesh.option, False, f"{needs}; {fits.mesh.reason}, {error}"))
 
 
 def _meshes(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.decided import model_name
+from fe_contact.analysis.decided import Decided, model_name
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
@@ -112,22 +112,21 @@ def plan_run(
 ) -> RunPlan:
     """Predict time by stage, memory and error of `analyze`, and list its effects.
 
-    Parameters are those of `analyze`; `time_budget` may stand beside `tolerance` or `level`: these then
-    choose the mesh, and the plan says whether it fits the time.
+    Parameters are those of `analyze`; `time_budget` may stand beside `level` too: the plan says whether the
+    level fits the time.
 
     Raises
     ------
     InputError
         A value that cannot be used, by field name.
     """
-    both = time_budget is not None and (tolerance is not None or level is not None)
     checked = check_request(
         pair,
         torques=torques,
         normal_forces=normal_forces,
         tolerance=tolerance,
         level=level,
-        time_budget=None if both else time_budget,
+        time_budget=time_budget if level is None else None,
         model=model,
         positions=positions,
         pitches=pitches,
@@ -142,9 +141,9 @@ def plan_run(
         _planned(checked, name, choice.slices if name == choice.level else None, curves, cache)
         for name in LEVELS
     )
-    conflict, asked = "", checked.request.accuracy.tolerance
-    if both and time_budget is not None:
-        conflict = _conflict(choice, levels, asked, positive("time_budget", time_budget, "Seconds."))
+    conflict = ""
+    if time_budget is not None and (tolerance is not None or level is not None):
+        conflict = _conflict(decided, positive("time_budget", time_budget, "Seconds."), cache)
     return RunPlan(checked, choice, decided.plan, levels, conflict, cache)
 
 
@@ -163,21 +162,12 @@ def _planned(
     return PlannedLevel(level, plan.discretisation.slices, cost, error)
 
 
-def _conflict(
-    choice: MeshChoice, levels: Sequence[PlannedLevel], tolerance: AllowedError | None, time_budget: float
-) -> str:
-    """Say why tolerance and time cannot both be had; empty if they can."""
-    wish = f"level {choice.level}" if tolerance is None else tolerance.words
-    asked = f"{wish} within {time_budget:.3g} CPU s cannot be had"
-    if not choice.met:
-        return f"{asked}: {choice.reason}"
-    needed = next(entry for entry in levels if entry.level == choice.level)
-    if needed.cost.cpu_seconds <= time_budget:
-        return ""
-    fits = [entry for entry in levels if entry.cost.cpu_seconds <= time_budget]
-    best = (
-        f"the time allows {fits[-1].level} with {100.0 * fits[-1].error.total:.2g} %"
-        if fits
-        else "no mesh fits"
-    )
-    return f"{asked}: {choice.level} needs {needed.cost.cpu_seconds:.2g} CPU s; {best}"
+def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:
+    """Say why what is asked for does not fit into the time; empty if it does."""
+    within = f"within {time_budget:.3g} CPU s"
+    accuracy = decided.checked.request.accuracy
+    wish = f"level {decided.mesh.level}" if accuracy.tolerance is None else accuracy.tolerance.words
+    if not decided.mesh.met:
+        return f"{wish} {within} cannot be had: {decided.mesh.reason}"
+    seconds = decided.predicted(cache).cpu_seconds
+    return "" if seconds <= time_budget else f"{wish} {within} cannot be had: it needs {seconds:.2g} CPU s"

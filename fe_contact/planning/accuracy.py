@@ -15,16 +15,14 @@ MODELS = ("auto", "plane_strain", "plane_stress", "3d")
 
 @dataclass(frozen=True)
 class Accuracy:
-    """What the caller asked for: exactly one of the first three, or none (then `level` = "standard").
-
-    `planned_level` says which mesh that is.
+    """What the caller asks for: a tolerance, a time budget, both, or a level; nothing means "standard".
 
     Attributes
     ----------
     tolerance : AllowedError, optional
         Of mean and peak-to-peak STE.
     time_budget : float, optional
-        Seconds.
+        CPU seconds that the run may take. Beside a tolerance refinement ends where it would go beyond them.
     level : str, optional
         "draft", "standard" or "fine".
     model : str
@@ -43,10 +41,10 @@ class Accuracy:
     receipt: str = "full"
 
     def __post_init__(self) -> None:
-        asked = [n for n in ("tolerance", "time_budget", "level") if getattr(self, n) is not None]
-        if len(asked) > 1:
-            bound = f"left out when {asked[0]} is given"
-            raise InputError(asked[1], getattr(self, asked[1]), bound, "Ask for one of them.")
+        wishes = [name for name in ("tolerance", "time_budget") if getattr(self, name) is not None]
+        if wishes and self.level is not None:
+            bound = f"left out when {wishes[0]} is given"
+            raise InputError("level", self.level, bound, "A level is a mesh, whatever it costs.")
         if self.time_budget is not None:
             positive("time_budget", self.time_budget, "Seconds.")
         if self.level is not None and self.level not in LEVELS:

@@ -42,7 +42,7 @@ def chosen_mesh(
     cache: Path | None = None,
     curves: ExpectedCurves | None = None,
 ) -> MeshChoice:
-    """Choose mesh and slices by the accuracy.
+    """Choose mesh and slices by the tolerance, without one by the time budget.
 
     Parameters
     ----------

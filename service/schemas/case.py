@@ -114,10 +114,14 @@ class AccuracyInput(BoundaryModel):
         examples=[20.0],
     )
     time_budget_s: float | None = Field(
-        default=None, gt=0.0, le=1e6, description="CPU seconds that may be spent", examples=[10.0]
+        default=None,
+        gt=0.0,
+        le=1e6,
+        description="CPU seconds that may be spent; beside a tolerance refinement ends there",
+        examples=[10.0],
     )
     level: Literal["draft", "standard", "fine"] | None = Field(
-        default=None, description="A named rung", examples=["standard"]
+        default=None, description="A mesh by name", examples=["standard"]
     )
     model: Literal["auto", "plane_strain", "plane_stress", "3d"] = Field(
         default="auto", description="The body model; auto lets the planner choose", examples=["auto"]
@@ -159,15 +163,11 @@ class AccuracyInput(BoundaryModel):
 
     @model_validator(mode="after")
     def _one_wish(self) -> Self:
-        """At most one of tolerance, time budget and level."""
-        given = [name for name in _WISHES if getattr(self, name) is not None]
-        if len(given) > 1:
-            refuse(
-                given[1],
-                getattr(self, given[1]),
-                f"left out when {given[0]} is given",
-                "Ask for a tolerance, a time budget or a level.",
-            )
+        """Refuse a tolerance or a time budget beside a level, which is a mesh."""
+        wishes = [name for name in ("tolerance", "time_budget_s") if getattr(self, name) is not None]
+        if wishes and self.level is not None:
+            advice = "A level is a mesh, whatever it costs."
+            refuse("level", self.level, f"left out when {wishes[0]} is given", advice)
         return self
 
 

@@ -122,6 +122,33 @@ def test_a_small_helical_draft_is_refined(from_draft):
     assert receipt(table)["tolerance"]["met"] is True
 
 
+def test_a_time_budget_ends_refinement_and_keeps_what_is_there(from_draft):
+    """The draft is kept, its tolerance is not met, and the reason names the refinement and its time."""
+    asked = PLANE | {"tolerance": AllowedError(0.001, 0.0)}
+    table = analyze(SPUR, time_budget=1e-3, **asked)
+    assert receipt(table)["tolerance"]["met"] is False
+    assert [one["level"] for one in receipt(table)["passes"]] == ["draft"]
+    assert "mesh draft -> standard is predicted to take" in receipt(table)["tolerance"]["reason"]
+    assert "of 0.001 are left" in receipt(table)["tolerance"]["reason"]
+
+
+def test_a_time_budget_that_is_not_used_up_changes_nothing(from_draft):
+    asked = PLANE | {"tolerance": AllowedError(0.001, 0.0)}
+    assert same(analyze(SPUR, time_budget=1e5, **asked), analyze(SPUR, **asked))
+
+
+def test_the_first_pass_is_the_most_exact_that_fits_into_the_time():
+    asked = {"torques": [50.0], "model": "3d", "tolerance": AllowedError(0.002, 0.0)}
+    free = decide(check_request(SPUR, **asked))
+    draft = decide(check_request(SPUR, torques=[50.0], model="3d", level="draft"))
+    between = math.sqrt(free.predicted(None).cpu_seconds * draft.predicted(None).cpu_seconds)
+    bound = decide(check_request(SPUR, time_budget=between, **asked))
+    assert free.mesh.level != "draft"
+    assert (bound.mesh.met, bound.predicted(None).cpu_seconds <= between) == (False, True)
+    assert f"{free.mesh.option.name} is predicted to take" in bound.mesh.reason
+    assert bound.checked.request.accuracy.tolerance == asked["tolerance"]
+
+
 def test_the_cost_is_that_of_all_passes(from_draft):
     table = analyze(SPUR, tolerance=AllowedError(0.001, 0.0), **PLANE)
     passes, cost = receipt(table)["passes"], receipt(table)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair
+from fe_contact import AllowedError, Gear, GearPair
 from fe_contact.contact import ContactModel
 from fe_contact.errors import InputError
 from fe_contact.hertz import half_width, relative_radius
@@ -68,9 +68,10 @@ def test_slices_are_no_narrower_than_layers_of_the_wider_gear_allow(pair):
     assert made.in_slices(31).slices == made.slices
 
 
-def test_one_way_of_asking_at_a_time():
-    with pytest.raises(InputError, match="time_budget"):
-        Accuracy(tolerance=0.01, time_budget=5.0)
+@pytest.mark.parametrize("wish", [{"tolerance": AllowedError(0.01)}, {"time_budget": 5.0}])
+def test_a_level_is_a_mesh_and_takes_no_other_wish(wish):
+    with pytest.raises(InputError, match="level"):
+        Accuracy(level="draft", **wish)
 
 
 def test_the_clock_adds_repeated_stages():

@@ -189,13 +189,17 @@ def test_slices_change_no_positions_but_their_cost():
 
 def test_tolerance_and_time_that_cannot_both_be_had_are_said():
     wish = {"normal_forces": [500.0], "tolerance": 0.005, "model": "3d"}
+    level = {"normal_forces": [500.0], "level": "fine", "model": "3d"}
     assert plan_run(pair(), **wish, time_budget=1e4).conflict == ""
     tight = plan_run(pair(), **wish, time_budget=1e-3)
     assert "cannot be had" in tight.conflict
-    assert "no mesh fits" in tight.conflict
+    assert "even the quickest mesh" in tight.conflict
     needed = [entry.cost.cpu_seconds for entry in tight.levels]
     between = plan_run(pair(), **wish, time_budget=0.5 * (needed[0] + needed[1]))
-    assert "the time allows draft" in between.conflict
+    assert (between.choice.level, between.choice.met) == ("draft", False)
+    assert f"predicted {needed[0]:.2g} CPU s" in between.conflict
+    assert "cannot be had: it needs" in plan_run(pair(), **level, time_budget=1e-3).conflict
+    assert plan_run(pair(), **level, time_budget=1e4).conflict == ""
     with pytest.raises(InputError, match="time_budget"):
         plan_run(pair(), **wish, time_budget=-1.0)
 
