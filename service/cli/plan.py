@@ -48,7 +48,7 @@ def _show(found: RunPlan) -> None:
         highlight=False,
     )
     if found.conflict or not found.choice.met:
-        out.print(f"cannot be had: {found.conflict or found.choice.reason}", highlight=False)
+        out.print(found.conflict or f"cannot be had: {found.choice.reason}", highlight=False)
     for line in ledger_lines(found.to_json()["effect_ledger"]):
         out.print(line, highlight=False)
 
