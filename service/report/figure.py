@@ -24,7 +24,10 @@ class Axis:
 
 @dataclass(frozen=True)
 class Line:
-    """A curve, or points if `width` is 0. NaN breaks it. `x` and `y` have the shape (n,)."""
+    """A curve, or points if `width` is 0. NaN breaks it. `x` and `y` have the shape (n,).
+
+    `band` is the half-height of an error band about it; 0 or NaN: none.
+    """
 
     name: str
     x: FloatArray
@@ -33,6 +36,7 @@ class Line:
     dash: Dash = "solid"
     width: float = 1.8
     markers: bool = False
+    band: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -146,6 +150,19 @@ class Figure:
     alternative: str
     content: tuple[Panel, ...] | Surface
     table: Table | None = None
+
+
+def legend_names(panels: Sequence[Panel]) -> list[str]:
+    """Return the names that a legend lists: of lines that no note of their panel names."""
+    named = [{note.text for note in panel.notes} for panel in panels]
+    return list(
+        dict.fromkeys(
+            line.name
+            for panel, notes in zip(panels, named, strict=True)
+            for line in panel.lines
+            if line.name not in notes
+        )
+    )
 
 
 def repeats_below(panels: Sequence[Panel], index: int) -> bool:

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, ScalarFormatter
 
 from service.report import palette
-from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, repeats_below
+from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, legend_names, repeats_below
 from service.report.image_shade import colour_map, draw_shade
 
 _WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
@@ -45,11 +45,14 @@ def _panel_sheet(panels: tuple[Panel, ...]) -> Sheet:
     sheet = Sheet(figsize=(_WIDTH, _PANEL_HEIGHT * len(panels) + 1.2), layout="constrained")
     axes: list[Axes] = list(sheet.subplots(len(panels), 1, squeeze=False)[:, 0])
     handles: dict[str, Any] = {}
+    names = legend_names(panels)
     for index, (panel, ax) in enumerate(zip(panels, axes, strict=True)):
         if panel.shade is not None:
             draw_shade(ax, panel.shade)
         for line in panel.lines:
-            handles.setdefault(line.name, _draw(ax, line))
+            handle = _draw(ax, line)
+            if line.name in names:
+                handles.setdefault(line.name, handle)
         _finish(ax, panel)
         if repeats_below(panels, index):
             ax.set_xlabel("")
@@ -78,6 +81,8 @@ def _draw(ax: Axes, line: Line) -> Any:
     if line.markers:
         stroke |= {"marker": "o", "ms": 6}
     (handle,) = ax.plot(line.x, line.y, **stroke)
+    if line.band > 0.0:
+        ax.fill_between(line.x, line.y - line.band, line.y + line.band, color=line.colour, alpha=0.2, lw=0)
     return handle
 
 

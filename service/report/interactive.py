@@ -15,6 +15,7 @@ from service.report.figure import (
     Panel,
     Reference,
     Surface,
+    legend_names,
     numbers,
     repeats_below,
     unit_of,
@@ -43,8 +44,8 @@ def plotly_figure(figure: Figure) -> Json:
 
 def _panels(panels: tuple[Panel, ...]) -> Json:
     """Stack panels, each with its own axes, the first on top."""
-    names = dict.fromkeys(line.name for panel in panels for line in panel.lines)
-    above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(list(names)) - 1)
+    names = legend_names(panels)
+    above = (62 if panels[0].title else 44) + _LEGEND_ROW * (_legend_rows(names) - 1)
     gaps = [_BETWEEN if repeats_below(panels, i) else _BETWEEN + _LABEL for i in range(len(panels) - 1)]
     inner = _PANEL_HEIGHT * len(panels) + sum(gaps)
     layout: Json = _layout(inner + above + _BELOW)
@@ -64,6 +65,7 @@ def _panels(panels: tuple[Panel, ...]) -> Json:
         if panel.shade is not None:
             data += shade_traces(panel.shade, suffix, domain)
         for line in panel.lines:
+            data += _band(line, suffix)
             data.append(_line(line, suffix, show=line.name in unnamed))
             unnamed.discard(line.name)
         for reference in panel.references:
@@ -128,6 +130,23 @@ def _line(line: Line, suffix: str, show: bool) -> Json:
         "legendgroup": line.name,
         "showlegend": show,
     }
+
+
+def _band(line: Line, suffix: str) -> list[Json]:
+    """Shade the error band of a curve, without its own entry in the legend."""
+    if not line.band > 0.0:
+        return []
+    edge: Json = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
+    edge |= {"x": numbers(line.x), "xaxis": "x" + suffix, "yaxis": "y" + suffix}
+    edge |= {"legendgroup": line.name, "showlegend": False}
+    filled = {"fill": "tonexty", "fillcolor": _pale(line.colour)}
+    return [edge | {"y": numbers(line.y - line.band)}, edge | filled | {"y": numbers(line.y + line.band)}]
+
+
+def _pale(colour: str) -> str:
+    """Return a hex colour as a transparent one."""
+    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    return f"rgba({red},{green},{blue},0.2)"
 
 
 def _panel_title(panel: Panel, suffix: str) -> list[Json]:

@@ -9,29 +9,44 @@ import numpy as np
 from service.convert.units import UM, factor
 from service.convert.vocabulary import boundary_name
 from service.report import palette
-from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number, thousands
+from service.report.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    Line,
+    Note,
+    Panel,
+    Reference,
+    Table,
+    number,
+    thousands,
+)
 from service.report.page import Headline, Page, Section
 from service.report.stored_optimisation import ShownDesign, ShownOptimisation
 
 MOST_CURVES = 8
-_POSITION = Axis("position, base pitches")
+_POSITION = "position, base pitches"
+_STEP = 0.4  # between two torques of a map, over the largest ripple
+_ROOM = 1.12  # of the axis over the curves: for the names at their ends
 
 
 def harris_figure(found: ShownOptimisation) -> Figure:
     """Draw both Harris maps on equal axes, and peak-to-peak over torque."""
     designs = (("before", found.start), ("after", found.optimum))
     curves = [_shown(found, design) for _, design in designs]
-    ends = [float(values.min()) for values in curves], [float(values.max()) for values in curves]
-    margin = 0.04 * (max(ends[1]) - min(ends[0]))
-    axis = Axis("STE, µm", limits=(min(ends[0]) - margin, max(ends[1]) + margin))
+    largest = max(float(np.ptp(values, axis=0).max()) for values in curves)
+    step = _STEP * largest
+    top = step * (curves[0].shape[1] - 1)
+    axis = Axis("STE offset by torque, µm", limits=(-0.6 * largest, top + 0.6 * largest))
     maps = [
-        Panel(_POSITION, axis, _curves(found, values, design), title=f"Harris map {name}")
+        _map(found, name, design, values, step, axis)
         for (name, design), values in zip(designs, curves, strict=True)
     ]
     return Figure(
         key="harris_map",
         title="Transmission error before and after optimisation",
-        caption="Harris maps without scatter, a curve for each torque, and peak-to-peak over torque. "
+        caption="Harris maps without scatter, a curve for each torque, less its mean, set apart by "
+        f"{_STEP:g} of the largest ripple of both; and peak-to-peak over torque. "
         f"{_scattered(found)} Dotted upright lines: torques that count.",
         alternative=f"{found.reason}.",
         content=(*maps, _ripple(found)),
@@ -47,20 +62,26 @@ def _chosen(found: ShownOptimisation) -> list[int]:
 
 
 def _shown(found: ShownOptimisation, design: ShownDesign) -> FloatArray:
-    """Curves (P, K) of the chosen torques, um."""
-    return np.asarray(design.harris_map.ste[:, _chosen(found)] / UM)
+    """Curves (P, K) of the chosen torques less their means, um."""
+    values = design.harris_map.ste[:, _chosen(found)] / UM
+    return np.asarray(values - values.mean(axis=0))
 
 
-def _curves(found: ShownOptimisation, values: FloatArray, design: ShownDesign) -> tuple[Line, ...]:
-    """One line per torque, closed over its period."""
+def _map(
+    found: ShownOptimisation, name: str, design: ShownDesign, values: FloatArray, step: float, axis: Axis
+) -> Panel:
+    """Draw one line per torque, closed over its period, named at its end."""
     harris, index = design.harris_map, _chosen(found)
-    names = thousands([float(harris.torque[k]) for k in index])
-    position = np.append(harris.position, np.ceil(harris.position[-1] + 1e-12))
-    closed = np.vstack([values, values[:1]])
-    return tuple(
-        Line(f"{name} N m", position, closed[:, k], palette.ordered(k, len(names)))
-        for k, name in enumerate(names)
+    names = [f"{torque} N m" for torque in thousands([float(harris.torque[k]) for k in index])]
+    end = float(np.ceil(harris.position[-1] + 1e-12))
+    position, closed = np.append(harris.position, end), np.vstack([values, values[:1]])
+    closed = closed + step * np.arange(len(names))
+    lines = (
+        Line(text, position, closed[:, k], palette.ordered(k, len(names))) for k, text in enumerate(names)
     )
+    labels = (Note(end, float(closed[-1, k]), text) for k, text in enumerate(names))
+    across = Axis(_POSITION, limits=(0.0, _ROOM * end))
+    return Panel(across, axis, tuple(lines), title=f"Harris map {name}", notes=tuple(labels))
 
 
 def _scattered(found: ShownOptimisation) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from fe_contact.ste import SteDatabase
+from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from service.report.aligned import (
     load_curve,
@@ -15,36 +17,70 @@ from service.report.aligned import (
     shown_loads,
     ste_shown,
 )
-from service.report.figure import Axis, Figure, FloatArray, Panel, Table, number
+from service.report.figure import Axis, Figure, Line, Panel, Table, number
 from service.report.pairs_in_contact import pairs_in_words, steps_with_pairs
 
 _TONES = 3
-_FAR = 0.7  # lowest over highest value
-_MARGIN = 0.2
 
 
 def ste_curves(database: SteDatabase) -> Figure:
     """Draw STE against position, one line per load."""
-    position, values = ste_shown(database)
-    y = Axis("static transmission error, µm", limits=_limits(values * 1e6))
-    panel = Panel(position_axis(database), y, load_lines(database, position, values * 1e6))
+    ripple = _ripple(database)
+    panels = (ripple, _whole(database, ripple)) if len(ripple.lines) > 1 else (ripple,)
     return Figure(
         key="ste",
         title=f"Static transmission error over {_pitches(database)}",
         caption="Displacement on the transverse line of action by which the driven gear lags, relative to "
-        f"conjugate motion. {_carriers(database)}" + _period(database),
+        f"conjugate motion. {_bands(ripple)}{_carriers(database)}" + _period(database),
         alternative=_words(database),
-        content=(panel,),
+        content=panels,
         table=_table(database),
     )
 
 
-def _limits(values: FloatArray) -> tuple[float, float]:
-    """Return the ends of the axis: from zero, unless the curves lie so far above it that no ripple shows."""
-    top, low = float(np.nanmax(values)), float(np.nanmin(values))
-    if low > _FAR * top:
-        return low - _MARGIN * (top - low), top + _MARGIN * (top - low)
-    return 1.05 * min(low, 0.0), 1.05 * top
+def _ripple(database: SteDatabase) -> Panel:
+    """Draw the curves less their means, each with the band of its peak-to-peak's error."""
+    position, values = ste_shown(database)
+    curves = [load_curve(database, load) for load in range(database.force.size)]
+    means = np.array([curve.mean.value for curve in curves])
+    lines = load_lines(database, position, (values - means) * 1e6)
+    shown = [(line, curves[load]) for line, load in zip(lines, shown_loads(database), strict=True)]
+    if len(shown) == 1:
+        title = f"{lines[0].name}, less its mean of {_um(shown[0][1].mean.value)} µm"
+    else:
+        title = "less the mean of each load"
+    return Panel(
+        position_axis(database),
+        Axis("STE less its mean, µm"),
+        tuple(replace(line, name=_named(line, curve), band=_half_error(curve)) for line, curve in shown),
+        title=title,
+    )
+
+
+def _whole(database: SteDatabase, ripple: Panel) -> Panel:
+    """Draw the curves from zero, under the names of the panel above."""
+    position, values = ste_shown(database)
+    lines = load_lines(database, position, values * 1e6)
+    named = (replace(line, name=above.name) for line, above in zip(lines, ripple.lines, strict=True))
+    limits = (1.05 * min(float(np.nanmin(values)), 0.0) * 1e6, 1.05 * float(np.nanmax(values)) * 1e6)
+    return Panel(ripple.x, Axis("STE, µm", limits=limits), tuple(named), title="whole")
+
+
+def _named(line: Line, curve: Curve) -> str:
+    """Name a load with its mean."""
+    return f"{line.name}: mean {_um(curve.mean.value)} µm"
+
+
+def _half_error(curve: Curve) -> float:
+    """Half the error of peak-to-peak, µm: two curves within such a band differ by no more."""
+    return 0.5e6 * curve.peak_to_peak.error
+
+
+def _bands(ripple: Panel) -> str:
+    """Say what the bands are, where there are any."""
+    if not any(line.band > 0.0 for line in ripple.lines):
+        return ""
+    return "Bands: half the error of peak-to-peak on either side. "
 
 
 def _pitches(database: SteDatabase) -> str:

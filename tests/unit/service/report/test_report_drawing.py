@@ -9,7 +9,19 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from service.report import palette
-from service.report.figure import Axis, Figure, HeatMap, Line, Panel, Reference, Strokes, Surface, number
+from service.report.figure import (
+    Axis,
+    Figure,
+    HeatMap,
+    Line,
+    Note,
+    Panel,
+    Reference,
+    Strokes,
+    Surface,
+    legend_names,
+    number,
+)
 from service.report.image import _panel_sheet, png
 from service.report.interactive import plotly_figure
 
@@ -35,6 +47,28 @@ def test_every_line_of_every_panel_is_drawn_with_its_data() -> None:
 def test_a_name_stands_once_in_the_legend() -> None:
     shown = [trace["name"] for trace in plotly_figure(stacked())["data"] if trace["showlegend"]]
     assert shown == ["a", "b"]
+
+
+def test_a_line_that_a_note_names_is_not_in_the_legend() -> None:
+    (panel,) = stacked(1).content  # type: ignore[misc]
+    noted = replace(stacked(), content=(panel, replace(panel, notes=(Note(2.0, 4.0, "b"),))))
+    assert legend_names(noted.content) == ["a", "b"]  # type: ignore[arg-type]  # the first panel needs it
+    alone = replace(noted, content=(noted.content[1],))  # type: ignore[index]
+    assert [t["name"] for t in plotly_figure(alone)["data"] if t["showlegend"]] == ["a"]
+    assert not plotly_figure(alone)["layout"]["showlegend"]
+
+
+def test_an_error_band_lies_about_its_line_in_both_drawings() -> None:
+    line = Line("a", X, X**2, palette.BLUE, band=0.5)
+    panel = Panel(Axis("x"), Axis("y"), (line, replace(line, name="b", band=float("nan"))))
+    low, high, drawn, _ = plotly_figure(Figure("key", "t", "c", "w", (panel,)))["data"]
+    np.testing.assert_allclose(np.array(high["y"]) - np.array(drawn["y"]), 0.5)
+    np.testing.assert_allclose(np.array(drawn["y"]) - np.array(low["y"]), 0.5)
+    assert high["fill"] == "tonexty"
+    (shade,) = _panel_sheet((panel,)).axes[0].collections
+    corners = shade.get_paths()[0].vertices
+    assert corners[:, 1].min() == pytest.approx(-0.5)
+    assert corners[:, 1].max() == pytest.approx(4.5)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 5])

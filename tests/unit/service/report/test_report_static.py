@@ -11,12 +11,12 @@ from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.fields import DIMENSIONS
 from service.report.aligned import shown_loads, ste_shown
 from service.report.database_surface import database_surface
-from service.report.figure import Surface
+from service.report.figure import Panel, Surface, number
 from service.report.load_sharing import load_sharing, pair_shares
 from service.report.mesh_stiffness import mesh_stiffness, secant_stiffness
 from service.report.pair import iso_mesh_stiffness
 from service.report.static_part import static_results
-from service.report.ste_curves import _limits, ste_curves
+from service.report.ste_curves import ste_curves
 
 
 def test_two_pitches_repeat_the_period(database: SteDatabase) -> None:
@@ -37,11 +37,33 @@ def test_stored_points_are_on_the_curve(database: SteDatabase) -> None:
     np.testing.assert_allclose(values[at], stored, rtol=1e-9)
 
 
-def test_curves_are_drawn_in_micrometres_for_the_loads_asked_for(database: SteDatabase) -> None:
-    (panel,) = ste_curves(database).content  # type: ignore[misc]
-    assert [line.name for line in panel.lines] == ["10 N m", "100 N m", "400 N m"]
+def panels_of(database: SteDatabase) -> tuple[Panel, ...]:
+    content = ste_curves(database).content
+    assert not isinstance(content, Surface)
+    return content
+
+
+def test_the_ripple_and_the_whole_are_drawn_in_micrometres_for_the_loads_asked_for(
+    database: SteDatabase,
+) -> None:
+    """What is drawn above is what is drawn below less its mean."""
+    ripple, whole = panels_of(database)
+    assert [line.name.split(":")[0] for line in ripple.lines] == ["10 N m", "100 N m", "400 N m"]
     stored = database.static_transmission_error[0, 2, 0, 0]
-    assert panel.lines[1].y[0] == pytest.approx(1e6 * stored)
+    assert whole.lines[1].y[0] == pytest.approx(1e6 * stored)
+    for load, above, below in zip(shown_loads(database), ripple.lines, whole.lines, strict=True):
+        mean = 1e6 * database.mean(force=float(database.force[load])).value
+        np.testing.assert_allclose(below.y - above.y, mean, rtol=1e-9)
+        assert above.name == below.name == f"{above.name.split(':')[0]}: mean {number(mean)} µm"
+    assert whole.y.limits is not None
+    assert whole.y.limits[0] == 0.0
+
+
+def test_the_band_is_half_the_error_of_peak_to_peak(database: SteDatabase) -> None:
+    lines = panels_of(database)[0].lines
+    for load, line in zip(shown_loads(database), lines, strict=True):
+        error = database.peak_to_peak(force=float(database.force[load])).error
+        assert 2.0 * line.band == pytest.approx(1e6 * error)
 
 
 def test_the_table_has_every_load_with_its_error(database: SteDatabase) -> None:
@@ -120,20 +142,16 @@ def test_a_request_made_from_python_has_the_same_iso_line(database: SteDatabase)
     assert iso_mesh_stiffness(from_python) == pytest.approx(iso_mesh_stiffness(database))
 
 
-def test_a_small_ripple_on_a_high_mean_is_not_drawn_from_zero() -> None:
-    low, high = _limits(np.array([16.8, 17.3]))
-    assert 16.0 < low < 16.8
-    assert 17.3 < high < 18.0
-    assert _limits(np.array([5.1, 7.8]))[0] == 0.0
-
-
-def test_a_single_load_makes_no_surface(database: SteDatabase) -> None:
+def test_a_single_load_names_its_mean_and_makes_no_surface(database: SteDatabase) -> None:
     cut = {
         name: np.take(getattr(database, name), [2], axis=axes.index("force"))
         for name, axes in {"force": ("force",), **DIMENSIONS}.items()
         if "force" in axes
     }
     single = replace(database, **cut)
+    (ripple,) = panels_of(single)
+    mean = 1e6 * database.mean(force=float(database.force[2])).value
+    assert ripple.title == f"100 N m, less its mean of {number(mean)} µm"
     over_load = [f.key for section in static_results(single) for f in section.figures]
     assert "database" not in over_load
     assert "database" in [f.key for section in static_results(database) for f in section.figures]

@@ -116,6 +116,25 @@ def test_its_file_is_drawn_as_it_is_drawn_fresh(
     assert page_json(page_of(read_inputs([file]))) == told, "a report and the service show the same"
 
 
+def test_both_harris_maps_are_drawn_to_one_scale(
+    studies: dict[str, tuple[str, dict[str, Any], Page]],
+) -> None:
+    """A curve's height is its ripple, and the torques stand apart by the same on both."""
+    _, content, fresh = studies["optimisation"]
+    (figure,) = (f for s in fresh.sections for f in s.figures if f.key == "harris_map")
+    before, after, _ = figure.content  # type: ignore[misc]
+    assert before.y.limits == after.y.limits
+    for panel, name in ((before, "start"), (after, "optimum")):
+        told = content[name]["harris_map"]
+        for line, note in zip(panel.lines, panel.notes, strict=True):
+            torque = float(line.name.removesuffix(" N m"))
+            ripple = told["nominal_peak_to_peak_um"][told["torque_n_m"].index(torque)]
+            assert np.ptp(line.y) == pytest.approx(ripple, rel=1e-6)
+            assert (note.text, note.y) == (line.name, line.y[-1])
+        levels = [float(line.y[:-1].mean()) for line in panel.lines]
+        assert np.ptp(np.diff(levels)) < 1e-9 * levels[-1]
+
+
 def test_a_report_takes_a_study_beside_a_table(
     studies: dict[str, tuple[str, dict[str, Any], Page]], database: SteDatabase, tmp_path: Path
 ) -> None:
