@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from dynamics.plausibility import scene_findings
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from fe_contact.analysis import LoadDistribution
 from fe_contact.plausibility import Unit, finding_of, pair_findings
 from fe_contact.ste import SteDatabase
