@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import Finding
 from dynamics.bodies import GearBody, Inertia, Shaft
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
 from dynamics.plausibility.check import CHECKS
-from dynamics.plausibility.finding import Finding
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import warn_of
 from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.static_reference import with_static_reference
 from dynamics.errors import SolveError
@@ -16,7 +17,7 @@ from dynamics.integrators import march as marching
 from dynamics.integrators.state_sink import MemorySink, blocks
 from dynamics.integrators.taking_over import Trail
 from dynamics.motion.sampled_states import States
-from dynamics.plausibility import scene_findings, warn_of
+from dynamics.plausibility import scene_findings
 from dynamics.results import RunResult
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.series import over_time

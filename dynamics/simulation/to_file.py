@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from bounds import warn_of
 from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.static_reference import with_static_reference
 from dynamics.errors import ResultError, SolveError
@@ -20,7 +21,7 @@ from dynamics.integrators.march import Ending
 from dynamics.integrators.state_sink import blocks
 from dynamics.integrators.taking_over import Trail
 from dynamics.motion.sampled_states import States
-from dynamics.plausibility import scene_findings, warn_of
+from dynamics.plausibility import scene_findings
 from dynamics.results.netcdf import attributes
 from dynamics.results.run_checks import RunChecks
 from dynamics.results.run_file import RunFile

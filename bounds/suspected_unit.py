@@ -3,16 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
-
-@dataclass(frozen=True)
-class Unit:
-    """A unit: how it is written, and what one of it is in SI."""
-
-    name: str
-    factor: float
-
+from bounds.unit import Unit
 
 TYPED: dict[str, tuple[Unit, ...]] = {
     "m": (Unit("metres", 1.0), Unit("millimetres", 1e-3), Unit("micrometres", 1e-6), Unit("inches", 25.4e-3)),

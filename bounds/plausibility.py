@@ -1,4 +1,4 @@
-"""What a plausibility check found, in words and as plain JSON."""
+"""Plausibility: limits of practice, and what is beyond them. A check warns and changes no number."""
 
 from __future__ import annotations
 
@@ -6,12 +6,38 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from fe_contact.plausibility.units import SI_UNITS, Unit, suspected_unit
-from fe_contact.types import Json
+from bounds.suspected_unit import SI_UNITS, suspected_unit
+from bounds.unit import Unit
 
-SOLVED = ("hertz_pressure", "transmission_error")
-"""Checks that a table answers by its own figures."""
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A limit of practice that a quantity is held against.
+
+    Attributes
+    ----------
+    name : str
+        What a finding is called.
+    quantity : str
+        What is compared, in words.
+    low, high : float or None
+        Bounds in `unit`; None: no such bound.
+    unit : str
+        Unit of the bounds; "1" for a ratio.
+    source : str
+        Where the limit comes from.
+    """
+
+    name: str
+    quantity: str
+    low: float | None
+    high: float | None
+    unit: str
+    source: str
 
 
 class PlausibilityWarning(UserWarning):
@@ -77,7 +103,7 @@ class Finding:
 
 
 def finding_of(content: Json) -> Finding:
-    """Return the finding that `to_json` wrote, of this library or of dynamics."""
+    """Return the finding that `to_json` wrote."""
     facts = {name: content[name] for name in ("check", "field", "value", "unit", "reason", "source", "whole")}
     return Finding(low=content["low"] or 0.0, high=content["high"] or math.inf, **facts)
 
@@ -86,14 +112,3 @@ def warn_of(findings: Sequence[Finding], stacklevel: int = 3) -> None:
     """Warn of findings, once of each; a `stacklevel` of 3 names the caller of who calls this."""
     for finding in findings:
         warnings.warn(f"implausible: {finding.message()}", PlausibilityWarning, stacklevel)
-
-
-def merged(requested: Sequence[Finding], solved: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return the findings of a request and of its results: what is solved replaces what was estimated."""
-    return (*(finding for finding in requested if finding.check not in SOLVED), *solved)
-
-
-def unexpected(requested: Sequence[Finding], solved: Sequence[Finding]) -> tuple[Finding, ...]:
-    """Return the findings of results that those of the request did not announce."""
-    expected = {finding.check for finding in requested}
-    return tuple(finding for finding in solved if finding.check not in expected)
