@@ -8,9 +8,9 @@ from functools import cache
 from pathlib import Path
 
 from benchmarks.honesty_cases import M, gear_of, spur_pair
-from dynamics.bodies import BeamSection, Inertia, TimeLaw, hollow_cylinder
+from dynamics.bodies import BeamSection, GearBody, Inertia, TimeLaw, hollow_cylinder
 from dynamics.forces import CoastFlank, MeshTable, RollingContact
-from dynamics.system import Outputs, Scene, pair_scene
+from dynamics.scene import Outputs, Scene, pair_scene
 from fe_contact import GearPair, analyze
 from service.cli.scene_tables import scene_with_tables
 from service.client.portable import scene_of
@@ -99,20 +99,26 @@ def worth_scenes(folder: Path) -> dict[str, Scene]:
 
 def _scene(pair: GearPair, mesh_table: MeshTable, stiffness: float = 2e8) -> Scene:
     """Return the pair in the middle of two rigid shafts."""
-    gears = (pair.pinion, pair.wheel)
-    width = pair.pinion.face_width
+    pinion, wheel = (
+        GearBody(
+            name,
+            shaft,
+            0.5 * LENGTH,
+            gear.teeth,
+            gear.base_radius,
+            pair.pinion.face_width,
+            gear.base_helix_angle,
+            _body(gear.teeth, pair.pinion.face_width),
+        )
+        for name, shaft, gear in (("pinion", "input", pair.pinion), ("wheel", "output", pair.wheel))
+    )
     scene = pair_scene(
         mesh_table,
-        teeth=(gears[0].teeth, gears[1].teeth),
-        base_radius=(gears[0].base_radius, gears[1].base_radius),
-        face_width=(width, width),
+        (pinion, wheel),
         center_distance=pair.center_distance,
-        gear_inertia=(_body(gears[0].teeth, width), _body(gears[1].teeth, width)),
         speed=CONSTANT(100.0),
         resisting_torque=CONSTANT(90.0),
         duration=0.2,
-        base_helix_angle=gears[0].base_helix_angle,
-        shaft_length=LENGTH,
         shaft_inertia=hollow_cylinder(0.03, LENGTH),
         bushing_stiffness=stiffness,
     )

@@ -18,7 +18,7 @@ from benchmarks.marked_section import replace_section
 from benchmarks.worth_estimates import PAGE
 from dynamics.ablation import RunFigures, ablate
 from dynamics.ablation.ablate import EffectAblation
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from dynamics.types import FloatArray
 from dynamics.worth import decide_effects
 

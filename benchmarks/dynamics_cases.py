@@ -14,8 +14,8 @@ from dynamics.bodies import TimeLaw
 from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.mesh_table import MeshTable
 from dynamics.forces.technique import PlainTable
-from dynamics.simulate import simulate
-from dynamics.system.scene import Outputs, Scene
+from dynamics.scene.scene import Outputs, Scene
+from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 
 RUN_UP = TimeLaw((0.0, 5.0), (0.0, 100.0))

@@ -14,9 +14,9 @@ from unittest import mock
 from benchmarks.example_pair import TORQUES
 from benchmarks.figures import Figure
 from benchmarks.run_up import SCENE
-from dynamics.simulate import simulate
-from dynamics.system import Scene
-from dynamics.system.effects import ledger
+from dynamics.effects import ledger
+from dynamics.scene import Scene
+from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis import assumptions, influences, request, request_check, table_places
 from fe_contact.effects import EFFECTS

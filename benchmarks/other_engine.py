@@ -39,9 +39,9 @@ sys.path.insert(0, {examples!r})
 from exudyn_scene import constant_speed_scene
 from dynamics.engines.exudyn_scene import run_in_exudyn
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.simulate import simulate
-from dynamics.system.assemble import assemble
-from dynamics.system.scene import Integration
+from dynamics.simulation import simulate
+from dynamics.assembly.assemble import assemble
+from dynamics.scene.scene import Integration
 from fe_contact.ste import SteDatabase
 scene = constant_speed_scene(SteDatabase.from_netcdf({table!r}), 900.0, {seconds})
 

@@ -22,7 +22,7 @@ measured = {{}}
 _RUN = """
 import time
 from pathlib import Path
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 from fe_contact.ste import SteDatabase
 from service.client.portable import scene_of
 from service.convert.scene import dynamic_scene

@@ -1,4 +1,4 @@
-"""What a field accepts, as data: bounds, quantities in words, checks of single values, and their error.
+"""What a field accepts and what practice knows of it, as data: bounds, quantities, checks, findings.
 
 Both libraries raise their input errors through this package, which knows neither of them. It depends on numpy
 alone.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from bounds.bound import Bound, Choice, above, at_least, at_most, below, between, exactly, integers, one_of
 from bounds.checks import LIMIT_SLACK, Checks
+from bounds.plausibility import Check, Finding, PlausibilityWarning, finding_of, warn_of
 from bounds.reader import Reader
 from bounds.refused import RefusedValue
 from bounds.text import Quantity, SiNote, Text, Words
@@ -16,8 +17,11 @@ from bounds.unit import Unit
 __all__ = [
     "LIMIT_SLACK",
     "Bound",
+    "Check",
     "Checks",
     "Choice",
+    "Finding",
+    "PlausibilityWarning",
     "Quantity",
     "Reader",
     "RefusedValue",
@@ -31,6 +35,8 @@ __all__ = [
     "below",
     "between",
     "exactly",
+    "finding_of",
     "integers",
     "one_of",
+    "warn_of",
 ]

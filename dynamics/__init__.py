@@ -1,1 +1,101 @@
-"""Multibody dynamics of geared systems, excited by mesh-force tables."""
+"""Multibody dynamics of geared systems, excited by mesh-force tables.
+
+Names are imported on first use, so that reading a result does not load what simulates.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from dynamics.ablation import ablate
+    from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw, hollow_cylinder
+    from dynamics.forces import CoastFlank, GearMesh, LoadTorque, MeshTable, RollingContact
+    from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation
+    from dynamics.ladder import frontier
+    from dynamics.linearize import forced_response, modal_analysis
+    from dynamics.mechanism import with_planets
+    from dynamics.orders import mesh_orders
+    from dynamics.periodic import steady_states
+    from dynamics.results import RunResult
+    from dynamics.scene import Integration, Outputs, PlanetarySet, Scene, pair_scene
+    from dynamics.simulation import simulate, simulate_to_file
+
+_HOME = {
+    "Bushing": "joints",
+    "CoastFlank": "forces",
+    "Coupling": "joints",
+    "FreeRotation": "joints",
+    "GearBody": "bodies",
+    "GearMesh": "forces",
+    "Housing": "joints",
+    "ImposedRotation": "joints",
+    "Inertia": "bodies",
+    "Integration": "scene",
+    "LoadTorque": "forces",
+    "MeshTable": "forces",
+    "Outputs": "scene",
+    "PlanetarySet": "scene",
+    "RollingContact": "forces",
+    "RunResult": "results",
+    "Scene": "scene",
+    "Shaft": "bodies",
+    "TimeLaw": "bodies",
+    "ablate": "ablation",
+    "forced_response": "linearize",
+    "frontier": "ladder",
+    "hollow_cylinder": "bodies",
+    "mesh_orders": "orders",
+    "modal_analysis": "linearize",
+    "pair_scene": "scene",
+    "simulate": "simulation",
+    "simulate_to_file": "simulation",
+    "steady_states": "periodic",
+    "with_planets": "mechanism",
+}
+
+__all__ = [
+    "Bushing",
+    "CoastFlank",
+    "Coupling",
+    "FreeRotation",
+    "GearBody",
+    "GearMesh",
+    "Housing",
+    "ImposedRotation",
+    "Inertia",
+    "Integration",
+    "LoadTorque",
+    "MeshTable",
+    "Outputs",
+    "PlanetarySet",
+    "RollingContact",
+    "RunResult",
+    "Scene",
+    "Shaft",
+    "TimeLaw",
+    "ablate",
+    "forced_response",
+    "frontier",
+    "hollow_cylinder",
+    "mesh_orders",
+    "modal_analysis",
+    "pair_scene",
+    "simulate",
+    "simulate_to_file",
+    "steady_states",
+    "with_planets",
+]
+
+
+def __getattr__(name: str) -> object:
+    """Import a public name from the package that holds it."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"dynamics.{_HOME[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    """List the public names."""
+    return sorted(__all__)

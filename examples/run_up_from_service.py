@@ -14,7 +14,7 @@ from pathlib import Path
 
 from main_job_summary import dynamic_lines, static_lines
 
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 from service.client import LineOfActionClient
 
 EXAMPLES = Path(__file__).parent

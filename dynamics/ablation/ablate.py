@@ -9,14 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.ablation.figures import SETTLED, RunFigures, run_figures
+from dynamics.assembly.assemble import assemble
 from dynamics.checks import one_of
+from dynamics.effects import EFFECTS, MESH_EFFECTS
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import Progress
 from dynamics.results import RunResult
-from dynamics.simulate import simulate
-from dynamics.system import Scene
-from dynamics.system.assemble import assemble
-from dynamics.system.effects import EFFECTS, MESH_EFFECTS
+from dynamics.scene import Scene
+from dynamics.simulation import simulate
 from dynamics.types import FloatArray, Json
 from dynamics.worth import Worth, decide_effects, estimate_worths
 

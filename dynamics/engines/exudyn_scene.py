@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.assembly.assemble import System, assemble
 from dynamics.bodies import TimeLaw
 from dynamics.engines.exudyn_mesh import Drive, PlanarMesh, add_gear_mesh, exudyn
 from dynamics.engines.mesh_element import mesh_element
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import Bushing
-from dynamics.system.assemble import System, assemble
-from dynamics.system.scene import Scene
+from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
 PLANAR = ("x", "y", "rotation")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import compiled, inner
 from dynamics.integrators.explicit_step import accelerate, explicit_step
 from dynamics.integrators.implicit_step import implicit_step, solve_stage
@@ -15,8 +16,7 @@ from dynamics.integrators.step_control import Control, next_rung, slow_enough, s
 from dynamics.integrators.table_work import add_table_work, keep_motion
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import LOSSES, Count, Workspace
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.sampled_states import States
+from dynamics.motion.sampled_states import States
 from dynamics.types import RunStatus
 
 COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)

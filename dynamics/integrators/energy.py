@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.by_address import by_address
 from dynamics.forces.compiled import compiled
 from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, Elements, potential
 from dynamics.forces.local_state import LocalState
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.observation import local_state, observe_laws
+from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray
 
 

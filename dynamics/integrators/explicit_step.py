@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.element_laws import evaluate
 from dynamics.forces.routine import routine
 from dynamics.integrators.powers import write_powers
@@ -14,8 +15,7 @@ from dynamics.integrators.tableaus import (
     EXPLICIT_WEIGHTS,
 )
 from dynamics.integrators.workspace import Workspace
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import add_motion
+from dynamics.motion.motion import add_motion
 
 STAGE_COUNT = 7
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
 from dynamics.forces.routine import routine
 from dynamics.integrators.local_newton import solve_local_forces
@@ -16,8 +17,7 @@ from dynamics.integrators.tableaus import (
     IMPLICIT_WEIGHTS,
 )
 from dynamics.integrators.workspace import Count, Workspace
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import add_motion
+from dynamics.motion.motion import add_motion
 
 STAGE_COUNT = 6
 

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.integrators.march import Cancel, Ending, Progress, ending, march_on, now, start_march
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.taking_over import Taken, Trail
-from dynamics.system import Integration
-from dynamics.system.assemble import System
-from dynamics.system.sampled_states import States
+from dynamics.motion.sampled_states import States
+from dynamics.scene import Integration
 from dynamics.types import FloatArray, IntArray
 
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
+from dynamics.arrays.arrays import LawArrays, SystemArrays
 from dynamics.forces.compiled import inner
 from dynamics.integrators.workspace import Workspace
-from dynamics.system.arrays import LawArrays, SystemArrays
-from dynamics.system.motion import piece_at
+from dynamics.motion.motion import piece_at
 
 ROUNDING = 4.0 * 2.0**-52
 """Part of a knot's time by which a step ends before it: its last stage still sees the law's old piece."""

@@ -6,10 +6,10 @@ equations reduce to one scalar unknown per row: its local force.
 
 from __future__ import annotations
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import evaluate
 from dynamics.integrators.workspace import Workspace
-from dynamics.system.arrays import SystemArrays
 from dynamics.types import FloatArray
 
 ITERATION_LIMIT = 25

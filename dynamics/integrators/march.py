@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.assembly.assemble import System
 from dynamics.forces.by_address import by_address, by_value
 from dynamics.integrators.advance import advance, prepare_samples, prepare_steps
 from dynamics.integrators.energy import stored_energy
@@ -20,10 +22,8 @@ from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.step_control import Control
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
 from dynamics.integrators.workspace import Count, Workspace, make_workspace, step_ladder
-from dynamics.system import Integration
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.assemble import System
-from dynamics.system.sampled_states import Widths
+from dynamics.motion.sampled_states import Widths
+from dynamics.scene import Integration
 from dynamics.types import FloatArray, IntArray, RunStatus
 
 Progress = Callable[[float, str], None]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import (
     FLANK,
@@ -15,8 +16,7 @@ from dynamics.forces.element_laws import (
 from dynamics.forces.routine import routine
 from dynamics.integrators.rung import row_product
 from dynamics.integrators.workspace import Power, Workspace
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import ACCELERATION, SPEED, law_value
+from dynamics.motion.motion import ACCELERATION, SPEED, law_value
 from dynamics.types import FloatArray
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import compiled, inner
 from dynamics.integrators.workspace import Workspace
-from dynamics.system.arrays import SystemArrays
 from dynamics.types import FloatArray, IntArray
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.integrators.sample_ring import SampleRing
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray, Json
 
 

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.assembly.assemble import System
+from dynamics.assembly.bearing_force import BearingForce
 from dynamics.forces.element_laws import make_local
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.packed_tables import PackedTables
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.assemble import System
-from dynamics.system.bearing_force import BearingForce
-from dynamics.system.motion import MOTION_COLUMNS
+from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import FloatArray, IntArray
 
 

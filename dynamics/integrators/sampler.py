@@ -8,14 +8,14 @@ output trails the integration by half the filter, and its delay is compensated.
 
 from __future__ import annotations
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import compiled, inner
 from dynamics.forces.element_laws import evaluate
 from dynamics.forces.routine import routine
 from dynamics.forces.table_lookup import table_deflection
 from dynamics.integrators.sample_ring import Sampler, SampleRing
 from dynamics.integrators.workspace import Count, Workspace
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import (
+from dynamics.motion.motion import (
     QUANTUM,
     add_motion,
     move_free_trains,
@@ -23,7 +23,7 @@ from dynamics.system.motion import (
     set_phases,
     write_motion,
 )
-from dynamics.system.sampled_states import States
+from dynamics.motion.sampled_states import States
 
 HIGH_PASS = (1.0, -6.0, 15.0, -20.0, 15.0, -6.0, 1.0)
 """Sixth difference: 64 at half the rate, sin^6 below."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Protocol
 
-from dynamics.system.sampled_states import States, Widths
+from dynamics.motion.sampled_states import States, Widths
 
 BLOCK = 8192
 """Samples that are in memory at once where a run is streamed, and that series are made of at once always, so

@@ -19,7 +19,7 @@ import numpy as np
 from dynamics.errors import InputError, ResultError
 from dynamics.integrators.checkpoint import Arrays, read_checkpoint, write_checkpoint
 from dynamics.integrators.state_sink import blocks
-from dynamics.system.sampled_states import States, Widths
+from dynamics.motion.sampled_states import States, Widths
 from dynamics.types import FloatArray
 
 

@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.assembly.assemble import System
+from dynamics.assembly.bearing_rest import bearing_rows, rest_on_bearings
+from dynamics.assembly.frame_couplings import stiffness_across
 from dynamics.forces.element_laws import Law
 from dynamics.forces.table_lookup import table_deflection
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.assemble import System
-from dynamics.system.bearing_rest import bearing_rows, rest_on_bearings
-from dynamics.system.force_balance import ForceBalance, force_balance
-from dynamics.system.frame_couplings import stiffness_across
-from dynamics.system.observation import local_state, observe_laws
+from dynamics.motion.force_balance import ForceBalance, force_balance
+from dynamics.motion.observation import local_state, observe_laws
 from dynamics.types import FloatArray, IntArray, StaticStatus
 
 ITERATION_LIMIT = 50

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
 from dynamics.integrators.workspace import RUNGS_PER_OCTAVE, Count, Workspace
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import law_speed, write_motion
+from dynamics.motion.motion import law_speed, write_motion
 
 SAFETY = math.log2(0.9)  # octaves of the step size, like the limits of its change
 RISE_LIMIT = math.log2(2.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import FLANK, SPATIAL_FLANK, Elements
 from dynamics.forces.local_state import LocalState
@@ -13,8 +14,7 @@ from dynamics.forces.spatial_flank import spatial_energy
 from dynamics.forces.table_energy import table_energy
 from dynamics.forces.table_lookup import position_interval
 from dynamics.integrators.workspace import Power, StepEnd, Workspace
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import SPEED
+from dynamics.motion.motion import SPEED
 
 GAUSS = (0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0))  # points of order 4, equal weights
 Path = tuple[float, float, float, float]  # value and rate times the step at both ends

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.integrators.march import March
 from dynamics.integrators.sample_ring import SampleRing
 from dynamics.integrators.state_sink import StateSink, blocks
 from dynamics.integrators.workspace import Count
-from dynamics.system.assemble import System
-from dynamics.system.observation import local_state
-from dynamics.system.sampled_states import States
+from dynamics.motion.observation import local_state
+from dynamics.motion.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
 STATE = (

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.element_laws import make_local
 from dynamics.forces.local_state import LocalState
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.motion import MOTION_COLUMNS
+from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 STAGES = 7  # of the method with the most stages

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import assemble
 from dynamics.checks import one_of
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import integrate, static_equilibrium
@@ -17,8 +18,7 @@ from dynamics.ladder.registry import RUNGS
 from dynamics.ladder.rung import Rung
 from dynamics.ladder.time_integration import TimeIntegration
 from dynamics.ladder.vibration import Blocks, Vibration, blocks_of
-from dynamics.system import Scene
-from dynamics.system.assemble import assemble
+from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 
 FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")

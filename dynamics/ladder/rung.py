@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from dynamics.ladder.vibration import Blocks, Vibration
-from dynamics.system import Scene
+from dynamics.scene import Scene
 
 
 class Rung(Protocol):

@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.thin_tables import with_thin_tables
+from dynamics.effects import EFFECTS, MESH_EFFECTS
 from dynamics.errors import SolveError
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
 from dynamics.ladder.vibration import Blocks, Vibration, vibration_of
-from dynamics.system import Outputs, Scene
-from dynamics.system.assemble import System, assemble
-from dynamics.system.effects import EFFECTS, MESH_EFFECTS
-from dynamics.system.observation import observe
-from dynamics.system.thin_tables import with_thin_tables
+from dynamics.motion.observation import observe
+from dynamics.scene import Outputs, Scene
 from dynamics.types import FloatArray
 
 BY_TORSION = ("backlash",)

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
+from dynamics.motion.observation import observe
 from dynamics.results.order_fit import order_amplitudes, orders_seen, unwrapped
-from dynamics.system.assemble import System
-from dynamics.system.observation import observe
 from dynamics.types import FloatArray, IntArray
 
 MOST_BLOCKS, ORDERS = 6, 5

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System, assemble
 from dynamics.errors import SolveError
 from dynamics.integrators import static_equilibrium
 from dynamics.ladder.vibration import Blocks, Vibration, vibration_of
 from dynamics.linearize import HarmonicResponse, harmonic_response
-from dynamics.system import Scene
-from dynamics.system.assemble import System, assemble
-from dynamics.system.observation import observe_laws, static_deflections
+from dynamics.motion.observation import observe_laws, static_deflections
+from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
 ORDER_MATCH = 1e-6

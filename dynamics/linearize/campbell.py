@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from dynamics.assembly.assemble import System
 from dynamics.linearize.energy_shares import kinetic_shares, strain_shares
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.linearize.speeds import law_speeds
 from dynamics.linearize.whirl import ComplexArray, WhirlModes, terms_at, turning_modes
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray
 
 TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness

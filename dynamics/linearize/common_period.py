@@ -8,9 +8,9 @@ from fractions import Fraction
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
+from dynamics.assembly.frame_couplings import frame_turns
 from dynamics.errors import InputError
-from dynamics.system.assemble import System
-from dynamics.system.frame_couplings import frame_turns
 from dynamics.types import FloatArray
 
 LARGEST_DENOMINATOR = 10_000

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.linearize.campbell import WhirlBranches, likeness, modes_at
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.linearize.speed_matrices import SpeedMatrices, speed_matrices
 from dynamics.linearize.speeds import mesh_frequencies
 from dynamics.linearize.whirl import ComplexArray
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray
 
 CLOSE = 1e-9  # of the eigenvalue: last step of a crossing, whose error is of the order of its square

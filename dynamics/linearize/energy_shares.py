@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.assembly.assemble import System
 from dynamics.linearize.linear_system import LinearSystem
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray
 
 HELD_BY = ("mesh", "bearing", "coupling", "drive", "shaft")

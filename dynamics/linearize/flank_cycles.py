@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.assembly.assemble import System
 from dynamics.forces.by_address import by_address
 from dynamics.forces.local_state import LocalState
 from dynamics.linearize.linear_system import LinearSystem
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.assemble import System
-from dynamics.system.freedoms import row_reach
-from dynamics.system.observation import Watch, local_state, observe, static_deflections
+from dynamics.mechanism.freedoms import row_reach
+from dynamics.motion.observation import Watch, local_state, observe, static_deflections
 from dynamics.types import FloatArray
 
 SAMPLES, LEAST_SAMPLES, MOST_POSITIONS = 512, 64, 8192

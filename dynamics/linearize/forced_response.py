@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_response
@@ -17,7 +18,6 @@ from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.speeds import checked_speeds, leading_law
 from dynamics.results.array_file import Stored, read_fields, write_fields
 from dynamics.results.force_check import checked_ledger
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray, Json
 
 SCHEMA = "lineofaction forced response"

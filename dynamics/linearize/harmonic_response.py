@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.checks import integer, one_of, positive
 from dynamics.linearize.flank_cycles import SAMPLES
 from dynamics.linearize.steady_vibration import (
@@ -18,9 +19,8 @@ from dynamics.linearize.steady_vibration import (
     excited,
     steady_vibration,
 )
-from dynamics.system.assemble import System
-from dynamics.system.force_balance import block_diagonal
-from dynamics.system.observation import local_state
+from dynamics.motion.force_balance import block_diagonal
+from dynamics.motion.observation import local_state
 from dynamics.types import BoolArray, FloatArray
 
 

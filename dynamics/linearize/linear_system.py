@@ -6,15 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
+from dynamics.assembly.frame_couplings import frame_couplings, frame_joint
+from dynamics.assembly.references import drive_springs
 from dynamics.errors import SolveError
 from dynamics.forces.spatial_flank import as_running
 from dynamics.integrators import StaticSolution, static_equilibrium
-from dynamics.system.assemble import System
-from dynamics.system.columns import elastic_terms
-from dynamics.system.force_balance import force_balance
-from dynamics.system.frame_couplings import frame_couplings, frame_joint
-from dynamics.system.observation import local_state
-from dynamics.system.references import drive_springs
+from dynamics.mechanism.columns import elastic_terms
+from dynamics.motion.force_balance import force_balance
+from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 
 

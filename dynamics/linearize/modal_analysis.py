@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.checks import integer
 from dynamics.linearize.campbell import WhirlBranches, whirl_branches
 from dynamics.linearize.critical_speeds import CriticalSpeeds, critical_speeds
@@ -21,7 +22,6 @@ from dynamics.linearize.speeds import checked_speeds, leading_law, mesh_frequenc
 from dynamics.linearize.whirl import ComplexArray
 from dynamics.results.array_file import Stored, read_fields, write_fields
 from dynamics.results.force_check import checked_ledger
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray, Json
 
 SCHEMA = "lineofaction modal analysis"

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, null_space
 
+from dynamics.assembly.assemble import System
 from dynamics.linearize.energy_shares import strain_shares
 from dynamics.linearize.linear_system import LinearSystem, linearize
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray
 
 

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import System, assemble
 from dynamics.checks import positive
 from dynamics.linearize.speeds import mesh_frequencies
-from dynamics.system.assemble import System, assemble
 from dynamics.types import FloatArray
 
 

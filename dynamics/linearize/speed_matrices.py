@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.assembly.assemble import System
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.linearize.speeds import law_speeds
 from dynamics.linearize.whirl import terms_at
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray
 
 ComplexMatrix = NDArray[np.complex128]

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from bounds import above, at_least
+from dynamics.assembly.assemble import System
 from dynamics.checks import finite
 from dynamics.errors import InputError
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray
 
 MOST_SPEEDS = 100_000

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from dynamics.assembly.assemble import System
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.flank_cycles import SAMPLES, FlankCycle, averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem, about_running, linearize
 from dynamics.linearize.speeds import law_speeds
 from dynamics.linearize.whirl import terms_at
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray
 
 ComplexArray = NDArray[np.complex128]

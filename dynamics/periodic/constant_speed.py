@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from bounds import above, below
+from dynamics.arrays.arrays import LawArrays, SystemArrays
+from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.forces.by_address import by_address
 from dynamics.linearize.common_period import CommonPeriod
-from dynamics.system.arrays import LawArrays, SystemArrays
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray
 
 

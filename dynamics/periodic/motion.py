@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
+from dynamics.motion.observation import observe, static_deflections
 from dynamics.periodic.floquet import ComplexArray
 from dynamics.periodic.period_map import PeriodicProblem, PeriodMap
 from dynamics.periodic.shooting import Orbit
-from dynamics.system.observation import observe, static_deflections
 from dynamics.types import FloatArray
 
 SAMPLES_PER_PITCH = 64  # at least; as many powers of 2 more as there are steps

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.forces.element_laws import Law
 from dynamics.linearize.common_period import CommonPeriod
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray
 
 SAME = 1e-11  # of the period: nearer knots count as one, nearer step sizes as equal

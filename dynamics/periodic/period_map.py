@@ -7,6 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.assembly.assemble import System
+from dynamics.assembly.static_reference import with_static_reference
 from dynamics.checks import integer
 from dynamics.errors import InputError, SolveError
 from dynamics.forces.by_address import by_address
@@ -19,9 +22,6 @@ from dynamics.linearize.linear_system import about_running
 from dynamics.periodic.constant_speed import at_constant_speed
 from dynamics.periodic.march import HALVINGS, march
 from dynamics.periodic.period_grid import PeriodGrid, period_grid, refined
-from dynamics.system.arrays import SystemArrays
-from dynamics.system.assemble import System
-from dynamics.system.static_reference import with_static_reference
 from dynamics.types import FloatArray
 
 STEPS_PER_CYCLE = 24  # of the highest natural frequency

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.linearize.speeds import checked_speeds, leading_law
 from dynamics.periodic.continuation import Branch, follow_branch
@@ -19,7 +20,6 @@ from dynamics.periodic.steady_figures import KINDS, MotionFigures, figures_of
 from dynamics.periodic.sweep import SETTLING, sweep
 from dynamics.results.array_file import Stored, read_fields, write_fields
 from dynamics.results.force_check import checked_ledger
-from dynamics.system.assemble import System
 from dynamics.types import FloatArray, IntArray, Json
 
 SCHEMA = "lineofaction steady states"

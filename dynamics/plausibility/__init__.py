@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dynamics.plausibility.check import CHECKS, Check
-from dynamics.plausibility.finding import Finding, PlausibilityWarning, warn_of
+from dynamics.plausibility.check import CHECKS
 from dynamics.plausibility.scene_checks import scene_findings
 
-__all__ = ["CHECKS", "Check", "Finding", "PlausibilityWarning", "scene_findings", "warn_of"]
+__all__ = ["CHECKS", "scene_findings"]

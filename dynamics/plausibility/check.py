@@ -2,34 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
-
-@dataclass(frozen=True)
-class Check:
-    """One check.
-
-    Attributes
-    ----------
-    name : str
-        What a finding is called.
-    quantity : str
-        What is compared, in words.
-    low, high : float or None
-        Bounds in `unit`; None: no such bound.
-    unit : str
-        Unit of the bounds; "1" for a ratio.
-    source : str
-        Where the limit comes from.
-    """
-
-    name: str
-    quantity: str
-    low: float | None
-    high: float | None
-    unit: str
-    source: str
-
+from bounds import Check
 
 _STEEL = "from foamed plastics to tungsten"
 _CHECKS = (

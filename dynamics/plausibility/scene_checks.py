@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import Finding
 from dynamics.bodies import GearBody, Inertia, Shaft
 from dynamics.joints import Bushing, PlanetBearing
+from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
 from dynamics.plausibility.check import CHECKS
-from dynamics.plausibility.finding import Finding
-from dynamics.system import Scene
-from dynamics.system.mechanism import Mechanism, gather_mechanism
+from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
 ROLLING = (1e7, 1e10)

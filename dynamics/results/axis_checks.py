@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.results.axis_series import EFFECTS, FIELDS, axis_rows
-from dynamics.system.assemble import System
 from dynamics.types import Json
 
 WHAT = ("tilt", "centre distance")

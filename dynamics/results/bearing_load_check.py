@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.system.assemble import System
-from dynamics.system.effects.bearing_clearance import BearingClearance
+from dynamics.assembly.assemble import System
+from dynamics.effects.bearing_clearance import BearingClearance
 from dynamics.types import FloatArray, Json
 
 LIGHT = 1e-3

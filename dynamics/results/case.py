@@ -7,9 +7,9 @@ from dataclasses import asdict
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.forces import GearMesh
 from dynamics.results.flexible_shafts import flexible_shafts
-from dynamics.system.assemble import System
 from dynamics.types import Json
 
 

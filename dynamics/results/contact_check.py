@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.system.assemble import System
-from dynamics.system.observation import static_deflections
+from dynamics.assembly.assemble import System
+from dynamics.motion.observation import static_deflections
 from dynamics.types import FloatArray, Json
 
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from dynamics.system.assemble import System
-from dynamics.system.observation import static_deflections
+from dynamics.assembly.assemble import System
+from dynamics.motion.observation import static_deflections
 from dynamics.types import Json
 
 NOT_CHECKED = "no; switching it over measures it (ablation)"

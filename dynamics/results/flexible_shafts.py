@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from dynamics.bodies import ElasticShaft
-from dynamics.system.rotor import Rotor
+from dynamics.mechanism.rotor import Rotor
 from dynamics.types import Json
 
 

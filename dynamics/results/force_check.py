@@ -10,10 +10,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.errors import SolveError
 from dynamics.results.verdict import ending
-from dynamics.system.assemble import System
-from dynamics.system.scene import Scene
+from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray, Json
 
 STRAIGHT_ON = 1.2

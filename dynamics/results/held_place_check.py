@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
+from dynamics.assembly.mesh_axes import distance_gradient, misalignment_gradient
 from dynamics.forces import GearMesh
 from dynamics.forces.grid_place import table_at_place
 from dynamics.results.axis_checks import WHAT
 from dynamics.results.axis_series import EFFECTS, FIELDS
-from dynamics.system.assemble import System
-from dynamics.system.mesh_axes import distance_gradient, misalignment_gradient
 from dynamics.types import FloatArray, Json
 
 USUAL_TOLERANCE = 0.01

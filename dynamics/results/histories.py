@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
 from dynamics.joints.seat import SEAT
+from dynamics.mechanism.freedoms import ROTATION
+from dynamics.motion.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
+from dynamics.motion.observation import Observed, observe_laws, static_deflections
+from dynamics.motion.sampled_states import States
 from dynamics.results.axis_series import axis_series
-from dynamics.system.assemble import System
-from dynamics.system.freedoms import ROTATION
-from dynamics.system.motion import ACCELERATION, FRACTION, QUANTA_PER_TURN, SPEED, WHOLE
-from dynamics.system.observation import Observed, observe_laws, static_deflections
-from dynamics.system.sampled_states import States
 from dynamics.types import FloatArray, IntArray
 
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Protocol
 
+from dynamics.assembly.assemble import System
+from dynamics.motion.sampled_states import States
 from dynamics.results.axis_checks import AxisChecks
 from dynamics.results.bearing_load_check import BearingLoadChecks
 from dynamics.results.contact_check import ContactChecks
 from dynamics.results.force_check import ForceChecks
 from dynamics.results.held_place_check import HeldPlaceChecks
-from dynamics.system.assemble import System
-from dynamics.system.sampled_states import States
 from dynamics.types import Json
 
 

@@ -6,9 +6,9 @@ import time as clock
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from dynamics.system import Scene
-from dynamics.system.effects.backlash import Backlash
-from dynamics.system.effects.bearing_clearance import BearingClearance
+from dynamics.effects.backlash import Backlash
+from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.scene import Scene
 from dynamics.worth.estimate import Worth, estimate_worths
 
 SHARE = 0.1

@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import System, assemble
+from dynamics.effects import EFFECTS, MESH_EFFECTS
 from dynamics.errors import InputError, SolveError
 from dynamics.linearize.speeds import leading_law
-from dynamics.system import Scene
-from dynamics.system.assemble import System, assemble
-from dynamics.system.effects import EFFECTS, MESH_EFFECTS
+from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
 from dynamics.worth.linear_figures import LinearFigures, linear_figures
 from dynamics.worth.visits import visits

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.assembly.assemble import System
+from dynamics.effects.backlash import Backlash
+from dynamics.effects.gyroscopic import Gyroscopic
 from dynamics.linearize.harmonic_response import HarmonicResponse, extremes
 from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.speeds import mesh_frequencies
 from dynamics.linearize.steady_vibration import Excited, excited
-from dynamics.system.assemble import System
-from dynamics.system.effects.backlash import Backlash
-from dynamics.system.effects.gyroscopic import Gyroscopic
 from dynamics.types import FloatArray
 from dynamics.worth.visits import Visit
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
 MOMENTS = 24

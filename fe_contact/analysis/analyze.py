@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from bounds import warn_of
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import compute_database, solved_findings
 from fe_contact.analysis.kept_tolerance import OnDraft, kept_tolerance
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
-from fe_contact.plausibility import unexpected, warn_of
+from fe_contact.plausibility import unexpected
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 from fe_contact.workers import InProcess, Workers

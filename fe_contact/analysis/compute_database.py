@@ -8,6 +8,7 @@ from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
+from bounds import Finding
 from fe_contact.analysis.assumptions import check_assumptions
 from fe_contact.analysis.contact_receipt import contact_receipt
 from fe_contact.analysis.decided import Decided
@@ -19,7 +20,7 @@ from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, so
 from fe_contact.analysis.tolerance_receipt import tolerance_receipt
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
-from fe_contact.plausibility import Finding, merged, table_findings
+from fe_contact.plausibility import merged, table_findings
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bounds import Finding, warn_of
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versions
 from fe_contact.analysis.flank_file import SCHEMA_VERSION
@@ -18,7 +19,7 @@ from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.solved_place import checked_positions, settled_place
 from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
-from fe_contact.plausibility import Finding, flank_findings, merged, unexpected, warn_of
+from fe_contact.plausibility import flank_findings, merged, unexpected
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata
 from fe_contact.ste.content_hash import content_hash

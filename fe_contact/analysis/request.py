@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 
+from bounds import Finding
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth, LedgerEntry, compose
 from fe_contact.effects.sparing import WITHOUT
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import Accuracy, CycleCost
-from fe_contact.plausibility import Finding, pair_findings
+from fe_contact.plausibility import pair_findings
 from fe_contact.types import FloatArray, Json
 
 ON_VIOLATION = ("repeat", "fail", "report")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from bounds import Text, at_least
+from bounds import Text, at_least, warn_of
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request import Checked, Request
@@ -19,7 +19,6 @@ from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh import SectorRecipe
 from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
-from fe_contact.plausibility import warn_of
 from fe_contact.types import FloatArray
 
 LARGEST_PERIOD = 1_000_000

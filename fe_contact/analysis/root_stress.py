@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bounds import Finding, warn_of
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.flank_results import POSITIONS
 from fe_contact.analysis.request_check import check_one_load
@@ -21,7 +22,7 @@ from fe_contact.contact.patch import Patches
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.geometry.root_tangent import critical_section
 from fe_contact.planning import FaceRootMeshes, PlaneRootMeshes, root_meshes
-from fe_contact.plausibility import Finding, root_findings, unexpected, warn_of
+from fe_contact.plausibility import root_findings, unexpected
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import BoolArray, FloatArray, IntArray, Json
 

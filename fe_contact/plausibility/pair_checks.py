@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from bounds import Finding
 from fe_contact.geometry import ParallelAxes, Shaft
 from fe_contact.geometry.modification import AMOUNTS
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import Material
 from fe_contact.plausibility.check import CHECKS
-from fe_contact.plausibility.finding import Finding
 from fe_contact.plausibility.nominal_load import (
     nominal_deflection,
     nominal_root_stress,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from fe_contact.plausibility.finding import Finding
+from bounds import Finding
 from fe_contact.plausibility.pair_checks import judged
 from fe_contact.types import FloatArray
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from dynamics.periodic.steady_states import BRANCH
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from service.cli.effects import run_lines
 from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.cli.scene_tables import scene_with_tables

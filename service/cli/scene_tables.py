@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from fe_contact.ste import PairFacts, SteDatabase
 from service.cli.analyze import analyzed
 from service.cli.output import Report

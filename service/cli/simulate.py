@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from dynamics.simulate import interrupted_run, simulate_to_file
-from dynamics.system import Scene
+from dynamics.scene import Scene
+from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
 from service.cli.effects import run_lines
 from service.cli.interrupt import until_interrupted

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray
 
     from dynamics.results import RunResult
-    from dynamics.system import Scene
+    from dynamics.scene import Scene
     from fe_contact.ste import SteDatabase
 
 
@@ -72,7 +72,7 @@ class LineOfActionClient(Studies):
         return RunResult.from_netcdf(self.fetch_file(result.key, result.kind))
 
     def scene(self, scene: SceneLike, progress: Watch | None = None) -> Scene:
-        """Return a scene in SI on tables of the service, to be run here by `dynamics.simulate.simulate`.
+        """Return a scene in SI on tables of the service, to be run here by `dynamics.simulation.simulate`.
 
         Its meshes take their tables by ``case``, ``case_file``, ``database_hash`` or ``database_file``; those
         of cases are as from `analyze`, those of files are read here.

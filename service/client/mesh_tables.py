@@ -11,7 +11,7 @@ from service.schemas import Case
 from service.schemas.scene import MeshInput, SceneInput
 
 if TYPE_CHECKING:
-    from dynamics.system import Scene
+    from dynamics.scene import Scene
     from fe_contact.ste import SteDatabase
 
 

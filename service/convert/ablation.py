@@ -8,9 +8,9 @@ from typing import Any
 
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import ablate as ablate_scene
-from dynamics.system import Scene
-from dynamics.system.effects import EFFECTS as SCENE_EFFECTS
-from dynamics.system.effects import MESH_EFFECTS
+from dynamics.effects import EFFECTS as SCENE_EFFECTS
+from dynamics.effects import MESH_EFFECTS
+from dynamics.scene import Scene
 from fe_contact.analysis.ablation import Ablation, ablate
 from fe_contact.effects import EFFECTS
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair

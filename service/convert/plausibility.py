@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from bounds import Unit, finding_of
 from dynamics.plausibility import scene_findings
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from fe_contact.analysis import LoadDistribution
-from fe_contact.plausibility import Unit, finding_of, pair_findings
+from fe_contact.plausibility import pair_findings
 from fe_contact.ste import SteDatabase
 from service.convert.case import analysis_arguments, gear_pair
 from service.convert.errors import named

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ForcedResponse, Peak, forced_response, peaks
-from dynamics.system import Scene
-from dynamics.system.assemble import assemble
+from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.convert.units import N_PER_UM, RPM, UM
 from service.schemas.dynamic_studies import ResponseInput

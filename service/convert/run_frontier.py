@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from dynamics.errors import InputError, SolveError
 from dynamics.ladder import Frontier, frontier
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from service.convert.errors import translated
 from service.problems import JobFailed
 

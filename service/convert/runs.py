@@ -11,7 +11,7 @@ import numpy as np
 
 
 def staged(report: Callable[[str, float], None]) -> Callable[[float, str], None]:
-    """Return the progress callback of `dynamics.simulate` that feeds ``report(stage, fraction)``."""
+    """Return the progress callback of `dynamics.simulation` that feeds ``report(stage, fraction)``."""
     return lambda fraction, _doing: report("integration", fraction)
 
 

@@ -15,8 +15,9 @@ from dynamics.forces import (
     straight_table,
 )
 from dynamics.joints import Coupling, FreeRotation, Housing, ImposedRotation
-from dynamics.system import Integration, Outputs, Scene, with_planets
-from dynamics.system.motion_check import check_load_flow, check_motion
+from dynamics.mechanism import with_planets
+from dynamics.mechanism.motion_check import check_load_flow, check_motion
+from dynamics.scene import Integration, Outputs, Scene
 from fe_contact.ste import PairFacts, SteDatabase
 from service.convert.bearings import (
     bushing_of,

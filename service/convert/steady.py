@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from dynamics.assembly.assemble import assemble
 from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
 from dynamics.periodic.steady_states import BRANCH, CURVES, UP
-from dynamics.system import Scene
-from dynamics.system.assemble import assemble
+from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.convert.units import RPM, UM
 from service.schemas.dynamic_studies import SteadyInput

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from dynamics.system.base_pitches import PRINTED
+from dynamics.mechanism.base_pitches import PRINTED
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
 from service.convert.units import MM

@@ -11,8 +11,7 @@ from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 
-from dynamics import plausibility as dynamics
-from fe_contact import plausibility as contact
+from bounds import PlausibilityWarning
 from service.hardcases.scene import HardScene, Outcome
 
 _START_LIMIT = 120.0  # seconds for a new process to import what it needs
@@ -79,8 +78,7 @@ def _serve(pipe: Connection) -> None:
     os.setsid()  # so that a mesher it started ends with it
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("error")  # a warning is a fault here, unless it says that the input is odd
-    for odd in (contact.PlausibilityWarning, dynamics.PlausibilityWarning):
-        warnings.simplefilter("ignore", odd)
+    warnings.simplefilter("ignore", PlausibilityWarning)
     pipe.send(True)
     while True:
         try:

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 from typing import Any
 
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from service.convert.modal import modes_of
 from service.convert.response import response_of
 from service.convert.steady import steady_of

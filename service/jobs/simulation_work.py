@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from dynamics.errors import ResultError
-from dynamics.simulate import simulate_to_file
-from dynamics.system import Scene
+from dynamics.scene import Scene
+from dynamics.simulation import simulate_to_file
 from fe_contact.ste import SteDatabase
 from service.convert.case import case_json
 from service.convert.plausibility import scene_warnings

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 from fe_contact.analysis import analyze
 from service.app import create_app
 from service.client import JobState, LineOfActionClient

@@ -9,10 +9,10 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
 
 from dynamics.bodies import TimeLaw
+from dynamics.effects import EFFECTS, MESH_EFFECTS, ledger
 from dynamics.forces import CoastFlank
-from dynamics.simulate import simulate
-from dynamics.system import Scene
-from dynamics.system.effects import EFFECTS, MESH_EFFECTS, ledger
+from dynamics.scene import Scene
+from dynamics.simulation import simulate
 from dynamics.worth import decide_effects, estimate_worths
 
 RPM = np.pi / 30.0

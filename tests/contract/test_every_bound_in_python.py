@@ -15,7 +15,7 @@ from dynamics.bodies import BeamSection, GearBody, Inertia, hollow_cylinder
 from dynamics.bodies import Shaft as TurningShaft
 from dynamics.forces import CoastFlank, RollingContact
 from dynamics.joints import Bushing, Coupling
-from dynamics.system import Integration, Outputs
+from dynamics.scene import Integration, Outputs
 from fe_contact.geometry import BoreSeat, FlankModification, Gear, GearBlank, GearPair, Key, RingGear, Shaft
 from service.problems import Fault
 

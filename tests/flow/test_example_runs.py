@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 from fe_contact import analyze
 from service.client.portable import case_of_mesh, scene_of
 from service.convert.case import analysis_arguments, gear_pair

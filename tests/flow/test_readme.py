@@ -26,21 +26,28 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
 
 
-def test_the_python_example_runs_and_writes_a_database(tmp_path: Path) -> None:
-    code, _ = blocks("python")
+def run_python(code: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    """Run a block in an interpreter of its own, warnings being errors."""
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", code],
-        cwd=tmp_path,
-        env=os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(tmp_path / "cache")},
+        cwd=folder,
+        env=os.environ | {"OMP_NUM_THREADS": "1", "XDG_CACHE_HOME": str(folder / "cache")},
         capture_output=True,
         text=True,
         check=False,
     )
     assert done.returncode == 0, done.stderr
+    return done
+
+
+def test_the_python_examples_write_a_database_and_run_a_scene_on_it(tmp_path: Path) -> None:
+    analysis, scene, _ = blocks("python")
+    done = run_python(analysis, tmp_path)
     assert done.stdout.count("Estimate(value=") == 2
     database = SteDatabase.from_netcdf(tmp_path / "spur_20_20.nc")
     # full finite-element contact in plane strain gives 2.799 um; the finite width adds 3.2 %
     assert database.peak_to_peak(torque=100).value == pytest.approx(2.89e-6, rel=0.01)
+    assert run_python(scene, tmp_path).stdout.startswith("COMPLETED (4, 3, ")
 
 
 def test_the_http_example_is_a_case() -> None:
@@ -52,7 +59,7 @@ def test_the_http_example_is_a_case() -> None:
 
 
 def test_the_client_example_is_the_one_of_its_page_which_runs() -> None:
-    _, code = blocks("python")
+    *_, code = blocks("python")
     assert f"```python\n{code}```" in (ROOT / "docs" / "client.md").read_text(encoding="utf-8")
 
 

@@ -14,11 +14,11 @@ from dataclasses import replace
 import numpy as np
 from geared_scenes import spring_table
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
 from dynamics.forces import CoastFlank, GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
-from dynamics.system import Integration, Outputs, Scene
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs, Scene
 
 ZETA, MEAN, AMPLITUDE = 0.05, 0.1, 0.05
 TEETH, SAMPLES = 20, 64

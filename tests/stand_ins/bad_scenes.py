@@ -14,8 +14,8 @@ from planetary_scenes import driven_scene, published_set
 from dynamics.bodies import TimeLaw
 from dynamics.forces import LoadTorque
 from dynamics.joints import Coupling, ImposedRotation
-from dynamics.simulate import simulate
-from dynamics.system import Scene
+from dynamics.scene import Scene
+from dynamics.simulation import simulate
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 Table = dict[str, Any]

@@ -9,7 +9,7 @@ from geared_scenes import gear_pair_scene
 
 from dynamics.bodies import BeamSection, Inertia
 from dynamics.joints import Bushing
-from dynamics.system.columns import section_rows
+from dynamics.mechanism.columns import section_rows
 
 STEEL = BeamSection(0.2, 0.04)
 

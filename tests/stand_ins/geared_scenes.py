@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.bodies import TimeLaw, hollow_cylinder
+from dynamics.bodies import GearBody, TimeLaw, hollow_cylinder
 from dynamics.forces.mesh_table import FIELDS
-from dynamics.system import Scene, pair_scene
+from dynamics.scene import Scene, pair_scene
 
 NOMINAL_FORCE = 2660.0
 BASE_RADIUS = 0.040 * math.cos(math.radians(20.0))
@@ -77,21 +77,21 @@ def gear_pair_scene(
     table=None, *, speed=None, torque=100.0, duration=0.05, technique="variable_torque", **changes
 ):
     """The 20/20 pair of 4 mm module on 200 mm shafts; `changes` replace fields of the scene."""
-    gear = hollow_cylinder(0.08, 0.025, 0.04)
+    inertia = hollow_cylinder(0.08, 0.025, 0.04)
+    pinion, wheel = (
+        GearBody(name, shaft, 0.1, 20, BASE_RADIUS, 0.025, inertia=inertia)
+        for name, shaft in (("pinion", "input"), ("wheel", "output"))
+    )
     scene = pair_scene(
         table or square_wave_table(),
-        teeth=(20, 20),
-        base_radius=(BASE_RADIUS, BASE_RADIUS),
-        face_width=(0.025, 0.025),
+        (pinion, wheel),
         center_distance=0.08,
-        gear_inertia=(gear, gear),
         shaft_inertia=hollow_cylinder(0.04, 0.2),
         speed=speed or TimeLaw.constant(900.0 * RPM),
         resisting_torque=TimeLaw.constant(torque),
         duration=duration,
-        technique=technique,
     )
-    return replace(scene, **changes)
+    return replace(with_mesh(scene, technique=technique), **changes)
 
 
 def with_mesh(scene: Scene, **changes) -> Scene:

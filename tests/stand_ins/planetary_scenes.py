@@ -16,7 +16,7 @@ from geared_scenes import spring_table
 from dynamics.bodies import Inertia, TimeLaw
 from dynamics.forces import LoadTorque
 from dynamics.joints import FreeRotation, ImposedRotation
-from dynamics.system import PlanetarySet, Scene
+from dynamics.scene import PlanetarySet, Scene
 
 PRESSURE_ANGLE = math.radians(24.6)
 MESH_STIFFNESS = 5e8

@@ -7,12 +7,12 @@ from fractions import Fraction
 
 from geared_scenes import RPM, gear_pair_scene, spring_table, with_mesh
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.forces import LoadTorque
 from dynamics.joints import FreeRotation
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs, Scene
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs, Scene
+from dynamics.simulation import simulate
 
 PI = Fraction(3141592653589793238462643383279502884197, 10**39)
 STEP, TEETH, START = 1e-5, 20, 50.0

@@ -10,7 +10,7 @@ from typing import Any
 
 from small_table import small_table
 
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from service.convert.checks import check_case
 from service.convert.scene import dynamic_scene
 from service.convert.topology import facts_of

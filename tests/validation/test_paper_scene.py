@@ -10,7 +10,7 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene
 
 from dynamics.bodies import TimeLaw
 from dynamics.orders import find_peaks, mesh_orders, window_spectrum
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze
 
 # the paper gives no damping; measured gear pairs have mesh damping ratios of 0.03 to 0.17

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
 from dynamics.types import FloatArray
 from service.hardcases.dynamics.bounce import bounce, cycle
 from service.hardcases.dynamics.integrators import METHODS, common_figures, rms, run_both

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from dynamics.results import RunResult
-from dynamics.simulate import simulate_to_file
-from dynamics.system import Integration, Outputs, Scene
+from dynamics.scene import Integration, Outputs, Scene
+from dynamics.simulation import simulate_to_file
 from dynamics.types import RunStatus
 from service.hardcases.dynamics.integrators import METHODS, by_method
 from service.hardcases.dynamics.springs import RPM, coast, damping_of, spring, torsional

@@ -12,7 +12,7 @@ from dynamics.bodies import Inertia, TimeLaw
 from dynamics.forces import LoadTorque
 from dynamics.joints import FreeRotation
 from dynamics.results import RunResult
-from dynamics.system import Integration, Outputs, Scene
+from dynamics.scene import Integration, Outputs, Scene
 from dynamics.types import FloatArray
 from service.hardcases.dynamics.integrators import common_figures, off_closed_form, run_both
 from service.hardcases.dynamics.springs import BASE_RADIUS, INERTIA, STIFFNESS, TORQUE, spring, torsional

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dynamics.results import RunResult
-from dynamics.simulate import simulate
-from dynamics.system import Scene
+from dynamics.scene import Scene
+from dynamics.simulation import simulate
 from dynamics.types import FloatArray
 from service.hardcases.scene import Measured
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import System, assemble
 from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
 from dynamics.forces import CoastFlank, GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
@@ -24,8 +25,7 @@ from dynamics.periodic import (
     periodic_problem,
     settled,
 )
-from dynamics.system import Integration, Scene
-from dynamics.system.assemble import System, assemble
+from dynamics.scene import Integration, Scene
 from dynamics.types import FloatArray
 from service.hardcases.dynamics.integrators import METHODS
 from service.hardcases.dynamics.springs import spring

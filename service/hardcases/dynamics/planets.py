@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import Inertia, TimeLaw
 from dynamics.forces import LoadTorque
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import ImposedRotation
-from dynamics.system import Integration, PlanetarySet, Scene
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, PlanetarySet, Scene
 from service.hardcases.dynamics.integrators import common_figures, run_both
 from service.hardcases.dynamics.springs import spring
 from service.hardcases.scene import HardScene, Measured

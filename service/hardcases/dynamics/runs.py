@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.bodies import TimeLaw
-from dynamics.system import Integration, Outputs
+from dynamics.scene import Integration, Outputs
 from service.hardcases.dynamics.integrators import common_figures, run_both
 from service.hardcases.dynamics.springs import (
     BASE_RADIUS,

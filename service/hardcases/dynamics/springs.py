@@ -15,7 +15,7 @@ from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
 from dynamics.forces import CoastFlank, GearMesh, LoadTorque
 from dynamics.forces.technique import PlainTable
 from dynamics.joints import ImposedRotation
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
 TEETH = 20

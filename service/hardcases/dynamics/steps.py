@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.workspace import Count
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
 from dynamics.types import FloatArray
 from service.hardcases.dynamics.integrators import METHODS, common_figures, off_closed_form, run_both
 from service.hardcases.dynamics.springs import (

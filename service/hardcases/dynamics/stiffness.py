@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from dynamics.assembly.assemble import assemble
 from dynamics.periodic import find_orbit, periodic_problem
-from dynamics.system import Integration
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration
 from dynamics.types import FloatArray
 from service.hardcases.dynamics.integrators import METHODS, common_figures, run_both
 from service.hardcases.dynamics.springs import NATURAL, TEETH, changing_spring, damping_of, torsional

@@ -8,12 +8,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from dynamics.assembly.assemble import System, assemble
 from dynamics.bodies import Inertia, Shaft
 from dynamics.forces import RollingContact
 from dynamics.integrators import Trajectory, integrate, static_equilibrium
 from dynamics.joints import Bushing, Coupling
-from dynamics.system import Integration, Outputs, Scene
-from dynamics.system.assemble import System, assemble
+from dynamics.scene import Integration, Outputs, Scene
 from dynamics.types import FloatArray
 from service.hardcases.dynamics.bounce import bounce, cycle
 from service.hardcases.dynamics.integrators import METHODS, common_figures, rms, run_both

@@ -11,9 +11,9 @@ from benchmarks import dynamic_worth_cases
 from benchmarks.dynamic_worth_estimates import STUDY, judge, markdown
 from benchmarks.judged_worth import JudgedWorth
 from dynamics.ablation import ablate
+from dynamics.assembly.assemble import assemble
+from dynamics.effects import EFFECTS, MESH_EFFECTS
 from dynamics.forces import straight_table
-from dynamics.system.assemble import assemble
-from dynamics.system.effects import EFFECTS, MESH_EFFECTS
 
 
 def test_counts_and_tables_are_those_of_the_ablations() -> None:

@@ -8,14 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bounds import PlausibilityWarning
 from fe_contact import Gear, GearPair, SteDatabase, analyze
-from fe_contact.plausibility import (
-    PlausibilityWarning,
-    flank_findings,
-    pair_findings,
-    root_findings,
-    table_findings,
-)
+from fe_contact.plausibility import flank_findings, pair_findings, root_findings, table_findings
 from fe_contact.plausibility.nominal_load import nominal_deflection, nominal_root_stress, pitch_point_pressure
 
 

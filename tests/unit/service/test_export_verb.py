@@ -10,7 +10,7 @@ import pytest
 from geared_scenes import gear_pair_scene
 from typer.testing import CliRunner, Result
 
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 from service.cli.commands import app
 
 SMALL = """

@@ -11,8 +11,8 @@ import pytest
 from scene_files import scene_file
 from typer.testing import CliRunner, Result
 
+from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
-from dynamics.system.assemble import assemble
 from fe_contact.ste import SteDatabase
 from service.cli.commands import app
 from service.cli.speed_list import speed_list

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from small_table import small_table
 
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from service.convert.bearings import planet_bearing_of, rolling_contacts_of, spring_curves_of
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput

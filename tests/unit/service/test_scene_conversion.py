@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from small_table import BASE_RADIUS, small_table
 
-from dynamics.system import Scene
+from dynamics.scene import Scene
 from service.convert.scene import dynamic_scene
 from service.convert.topology import facts_of
 from service.problems import BadInput
@@ -325,7 +325,7 @@ def test_the_planetary_example_is_a_system() -> None:
     """On stand-in tables with the facts of its pairs: six meshes, all torques carried, planets that fit."""
     from dataclasses import replace  # noqa: PLC0415
 
-    from dynamics.system.assemble import assemble  # noqa: PLC0415
+    from dynamics.assembly.assemble import assemble  # noqa: PLC0415
 
     table = small_table()
     fields = {name: getattr(table, name) for name in table.__dataclass_fields__}

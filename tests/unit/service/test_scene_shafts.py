@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from small_table import small_table
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import Inertia
-from dynamics.system import Scene
-from dynamics.system.assemble import assemble
+from dynamics.scene import Scene
 from fe_contact import STEEL
 from service.convert.scene import dynamic_scene
 from service.problems import BadInput

@@ -10,7 +10,7 @@ from geared_scenes import gear_pair_scene
 from typer.testing import CliRunner
 
 from dynamics.results import RunResult
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 from dynamics.types import RunStatus
 from service.cli.commands import app
 from service.cli.interrupt import until_interrupted

@@ -17,11 +17,11 @@ from geared_scenes import (
     with_mesh,
 )
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 
 @pytest.mark.parametrize("method", ["implicit", "explicit"])

@@ -9,13 +9,13 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, square_wave_table
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.results.order_fit import order_amplitudes, unwrapped
-from dynamics.simulate import simulate
-from dynamics.simulate.error_windows import run_again, windows
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
+from dynamics.simulation.error_windows import run_again, windows
 
 
 def run_up(positions, **changes):

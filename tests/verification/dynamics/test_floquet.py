@@ -9,13 +9,13 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_bushings, with_mesh
 from scipy.optimize import brentq
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
 from dynamics.forces import GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
 from dynamics.linearize import natural_modes
 from dynamics.periodic import Instability, find_orbit, periodic_problem
-from dynamics.system import Integration, Scene
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Scene
 
 TEETH = 20
 # contact ratio, stiffness ratio, damping ratio: unstable bands of mesh frequency over natural frequency,

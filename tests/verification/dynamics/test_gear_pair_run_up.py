@@ -10,7 +10,7 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, square_wave_table
 
 from dynamics.bodies import TimeLaw
 from dynamics.orders import find_peaks, mesh_orders, window_spectrum
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 
 
 @pytest.mark.parametrize("speed", [100.0, 400.0, 900.0])

@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.joints import BearingStiffness
 from dynamics.linearize import natural_modes
-from dynamics.system.assemble import assemble
 
 KINDS = ("x", "y", "z", "tilt_x", "tilt_y", "rotation")
 CENTRAL = ("sun", "ring", "carrier")

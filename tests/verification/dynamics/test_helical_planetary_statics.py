@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from planetary_scenes import MESH_STIFFNESS, PRESSURE_ANGLE, planetary_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.integrators import static_equilibrium
 from dynamics.joints import BearingStiffness
-from dynamics.system.assemble import assemble
-from dynamics.system.observation import local_state
+from dynamics.motion.observation import local_state
 
 HELIX = math.radians(22.0)  # on the base cylinder
 FORCE = 8000.0  # N, of all meshes of the sun together

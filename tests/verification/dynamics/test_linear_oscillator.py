@@ -9,8 +9,8 @@ import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, with_mesh
 
 from dynamics.bodies import TimeLaw
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 STIFFNESS = 4e8
 INERTIA = 1.1344291072112745e-3

@@ -9,8 +9,8 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table
 
 from dynamics.bodies import TimeLaw
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 STEPS = 2.0 ** -(np.arange(12) / 4)  # three octaves; where in a step a kink lies is chance, so many of them
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from planetary_scenes import BEARING_STIFFNESS, MESH_STIFFNESS, PRESSURE_ANGLE, planetary_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.integrators import static_equilibrium
-from dynamics.system.assemble import assemble
 
 ERROR = 20e-6  # m, the pin of planet 1 against the carrier's motion
 SUN_FORCE = 8000.0  # N, torque over base radius

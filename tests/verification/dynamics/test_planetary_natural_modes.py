@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.linearize import natural_modes
-from dynamics.system.assemble import assemble
 
 RING_TORSION = 1e9  # N/m on the ring's base circle
 

@@ -12,8 +12,8 @@ from scipy.integrate import solve_ivp
 from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
 from dynamics.forces import CoastFlank, GearMesh, LoadTorque
 from dynamics.joints import ImposedRotation
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs, Scene
+from dynamics.scene import Integration, Outputs, Scene
+from dynamics.simulation import simulate
 
 TEETH, MEAN, RIPPLE, GAP, RATE = 20, 0.1, 0.6, 2.0, 0.9
 DURATION = 20.0

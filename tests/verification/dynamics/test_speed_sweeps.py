@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, square_wave_table, with_mesh
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.periodic import Instability, follow_branch, motion, periodic_problem, sweep
-from dynamics.simulate import simulate
-from dynamics.system import Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Outputs
+from dynamics.simulation import simulate
 
 LOW, HIGH, DURATION, TORQUE = 11000.0, 13500.0, 1.0, 20.0
 WINDOW = 400  # samples: 10 ms, 25 rpm

@@ -13,9 +13,9 @@ from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque
 from dynamics.joints import Bushing, ImposedRotation
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Scene
-from dynamics.system.kinematics import solve_kinematics
+from dynamics.mechanism.kinematics import solve_kinematics
+from dynamics.scene import Integration, Scene
+from dynamics.simulation import simulate
 
 RADIUS = 0.002  # base radius per tooth, m
 CLOSENESS = 1.1  # centre distance over the sum of base radii

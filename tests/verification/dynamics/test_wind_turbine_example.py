@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 from wind_turbine import wind_turbine
 
+from dynamics.assembly.assemble import assemble
+from dynamics.assembly.frame_couplings import frame_turns
 from dynamics.integrators import static_equilibrium
-from dynamics.simulate import simulate
-from dynamics.system.assemble import assemble
-from dynamics.system.frame_couplings import frame_turns
-from dynamics.system.observation import local_state
+from dynamics.motion.observation import local_state
+from dynamics.simulation import simulate
 
 TORQUE = 700.0  # N m on the generator
 SUN, PLANET, RING, LARGE, PINION = 21, 39, 99, 97, 23

@@ -10,8 +10,8 @@ from geared_scenes import gear_pair_scene
 
 from dynamics.ablation import Ablation, ablate
 from dynamics.errors import InputError
-from dynamics.simulate import simulate
-from dynamics.system import Outputs
+from dynamics.scene import Outputs
+from dynamics.simulation import simulate
 
 SCENE = gear_pair_scene(duration=0.06)
 

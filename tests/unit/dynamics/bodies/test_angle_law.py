@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene
 
+from dynamics.arrays.law_arrays import slope
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import AngleLaw
 from dynamics.errors import InputError
 from dynamics.joints import ImposedRotation
-from dynamics.simulate import simulate
-from dynamics.system import Integration
-from dynamics.system.assemble import assemble
-from dynamics.system.law_arrays import slope
-from dynamics.system.observation import observe_laws
+from dynamics.motion.observation import observe_laws
+from dynamics.scene import Integration
+from dynamics.simulation import simulate
 
 TIME = tuple(np.linspace(0.0, 0.1, 41).tolist())
 ANGLE = tuple(50.0 * t + 0.2 * np.sin(2 * np.pi * 30.0 * t) for t in TIME)

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from dynamics.arrays.law_arrays import revolutions
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
-from dynamics.system.law_arrays import revolutions
 
 LAWS = [
     TimeLaw.constant(7.0),

@@ -17,8 +17,8 @@ from dynamics.forces.coast_flank import CoastFlank, mirrored
 from dynamics.forces.flank_force import FlankLaws, flank_force
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.technique import table_at
-from dynamics.simulate import simulate
-from dynamics.system.scene import Outputs
+from dynamics.scene.scene import Outputs
+from dynamics.simulation import simulate
 
 
 def hunting_table(period: int):

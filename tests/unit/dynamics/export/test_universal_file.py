@@ -13,8 +13,8 @@ from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.export import write_universal_file
 from dynamics.orders import order_waterfall, window_spectrum
-from dynamics.simulate import simulate
-from dynamics.system import Outputs
+from dynamics.scene import Outputs
+from dynamics.simulation import simulate
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, square_wave_table
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import SpeedCurve
 from dynamics.forces import SpeedTorque, element_laws
 from dynamics.forces.by_address import by_address, by_value
 from dynamics.forces.compiled import compiled
 from dynamics.forces.element_laws import Law
 from dynamics.forces.routine import routine
-from dynamics.system.assemble import assemble
 
 
 class Inside(NamedTuple):

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, spring_table
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import SpeedCurve, TimeLaw
 from dynamics.errors import InputError
 from dynamics.forces import SpeedTorque
 from dynamics.joints import FreeRotation
-from dynamics.simulate import simulate
-from dynamics.system import Integration
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration
+from dynamics.simulation import simulate
 
 DRY = SpeedCurve.constant(1.0, 1.0)
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from geared_scenes import gear_pair_scene, square_wave_table, with_mesh
 
+from dynamics.assembly.assemble import assemble
 from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.technique import PlainTable
-from dynamics.simulate import simulate
-from dynamics.system import Integration
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration
+from dynamics.simulation import simulate
 
 SCENE = replace(gear_pair_scene(duration=0.1), effects={"lateral": "on", "tilt": "on"})
 

@@ -8,7 +8,7 @@ import numpy as np
 from geared_scenes import gear_pair_scene, repeated, square_wave_table, with_mesh
 
 from dynamics.orders import resample_to_position
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 
 TABLE = square_wave_table()
 SCENE = gear_pair_scene(TABLE, duration=0.03)

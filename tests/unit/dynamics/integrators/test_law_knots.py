@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, with_mesh
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import AngleLaw, TimeLaw
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.integrators.workspace import Count
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 STIFFNESS = 4e8
 INERTIA = 1.1344291072112745e-3

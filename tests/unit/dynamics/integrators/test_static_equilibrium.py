@@ -9,11 +9,11 @@ import pytest
 from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table, square_wave_table, with_gear, with_mesh
 from planetary_scenes import planetary_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.errors import SolveError
 from dynamics.integrators import static_equilibrium
-from dynamics.simulate import simulate
-from dynamics.system.assemble import assemble
+from dynamics.simulation import simulate
 from dynamics.types import RunStatus, StaticStatus
 
 FORCE = 100.0 / BASE_RADIUS

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.ladder import RUNGS, frontier
@@ -16,8 +17,7 @@ from dynamics.ladder.frontier import knee_of_rungs
 from dynamics.ladder.knee import knee_of
 from dynamics.ladder.time_integration import TimeIntegration
 from dynamics.ladder.vibration import blocks_of
-from dynamics.system import Integration
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration
 
 RUN_UP = gear_pair_scene(speed=TimeLaw.ramp(100.0 * RPM, 900.0 * RPM, 0.4), duration=0.4)
 

@@ -10,6 +10,7 @@ from flexible_scenes import flexible_pair
 from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, published_set
 
+from dynamics.assembly.assemble import System, assemble
 from dynamics.bodies import Inertia, Shaft, TimeLaw
 from dynamics.errors import InputError, ResultError
 from dynamics.joints import Bushing, Coupling
@@ -26,8 +27,7 @@ from dynamics.linearize.campbell import _whirl, likeness, modes_at
 from dynamics.linearize.flank_cycles import averaged, flank_cycles
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.linearize.whirl import WhirlModes
-from dynamics.system import Outputs
-from dynamics.system.assemble import System, assemble
+from dynamics.scene import Outputs
 
 DISC = Inertia(4.0, 0.02, 0.0104)
 STIFFNESS, LENGTH, TEETH = 1e6, 0.2, 20

@@ -9,6 +9,8 @@ import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, with_gear, with_mesh
 from sliced_face import sliced_database
 
+from dynamics.assembly.assemble import assemble
+from dynamics.assembly.static_reference import places_at, with_static_reference
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
@@ -20,10 +22,8 @@ from dynamics.linearize import (
     peaks,
     steady_vibration,
 )
-from dynamics.simulate import simulate
-from dynamics.system import Outputs
-from dynamics.system.assemble import assemble
-from dynamics.system.static_reference import places_at, with_static_reference
+from dynamics.scene import Outputs
+from dynamics.simulation import simulate
 
 STIFFNESS, RIPPLE = 4e8, 1e-7
 MASS = 1.1344291072112745e-3 / BASE_RADIUS**2

@@ -17,12 +17,12 @@ from geared_scenes import (
 )
 from planetary_scenes import MESH_STIFFNESS, driven_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.linearize import common_period, harmonic_response
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 STIFFNESS, RIPPLE = 4e8, 1e-7
 INERTIA = 1.1344291072112745e-3

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.linearize import harmonic_response
 from dynamics.linearize.harmonic_response import extremes
 from dynamics.linearize.parametric_response import parametric_response
 from dynamics.linearize.steady_vibration import excited, swept_vibration
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 STIFFNESS, RIPPLE = 4e8, 1e-7
 MASS = 1.1344291072112745e-3 / BASE_RADIUS**2

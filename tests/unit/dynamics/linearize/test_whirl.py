@@ -10,10 +10,10 @@ import pytest
 from geared_scenes import gear_pair_scene, spring_table
 from planetary_scenes import driven_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import Inertia, Shaft, TimeLaw
 from dynamics.joints import Bushing, Coupling
 from dynamics.linearize import natural_modes, whirl_modes
-from dynamics.system.assemble import assemble
 
 SPIN = 300.0  # rad/s
 DISC = Inertia(4.0, 0.02, 0.0104)

@@ -17,7 +17,7 @@ from dynamics.orders import (
     window_spectrum,
 )
 from dynamics.orders.spectrum import WINDOWS
-from dynamics.simulate import simulate
+from dynamics.simulation import simulate
 
 RATE = 1000.0
 TIME = np.arange(2000) / RATE

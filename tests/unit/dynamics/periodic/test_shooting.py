@@ -10,6 +10,7 @@ from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene, repeated, spring_table, square_wave_table, with_bushings
 from planetary_scenes import MESH_STIFFNESS, driven_scene, planetary_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.forces import RollingContact
@@ -25,9 +26,8 @@ from dynamics.periodic import (
     spectrum,
 )
 from dynamics.periodic.period_grid import period_grid, refined
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 SPEED = 900.0 * RPM
 

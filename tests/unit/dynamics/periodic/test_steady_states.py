@@ -9,15 +9,15 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_gear, with_mesh
 from sliced_face import sliced_database
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError, ResultError
 from dynamics.forces import CoastFlank
 from dynamics.linearize import harmonic_response
 from dynamics.periodic import OrbitStatus, SteadyStates, find_orbit, steady_states
 from dynamics.periodic.steady_states import BRANCH, DOWN, UP
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 SPEEDS = np.array([11600.0, 11900.0, 12300.0, 12700.0]) * RPM
 

@@ -15,8 +15,8 @@ from dynamics.results import RunResult
 from dynamics.results.contact_state import ContactState, contact_shares, contact_state
 from dynamics.results.dynamic_factor import dynamic_factor
 from dynamics.results.planet_load_sharing import planet_load_sharing
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 
 def test_the_dynamic_factor_is_one_in_the_quasi_static_limit():

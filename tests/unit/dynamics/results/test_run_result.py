@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, with_gear
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError, ResultError
 from dynamics.results import RunResult
-from dynamics.simulate import simulate
-from dynamics.system import Integration, Outputs
-from dynamics.system.assemble import assemble
+from dynamics.scene import Integration, Outputs
+from dynamics.simulation import simulate
 
 
 @pytest.fixture(scope="module")

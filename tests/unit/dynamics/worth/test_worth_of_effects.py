@@ -14,8 +14,8 @@ from dynamics.ablation import ablate
 from dynamics.bodies import BeamSection, TimeLaw
 from dynamics.errors import InputError
 from dynamics.joints import FreeRotation
-from dynamics.simulate import simulate
-from dynamics.system import Outputs, Scene
+from dynamics.scene import Outputs, Scene
+from dynamics.simulation import simulate
 from dynamics.worth import decide_effects, estimate_worths
 from dynamics.worth.visits import visits
 

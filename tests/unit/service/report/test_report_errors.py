@@ -6,8 +6,8 @@ from dataclasses import replace
 
 from geared_scenes import gear_pair_scene
 
-from dynamics.simulate import simulate
-from dynamics.system import Outputs
+from dynamics.scene import Outputs
+from dynamics.simulation import simulate
 from service.report.dynamic_part import _accuracy
 
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from planetary_scenes import driven_scene, planetary_scene, published_set
 
+from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.linearize import whirl_modes
 from dynamics.results import RunResult
-from dynamics.simulate import simulate
-from dynamics.system.assemble import assemble
+from dynamics.simulation import simulate
 from service.report.campbell import DEPTH, campbell
 from service.report.dynamic_factor import dynamic_factor_figure
 from service.report.dynamic_part import dynamic_results

@@ -1,0 +1,114 @@
+"""Plausibility: limits of practice, and what is beyond them. A check warns and changes no number."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from bounds.suspected_unit import SI_UNITS, suspected_unit
+from bounds.unit import Unit
+
+Json = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Check:
+    """A limit of practice that a quantity is held against.
+
+    Attributes
+    ----------
+    name : str
+        What a finding is called.
+    quantity : str
+        What is compared, in words.
+    low, high : float or None
+        Bounds in `unit`; None: no such bound.
+    unit : str
+        Unit of the bounds; "1" for a ratio.
+    source : str
+        Where the limit comes from.
+    """
+
+    name: str
+    quantity: str
+    low: float | None
+    high: float | None
+    unit: str
+    source: str
+
+
+class PlausibilityWarning(UserWarning):
+    """A value or a result is far from practice: most likely a slip of units."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A quantity beyond the limit of a check.
+
+    Attributes
+    ----------
+    check : str
+        Name of the check.
+    field : str
+        Dotted name of the field, as in an `InputError`.
+    value : float
+        Of the field, in `unit`.
+    low, high : float
+        Usual values of the field in `unit`: here, with all that is beside it. No bound is 0 or infinity.
+    unit : str
+        SI unit.
+    reason : str
+        What is implausible, in words.
+    source : str
+        Of the limit.
+    whole : str
+        Other fields that must have slipped with this one, in words; empty if it stands alone.
+    """
+
+    check: str
+    field: str
+    value: float
+    low: float
+    high: float
+    unit: str
+    reason: str
+    source: str
+    whole: str = ""
+
+    def message(self, field: str | None = None, own: Unit | None = None) -> str:
+        """Say it in one line, in the caller's name and unit of the field (default: ours, SI)."""
+        unit = own or SI_UNITS[self.unit]
+        suspected = suspected_unit(self.value, unit, self.unit, self.low, self.high)
+        written = f"{self.value / unit.factor:.6g}" + (f" {unit.name}" if unit.name != "1" else "")
+        question = f" Did you give {suspected}{self.whole}?" if suspected else ""
+        return f"{field or self.field} = {written}: {self.reason} ({self.source}).{question}"
+
+    def to_json(self) -> Json:
+        """Return plain JSON in SI units; a missing bound is None."""
+        return {
+            "check": self.check,
+            "field": self.field,
+            "value": self.value,
+            "unit": self.unit,
+            "low": self.low or None,
+            "high": self.high if math.isfinite(self.high) else None,
+            "reason": self.reason,
+            "source": self.source,
+            "whole": self.whole,
+            "message": self.message(),
+        }
+
+
+def finding_of(content: Json) -> Finding:
+    """Return the finding that `to_json` wrote."""
+    facts = {name: content[name] for name in ("check", "field", "value", "unit", "reason", "source", "whole")}
+    return Finding(low=content["low"] or 0.0, high=content["high"] or math.inf, **facts)
+
+
+def warn_of(findings: Sequence[Finding], stacklevel: int = 3) -> None:
+    """Warn of findings, once of each; a `stacklevel` of 3 names the caller of who calls this."""
+    for finding in findings:
+        warnings.warn(f"implausible: {finding.message()}", PlausibilityWarning, stacklevel)

@@ -1,0 +1,1 @@
+"""The assembled system as plain arrays: what the compiled loops see."""

@@ -1,0 +1,1 @@
+"""A scene as elements and arrays: what the integrators advance."""

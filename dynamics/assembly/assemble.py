@@ -1,0 +1,185 @@
+"""From a scene to arrays: the main flow of this room."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.elements import Element
+from dynamics.assembly.bearing_force import BearingForce, bearing_force_map
+from dynamics.assembly.bearing_rest import linear_scene
+from dynamics.assembly.connections import forces_on_ground
+from dynamics.assembly.flanks import Flanks
+from dynamics.assembly.force_elements import force_elements
+from dynamics.assembly.model import Model, decide_model
+from dynamics.assembly.system_arrays import system_arrays
+from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.effects.ledger import EffectLedger
+from dynamics.mechanism.base_pitches import Corrections
+from dynamics.mechanism.bearing_elements import BearingElement
+from dynamics.mechanism.coupling_rows import CouplingRows
+from dynamics.mechanism.freedoms import Freedoms
+from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.line_of_action import LineOfAction
+from dynamics.mechanism.mechanism import gather_mechanism
+from dynamics.mechanism.rotor import Rotor
+from dynamics.mechanism.sampling import Sampling, choose_sampling, top_mode
+from dynamics.mechanism.seats import Seats
+from dynamics.mechanism.supports import Supports
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray, IntArray, Json
+
+
+@dataclass(frozen=True)
+class System:
+    """An assembled scene.
+
+    Attributes
+    ----------
+    scene : Scene
+    arrays : SystemArrays
+        For the compiled loops.
+    freedoms : Freedoms
+    kinematics : Kinematics
+    lines : tuple of LineOfAction
+        One per mesh.
+    flanks : Flanks
+        Force laws as resolved: nominal forces, damping, tables.
+    elements : tuple of Element
+        The driving flanks of all meshes, then everything else.
+    rotors : tuple of Rotor
+        One per shaft.
+    supports : Supports
+        Bushings, then planet bearings.
+    seats : Seats
+        The bearings that are more than three springs to rigid ground or pin.
+    bearings : tuple of BearingElement
+        Where the last elements act, those of bearings that are not linear.
+    couplings : CouplingRows
+    bearing_stiffness, bearing_damping : (b, 3 or 6, n) arrays
+        Force on the ground, or on the pin, at each support per freedom and its rate; where bearings may
+        exert moments, these too.
+    bearing_map : BearingForce
+        The whole force there.
+    sampling : Sampling
+        How the run is sampled.
+    ledger : EffectLedger
+    corrected : dict
+        Base radii of gears as given and as used, m, that were corrected to the base pitch of their train.
+    """
+
+    scene: Scene
+    arrays: SystemArrays
+    freedoms: Freedoms
+    kinematics: Kinematics
+    lines: tuple[LineOfAction, ...]
+    flanks: Flanks
+    elements: tuple[Element, ...]
+    rotors: tuple[Rotor, ...]
+    supports: Supports
+    seats: Seats
+    bearings: tuple[BearingElement, ...]
+    couplings: CouplingRows
+    bearing_stiffness: FloatArray
+    bearing_damping: FloatArray
+    bearing_map: BearingForce
+    sampling: Sampling
+    ledger: EffectLedger
+    corrected: Corrections
+
+    @property
+    def corrections(self) -> Json:
+        """Say what of the scene was corrected; nothing where nothing was."""
+        found = {name: {"given": given, "used": used} for name, (given, used) in self.corrected.items()}
+        return {"base_radius_corrected": found} if found else {}
+
+    @property
+    def driving_rows(self) -> IntArray:
+        """Rows of the transmission errors among the local coordinates, (m,): driving flanks come first."""
+        return self.arrays.elements.first[: len(self.scene.meshes)]
+
+    @property
+    def resolved_scene(self) -> Scene:
+        """The scene with the output rate and the highest frequency of its shafts spelled out."""
+        outputs = replace(self.scene.outputs, sample_rate=self.sampling.rate)
+        elastic = [rotor.elastic.highest for rotor in self.rotors if rotor.elastic is not None]
+        highest = elastic[0] if elastic else self.scene.highest_frequency
+        return replace(self.scene, outputs=outputs, highest_frequency=highest)
+
+    def bearing_force(self, local: FloatArray, q: FloatArray, v: FloatArray) -> FloatArray:
+        """Return the force (N) on the ground or the pin at each support in its own frame, (b, 3, T).
+
+        With seats or bearings that hold tilt (b, 6, T): force and moment (N m), the one about the axis 0.
+        `local` (R, T) in N are the forces of the elements, `q` and `v` (T, n) the state.
+        """
+        return self.bearing_map.of(local, q, v).reshape(*self.bearing_stiffness.shape[:2], q.shape[0])
+
+
+def assemble(scene: Scene) -> System:
+    """Assemble `scene`; without the effect `bearing_clearance`, bearings by their tangents at the load.
+
+    Raises
+    ------
+    InputError
+        If parts do not fit each other, or a free direction has no inertia.
+    """
+    system = _assemble(scene)
+    if not system.bearings or scene.effects.get(BearingClearance().name) != "off":
+        return system
+    linear = _assemble(_with_linear_bearings(system))
+    return replace(linear, ledger=system.ledger, corrected=system.corrected)
+
+
+def _assemble(scene: Scene) -> System:
+    """Assemble `scene` as it is."""
+    model = decide_model(gather_mechanism(scene))
+    elements, laws = force_elements(model)
+    return _put_together(model, elements, system_arrays(model, elements, laws))
+
+
+def _with_linear_bearings(system: System) -> Scene:
+    """Return the scene with the tangents of its bearings where it rests under the load."""
+    mesh_force = system.flanks.nominal_force @ system.arrays.direction[system.driving_rows]
+    bearings = [(system.supports.name[at.support], at) for at in system.bearings]
+    supports = {part.name: part for rotor in system.rotors for part in rotor.supports}
+    return linear_scene(system.scene, system.arrays, bearings, supports, -mesh_force)
+
+
+def _put_together(model: Model, elements: tuple[Element, ...], arrays: SystemArrays) -> System:
+    """Gather all parts; bearings that hold tilt also exert moments."""
+    mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
+    tilted = bool(joined.seats.name) or any(at.tilts for at in mechanism.bearings)
+    stiffness, damping = forces_on_ground(joined, freedoms, tilted)
+    return System(
+        mechanism.scene,
+        arrays,
+        freedoms,
+        mechanism.kinematics,
+        mechanism.lines,
+        model.flanks,
+        elements,
+        mechanism.rotors,
+        joined.supports,
+        joined.seats,
+        mechanism.bearings,
+        joined.couplings,
+        stiffness,
+        damping,
+        bearing_force_map(
+            stiffness, damping, joined.supports, joined.seats, mechanism.bearings, arrays.elements
+        ),
+        choose_sampling(mechanism.scene, mechanism.kinematics, _top_mode(model, arrays)),
+        model.ledger,
+        mechanism.corrected,
+    )
+
+
+def _top_mode(model: Model, arrays: SystemArrays) -> float:
+    """Return the highest mode that the meshes excite, as far as shafts are resolved, Hz."""
+    elements, meshes = arrays.elements, len(model.mechanism.scene.meshes)
+    rows = arrays.direction[elements.first[:meshes]]
+    other = arrays.direction.T @ (elements.stiffness[:, None] * arrays.direction)
+    elastic = [rotor.elastic.highest for rotor in model.mechanism.rotors if rotor.elastic is not None]
+    return top_mode(arrays, rows, model.flanks.mean_stiffness, other, max(elastic, default=np.inf))

@@ -1,0 +1,52 @@
+"""The force elements of the flanks: driving flanks of all meshes, coast flanks where backlash is on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.arrays.elements import Element
+from dynamics.assembly.flanks import Flanks
+from dynamics.forces.element_laws import Law
+from dynamics.mechanism.columns import Wrench, gear_row
+from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
+from dynamics.mechanism.rotor import Rotor
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+
+def flank_elements(
+    scene: Scene,
+    rotors: Sequence[Rotor],
+    senses: Sequence[int],
+    lines: Sequence[LineOfAction],
+    flanks: Flanks,
+) -> tuple[Element, ...]:
+    """Return one element per entry of ``flanks.law``, in its order.
+
+    A driving flank's coordinate is the transmission error. A coast flank pushes along the line of action of
+    the opposite sense, and its coordinate is the approach along that less the backlash: a smaller centre
+    distance closes both.
+    """
+    driving = [
+        Element(Law.FLANK, index, index, approach(scene, rotors, index, line)[None, :], np.zeros(1))
+        for index, line in enumerate(lines)
+    ]
+    coasting = []
+    for place, index in enumerate(flanks.coast, start=len(lines)):
+        line, back = line_of_action(scene, index, -senses[index]), scene.meshes[index].coast
+        gap = back.backlash if back is not None else 0.0
+        gradient = approach(scene, rotors, index, line)[None, :]
+        coasting.append(Element(Law.FLANK, place, index, gradient, np.array([-gap])))
+    return (*driving, *coasting)
+
+
+def approach(scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction) -> FloatArray:
+    """Return the derivative of the approach along `line` of mesh `index` in all rotors' freedoms, (N,)."""
+    mesh = scene.meshes[index]
+    sides: list[tuple[str, Wrench]] = [
+        (mesh.driver, line.gradient),
+        (mesh.driven, lambda center: -line.gradient(center)),
+    ]
+    return gear_row(scene, rotors, sides)

@@ -1,0 +1,151 @@
+"""Force laws of all flanks as resolved: table at its place, technique applied, damping filled in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.forces.coast_flank import mirrored
+from dynamics.forces.flank_force import FlankLaws
+from dynamics.forces.gear_mesh import GearMesh
+from dynamics.forces.packed_tables import PackedTables, pack_tables
+from dynamics.forces.table_lookup import table_deflection, table_force
+from dynamics.forces.technique import PlainTable, secant_table, table_at
+from dynamics.mechanism.kinematics import Kinematics
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+DAMPING_REACH = 0.05
+"""Damping acts in full from this fraction of the typical force on."""
+
+
+@dataclass(frozen=True)
+class Flanks:
+    """Resolved force laws of the driving flanks of m meshes, and after them of the coast flanks in use.
+
+    Attributes
+    ----------
+    nominal_force : (m,) array
+        Transverse, N.
+    mean_stiffness : (m,) array
+        Tangent stiffness of the table at the typical force, mean over the positions, N/m.
+    used : tuple of PlainTable
+        The tables after the mesh's technique.
+    law : FlankLaws
+        Table, damping (N s/m) and reach (N), for the compiled loops.
+    coast : tuple of int
+        The meshes whose coast flanks follow.
+    static : PackedTables
+        The driving flanks' tables themselves, whatever the technique: the static reference.
+    tables : tuple of PlainTable
+        Those of `law`, each at its mesh's constant place.
+    """
+
+    nominal_force: FloatArray
+    mean_stiffness: FloatArray
+    used: tuple[PlainTable, ...]
+    law: FlankLaws
+    coast: tuple[int, ...]
+    static: PackedTables
+    tables: tuple[PlainTable, ...]
+
+
+def flank_laws(
+    scene: Scene, kinematics: Kinematics, nominal: FloatArray, polar_inertia: Sequence[float]
+) -> Flanks:
+    """Resolve the force law of every driving flank.
+
+    Stiffness and damping are those at the typical force: the nominal one, and where nothing loads a mesh the
+    lowest load of its table. A line contact has no stiffness at lift-off, and idle gears would not be damped.
+    """
+    static: list[PlainTable] = []
+    used: list[PlainTable] = []
+    for index, mesh in enumerate(scene.meshes):
+        try:
+            static.append(table_at(mesh.table, mesh.misalignment, mesh.center_distance_change))
+            used.append(_apply_technique(mesh.technique, static[-1], nominal[index]))
+        except InputError as error:
+            raise error.within(f"meshes[{index}]") from None
+    packed = pack_tables(static)
+    typical = np.where(nominal > 0.0, nominal, [table.level[1] for table in static])
+    stiffness = np.array(
+        [mean_stiffness(packed, f, typical[f], static[f].position) for f in range(len(static))]
+    )
+    damping = np.array(
+        [_damping(scene, kinematics, f, stiffness[f], polar_inertia) for f in range(len(static))]
+    )
+    law = FlankLaws(pack_tables(used), damping, DAMPING_REACH * typical)
+    return Flanks(nominal, stiffness, tuple(used), law, (), packed, tuple(used))
+
+
+def with_coast_flanks(flanks: Flanks, meshes: Sequence[GearMesh], coast: Sequence[int]) -> Flanks:
+    """Return `flanks` with the coast flanks of the meshes `coast`, damped as their driving flanks."""
+    if not coast:
+        return flanks
+    backs = []
+    for index in coast:
+        try:
+            backs.append(_coast_table(meshes[index], flanks, index))
+        except InputError as error:
+            raise error.within(f"meshes[{index}]") from None
+    chosen = [*range(len(meshes)), *coast]
+    tables = (*flanks.used, *backs)
+    law = FlankLaws(pack_tables(tables), flanks.law.damping[chosen], flanks.law.reach[chosen])
+    return replace(flanks, law=law, coast=tuple(coast), tables=tables)
+
+
+def _coast_table(mesh: GearMesh, flanks: Flanks, index: int) -> PlainTable:
+    """Return the table of a coast flank against the position of the driving flank.
+
+    Seen turned about the line of centres, the gap of a misalignment grows towards the other end.
+    """
+    back = mesh.coast
+    if back is None:
+        raise InputError("coast", None, "given", "Give the backlash and the thickness of the driver's teeth.")
+    if back.table is None and np.size(mesh.table.misalignment) == 1:
+        return mirrored(flanks.used[index], back.thickness)
+    table = table_at(back.table or mesh.table, -mesh.misalignment, mesh.center_distance_change)
+    used = _apply_technique(mesh.technique, table, float(flanks.nominal_force[index]))
+    return mirrored(used, back.thickness)
+
+
+def mean_stiffness(packed: PackedTables, flank: int, force: float, positions: FloatArray) -> float:
+    """Return the tangent stiffness at `force`, mean over `positions`, N/m."""
+    deflections = [table_deflection(packed, flank, x, force) for x in positions]
+    return float(
+        np.mean([table_force(packed, flank, x, d, 0)[1] for x, d in zip(positions, deflections, strict=True)])
+    )
+
+
+def _apply_technique(technique: str, table: PlainTable, force: float) -> PlainTable:
+    """Return the table a mesh runs on."""
+    if technique == "variable_torque":
+        return table
+    if force <= 0.0:
+        suggestion = 'Load the mesh, give nominal_force, or use "variable_torque".'
+        raise InputError("technique", technique, "used with a nominal force", suggestion)
+    return secant_table(table, force)
+
+
+def _damping(
+    scene: Scene, kinematics: Kinematics, index: int, stiffness: float, polar_inertia: Sequence[float]
+) -> float:
+    """Return it as given, or from the ratio, for the gears turning against each other on the mesh."""
+    mesh = scene.meshes[index]
+    if mesh.damping is not None:
+        return mesh.damping
+    mobility = mesh_mobility(scene, kinematics, index, polar_inertia)
+    return 2.0 * mesh.damping_ratio * float(np.sqrt(stiffness / mobility))
+
+
+def mesh_mobility(scene: Scene, kinematics: Kinematics, index: int, polar_inertia: Sequence[float]) -> float:
+    """Return 1/m of the gears turning against each other on mesh `index`: sum of base_radius^2 / inertia."""
+    mesh, mobility = scene.meshes[index], 0.0
+    for gear in (scene.gear(mesh.driver), scene.gear(mesh.driven)):
+        shaft = scene.shaft_index(gear.shaft)
+        if shaft not in kinematics.imposed:
+            mobility += gear.base_radius**2 / polar_inertia[shaft]
+    return mobility

@@ -1,0 +1,30 @@
+"""All force elements of a model, in their order: flanks, torques by speed, turning, frames, bearings."""
+
+from __future__ import annotations
+
+from dynamics.arrays.elements import Element
+from dynamics.assembly.flank_elements import flank_elements
+from dynamics.assembly.frame_couplings import frame_coupling_elements
+from dynamics.assembly.model import Model
+from dynamics.assembly.spatial_elements import spatial_elements
+from dynamics.assembly.speed_elements import speed_elements
+from dynamics.assembly.turning_elements import turning_elements
+from dynamics.forces.element_laws import ElementLaws
+from dynamics.mechanism.bearing_elements import bearing_elements, tilt_lever
+
+
+def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
+    """Return the driving flanks of all meshes, then everything else, and their laws."""
+    mechanism, flanks, ledger = model.mechanism, model.flanks, model.ledger
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
+    senses, vectors, joined = kinematics.mesh_sense, mechanism.vectors, model.connections
+    plain = flank_elements(scene, rotors, senses, mechanism.lines, flanks)
+    in_space, spatial = spatial_elements(scene, rotors, senses, flanks, plain, ledger, vectors)
+    by_speed, speed = speed_elements(scene, rotors, kinematics)
+    by_turning, turning = turning_elements(
+        scene, rotors, kinematics, vectors, model.freedoms, joined.supports, joined.seats, ledger
+    )
+    on_bearings, contact, curve = bearing_elements(scene, rotors, mechanism.bearings, mechanism.bearing_load)
+    across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
+    laws = ElementLaws(flanks.law, speed, contact, curve, spatial, turning, frame)
+    return (*in_space, *by_speed, *by_turning, *across, *on_bearings), laws

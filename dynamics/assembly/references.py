@@ -1,0 +1,146 @@
+"""The kinematic motion, the load torques and the drives' torques laid out for the compiled loops."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.arrays.arrays import Drives, Loads, Reference
+from dynamics.arrays.law_arrays import pack_laws, revolutions
+from dynamics.assembly.connections import Connections
+from dynamics.assembly.frame_couplings import frame_turns
+from dynamics.joints import ImposedRotation
+from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, times_mass, turn_row
+from dynamics.mechanism.freedoms import ROTATION, Freedoms
+from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.mechanism import Mechanism
+from dynamics.mechanism.motion_check import check_loads
+from dynamics.mechanism.planets import carried_motion
+from dynamics.mechanism.rotor import Rotor
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+
+def lay_out_reference(
+    scene: Scene, kinematics: Kinematics, freedoms: Freedoms, vectors: FloatArray
+) -> Reference:
+    """Lay out the kinematic motion; `vectors` (k, N) are the laws' kinematic vectors.
+
+    Behind the positions of the meshes come the turns of frames that couplings cross, in revolutions.
+    """
+    laws = [part.speed for part in scene.references]
+    turned = [revolutions(law) for law in laws]
+    free = [-1] * len(scene.drives) + [
+        freedoms.find(shaft, ROTATION) for shaft in kinematics.law_shaft[len(scene.drives) :]
+    ]
+    frames = frame_turns(scene, kinematics)
+    rates, none = (*kinematics.mesh_rate, *frames), len(frames)
+    shape = (len(rates), len(laws))
+    return Reference(
+        pack_laws(laws),
+        np.concatenate([whole for whole, _ in turned]),
+        np.concatenate([fraction for _, fraction in turned]),
+        np.array([[rate.numerator for rate in row] for row in rates], dtype=np.int64).reshape(shape),
+        np.array([[rate.denominator for rate in row] for row in rates], dtype=np.int64).reshape(shape),
+        np.array([[float(rate) for rate in row] for row in rates]).reshape(shape) / (2.0 * math.pi),
+        np.array([*(mesh.position_offset for mesh in scene.meshes), *[0.0] * none], dtype=float),
+        np.array([*(mesh.table.period for mesh in scene.meshes), *[1] * none], dtype=np.int64),
+        np.array(free, dtype=np.int64),
+        np.ascontiguousarray(vectors[:, freedoms.place]),
+    )
+
+
+def lay_out_loads(mechanism: Mechanism, freedoms: Freedoms) -> Loads:
+    """Lay out the load torques: each against the sense of its shaft, where it acts along that."""
+    scene, kinematics, rotors = mechanism.scene, mechanism.kinematics, mechanism.rotors
+    check_loads(scene, kinematics)
+    direction = np.zeros((len(scene.loads), column_count(rotors)))
+    for row, load in enumerate(scene.loads):
+        shaft = scene.shaft_index(load.shaft)
+        direction[row] -= kinematics.sense[shaft] * turn_row(rotors, shaft, load.position)
+    rotation = direction[:, 6 * np.arange(len(rotors)) + ROTATION]
+    on_drive = direction @ _own_motions(mechanism).T * np.array(kinematics.rigid)
+    return Loads(
+        pack_laws([load.torque for load in scene.loads]),
+        freedoms.keep(direction),
+        np.ascontiguousarray(rotation @ kinematics.float_ratio),
+        np.ascontiguousarray(on_drive),
+    )
+
+
+def lay_out_drives(
+    mechanism: Mechanism, freedoms: Freedoms, connections: Connections, gradient: FloatArray
+) -> Drives:
+    """Lay out what each drive's torque is made of: the balance of its own shaft, or its own spring."""
+    scene, kinematics = mechanism.scene, mechanism.kinematics
+    supports, seats, couplings = connections.supports, connections.seats, connections.couplings
+    turned = _turned_alone(mechanism, freedoms)
+    strained = np.einsum("bki,ai->bka", supports.motion, turned)
+    moves = freedoms.keep(supports.motion)
+    stiffness = supports.matrix(supports.stiffness, strained, moves)
+    damping = supports.matrix(supports.damping, strained, moves)
+    preloaded = np.zeros(turned.shape[0])
+    if seats.name:  # planet bearings, which a carrier's rotation strains
+        seated = turned @ seats.motion.T
+        stiffness += seated @ seats.stiffness @ freedoms.keep(seats.motion)
+        damping += seated @ seats.damping @ freedoms.keep(seats.motion)
+        preloaded = seated @ seats.preload
+    if couplings.name:
+        twisted = np.einsum("cki,ai->cka", couplings.motion, turned)
+        strains = freedoms.keep(couplings.motion)
+        stiffness += couplings.matrix(couplings.stiffness, twisted, strains)
+        damping += couplings.matrix(couplings.damping, twisted, strains)
+    springs, dampers = elastic_terms(mechanism.rotors)
+    stiffness += (turned * springs) @ freedoms.motion
+    damping += (turned * dampers) @ freedoms.motion
+    for law, drive, row in drive_springs(scene, kinematics, mechanism.rotors, freedoms):
+        stiffness[law] -= (drive.stiffness or 0.0) * row
+        damping[law] -= drive.damping * row
+    return Drives(
+        np.ascontiguousarray(turned @ gradient.T),
+        np.ascontiguousarray(stiffness),
+        np.ascontiguousarray(damping),
+        np.ascontiguousarray(times_mass(mechanism.rotors, turned) @ mechanism.vectors.T),
+        np.einsum("bka,bk,bk->a", strained, supports.stiffness, supports.error) + preloaded,
+    )
+
+
+def _turned_alone(mechanism: Mechanism, freedoms: Freedoms) -> FloatArray:
+    """Motion of all rotors per radian of each rigid drive's shaft alone, (k, N); 0 for other laws."""
+    kinematics = mechanism.kinematics
+    turned = np.zeros((len(kinematics.law_shaft), column_count(mechanism.rotors)))
+    carried = carried_motion(mechanism.rotors, freedoms.place)
+    for law, motion in enumerate(_own_motions(mechanism)):
+        if kinematics.rigid[law]:
+            turned[law] = carried @ motion
+    return turned
+
+
+def _own_motions(mechanism: Mechanism) -> FloatArray:
+    """Motion of each law's shaft per radian at the place where its rotation is imposed, (k, N).
+
+    Of all motions of a flexible shaft with that rotation the one that shares no kinetic energy with its
+    elastic coordinates: the work on it leaves out their accelerations.
+    """
+    rotors = mechanism.rotors
+    found = np.zeros((len(mechanism.kinematics.law_shaft), column_count(rotors)))
+    for law, shaft in enumerate(mechanism.kinematics.law_shaft):
+        found[law, 6 * shaft + ROTATION] = 1.0
+        elastic = rotors[shaft].elastic
+        if elastic is not None:
+            found[law, elastic_columns(rotors, shaft)] = -elastic.turned / elastic.mass
+    return found
+
+
+def drive_springs(
+    scene: Scene, kinematics: Kinematics, rotors: Sequence[Rotor], freedoms: Freedoms
+) -> list[tuple[int, ImposedRotation, FloatArray]]:
+    """Return the law of each drive with a spring, the drive, and the rotation it strains per freedom (n,)."""
+    found = []
+    for law, drive in enumerate(scene.drives):
+        if drive.stiffness is not None:
+            shaft = kinematics.law_shaft[law]
+            found.append((law, drive, freedoms.keep(turn_row(rotors, shaft, drive.position))))
+    return found

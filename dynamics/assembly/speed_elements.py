@@ -1,0 +1,39 @@
+"""The force elements of torques that depend on speed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.arrays.elements import Element
+from dynamics.errors import InputError
+from dynamics.forces.element_laws import Law
+from dynamics.forces.speed_torque import SpeedTorqueLaws, pack_speed_torques
+from dynamics.mechanism.columns import column_count, turn_row
+from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.rotor import Rotor
+from dynamics.scene.scene import Scene
+
+
+def speed_elements(
+    scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics
+) -> tuple[tuple[Element, ...], SpeedTorqueLaws]:
+    """Return one element per speed torque, and their laws.
+
+    Its coordinate is the rotation in the shaft's sense times a radius, and its rate in the kinematic motion
+    is the shaft's speed times that radius.
+    """
+    radius = max((gear.base_radius for gear in scene.gears), default=1.0)
+    found = []
+    for place, part in enumerate(scene.speed_torques):
+        shaft = scene.shaft_index(part.shaft)
+        sense = kinematics.sense[shaft]
+        if sense == 0:
+            field = f"speed_torques[{place}].shaft"
+            raise InputError(field, part.shaft, "a shaft that turns", "A held shaft needs no load.")
+        gradient = np.zeros((1, column_count(rotors)))
+        gradient[0] += sense * radius * turn_row(rotors, shaft, part.position)
+        drift = sense * radius * kinematics.float_ratio[shaft][None, :]
+        found.append(Element(Law.SPEED_TORQUE, place, -1, gradient, np.zeros(1), drift))
+    return tuple(found), pack_speed_torques(scene.speed_torques, radius)

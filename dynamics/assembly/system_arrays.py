@@ -1,0 +1,102 @@
+"""A model laid out as the plain arrays that the compiled loops see."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.arrays.elements import Element, gradients, pack_elements
+from dynamics.assembly.connections import elastic_matrices, linear_matrices
+from dynamics.assembly.frame_couplings import frame_turns
+from dynamics.assembly.model import Model
+from dynamics.assembly.references import drive_springs, lay_out_drives, lay_out_loads, lay_out_reference
+from dynamics.effects import FREEDOMS
+from dynamics.forces.by_address import by_address
+from dynamics.forces.element_laws import ElementLaws
+from dynamics.mechanism.columns import column_count, times_mass, turn_row
+from dynamics.mechanism.freedoms import ROTATION, Freedoms, row_reach, shared_blocks
+from dynamics.mechanism.kinematics import Kinematics, mesh_shafts
+from dynamics.mechanism.rotor import Rotor
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+
+def system_arrays(model: Model, elements: Sequence[Element], laws: ElementLaws) -> SystemArrays:
+    """Reduce every array over all freedoms to the free directions."""
+    mechanism, freedoms, joined = model.mechanism, model.freedoms, model.connections
+    scene, rotors, kinematics = mechanism.scene, mechanism.rotors, mechanism.kinematics
+    vectors = mechanism.vectors
+    stiffness, damping, constant = linear_matrices(joined, freedoms)
+    own_stiffness, own_damping = elastic_matrices(rotors, freedoms)
+    stiffness, damping = stiffness + own_stiffness, damping + own_damping
+    for _, drive, row in drive_springs(scene, kinematics, rotors, freedoms):
+        stiffness += (drive.stiffness or 0.0) * np.outer(row, row)
+        damping += drive.damping * np.outer(row, row)
+    mass = freedoms.motion.T @ np.ascontiguousarray(times_mass(rotors, freedoms.motion.T).T)
+    gradient = gradients(elements, column_count(rotors))
+    scale, direction = _scales(scene, rotors, freedoms), freedoms.keep(gradient)
+    packed = pack_elements(elements, laws, len(scene.references))
+    along = direction[packed.first[: len(scene.meshes)]]
+    held = np.diag(stiffness) + model.flanks.mean_stiffness @ along**2
+    held += packed.stiffness @ direction**2
+    block = shared_blocks([mass, damping, stiffness])
+    arrays = SystemArrays(
+        np.ascontiguousarray(mass),
+        damping,
+        stiffness,
+        block,
+        direction,
+        row_reach(direction, block),
+        freedoms.keep(_turns(scene, rotors, kinematics)),
+        constant,
+        freedoms.keep(-times_mass(rotors, vectors)),
+        np.ascontiguousarray(times_mass(rotors, vectors) @ vectors.T),
+        lay_out_drives(mechanism, freedoms, joined, gradient),
+        scale,
+        scale * np.sqrt(np.diag(mass) / np.maximum(held, 1e-300)),
+        packed,
+        lay_out_reference(scene, kinematics, freedoms, vectors),
+        lay_out_loads(mechanism, freedoms),
+    )
+    return by_address(arrays)
+
+
+def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
+    """Return the derivatives of each position, (m + f, N): the driver's rotation against its carrier's.
+
+    Frames turn with the kinematic motion alone.
+    """
+    frames = len(frame_turns(scene, kinematics))
+    turn = np.zeros((len(scene.meshes) + frames, column_count(rotors)))
+    for row, mesh in enumerate(scene.meshes):
+        driver, _, carrier = mesh_shafts(scene, row)
+        gear = scene.gear(mesh.driver)
+        rate = kinematics.mesh_sense[row] * gear.teeth / (2.0 * math.pi)
+        turn[row] += rate * turn_row(rotors, driver, gear.position)
+        if carrier is not None:
+            turn[row, 6 * carrier + ROTATION] -= rate
+    return turn
+
+
+def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatArray:
+    """Metres per unit of each freedom, (n,): for rotations the largest base or pin radius on the shaft."""
+    largest = max((gear.base_radius for gear in scene.gears), default=1.0)
+    radius = np.zeros(len(rotors))
+    for gear in scene.gears:
+        shaft = scene.shaft_index(gear.shaft)
+        radius[shaft] = max(radius[shaft], gear.base_radius)
+    for rotor in rotors:
+        if rotor.carrier is not None:
+            arm = rotor.center - rotors[rotor.carrier].center
+            radius[rotor.carrier] = max(radius[rotor.carrier], float(np.hypot(arm[0], arm[1])))
+    scale = np.ones((len(rotors), len(FREEDOMS)))
+    scale[:, 3:] = np.where(radius > 0.0, radius, largest)[:, None]
+    elastic = [
+        np.where(rotor.elastic.twists, own[ROTATION], 1.0)
+        for rotor, own in zip(rotors, scale, strict=True)
+        if rotor.elastic is not None
+    ]
+    return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic])[freedoms.place])

@@ -1,0 +1,42 @@
+"""The effects of the multibody model, one line each, and what is left out."""
+
+from __future__ import annotations
+
+from dynamics.effects.axial import Axial
+from dynamics.effects.backlash import Backlash
+from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.effects.dynamic_center_distance import DynamicCenterDistance
+from dynamics.effects.dynamic_misalignment import DynamicMisalignment
+from dynamics.effects.effect import Effect, MeshEffect
+from dynamics.effects.flexible_shafts import FlexibleShafts
+from dynamics.effects.friction import Friction
+from dynamics.effects.gyroscopic import Gyroscopic
+from dynamics.effects.lateral import Lateral
+from dynamics.effects.moving_application_point import MovingApplicationPoint
+from dynamics.effects.tilt import Tilt
+
+EFFECTS: tuple[Effect, ...] = (
+    Lateral(),
+    Axial(),
+    Tilt(),
+    BearingClearance(),
+    Gyroscopic(),
+    FlexibleShafts(),
+)
+
+MESH_EFFECTS: tuple[MeshEffect, ...] = (
+    Backlash(),
+    DynamicMisalignment(),
+    DynamicCenterDistance(),
+    MovingApplicationPoint(),
+    Friction(),
+)
+
+LEFT_OUT: dict[str, str] = {
+    "centrifugal loads": "of planets on their pins; the terms of displacements are in the effect gyroscopic",
+    "gravity": "weights are small against mesh forces",
+    "friction of bearings": "bearings turn without loss",
+    "point of application along the path of contact": "the mesh force acts at the operating pitch point",
+    "flexible members of planetary sets": "sun, ring, carrier and planets are rigid on their shafts",
+    "damping that turns with a flexible shaft": "material damping acts as if the shaft stood",
+}

@@ -1,0 +1,40 @@
+"""Tilt freedoms: the shaft's axis turns out of its direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from dynamics.effects.effect import SupportedRotor, Verdict
+
+CENTRED = 1e-9  # of the shaft's length
+
+
+@dataclass(frozen=True)
+class Tilt:
+    """Two rotations across the axis."""
+
+    name: str = "tilt"
+    adds: tuple[str, ...] = ("tilt_x", "tilt_y")
+    cost: str = "two freedoms per shaft"
+
+    def called_for(self, rotor: SupportedRotor) -> Verdict:
+        """Call for it where a mesh is off the supports' centre, or has an axial force, which tilts.
+
+        A centre of mass off the supports' centre couples tilt to lateral motion and calls for it too.
+        """
+        if rotor.tilt_stiffness == 0.0:
+            return Verdict(False, False, "the bushings do not hold tilt: held rigidly", 0.0)
+        arms = [(mesh.lever - rotor.elastic_lever, mesh.axial * mesh.radius) for mesh in rotor.meshes]
+        worth = sum(
+            mesh.force * (along**2 + across**2)
+            for mesh, (along, across) in zip(rotor.meshes, arms, strict=True)
+        )
+        worth /= rotor.tilt_stiffness
+        limit = CENTRED * rotor.length
+        if any(across > 0.0 for _, across in arms):
+            return Verdict(True, True, "a helical mesh tilts the shaft", worth)
+        if any(abs(along) > limit for along, _ in arms):
+            return Verdict(True, True, "a mesh is off the supports' centre", worth)
+        if rotor.meshes and abs(rotor.elastic_lever) > limit:
+            return Verdict(True, True, "the centre of mass is off the supports' centre", worth)
+        return Verdict(False, True, "meshes and mass centred between the supports, no axial force", worth)

@@ -1,0 +1,5 @@
+"""What a scene's parts are to one another: kinematics, rotors, lines of action, seats, freedoms."""
+
+from dynamics.mechanism.planet_copies import with_planets
+
+__all__ = ["with_planets"]

@@ -1,0 +1,79 @@
+"""One base pitch for gears that mesh: what the printing of radii rounds is corrected, more is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bounds import Quantity, Text, exactly
+from dynamics.bodies import GearBody
+from dynamics.errors import InputError
+from dynamics.scene.scene import Scene
+
+EQUAL = 1e-9
+"""Relative difference of base pitches that rounding in arithmetic alone may leave: nothing is corrected."""
+PRINTED = 1e-3
+"""Relative difference that radii printed with few digits may leave, and largest correction of a radius."""
+
+Corrections = dict[str, tuple[float, float]]
+"""Base radius as given and as used, m, of every gear that was corrected, by name."""
+
+
+def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
+    """Return `scene` with one base pitch per train of meshing gears, and what was corrected.
+
+    Radii are printed to one place after the point, so the pitch of a train is that of least squares of all
+    its base radii: each counts in proportion to its teeth.
+
+    Raises
+    ------
+    InputError
+        If the base pitches of two gears that mesh differ by more than `PRINTED`.
+    """
+    _check(scene)
+    corrected: Corrections = {}
+    for train in _trains(scene):
+        radius, teeth = (
+            np.array([getattr(gear, name) for gear in train]) for name in ("base_radius", "teeth")
+        )
+        per_tooth = radius / teeth
+        if np.ptp(per_tooth) <= EQUAL * per_tooth.max():
+            continue
+        used = float(radius @ teeth / (teeth @ teeth)) * teeth
+        for gear, value in zip(train, used, strict=True):
+            if abs(value / gear.base_radius - 1.0) > PRINTED:
+                field = f"gears[{scene.gears.index(gear)}].base_radius"
+                advice = f"Base pitches of a train agree to {PRINTED:g}."
+                raise InputError(field, gear.base_radius, exactly(value, ", as its train has it"), advice)
+            corrected[gear.name] = (gear.base_radius, float(value))
+    if not corrected:
+        return scene, corrected
+    gears = tuple(
+        replace(gear, base_radius=corrected[gear.name][1]) if gear.name in corrected else gear
+        for gear in scene.gears
+    )
+    return replace(scene, gears=gears), corrected
+
+
+def _check(scene: Scene) -> None:
+    """Refuse meshes whose base pitches differ by more than printing rounds."""
+    for index, mesh in enumerate(scene.meshes):
+        driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
+        if abs(driver.base_pitch / driven.base_pitch - 1.0) > PRINTED:
+            pitch = Quantity(driver.base_pitch, "m", digits=6)
+            bound = Text.of("a gear of base pitch ", pitch, " like the driver's")
+            advice = f"base_radius / teeth must agree to {PRINTED:g}; smaller differences are corrected."
+            raise InputError(f"meshes[{index}].driven", Quantity(driven.base_pitch, "m"), bound, advice)
+
+
+def _trains(scene: Scene) -> Sequence[list[GearBody]]:
+    """Return the gears that meshes connect, train by train."""
+    trains: list[set[str]] = []
+    for mesh in scene.meshes:
+        joined = {mesh.driver, mesh.driven}
+        apart = [train for train in trains if not train & joined]
+        joined.update(*(train for train in trains if train & joined))
+        trains = [*apart, joined]
+    return [[gear for gear in scene.gears if gear.name in train] for train in trains]

@@ -1,0 +1,114 @@
+"""Rows over all freedoms of all rotors: six rigid ones of each, then flexible shafts' elastic coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from dynamics.mechanism.rotor import Rotor
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+Wrench = Callable[[FloatArray], FloatArray]
+"""Force and moment (6,) about a point (3,) of the axis: a row of the motion of a body about that point."""
+
+
+def column_count(rotors: Sequence[Rotor]) -> int:
+    """Return N, the number of freedoms of all rotors."""
+    return 6 * len(rotors) + sum(rotor.elastic_count for rotor in rotors)
+
+
+def elastic_columns(rotors: Sequence[Rotor], index: int) -> slice:
+    """Return where the elastic coordinates of the rotor `index` are among the freedoms."""
+    first = column_count(rotors[:index]) + 6 * (len(rotors) - index)
+    return slice(first, first + rotors[index].elastic_count)
+
+
+def rigid_motion(arm: FloatArray) -> FloatArray:
+    """Return (3, 6): displacement of a point at `arm` (3,) from a body's centre per freedom of the body.
+
+    u_point = u + r x arm for the small rotation r.
+    """
+    x, y, z = arm
+    cross = np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
+    return np.hstack([np.eye(3), cross])
+
+
+def section(rotor: Rotor, point: FloatArray) -> FloatArray:
+    """Return the motion of a rotor at `point` (3,) per rigid freedom, (6, 6): displacement and rotation."""
+    moves = rigid_motion(point - rotor.center)
+    return np.vstack([moves, np.eye(6)[3:]])
+
+
+def section_rows(rotors: Sequence[Rotor], index: int, z: float) -> FloatArray:
+    """Return the motion of the section at the height z of the rotor `index` per freedom, (6, N)."""
+    rotor, rows = rotors[index], np.zeros((6, column_count(rotors)))
+    rows[:, 6 * index : 6 * index + 6] = section(rotor, np.array([*rotor.center[:2], z]))
+    if rotor.elastic is not None:
+        place = rotor.on_shaft(z - rotor.shaft.origin[2])
+        rows[:, elastic_columns(rotors, index)] = rotor.elastic.motion(place)
+    return rows
+
+
+def gear_row(scene: Scene, rotors: Sequence[Rotor], parts: Sequence[tuple[str, Wrench]]) -> FloatArray:
+    """Return the sum over gears, by name, of the row their wrenches are, (N,).
+
+    A gear is rigid and moves as the section of its shaft at mid-face.
+    """
+    row = np.zeros(column_count(rotors))
+    for name, wrench in parts:
+        gear = scene.gear(name)
+        index = scene.shaft_index(gear.shaft)
+        rotor = rotors[index]
+        row[6 * index : 6 * index + 6] += wrench(rotor.center)
+        if rotor.elastic is not None:
+            middle = np.array([*rotor.center[:2], rotor.shaft.origin[2] + gear.position])
+            moves = rotor.elastic.motion(gear.position)
+            row[elastic_columns(rotors, index)] += wrench(middle) @ moves
+    return row
+
+
+def turn_row(rotors: Sequence[Rotor], index: int, position: float) -> FloatArray:
+    """Return the rotation of the rotor `index` at `position` (m) along its shaft per freedom, (N,)."""
+    rows = section_rows(rotors, index, rotors[index].shaft.origin[2] + position)
+    return np.asarray(rows[5], dtype=float)
+
+
+def elastic_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
+    """Return stiffness and damping per freedom, (N,) each: zero but for elastic coordinates."""
+    stiffness, damping = np.zeros(column_count(rotors)), np.zeros(column_count(rotors))
+    for index, rotor in enumerate(rotors):
+        if rotor.elastic is not None:
+            own = elastic_columns(rotors, index)
+            stiffness[own], damping[own] = rotor.elastic.stiffness, rotor.elastic.damping
+    return stiffness, damping
+
+
+def mass_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
+    """Return the diagonal of the mass matrix, (N,), and how rotations couple with all freedoms, (N, r).
+
+    Rigid freedoms are those of the centres of mass, which elastic coordinates leave at rest. Only where a
+    rotation is imposed at one place, torsion is measured against that and coupled with it.
+    """
+    inertia = [rotor.inertia for rotor in rotors]
+    rigid = [[i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar] for i in inertia]
+    diagonal = np.zeros(column_count(rotors))
+    diagonal[: 6 * len(rotors)] = np.array(rigid, dtype=float).ravel()
+    turned = np.zeros((diagonal.size, len(rotors)))
+    for index, rotor in enumerate(rotors):
+        if rotor.elastic is not None:
+            own = elastic_columns(rotors, index)
+            diagonal[own], turned[own, index] = rotor.elastic.mass, rotor.elastic.turned
+    return diagonal, turned
+
+
+def times_mass(rotors: Sequence[Rotor], rows: FloatArray) -> FloatArray:
+    """Return `rows` (k, N) times the mass matrix."""
+    diagonal, turned = mass_terms(rotors)
+    found = rows * diagonal
+    if np.any(turned):
+        rotations = 6 * np.arange(len(rotors)) + 5
+        found = found + rows[:, rotations] @ turned.T
+        found[:, rotations] += rows @ turned
+    return np.asarray(found)

@@ -1,0 +1,81 @@
+"""Couplings between shafts as six strains each, with their matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.joints import Coupling
+from dynamics.joints.matrix import Matrix
+from dynamics.mechanism.columns import column_count, section_rows
+from dynamics.mechanism.rotor import Rotor
+from dynamics.scene.frame_check import crosses_frames
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+ROTATION = 5
+ACROSS = (0, 1, 3, 4)
+"""Strains that a turning frame mixes: x, y, tilt_x, tilt_y."""
+
+
+@dataclass(frozen=True)
+class CouplingRows:
+    """c couplings.
+
+    Attributes
+    ----------
+    name : tuple of str
+    motion : (c, 6, N) array
+        Strain per freedom: motion of the second shaft at the coupling less that of the first, m and rad.
+    stiffness, damping : (c, 6, 6) arrays
+        Force and moment per strain and its rate, N, m, rad, s; across frames only those along the axis and
+        about it.
+    """
+
+    name: tuple[str, ...]
+    motion: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+
+    def matrix(self, coefficient: FloatArray, left: FloatArray, right: FloatArray) -> FloatArray:
+        """Return left^T coefficient right for strains (c, 6, a) and (c, 6, b)."""
+        return np.asarray(np.einsum("cki,ckl,clj->ij", left, coefficient, right))
+
+
+def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
+    """Lay out the couplings of `scene`."""
+    motion = np.zeros((len(scene.couplings), 6, column_count(rotors)))
+    for index, coupling in enumerate(scene.couplings):
+        first, second = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
+        place = np.add(scene.shafts[first].origin, (0.0, 0.0, coupling.position))
+        for shaft, sign in ((first, -1.0), (second, 1.0)):
+            motion[index] += sign * section_rows(rotors, shaft, place[2])
+    stiffness = [
+        _constant(scene, c, full_matrix(c.stiffness, c.torsional_stiffness)) for c in scene.couplings
+    ]
+    damping = [_constant(scene, c, full_matrix(c.damping, c.torsional_damping)) for c in scene.couplings]
+    return CouplingRows(
+        tuple(coupling.name for coupling in scene.couplings),
+        motion,
+        np.array(stiffness).reshape(-1, 6, 6),
+        np.array(damping).reshape(-1, 6, 6),
+    )
+
+
+def _constant(scene: Scene, coupling: Coupling, matrix: FloatArray) -> FloatArray:
+    """Return what of a coupling's `matrix` (6, 6) no frame turns: all, or axial motion and rotation."""
+    first, second = (scene.shafts[scene.shaft_index(name)] for name in (coupling.first, coupling.second))
+    if not crosses_frames(first, second, coupling):
+        return matrix
+    kept = matrix.copy()
+    kept[list(ACROSS)], kept[:, list(ACROSS)] = 0.0, 0.0
+    return kept
+
+
+def full_matrix(matrix: Matrix | None, torsional: float) -> FloatArray:
+    """Return the whole 6 by 6 matrix."""
+    full = np.zeros((6, 6)) if matrix is None else np.array(matrix, dtype=float)
+    full[ROTATION, ROTATION] += torsional
+    return full

@@ -1,0 +1,100 @@
+"""The freedoms of a system: which there are, and how the six of every rotor follow from them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.effects import FREEDOMS
+from dynamics.effects.ledger import EffectLedger
+from dynamics.mechanism.columns import elastic_columns
+from dynamics.mechanism.kinematics import Kinematics
+from dynamics.mechanism.planets import carried_motion
+from dynamics.mechanism.rotor import Rotor
+from dynamics.types import BoolArray, FloatArray, IntArray
+
+ROTATION = FREEDOMS.index("rotation")
+COUPLED = ("x", "tilt_y", "bending_x", "y", "tilt_x", "bending_y", "z", "stretch", "rotation", "twist")
+"""Order of a flexible shaft's freedoms: what bearings couple stays together, in the smallest blocks."""
+
+
+@dataclass(frozen=True)
+class Freedoms:
+    """The free directions of motion.
+
+    Attributes
+    ----------
+    name : tuple of str
+        "shaft.kind" with kind one of x, y, z (m), tilt_x, tilt_y, rotation (rad).
+    place : (n,) int array
+        Of each among the N freedoms of all rotors: 6 rotor + kind, elastic coordinates after all of these.
+    motion : (N, n) array
+        All freedoms of all rotors per freedom: one at its place; planets go with their carrier where
+        nothing lets them move on their own.
+    turns : (n,) bool array
+        Whether each is a rotation or a twist about the axis.
+    """
+
+    name: tuple[str, ...]
+    place: IntArray
+    motion: FloatArray
+    turns: BoolArray
+
+    def keep(self, matrix: FloatArray) -> FloatArray:
+        """Return a matrix whose last axis holds all freedoms of all rotors as one of the free ones."""
+        return np.ascontiguousarray(np.asarray(matrix, dtype=float) @ self.motion)
+
+    def find(self, rotor: int, kind: int) -> int:
+        """Return the place of one of a rotor's six freedoms among the free ones, or -1."""
+        found = np.flatnonzero(self.place == 6 * rotor + kind)
+        return int(found[0]) if found.size else -1
+
+
+def find_freedoms(rotors: Sequence[Rotor], kinematics: Kinematics, ledger: EffectLedger) -> Freedoms:
+    """Gather the freedoms that effects add, and the rotation of every shaft without a rigid drive."""
+    found: list[tuple[str, int, bool]] = []
+    for index, rotor in enumerate(rotors):
+        free = {*ledger.freedoms(rotor.shaft.name), *rotor.rigid_kinds}
+        if index not in kinematics.imposed:
+            free.add("rotation")
+        own = [(kind, 6 * index + k, k == ROTATION) for k, kind in enumerate(FREEDOMS) if kind in free]
+        if rotor.elastic is not None:
+            first, twists = elastic_columns(rotors, index).start, rotor.elastic.twists
+            own += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
+            own.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
+        found += [(f"{rotor.shaft.name}.{kind}", place, turns) for kind, place, turns in own]
+    place = np.array([part[1] for part in found], dtype=np.int64)
+    motion = carried_motion(rotors, place)[:, place]
+    return Freedoms(
+        tuple(part[0] for part in found),
+        place,
+        np.ascontiguousarray(motion),
+        np.array([part[2] for part in found], dtype=np.bool_),
+    )
+
+
+def shared_blocks(matrices: Sequence[FloatArray]) -> IntArray:
+    """Return (n, 2): first and end column of each row's block, the finest that all `matrices` share."""
+    size = matrices[0].shape[0]
+    coupled = np.any([matrix != 0.0 for matrix in matrices], axis=0)
+    starts, reach = [], 0
+    for i in range(size):
+        if i >= reach:
+            starts.append(i)
+        linked = np.flatnonzero(coupled[i])
+        reach = max([reach, i + 1, *(linked + 1).tolist()])
+    ends = [*starts[1:], size]
+    spans = [[start, end] for start, end in zip(starts, ends, strict=True) for _ in range(start, end)]
+    return np.array(spans, dtype=np.int64).reshape(-1, 2)
+
+
+def row_reach(direction: FloatArray, block: IntArray) -> IntArray:
+    """Return (R, 2): first and end freedom of the blocks that each row enters; an empty range for zeros."""
+    reach = np.zeros((direction.shape[0], 2), dtype=np.int64)
+    for row, along in enumerate(direction):
+        entered = np.flatnonzero(along)
+        if entered.size:
+            reach[row] = block[entered[0], 0], block[entered[-1], 1]
+    return reach

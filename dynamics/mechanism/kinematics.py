@@ -1,0 +1,176 @@
+"""Exact speeds of all shafts: a linear system over fractions, from meshes, drives and free rotations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from dynamics.errors import InputError
+from dynamics.mechanism.train_speeds import TrainSpeeds
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+STANDSTILL = 1e-12  # of the fastest law: slower is not turning
+STARTING_SPEED = 1e-6  # rad/s; stands for the speed of a free rotation that starts from rest, for its sense
+
+
+@dataclass(frozen=True)
+class Kinematics:
+    """Motion of the shafts if all gears were conjugate: each speed is a sum of ratio times law over the laws.
+
+    Attributes
+    ----------
+    law_shaft : tuple of int
+        The shaft of each law: those of the drives, then those of the free rotations.
+    rigid : tuple of bool
+        Whether the law leaves its shaft no rotation of its own.
+    ratio : tuple of tuples of Fraction
+        (shafts, laws); speeds about +z; exact.
+    mesh_rate : tuple of tuples of Fraction
+        (meshes, laws): base pitches per revolution of each law, in the driver's sense; exact.
+    sense : tuple of int
+        +1, -1 about +z, or 0 for a shaft that stands: in which sense each shaft turns when it is fastest.
+    mesh_sense : tuple of int
+        +1 or -1: the same for the driver of each mesh, seen from the carrier it runs on, if any.
+    """
+
+    law_shaft: tuple[int, ...]
+    rigid: tuple[bool, ...]
+    ratio: tuple[tuple[Fraction, ...], ...]
+    mesh_rate: tuple[tuple[Fraction, ...], ...]
+    sense: tuple[int, ...]
+    mesh_sense: tuple[int, ...]
+
+    @property
+    def imposed(self) -> frozenset[int]:
+        """Shafts whose rotation is no freedom."""
+        return frozenset(s for s, rigid in zip(self.law_shaft, self.rigid, strict=True) if rigid)
+
+    @property
+    def float_ratio(self) -> FloatArray:
+        """`ratio` as floats, (shafts, laws)."""
+        return np.array([[float(value) for value in row] for row in self.ratio])
+
+
+def solve_kinematics(scene: Scene) -> Kinematics:
+    """Solve for the speeds of all shafts.
+
+    A mesh of gears a and b on the carrier c (none: w_c = 0) asks for (w_a - w_c) z_a = -(w_b - w_c) z_b, with
+    + for a ring gear and its pinion; a coupling for equal speeds. What they leave open, drives and free
+    rotations set.
+
+    Raises
+    ------
+    InputError
+        If a mesh asks for another ratio than the rest of the train, two drives set the same train, or
+        nothing sets a shaft's speed.
+    """
+    speeds = TrainSpeeds(len(scene.shafts))
+    for index in range(len(scene.meshes)):
+        _add_mesh(scene, speeds, index)
+    for index, coupling in enumerate(scene.couplings):
+        ends = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
+        found = speeds.ratio(*ends, None)
+        if found is not None and found != 1:
+            bound = f"a shaft of the same speed, not of {found} times it"
+            raise InputError(f"couplings[{index}].second", coupling.second, bound)
+        speeds.join(*ends, None, Fraction(1))
+    for place, part in enumerate(scene.references):
+        if not speeds.set_by_law(scene.shaft_index(part.shaft)):
+            drives = len(scene.drives)
+            field = f"drives[{place}]" if place < drives else f"free_rotations[{place - drives}]"
+            bound = "a shaft whose speed no other drive sets"
+            raise InputError(f"{field}.shaft", part.shaft, bound, "Leave out one of them.")
+    open_shaft = speeds.open_shaft()
+    if open_shaft is not None:
+        suggestion = "Add a mesh, a drive or a free rotation, or leave the shaft out."
+        name = scene.shafts[open_shaft].name
+        raise InputError(f"shafts[{open_shaft}]", name, "geared to a drive or a free rotation", suggestion)
+    return _resolved(scene, speeds.ratios())
+
+
+def mesh_shafts(scene: Scene, index: int) -> tuple[int, int, int | None]:
+    """Return the shafts of driver and driven gear of a mesh, and the carrier they run on (None: ground)."""
+    mesh = scene.meshes[index]
+    a, b = (scene.shaft_index(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven))
+    return a, b, scene.frame_index(a)
+
+
+def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
+    """Add the equation of one mesh."""
+    mesh = scene.meshes[index]
+    driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
+    a, b, carrier = mesh_shafts(scene, index)
+    field = f"meshes[{index}].driven"
+    if a == b:
+        raise InputError(field, mesh.driven, "on another shaft than the driver")
+    if scene.frame_index(b) != carrier:
+        shaft = scene.shafts[a if carrier is not None else b].name
+        suggestion = (
+            "Describe both shafts in the frame of the same carrier, or neither. Where shaft "
+            f"{shaft} carries gears inside and outside of a planetary set, part it in two and join them by a "
+            "coupling with its stiffness matrix."
+        )
+        raise InputError(field, mesh.driven, "on a shaft in the same frame as the driver's", suggestion)
+    ratio = Fraction(driver.teeth, driven.teeth) * (1 if driver.internal or driven.internal else -1)
+    found = speeds.ratio(a, b, carrier)
+    if found is not None and found != ratio:
+        raise InputError(f"meshes[{index}]", str(ratio), f"of ratio {found}, as other meshes ask")
+    speeds.join(a, b, carrier, ratio)
+    for other in range(index + 1):
+        first, _, frame = mesh_shafts(scene, other)
+        if speeds.stands(first, frame):
+            bound = "of a ratio that lets the train turn"
+            raise InputError(
+                f"meshes[{index}]", str(ratio), bound, f'It locks mesh "{scene.meshes[other].name}".'
+            )
+
+
+def _resolved(scene: Scene, ratio: tuple[tuple[Fraction, ...], ...]) -> Kinematics:
+    """Put the solution together with the senses of rotation."""
+    law_shaft = tuple(scene.shaft_index(part.shaft) for part in scene.references)
+    course = _speeds_over_time(scene)
+    limit = STANDSTILL * float(np.max(np.abs(course), initial=0.0))
+    rates, mesh_senses = [], []
+    for index, mesh in enumerate(scene.meshes):
+        a, _, carrier = mesh_shafts(scene, index)
+        row = (
+            ratio[a]
+            if carrier is None
+            else tuple(x - y for x, y in zip(ratio[a], ratio[carrier], strict=True))
+        )
+        sense = _sense(row, course, limit)
+        if sense == 0:
+            bound = "a gear that turns" if carrier is None else "a gear that turns against its carrier"
+            raise InputError(
+                f"meshes[{index}].driver", mesh.driver, bound, "Its sense sets the driving flank."
+            )
+        mesh_senses.append(sense)
+        rates.append(tuple(sense * scene.gear(mesh.driver).teeth * value for value in row))
+    return Kinematics(
+        law_shaft,
+        tuple(part.rigid for part in scene.references),
+        ratio,
+        tuple(rates),
+        tuple(_sense(row, course, limit) for row in ratio),
+        tuple(mesh_senses),
+    )
+
+
+def _speeds_over_time(scene: Scene) -> FloatArray:
+    """Speeds of all laws at all times at which one of them has a knot, (laws, times), rad/s."""
+    times = sorted({time for part in scene.references for time in part.speed.time})
+    rows = [drive.speed(np.array(times)) for drive in scene.drives]
+    for free in scene.free_rotations:
+        speed = free.initial_speed or STARTING_SPEED * free.forward
+        rows.append(np.full(len(times), speed))
+    return np.array(rows)
+
+
+def _sense(row: tuple[Fraction, ...], course: FloatArray, limit: float) -> int:
+    """Sign of the fastest speed of what turns at `row` times the laws; 0 if it stands."""
+    speed = np.array([float(value) for value in row]) @ course
+    fastest = float(speed[np.argmax(np.abs(speed))])
+    return 0 if abs(fastest) <= limit else (1 if fastest > 0.0 else -1)

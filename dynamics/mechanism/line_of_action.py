@@ -1,0 +1,121 @@
+"""Where and in which direction the force of a mesh acts."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bounds import Quantity, Text, above
+from dynamics.bodies import GearBody
+from dynamics.errors import InputError
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class LineOfAction:
+    """The line along which the driver pushes the driven gear.
+
+    Attributes
+    ----------
+    point : (3,) array
+        Operating pitch point in the middle of the common face, fixed frame, m.
+    force : (3,) array
+        Force on the driven gear per unit transverse mesh force: a unit vector in the transverse plane, plus
+        the axial part of a helical mesh.
+    working_pressure_angle : float
+        rad.
+    """
+
+    point: FloatArray
+    force: FloatArray
+    working_pressure_angle: float
+
+    def gradient(self, center: FloatArray) -> FloatArray:
+        """Return the (6,) wrench of `force` about `center`: the derivative of the approach along the line.
+
+        Displacements and small rotations of a body at `center` move its point at the pitch point by
+        u + r x point arm, and this is its projection on `force`.
+        """
+        return np.concatenate([self.force, np.cross(self.point - center, self.force)])
+
+
+def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
+    """Return the line of action of mesh `index` whose driver pushes in the `sense` (+1 or -1) about +z.
+
+    With e from the driver's centre to the pitch point and alpha the working pressure angle, the driver
+    turning in +z pushes along n = sin(alpha) e + cos(alpha) (z x e); a ring gear that drives pushes inwards,
+    along n = -sin(alpha) e + cos(alpha) (z x e). The other `sense` is the coast flank. A right-hand driver
+    (beta_b > 0) pushed on by F feels the axial force sense F tan(beta_b).
+
+    Raises
+    ------
+    InputError
+        If the gears cannot mesh: hand, faces or centre distance do not fit.
+    """
+    mesh = scene.meshes[index]
+    driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
+    field = f"meshes[{index}].driven"
+    _check_fit(field, driver, driven)
+    first, second = _center(scene, driver), _center(scene, driven)
+    apart = (second - first) * np.array([1.0, 1.0, 0.0])
+    distance = float(np.hypot(apart[0], apart[1]))
+    bases = _acting_base_radii(driver, driven)
+    if distance <= bases:
+        what = "difference" if driver.internal or driven.internal else "sum"
+        bound = Text.of("at a centre distance ", above(bases, "m", f"the base radii's {what},"))
+        raise InputError(field, Quantity(distance, "m"), bound)
+    angle = math.acos(bases / distance)
+    e = (
+        apart / distance * (-1.0 if driven.internal else 1.0)
+    )  # a pinion meets its ring away from the ring's centre
+    across = np.array([-e[1], e[0], 0.0])
+    inwards = -1.0 if driver.internal else 1.0
+    force = inwards * math.sin(angle) * e + sense * math.cos(angle) * across
+    force[2] = -sense * math.tan(driver.base_helix_angle)
+    point = first + e * driver.base_radius / math.cos(angle)
+    point[2] = _middle_of_common_face(field, first[2], driver, second[2], driven)
+    return LineOfAction(point, force, angle)
+
+
+def _center(scene: Scene, gear: GearBody) -> FloatArray:
+    """Mid-face centre of a gear in the fixed frame."""
+    shaft = scene.shafts[scene.shaft_index(gear.shaft)]
+    x, y, z = shaft.origin
+    return np.array([x, y, z + gear.position])
+
+
+def _acting_base_radii(driver: GearBody, driven: GearBody) -> float:
+    """Centre distance times the cosine of the working pressure angle, m: sum, or difference in a ring."""
+    if driver.internal:
+        return driver.base_radius - driven.base_radius
+    if driven.internal:
+        return driven.base_radius - driver.base_radius
+    return driver.base_radius + driven.base_radius
+
+
+def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
+    """Opposite hand; the same hand and a smaller pinion in a ring gear."""
+    ring = driver if driver.internal else driven
+    pinion = driven if driver.internal else driver
+    if ring.internal and pinion.internal:
+        raise InputError(field, driven.name, "an external gear where the driver is a ring gear")
+    if ring.internal and pinion.teeth >= ring.teeth:
+        raise InputError(field, driven.teeth, f"such that the ring gear has more teeth than {pinion.teeth}")
+    hand, name = (1.0, "the same hand") if ring.internal else (-1.0, "the other hand")
+    if abs(driver.base_helix_angle - hand * driven.base_helix_angle) > 1e-9:
+        wanted = Quantity(hand * driver.base_helix_angle, "rad")
+        bound = Text.of("of base helix angle ", wanted, f", {name}")
+        raise InputError(field, Quantity(driven.base_helix_angle, "rad"), bound)
+
+
+def _middle_of_common_face(field: str, z1: float, driver: GearBody, z2: float, driven: GearBody) -> float:
+    """Axial place of the force."""
+    low = max(z1 - driver.face_width / 2.0, z2 - driven.face_width / 2.0)
+    high = min(z1 + driver.face_width / 2.0, z2 + driven.face_width / 2.0)
+    if high <= low:
+        place = Quantity(driven.position, "m")
+        raise InputError(field, place, "at an axial place where the faces overlap")
+    return (low + high) / 2.0

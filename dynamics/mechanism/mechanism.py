@@ -1,0 +1,116 @@
+"""The mechanism of a scene: its bodies, how they move if all gears were conjugate, what loads them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from bounds import above
+from dynamics.errors import InputError
+from dynamics.mechanism.base_pitches import Corrections, with_common_base_pitches
+from dynamics.mechanism.bearing_elements import (
+    BearingElement,
+    bearing_loads,
+    bearing_places,
+    supports_by_name,
+)
+from dynamics.mechanism.coupled_rotors import with_couplings
+from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
+from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
+from dynamics.mechanism.nominal_forces import nominal_forces
+from dynamics.mechanism.planets import kinematic_vectors, turning_inertia
+from dynamics.mechanism.rotor import Rotor, build_rotor
+from dynamics.mechanism.supports import gather_supports
+from dynamics.mechanism.thrust_check import check_thrust
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+GIVE_INERTIA = "Give the shaft or its gears mass and inertia (see hollow_cylinder)."
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """What a scene consists of before any effect is decided.
+
+    Attributes
+    ----------
+    scene : Scene
+    kinematics : Kinematics
+    rotors : tuple of Rotor
+        One per shaft.
+    lines : tuple of LineOfAction
+        One per mesh.
+    nominal_force : (m,) array
+        Transverse, N.
+    bearing_load : dict of str to float
+        What each bearing typically carries, N.
+    bearings : tuple of BearingElement
+        Where the laws of bearings act that are not linear.
+    """
+
+    scene: Scene
+    kinematics: Kinematics
+    rotors: tuple[Rotor, ...]
+    lines: tuple[LineOfAction, ...]
+    nominal_force: FloatArray
+    bearing_load: dict[str, float]
+    bearings: tuple[BearingElement, ...]
+    corrected: Corrections
+
+    @property
+    def polar_inertia(self) -> list[float]:
+        """Of each rotor, kg m^2."""
+        return [rotor.inertia.polar for rotor in self.rotors]
+
+    @property
+    def turning_inertia(self) -> FloatArray:
+        """Of each rotor with the planets it takes along, (r,), kg m^2."""
+        return turning_inertia(self.rotors)
+
+    @property
+    def vectors(self) -> FloatArray:
+        """Motion of all rotors per radian of each law, (k, 6 r)."""
+        return kinematic_vectors(self.rotors, self.kinematics)
+
+
+def gather_mechanism(scene: Scene) -> Mechanism:
+    """Gather bodies, kinematic motion and loads of `scene`.
+
+    Raises
+    ------
+    InputError
+        If parts do not fit each other, a shaft free to turn has no moment of inertia, or nothing holds one
+        along its axis that helical gears push.
+    """
+    scene, corrected = with_common_base_pitches(scene)
+    kinematics = solve_kinematics(scene)
+    rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
+    lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
+    forces = nominal_forces(scene, kinematics, turning_inertia(rotors))
+    loads = bearing_loads(scene, rotors, forces)
+    bearings, rotors = _with_bearings(scene, rotors, loads)
+    rotors = with_couplings(scene, rotors)
+    _check_rotation(rotors, kinematics)
+    check_thrust(scene, kinematics, rotors, lines, forces)
+    return Mechanism(scene, kinematics, rotors, lines, forces, loads, bearings, corrected)
+
+
+def _with_bearings(
+    scene: Scene, rotors: tuple[Rotor, ...], loads: dict[str, float]
+) -> tuple[tuple[BearingElement, ...], tuple[Rotor, ...]]:
+    """Return where laws of bearings act, and the rotors with their typical stiffness."""
+    names = gather_supports(rotors, frozenset()).name
+    places = bearing_places(scene, rotors, names, loads)
+    known, found = supports_by_name(rotors), list(rotors)
+    for at in places:
+        index, support = known[names[at.support]]
+        rotor = found[index]
+        found[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
+    return places, tuple(found)
+
+
+def _check_rotation(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:
+    """Every shaft free to turn needs a moment of inertia."""
+    for index, rotor in enumerate(rotors):
+        if index not in kinematics.imposed and rotor.inertia.polar <= 0.0:
+            raise InputError(f"shafts[{index}].inertia.polar", 0.0, above(0.0), GIVE_INERTIA)

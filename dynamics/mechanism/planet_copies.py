@@ -1,0 +1,179 @@
+"""Several planets from one: the same shaft, gears, bearings and meshes at other angles of the carrier."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+from typing import TypeVar
+
+from dynamics.bodies import GearBody, Shaft
+from dynamics.checks import integer, one_of
+from dynamics.errors import InputError
+from dynamics.forces import GearMesh, RollingContact, SpringCurve
+from dynamics.joints import PlanetBearing
+from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
+from dynamics.scene.frame_check import on_axis
+from dynamics.scene.scene import Scene
+
+TOOTH_FIT = 1e-6  # of a tooth: how well a planet's angle must let its teeth fit all central gears
+
+Turn = Fraction | float
+Part = TypeVar("Part", GearBody, PlanetBearing)
+BearingLaw = TypeVar("BearingLaw", RollingContact, SpringCurve)
+
+
+def with_planets(
+    scene: Scene,
+    shaft: str,
+    number: int,
+    angles: Sequence[float] | None = None,
+    pin_errors: Sequence[tuple[float, float]] | None = None,
+) -> Scene:
+    """Return `scene` with the planet on `shaft` there `number` times, phases of all meshes exact.
+
+    Parameters
+    ----------
+    scene : Scene
+        With one planet.
+    shaft : str
+        Its shaft; it stays where it is. The others are called ``"<name> 2"``, ``"<name> 3"`` and so on, and
+        likewise their gears, bearings with their laws, and meshes.
+    number : int
+        How many in all.
+    angles : sequence of floats, optional
+        Of all planets from the first about +z, rad, the first one 0. Left out: equally spaced.
+    pin_errors : sequence of (radial, tangential), optional
+        Of all pins, m, in place of what the first planet's bearings say.
+
+    Raises
+    ------
+    InputError
+        If the shaft is no planet, or its teeth do not fit the central gears at an angle.
+    """
+    integer("number", number, 1, 100)
+    one_of("planet", shaft, [part.name for part in scene.shafts])
+    carrier = scene.frame_index(scene.shaft_index(shaft))
+    if carrier is None or on_axis(scene.shafts[scene.shaft_index(shaft)], scene.shafts[carrier]):
+        bound = "a shaft in the frame of a carrier, off its axis"
+        raise InputError("planet", shaft, bound, "Give the shaft its carrier as frame.")
+    turns = _turns(number, angles)
+    if pin_errors is not None and len(pin_errors) != number:
+        raise InputError("pin_errors", len(pin_errors), f"one for each of the {number} planets")
+    offsets = _offsets(scene, solve_kinematics(scene), shaft, turns)
+    axis = scene.shafts[carrier].origin
+    of_shaft = {gear.name for gear in scene.gears if gear.shaft == shaft}
+    shafts, gears = list(scene.shafts), list(scene.gears)
+    bearings, meshes = list(scene.planet_bearings), list(scene.meshes)
+    for index in range(1, number):
+        shafts += [_turned(part, axis, turns[index], index) for part in scene.shafts if part.name == shaft]
+        gears += [_again(part, index) for part in scene.gears if part.shaft == shaft]
+        bearings += [_again(part, index) for part in scene.planet_bearings if part.shaft == shaft]
+        meshes += [
+            _mesh_again(mesh, of_shaft, index, offsets[mesh.name][index])
+            for mesh in scene.meshes
+            if {mesh.driver, mesh.driven} & of_shaft
+        ]
+    copied = {
+        part.name: [_numbered(part.name, index) for index in range(1, number)]
+        for part in scene.planet_bearings
+        if part.shaft == shaft
+    }
+    if pin_errors is not None:
+        of_pin = {_numbered(shaft, index): pin_errors[index] for index in range(number)}
+        bearings = [_with_error(bearing, of_pin.get(bearing.shaft)) for bearing in bearings]
+    return replace(
+        scene,
+        shafts=tuple(shafts),
+        gears=tuple(gears),
+        planet_bearings=tuple(bearings),
+        meshes=tuple(meshes),
+        rolling_contacts=_on_copies(scene.rolling_contacts, copied),
+        spring_curves=_on_copies(scene.spring_curves, copied),
+    )
+
+
+def _on_copies(laws: Sequence[BearingLaw], copied: Mapping[str, Sequence[str]]) -> tuple[BearingLaw, ...]:
+    """Return `laws` and those that the copies of their bearings have."""
+    found = list(laws)
+    for law in laws:
+        found += [replace(law, bushing=name) for name in copied.get(law.bushing, ())]
+    return tuple(found)
+
+
+def _turns(number: int, angles: Sequence[float] | None) -> list[Turn]:
+    """Angles from the first planet in revolutions: exact where equally spaced."""
+    if angles is None:
+        return [Fraction(index, number) for index in range(number)]
+    if len(angles) != number or angles[0] != 0.0:
+        raise InputError("angles", list(angles), f"{number} angles, the first of them 0")
+    return [angle / (2.0 * math.pi) for angle in angles]
+
+
+def _offsets(
+    scene: Scene, kinematics: Kinematics, shaft: str, turns: Sequence[Turn]
+) -> dict[str, list[Turn]]:
+    """How far the meshes of each planet are ahead of the first one's, base pitches, by name of the mesh.
+
+    The teeth of a central gear that turns against the carrier in the sense s come to a planet at the angle
+    psi s z psi / (2 pi) pitches later. What several central gears ask of one planet gear must be one tooth.
+    """
+    found: dict[str, list[Turn]] = {}
+    first: dict[str, list[Turn]] = {}
+    for index, mesh in enumerate(scene.meshes):
+        gears = scene.gear(mesh.driver), scene.gear(mesh.driven)
+        if shaft not in (gears[0].shaft, gears[1].shaft):
+            continue
+        planet, central = gears if gears[0].shaft == shaft else gears[::-1]
+        sense = kinematics.mesh_sense[index]
+        if central is gears[1] and not central.internal:
+            sense = -sense
+        found[mesh.name] = [-sense * central.teeth * turn for turn in turns]
+        _check_fit(found[mesh.name], first.setdefault(planet.name, found[mesh.name]))
+    return found
+
+
+def _check_fit(mine: Sequence[Turn], other: Sequence[Turn]) -> None:
+    """Refuse a planet that would have to be at two angles at once."""
+    for index, (a, b) in enumerate(zip(mine, other, strict=True)):
+        off = float(a - b)
+        if abs(off - round(off)) > TOOTH_FIT:
+            value = f"planet {index + 1}, off by {off - round(off):.6g} teeth"
+            bound = "where its teeth fit all central gears: (z_sun + z_ring) angle / (2 pi) an integer"
+            suggestion = "Change tooth numbers, the number of planets or their angles."
+            raise InputError("number", value, bound, suggestion)
+
+
+def _numbered(name: str, index: int) -> str:
+    """Return the name of a copy."""
+    return name if index == 0 else f"{name} {index + 1}"
+
+
+def _again(part: Part, index: int) -> Part:
+    """Return a part of another planet."""
+    return replace(part, name=_numbered(part.name, index), shaft=_numbered(part.shaft, index))
+
+
+def _turned(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, index: int) -> Shaft:
+    """Return the shaft of another planet, turned about the carrier's axis."""
+    c, s = math.cos(2.0 * math.pi * float(turn)), math.sin(2.0 * math.pi * float(turn))
+    x, y = shaft.origin[0] - axis[0], shaft.origin[1] - axis[1]
+    place = (axis[0] + c * x - s * y, axis[1] + s * x + c * y, shaft.origin[2])
+    return replace(shaft, name=_numbered(shaft.name, index), origin=place)
+
+
+def _mesh_again(mesh: GearMesh, of_shaft: set[str], index: int, ahead: Turn) -> GearMesh:
+    """Return a mesh of another planet."""
+    driver, driven = (_numbered(g, index) if g in of_shaft else g for g in (mesh.driver, mesh.driven))
+    offset = mesh.position_offset + float(ahead)
+    return replace(
+        mesh, name=_numbered(mesh.name, index), driver=driver, driven=driven, position_offset=offset
+    )
+
+
+def _with_error(bearing: PlanetBearing, error: tuple[float, float] | None) -> PlanetBearing:
+    """Return a bearing on a pin with this error."""
+    if error is None:
+        return bearing
+    return replace(bearing, radial_error=error[0], tangential_error=error[1])

@@ -1,0 +1,170 @@
+"""A rotor: a shaft with the gears on it and the bushings under it, one body, rigid or elastic."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+from dynamics.bodies import ElasticShaft, Inertia, Shaft
+from dynamics.bodies.places import nearest_on
+from dynamics.joints import Bushing, PlanetBearing
+from dynamics.scene.frame_check import on_axis
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray
+
+Support = TypeVar("Support", Bushing, PlanetBearing)
+
+
+@dataclass(frozen=True)
+class Rotor:
+    """One body: six rigid freedoms, and the elastic coordinates of its shaft.
+
+    Attributes
+    ----------
+    shaft : Shaft
+    inertia : Inertia
+        Of shaft and gears about their common centre of mass.
+    center : (3,) array
+        That centre in the fixed frame, m: the point whose displacements are the freedoms.
+    bushings : tuple of Bushing
+        Its supports on the ground, with damping filled in.
+    planet_bearings : tuple of PlanetBearing
+        Its supports on the carrier's pin, with damping filled in.
+    frame : int or None
+        Rotor of the carrier in whose turning frame it is described.
+    carrier : int or None
+        The same for a planet: a rotor off the carrier's axis, which the carrier takes along.
+    curved : tuple of ((5, 5) array, float)
+        Typical stiffness of what bearings do that is not linear, and of couplings that hold the rotor where
+        no bearing does, with their levers.
+    elastic : ElasticShaft or None
+        How its shaft bends and twists; None: rigid.
+    """
+
+    shaft: Shaft
+    inertia: Inertia
+    center: FloatArray
+    bushings: tuple[Bushing, ...]
+    planet_bearings: tuple[PlanetBearing, ...]
+    frame: int | None
+    carrier: int | None
+    curved: tuple[tuple[FloatArray, float], ...] = ()
+    elastic: ElasticShaft | None = None
+
+    @property
+    def supports(self) -> tuple[Bushing | PlanetBearing, ...]:
+        """All supports."""
+        return (*self.bushings, *self.planet_bearings)
+
+    @property
+    def elastic_count(self) -> int:
+        """Number of elastic coordinates."""
+        return 0 if self.elastic is None else self.elastic.mass.size
+
+    @property
+    def rigid_kinds(self) -> tuple[str, ...]:
+        """Rigid freedoms that bending needs: it is measured against them."""
+        bends = self.elastic is not None and self.elastic.bends
+        return ("x", "y", "tilt_x", "tilt_y") if bends else ()
+
+    def on_shaft(self, position: float) -> float:
+        """Return the place on the shaft nearest to `position`, m from its left end."""
+        return nearest_on(position, self.shaft.length)
+
+    def lever(self, support: Bushing | PlanetBearing) -> float:
+        """Axial distance of `support` from the centre of mass, m."""
+        return float(self.shaft.origin[2] + support.position - self.center[2])
+
+    @property
+    def radial_stiffness(self) -> float:
+        """Sum over the supports, N/m."""
+        plain = sum(support.radial_stiffness for support in self.supports)
+        return plain + sum(0.5 * float(k[0, 0] + k[1, 1]) for k, _ in self._matrices)
+
+    @property
+    def axial_stiffness(self) -> float:
+        """Sum over the supports, N/m."""
+        plain = sum(support.axial_stiffness for support in self.supports)
+        return plain + sum(float(k[2, 2]) for k, _ in self._matrices)
+
+    @property
+    def elastic_lever(self) -> float:
+        """Axial distance from the centre of mass to where a radial force does not tilt the shaft, m."""
+        moment = sum(support.radial_stiffness * self.lever(support) for support in self.supports)
+        for k, lever in self._matrices:
+            moment += 0.5 * float((k[0, 0] + k[1, 1]) * lever + k[0, 4] - k[1, 3])
+        return moment / self.radial_stiffness if self.radial_stiffness > 0.0 else 0.0
+
+    @property
+    def tilt_stiffness(self) -> float:
+        """Moment per tilt about the elastic centre, N m/rad."""
+        arms = [(b.radial_stiffness, self.lever(b) - self.elastic_lever) for b in self.supports]
+        plain = sum(stiffness * arm**2 for stiffness, arm in arms)
+        added = [(k, lever - self.elastic_lever) for k, lever in self._matrices]
+        return plain + sum(
+            0.5 * float((k[0, 0] + k[1, 1]) * a**2 + 2.0 * a * (k[0, 4] - k[1, 3]) + k[3, 3] + k[4, 4])
+            for k, a in added
+        )
+
+    @property
+    def _matrices(self) -> list[tuple[FloatArray, float]]:
+        """Stiffness on top of the isotropic one, with levers; means of x and y are used."""
+        given = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
+        return [*given, *self.curved]
+
+
+def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
+    """Gather what belongs to `shaft`."""
+    gears = [gear for gear in scene.gears if gear.shaft == shaft.name]
+    parts = [*shaft.cylinders, *((gear.inertia, gear.position) for gear in gears)]
+    mass = sum(part.mass for part, _ in parts)
+    along = sum(part.mass * place for part, place in parts) / mass if mass > 0.0 else shaft.length / 2.0
+    transverse = sum(part.transverse + part.mass * (place - along) ** 2 for part, place in parts)
+    inertia = Inertia(mass, sum(part.polar for part, _ in parts), transverse)
+    center = np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, along])
+    bushings = [bushing for bushing in scene.bushings if bushing.shaft == shaft.name]
+    bearings = [bearing for bearing in scene.planet_bearings if bearing.shaft == shaft.name]
+    supports = max(len(bushings) + len(bearings), 1)
+    share, tilting = mass / supports, transverse / supports
+    frame = scene.frame_index(scene.shaft_index(shaft.name))
+    planet = frame is not None and not on_axis(shaft, scene.shafts[frame])
+    return Rotor(
+        shaft,
+        inertia,
+        center,
+        tuple(_damped_matrix(_damped(bushing, share), share, tilting) for bushing in bushings),
+        tuple(_damped_matrix(_damped(bearing, share), share, tilting) for bearing in bearings),
+        frame,
+        frame if planet else None,
+    )
+
+
+def _damped(support: Support, share: float) -> Support:
+    """Fill in the damping that follows from the damping ratio and the support's share of the mass."""
+
+    def damping(given: float | None, stiffness: float) -> float:
+        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share)) if given is None else given
+
+    return replace(
+        support,
+        radial_damping=damping(support.radial_damping, support.radial_stiffness),
+        axial_damping=damping(support.axial_damping, support.axial_stiffness),
+    )
+
+
+def _damped_matrix(support: Support, share: float, tilting: float) -> Support:
+    """Fill in the damping of a stiffness matrix, in proportion to it.
+
+    `share` and `tilting` are the support's shares of mass and transverse inertia; the latter sets the time
+    where the matrix holds tilt alone.
+    """
+    if support.stiffness is None or support.damping is not None:
+        return support
+    matrix = support.added_stiffness
+    largest, inertia = float(np.max(np.diag(matrix)[:3])), share
+    if largest == 0.0:
+        largest, inertia = float(np.max(np.diag(matrix)[3:])), tilting
+    time = 2.0 * support.damping_ratio * float(np.sqrt(inertia / largest)) if largest > 0.0 else 0.0
+    return replace(support, damping=tuple(tuple(float(time * k) for k in row) for row in matrix))

@@ -1,0 +1,192 @@
+"""The output rate of a run, its anti-alias filter, and the highest mesh order that the output holds."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from typing import Protocol
+
+import numpy as np
+from scipy.linalg import eigh
+
+from dynamics.mechanism.kinematics import Kinematics
+from dynamics.scene.scene import LEAST_RATE, Scene, check_samples
+from dynamics.types import FloatArray, Json
+
+PER_BAND = 2.56
+"""Output rate over the highest frequency that is passed, as vibration analyzers choose it."""
+STOP_BAND = 80.0
+"""Attenuation of what would fold, dB."""
+DESIGN = STOP_BAND + 3.0
+"""What Kaiser's formulas are asked for: they miss by up to 2 dB."""
+INNER_PER_PITCH = 64.0
+"""Inner samples per base pitch at the least: as many as the integrator takes steps."""
+LEAST_FACTOR = 3
+"""Inner samples per output sample at the least."""
+MESH_SHARE = 0.01
+"""Share of a mode's strain energy in the meshes from which on they excite it."""
+SPEED_POINTS = 257
+DIGITS = 3  # of a rate that is chosen
+
+
+class _Matrices(Protocol):
+    """Of the freedoms: `SystemArrays`."""
+
+    @property
+    def mass(self) -> FloatArray: ...
+    @property
+    def stiffness(self) -> FloatArray: ...
+    @property
+    def scale(self) -> FloatArray: ...
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """How a run is sampled.
+
+    Attributes
+    ----------
+    rate : float
+        Hz of the output grid.
+    chosen : str
+        Why this rate.
+    mesh_frequency, mode_frequency : float
+        Hz: the highest mesh frequency of the kinematic motion; the highest resolved mode that the meshes
+        excite, 0 where there is none.
+    mesh_orders : int
+        Wanted.
+    pass_frequency, stop_frequency : float
+        Hz: up to the first the filter passes, from the second on it stops; what lies between may fold, to
+        above the first.
+    stop_band : float
+        dB; 0: the output are points of the motion, unfiltered.
+    inner_rate : float
+        Hz of the grid on which the steps are evaluated, filtered, and searched for peaks.
+    taps : int
+        Length of the filter in inner samples: linear phase, its delay compensated.
+    """
+
+    rate: float
+    chosen: str
+    mesh_frequency: float
+    mode_frequency: float
+    mesh_orders: int
+    pass_frequency: float
+    stop_frequency: float
+    stop_band: float
+    inner_rate: float
+    taps: int
+
+    @property
+    def factor(self) -> int:
+        """Inner samples per output sample."""
+        return round(self.inner_rate / self.rate)
+
+    @property
+    def edge(self) -> float:
+        """Seconds at both ends in which the filter sees the motion held at its first or last state."""
+        return (self.taps // 2) / self.inner_rate if self.stop_band else 0.0
+
+    def filter_taps(self) -> FloatArray:
+        """Return the weights (taps,) of the filter, symmetric, with the sum 1."""
+        at = np.arange(self.taps) - self.taps // 2
+        if self.stop_band == 0.0:
+            return np.asarray(at == 0, dtype=float)
+        weight = np.sinc(at / self.factor) * np.kaiser(self.taps, kaiser_shape(DESIGN))
+        return np.asarray(weight / np.sum(weight))
+
+    def points(self) -> Sampling:
+        """Return a sampling of the same rate that looks nowhere else and filters nothing."""
+        return replace(self, stop_band=0.0, inner_rate=self.rate, taps=3)
+
+    def to_json(self) -> Json:
+        """Return what the receipt says."""
+        return {**asdict(self), "edge": self.edge}
+
+
+def kaiser_shape(stop_band: float) -> float:
+    """Return the shape of Kaiser's window for a stop band above 50 dB (Kaiser 1974)."""
+    return 0.1102 * (stop_band - 8.7)
+
+
+def order_rate(scene: Scene, kinematics: Kinematics) -> float:
+    """Return the rate, Hz, that passes the wanted mesh orders at the highest speed."""
+    wanted = PER_BAND * scene.outputs.mesh_orders * top_mesh_frequency(scene, kinematics)
+    return max(wanted, LEAST_RATE)
+
+
+def top_mesh_frequency(scene: Scene, kinematics: Kinematics) -> float:
+    """Return the highest mesh frequency of the kinematic motion over the run, Hz."""
+    time = np.linspace(0.0, scene.duration, SPEED_POINTS)
+    knots = [np.asarray(part.speed.time, dtype=float) for part in scene.references]
+    inside = np.concatenate(knots)
+    time = np.union1d(time, inside[(inside >= 0.0) & (inside <= scene.duration)])
+    speed = np.array([part.speed(time) for part in scene.references])
+    rate = np.array([[float(value) for value in row] for row in kinematics.mesh_rate])
+    return float(np.max(np.abs(rate @ speed), initial=0.0)) / (2.0 * math.pi)
+
+
+def top_mode(
+    arrays: _Matrices, mesh_rows: FloatArray, mesh_stiffness: FloatArray, other: FloatArray, highest: float
+) -> float:
+    """Return the highest natural frequency up to `highest` (Hz) of a mode that the meshes excite; 0: none.
+
+    `mesh_rows` (m, n) and `mesh_stiffness` (m,) are springs in place of the meshes, `other` (n, n) is the
+    stiffness of all other force elements.
+    """
+    per_metre = 1.0 / arrays.scale
+    rows = mesh_rows * per_metre
+    meshes = rows.T @ (mesh_stiffness[:, None] * rows)
+    mass, rest = (per_metre[:, None] * a * per_metre for a in (arrays.mass, arrays.stiffness + other))
+    square, shape = eigh(meshes + rest, mass)
+    strain = mesh_stiffness @ (rows @ shape) ** 2
+    excited = strain >= MESH_SHARE * np.maximum(square, 0.0)
+    frequency = np.sqrt(np.maximum(square, 0.0)) / (2.0 * math.pi)
+    return float(np.max(frequency[excited & (frequency <= highest)], initial=0.0))
+
+
+def choose_sampling(scene: Scene, kinematics: Kinematics, mode: float) -> Sampling:
+    """Return how to sample the run of `scene`; `mode` is its highest resolved mode, Hz.
+
+    Raises
+    ------
+    InputError
+        If the run would have too many samples.
+    """
+    mesh, outputs = top_mesh_frequency(scene, kinematics), scene.outputs
+    rate, chosen = outputs.sample_rate, "sample_rate of the scene"
+    if rate is None:
+        by_order, by_mode = order_rate(scene, kinematics), PER_BAND * mode
+        rate = _rounded_up(max(by_order, by_mode))
+        chosen = (
+            f"{outputs.mesh_orders} orders of the highest mesh frequency, {mesh:.4g} Hz"
+            if by_order >= by_mode
+            else f"highest mode that meshes excite, {mode:.4g} Hz"
+        )
+        check_samples(scene.duration, rate)
+    factor = max(LEAST_FACTOR, math.ceil(INNER_PER_PITCH * mesh / rate))
+    stop_band = STOP_BAND if outputs.anti_alias else 0.0
+    return Sampling(
+        rate,
+        chosen,
+        mesh,
+        mode,
+        outputs.mesh_orders,
+        rate / PER_BAND,
+        rate - rate / PER_BAND,
+        stop_band,
+        factor * rate,
+        _taps(factor) if outputs.anti_alias else 2 * factor + 1,
+    )
+
+
+def _taps(factor: int) -> int:
+    """Odd length of a Kaiser filter from the pass to the stop frequency (Kaiser 1974)."""
+    width = 2.0 * math.pi * (1.0 - 2.0 / PER_BAND) / factor
+    return 2 * math.ceil(0.5 * (DESIGN - 7.95) / (2.285 * width)) + 1
+
+
+def _rounded_up(rate: float) -> float:
+    """Return `rate` rounded up to a few digits."""
+    unit = 10.0 ** (math.floor(math.log10(rate)) + 1 - DIGITS)
+    return math.ceil(rate / unit * (1.0 - 1e-12)) * unit

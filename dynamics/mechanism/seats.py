@@ -1,0 +1,136 @@
+"""Bearings with matrices, preload or a housing: five strains each, coupled by one matrix."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.joints import Bushing, Housing, PlanetBearing
+from dynamics.joints.seat import SEAT
+from dynamics.mechanism.columns import column_count
+from dynamics.mechanism.rotor import Rotor
+from dynamics.mechanism.seat_motion import seat_axes, seat_error, seat_motion
+from dynamics.scene.scene import Scene
+from dynamics.types import FloatArray, IntArray
+
+QUARTER = np.zeros((SEAT, SEAT))
+"""z x of a seat's displacement and of its tilt."""
+QUARTER[0, 1], QUARTER[1, 0], QUARTER[3, 4], QUARTER[4, 3] = -1.0, 1.0, -1.0, 1.0
+
+
+@dataclass(frozen=True)
+class Seats:
+    """s bearings whose forces on ground or pin are K d + C d' - preload, d their 5 s strains.
+
+    Attributes
+    ----------
+    name : tuple of str
+    place : (s,) int array
+        Of each among the supports.
+    frame : tuple of int or None
+        Rotor of the carrier in whose turning frame the ground is seen from each; None in the fixed frame and
+        on planet bearings, whose pins stay in the carrier's.
+    group : tuple of (str, slice)
+        Parts of the matrix that nothing couples: a bushing or a housing, and its rows.
+    motion : (5 s, N) array
+        Strain per freedom: x, y, z, tilt_x, tilt_y of the shaft's section there, less those of a pin.
+    stiffness, damping : (5 s, 5 s) arrays
+        Of bearing and housing in series.
+    preload : (5 s,) array
+        On the shaft where d = 0, N and N m; on a planet also what a pin off its place exerts.
+    """
+
+    name: tuple[str, ...]
+    place: IntArray
+    frame: tuple[int | None, ...]
+    group: tuple[tuple[str, slice], ...]
+    motion: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    preload: FloatArray
+
+    @property
+    def turned_damping(self) -> FloatArray:
+        """Force per strain and unit speed of the frame a seat is seen from: C (z x d), (5 s, 5 s)."""
+        quarter = np.kron(np.diag([0.0 if frame is None else 1.0 for frame in self.frame]), QUARTER)
+        return np.asarray(self.damping @ quarter)
+
+
+def seated(scene: Scene) -> frozenset[str]:
+    """Return the names of the bearings that are more than three springs to rigid ground or pin."""
+    housed = {name for housing in scene.housings for name in housing.bushings}
+    full = {part.name for part in (*scene.bushings, *scene.planet_bearings) if part.full}
+    return frozenset(housed | full)
+
+
+def gather_seats(scene: Scene, rotors: Sequence[Rotor], names: Sequence[str]) -> Seats:
+    """Lay out the bearings of `scene` that are seats; `names` are those of all supports."""
+    chosen = seated(scene)
+    housed = [name for housing in scene.housings for name in housing.bushings]
+    order = [*housed, *(name for name in names if name in chosen and name not in housed)]
+    found = {part.name: (i, part) for i, rotor in enumerate(rotors) for part in rotor.supports}
+    size = SEAT * len(order)
+    motion, preload = np.zeros((size, column_count(rotors))), np.zeros(size)
+    stiffness, damping = np.zeros((size, size)), np.zeros((size, size))
+    for seat, name in enumerate(order):
+        index, part = found[name]
+        rows = slice(SEAT * seat, SEAT * seat + SEAT)
+        motion[rows], turn = seat_motion(rotors, index, part), seat_axes(rotors, index, part)
+        stiffness[rows, rows] = turn.T @ part.seat_stiffness @ turn
+        damping[rows, rows] = turn.T @ part.seat_damping @ turn
+        own = np.zeros(SEAT) if part.preload is None else np.array(part.preload)
+        preload[rows] = turn.T @ own + stiffness[rows, rows] @ seat_error(rotors, index, part)
+    first, groups = 0, []
+    for housing in scene.housings:
+        rows = slice(first, first + SEAT * len(housing.bushings))
+        yielding = condense_housing(housing, stiffness[rows, rows], damping[rows, rows], preload[rows])
+        stiffness[rows, rows], damping[rows, rows], preload[rows] = yielding
+        groups.append((housing.name, rows))
+        first = rows.stop
+    groups += [(name, slice(SEAT * k, SEAT * k + SEAT)) for k, name in enumerate(order) if SEAT * k >= first]
+    return Seats(
+        tuple(order),
+        np.array([list(names).index(name) for name in order], dtype=np.int64),
+        tuple(_frame(rotors, *found[name]) for name in order),
+        tuple(groups),
+        motion,
+        stiffness,
+        damping,
+        preload,
+    )
+
+
+def _frame(rotors: Sequence[Rotor], index: int, part: Bushing | PlanetBearing) -> int | None:
+    """Return the carrier in whose turning frame the ground is seen from a bearing."""
+    return None if isinstance(part, PlanetBearing) else rotors[index].frame
+
+
+def condense_housing(
+    housing: Housing, stiffness: FloatArray, damping: FloatArray, preload: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return stiffness, damping and preload of bearings in series with a massless housing.
+
+    The seats follow the shaft by S = (K_b + K_h)^-1 K_b and leave T = 1 - S to the bearings:
+
+        K = K_b T,    C = T^T C_b T + S^T C_h S,    preload = T^T preload,
+
+    the exact stiffness, and the exact damping at frequencies at which damping is small against stiffness.
+    """
+    size, places = stiffness.shape[0], list(housing.places)
+    ground, loss = housing.matrices()
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(stiffness[np.ix_(places, places)] + ground), 1e-300))
+    both = scale[:, None] * (stiffness[np.ix_(places, places)] + ground) * scale
+    follow = np.zeros((size, size))
+    follow[places] = scale[:, None] * (
+        np.linalg.pinv(both, hermitian=True) @ (scale[:, None] * stiffness[places])
+    )
+    left = np.eye(size) - follow
+    series = stiffness @ left
+    moved = follow[places]
+    return (
+        0.5 * (series + series.T),
+        left.T @ damping @ left + moved.T @ loss @ moved,
+        left.T @ preload,
+    )

@@ -1,0 +1,92 @@
+"""All forces in one state and their derivatives: what statics, linearisation and shooting start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.forces.element_laws import Elements, Law
+from dynamics.forces.local_state import LocalState
+from dynamics.motion.observation import local_state
+from dynamics.types import FloatArray
+
+
+@dataclass(frozen=True)
+class ForceBalance:
+    """Forces on n freedoms in a state (q, v) at a time, without inertia.
+
+    Attributes
+    ----------
+    force : (n,) array
+        What accelerates: M q'' = external - C v - K q - G^T f, N and N m.
+    stiffness, damping : (n, n) arrays
+        K + G^T (df/dy) G and C + G^T (df/dy') G: minus the derivatives of `force` in q and v. How forces
+        change with the meshes' positions is left out: of the order of a deflection over a base pitch.
+    local : LocalState
+        Of the elements.
+    """
+
+    force: FloatArray
+    stiffness: FloatArray
+    damping: FloatArray
+    local: LocalState
+
+
+def force_balance(
+    arrays: SystemArrays,
+    time: float,
+    q: FloatArray,
+    v: FloatArray,
+    external: FloatArray,
+    turning: bool = True,
+) -> ForceBalance:
+    """Return the balance of `external` (n,), supports and elements in the state `q`, `v` (n,) at `time`.
+
+    Without `turning` the derivatives leave out gyroscopic, Coriolis and centripetal terms, and what dampers
+    across frames have from the turning of these.
+    """
+    local = local_state(arrays, time, q, v)
+    force = external - arrays.damping @ v - arrays.stiffness @ q - local.force @ arrays.direction
+    rows = np.repeat(arrays.elements.law == Law.TURNING, np.diff(arrays.elements.first))
+    kept = np.where(rows & (not turning), 0.0, 1.0)[:, None]
+    tangent = kept * local.tangent
+    if not turning:
+        tangent = tangent - swept_by_frames(arrays.elements, local, local.pace)
+    return ForceBalance(
+        force,
+        arrays.stiffness + _on_freedoms(arrays, tangent),
+        arrays.damping + _on_freedoms(arrays, kept * local.viscous),
+        local,
+    )
+
+
+def swept_by_frames(elements: Elements, local: LocalState, pace: FloatArray) -> FloatArray:
+    """Return the part of the tangents (R, P) that dampers across frames have from the turning of these.
+
+    The second frame turns at psi' against the first and carries b along, which takes psi' J R b from the rate
+    of the strain. `pace` (m + f,) holds psi' per second behind that of the meshes.
+    """
+    swept = np.zeros_like(local.tangent)
+    for e in np.flatnonzero(elements.law == Law.FRAME_COUPLING):
+        rows = slice(elements.first[e], elements.first[e + 1])
+        n = (rows.stop - rows.start) // 2
+        quarter = np.kron(np.eye(n // 2), [[0.0, -1.0], [1.0, 0.0]])
+        turn = 2.0 * np.pi * pace[elements.mesh[e]]
+        swept[rows, n : 2 * n] = turn * local.viscous[rows, n : 2 * n] @ quarter
+    return swept
+
+
+def _on_freedoms(arrays: SystemArrays, derivative: FloatArray) -> FloatArray:
+    """Return G^T D G with D the elements' blocks in `derivative` (R, P)."""
+    return np.asarray(arrays.direction.T @ block_diagonal(arrays.elements, derivative) @ arrays.direction)
+
+
+def block_diagonal(elements: Elements, derivative: FloatArray) -> FloatArray:
+    """Return the (R, R) matrix of the elements' blocks, whose rows `derivative` (R, P) holds."""
+    rows = elements.offset.size
+    matrix = np.zeros((rows, rows))
+    for first, end in zip(elements.first[:-1], elements.first[1:], strict=True):
+        matrix[first:end, first:end] = derivative[first:end, : end - first]
+    return matrix

@@ -1,0 +1,159 @@
+"""Compiled kinematic motion, mesh positions, local coordinates and external forces at a time."""
+
+from __future__ import annotations
+
+import math
+
+from dynamics.arrays.arrays import LawArrays, Reference, SystemArrays
+from dynamics.forces.compiled import compiled, inner
+from dynamics.forces.element_laws import TURNING, Elements
+from dynamics.forces.local_state import LocalState
+from dynamics.forces.table_lookup import wrapped
+from dynamics.types import FloatArray, IntArray
+
+# Columns of the motion of the laws, (k, 4): whole revolutions, fraction of one, speed (rad/s), acceleration.
+WHOLE, FRACTION, SPEED, ACCELERATION = 0, 1, 2, 3
+MOTION_COLUMNS = 4
+QUANTA_PER_TURN = 2**20
+"""A free train's own rotation is moved into the reference phase in units of this part of a revolution: an
+exact power of two, so that counting them loses nothing."""
+QUANTUM = 2.0 * math.pi / QUANTA_PER_TURN
+
+
+@inner
+def piece_at(law: LawArrays, index: int, time: float) -> int:
+    """Return the piece of law `index` that holds `time`."""
+    piece = law.first[index]
+    while piece + 1 < law.first[index + 1] and time >= law.start[piece + 1]:
+        piece += 1
+    return int(piece)
+
+
+@compiled
+def law_value(law: LawArrays, index: int, time: float) -> float:
+    """Return the value of law `index`."""
+    piece = piece_at(law, index, time)
+    s, c = time - law.start[piece], law.coefficient
+    return float(c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3])))
+
+
+@compiled
+def write_motion(reference: Reference, time: float, moved: IntArray, motion: FloatArray) -> None:
+    """Write the motion of every law at `time` into `motion` (k, 4); the fraction may exceed 1 by `moved`.
+
+    `moved` (k,) counts the quanta of a revolution that a free train's own rotation has been moved by.
+    """
+    for k in range(motion.shape[0]):
+        piece = piece_at(reference.speed, k, time)
+        s, c = time - reference.speed.start[piece], reference.speed.coefficient
+        angle = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))
+        turns = reference.fraction[piece] + angle / (2.0 * math.pi)
+        whole = math.floor(turns)
+        motion[k, WHOLE] = reference.whole[piece] + whole + moved[k] // QUANTA_PER_TURN
+        motion[k, FRACTION] = turns - whole + (moved[k] % QUANTA_PER_TURN) / QUANTA_PER_TURN
+        motion[k, SPEED] = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
+        motion[k, ACCELERATION] = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
+
+
+@compiled
+def flank_phase(reference: Reference, mesh: int, motion: FloatArray) -> float:
+    """Return a mesh's position in the kinematic motion, in [0, period): whole periods drop exactly.
+
+    Base pitches per revolution of a law are a fraction of integers, so that what whole revolutions add is an
+    integer number of periods and a remainder of integers: no digit is lost however far the shafts turn.
+    """
+    phase = reference.offset[mesh]
+    for k in range(motion.shape[0]):
+        numerator, denominator = reference.numerator[mesh, k], reference.denominator[mesh, k]
+        cycle = denominator * reference.period[mesh]
+        remainder = (int(motion[k, WHOLE]) % cycle) * numerator % cycle
+        phase += remainder / denominator + motion[k, FRACTION] * numerator / denominator
+    return wrapped(phase, float(reference.period[mesh]))
+
+
+@inner
+def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, pace: FloatArray) -> None:
+    """Write the meshes' positions (base pitches) and their rates (per second) in the kinematic motion."""
+    for m in range(position.size):
+        position[m] = flank_phase(reference, m, motion)
+        pace[m] = 0.0
+        for k in range(motion.shape[0]):
+            pace[m] += reference.per_radian[m, k] * motion[k, SPEED]
+
+
+@inner
+def set_drift(elements: Elements, motion: FloatArray, local: LocalState) -> None:
+    """Write what the kinematic motion adds to the rates of local coordinates, and the speeds of turning."""
+    for r in range(local.drift.size):
+        local.drift[r] = 0.0
+        for k in range(motion.shape[0]):
+            local.drift[r] += elements.drift[r, k] * motion[k, SPEED]
+    for e in range(elements.law.size):
+        if elements.law[e] != TURNING:
+            continue
+        for j in range(2):
+            local.speed[e, j] = 0.0
+            for k in range(motion.shape[0]):
+                local.speed[e, j] += elements.speed[e, j, k] * motion[k, SPEED]
+
+
+@inner
+def add_motion(
+    system: SystemArrays,
+    q: FloatArray,
+    v: FloatArray,
+    position: FloatArray,
+    coordinate: FloatArray,
+    rate: FloatArray,
+) -> None:
+    """Add `q` to the positions, and write the elements' local coordinates and their rates."""
+    for r in range(coordinate.size):
+        moved, moving = system.elements.offset[r], 0.0
+        for i in range(system.reach[r, 0], system.reach[r, 1]):
+            moved += system.direction[r, i] * q[i]
+            moving += system.direction[r, i] * v[i]
+        coordinate[r], rate[r] = moved, moving
+    for m in range(position.size):
+        for i in range(q.size):
+            position[m] += system.turn[m, i] * q[i]
+
+
+@inner
+def law_speed(reference: Reference, law: int, motion: FloatArray, velocity: FloatArray) -> float:
+    """Return the speed of a law's shaft, rad/s; of a free train with its own rotation in `velocity` (n,)."""
+    speed = motion[law, SPEED]
+    if reference.freedom[law] >= 0:
+        speed += velocity[reference.freedom[law]]
+    return float(speed)
+
+
+@inner
+def move_free_trains(reference: Reference, moved: IntArray, q: FloatArray) -> None:
+    """Move the own rotation of free trains from `q` into the reference, up to half a quantum.
+
+    It moves along the kinematic vector of the law, which changes no transmission error, no spring and no
+    position. What is left in `q` is small, so that no digit is lost however far the train turns.
+    """
+    for k in range(reference.freedom.size):
+        if reference.freedom[k] < 0:
+            continue
+        count = math.floor(q[reference.freedom[k]] / QUANTUM + 0.5)
+        if count == 0.0:
+            continue
+        moved[k] += int(count)
+        for i in range(q.size):
+            q[i] -= reference.vector[k, i] * (count * QUANTUM)
+
+
+@inner
+def external_force(system: SystemArrays, time: float, motion: FloatArray, force: FloatArray) -> None:
+    """Write loads, pin errors and the inertial force of the kinematic motion into `force` (n,)."""
+    for i in range(force.size):
+        force[i] = system.constant[i]
+    for k in range(motion.shape[0]):
+        for i in range(force.size):
+            force[i] += system.inertial[k, i] * motion[k, ACCELERATION]
+    for load in range(system.load.direction.shape[0]):
+        torque = law_value(system.load.torque, load, time)
+        for i in range(force.size):
+            force[i] += system.load.direction[load, i] * torque

@@ -1,0 +1,137 @@
+"""Observation of the elements and the laws at given states: positions, local coordinates, forces, speeds."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from dynamics.arrays.arrays import SystemArrays
+from dynamics.forces.by_address import by_address
+from dynamics.forces.compiled import compiled
+from dynamics.forces.element_laws import evaluate, make_local
+from dynamics.forces.local_state import LocalState
+from dynamics.forces.packed_tables import PackedTables
+from dynamics.forces.table_lookup import table_deflection, wrapped
+from dynamics.motion.motion import MOTION_COLUMNS, add_motion, set_drift, set_phases, write_motion
+from dynamics.types import FloatArray, IntArray
+
+
+class Observed(NamedTuple):
+    """Elements of m meshes with R rows at T times.
+
+    Attributes
+    ----------
+    position : (m + f, T) array
+        Base pitches in [0, period); then turns of frames against each other, revolutions in [0, 1).
+    coordinate, force : (R, T) arrays
+        Local coordinates, m, and local forces, N.
+    """
+
+    position: FloatArray
+    coordinate: FloatArray
+    force: FloatArray
+
+
+def observe(
+    system: SystemArrays, time: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray | None = None
+) -> Observed:
+    """Return what the elements do at T states.
+
+    `time` (T,), `q` and `v` (T, n); `moved` (T, k) counts the quanta of free trains moved into the reference.
+    """
+    local = make_local(system.elements, system.turn.shape[0])
+    return _look(system, local, time, moved, q, v)
+
+
+def local_state(
+    system: SystemArrays, time: float, q: FloatArray, v: FloatArray, moved: IntArray | None = None
+) -> LocalState:
+    """Return coordinates, forces and derivatives of the elements in the state `q`, `v` (n,) at `time`."""
+    local = make_local(system.elements, system.turn.shape[0])
+    counted = None if moved is None else moved[np.newaxis]
+    _look(system, local, np.array([time]), counted, q[np.newaxis], v[np.newaxis])
+    return local
+
+
+class Watch:
+    """One system looked at in one state after another, everything laid out for compiled functions once."""
+
+    def __init__(self, system: SystemArrays) -> None:
+        rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
+        self.local = make_local(system.elements, meshes)
+        seen = Observed(*(np.empty((size, 1)) for size in (meshes, rows, rows)))
+        self._at = by_address(system), by_address(self.local), np.empty((laws, MOTION_COLUMNS))
+        self._counted, self._seen = np.zeros((1, laws), dtype=np.int64), by_address(seen)
+
+    def look(self, time: float, q: FloatArray, v: FloatArray) -> LocalState:
+        """Return what `local_state` does, in arrays that the next look writes over."""
+        moment = np.array([time])
+        _observe(*self._at, moment, self._counted, q[np.newaxis], v[np.newaxis], self._seen)
+        return self.local
+
+
+def _look(
+    system: SystemArrays,
+    local: LocalState,
+    time: FloatArray,
+    moved: IntArray | None,
+    q: FloatArray,
+    v: FloatArray,
+) -> Observed:
+    """Observe T states, and leave the last one in `local`."""
+    rows, meshes, laws = system.direction.shape[0], system.turn.shape[0], system.inertial.shape[0]
+    seen = Observed(*(np.empty((size, time.size)) for size in (meshes, rows, rows)))
+    counted = np.zeros((time.size, laws), dtype=np.int64) if moved is None else moved
+    motion = np.empty((laws, MOTION_COLUMNS))
+    _observe(by_address(system), by_address(local), motion, time, counted, q, v, by_address(seen))
+    return seen
+
+
+@compiled
+def _observe(
+    system: SystemArrays,
+    local: LocalState,
+    motion: FloatArray,
+    time: FloatArray,
+    moved: IntArray,
+    q: FloatArray,
+    v: FloatArray,
+    seen: Observed,
+) -> None:
+    """Fill `seen`."""
+    for k in range(time.size):
+        write_motion(system.reference, time[k], moved[k], motion)
+        set_phases(system.reference, motion, local.position, local.pace)
+        set_drift(system.elements, motion, local)
+        add_motion(system, q[k], v[k], local.position, local.coordinate, local.rate)
+        for e in range(system.elements.law.size):
+            evaluate(system.elements, local, e)
+        for m in range(local.position.size):
+            seen.position[m, k] = wrapped(local.position[m], float(system.reference.period[m]))
+        for r in range(local.force.size):
+            seen.coordinate[r, k], seen.force[r, k] = local.coordinate[r], local.force[r]
+
+
+def observe_laws(system: SystemArrays, time: FloatArray) -> FloatArray:
+    """Return whole revolutions, fraction, speed (rad/s) and acceleration of every law, (4, k, T)."""
+    laws = system.inertial.shape[0]
+    observed = np.empty((time.size, laws, MOTION_COLUMNS))
+    _observe_laws(by_address(system), time, np.zeros(laws, dtype=np.int64), observed)
+    return np.ascontiguousarray(np.moveaxis(observed, (2, 1), (0, 1)))
+
+
+@compiled
+def _observe_laws(system: SystemArrays, time: FloatArray, moved: IntArray, observed: FloatArray) -> None:
+    """Write the motion of the laws into `observed` (T, k, 4)."""
+    for k in range(time.size):
+        write_motion(system.reference, time[k], moved, observed[k])
+
+
+@compiled
+def static_deflections(
+    table: PackedTables, flank: int, position: FloatArray, force: float, deflection: FloatArray
+) -> None:
+    """Write the table's deflection at `force` for every position into `deflection`, both (T,)."""
+    for k in range(position.size):
+        deflection[k] = table_deflection(table, flank, position[k], force)

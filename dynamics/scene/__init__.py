@@ -1,0 +1,15 @@
+"""What is simulated, as data: shafts, gears, bearings, meshes, drives, loads, outputs."""
+
+from dynamics.scene.pair_scene import pair_scene
+from dynamics.scene.planetary_set import PlanetaryParts, PlanetarySet, ring_phase
+from dynamics.scene.scene import Integration, Outputs, Scene
+
+__all__ = [
+    "Integration",
+    "Outputs",
+    "PlanetaryParts",
+    "PlanetarySet",
+    "Scene",
+    "pair_scene",
+    "ring_phase",
+]

@@ -1,0 +1,70 @@
+"""The scene most runs start from: two gears, each in the middle of its shaft between two equal bushings."""
+
+from __future__ import annotations
+
+from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw
+from dynamics.forces import GearMesh, LoadTorque, MeshTable
+from dynamics.joints import Bushing, ImposedRotation
+from dynamics.scene.scene import Scene
+
+
+def pair_scene(
+    table: MeshTable,
+    gears: tuple[GearBody, GearBody],
+    *,
+    center_distance: float,
+    speed: TimeLaw,
+    resisting_torque: TimeLaw,
+    duration: float,
+    shaft_inertia: Inertia | None = None,
+    bushing_stiffness: float = 1e8,
+) -> Scene:
+    """Return the scene of a pair: a driven shaft, and one that a torque resists.
+
+    The driver's shaft lies on the z axis from z = 0, the driven one beside it at x = `center_distance`. Both
+    are twice as long as their gear stands from their end. The mesh is named "mesh", the drive "drive", the
+    load "load". Change what else differs with `dataclasses.replace`.
+
+    Parameters
+    ----------
+    table : MeshTable
+        For instance `SteDatabase.force_table()`.
+    gears : (GearBody, GearBody)
+        Driver and driven, on shafts of their own.
+    center_distance : float
+        m.
+    speed : TimeLaw
+        Imposed on the driver's shaft, rad/s about +z.
+    resisting_torque : TimeLaw
+        On the driven shaft, N m.
+    duration : float
+        s.
+    shaft_inertia : Inertia, optional
+        Of each shaft without its gear; default: none.
+    bushing_stiffness : float
+        Radial and axial, of the bushings "<shaft>.left" and "<shaft>.right" at the shafts' ends, N/m.
+
+    Raises
+    ------
+    InputError
+        If a value cannot be used.
+    """
+    shafts = tuple(
+        Shaft(gear.shaft, 2.0 * gear.position, (x, 0.0, 0.0), shaft_inertia or Inertia())
+        for gear, x in zip(gears, (0.0, center_distance), strict=True)
+    )
+    bushings = tuple(
+        Bushing(f"{shaft.name}.{end}", shaft.name, along, bushing_stiffness, bushing_stiffness)
+        for shaft in shafts
+        for end, along in (("left", 0.0), ("right", shaft.length))
+    )
+    driver, driven = gears
+    return Scene(
+        shafts=shafts,
+        gears=gears,
+        meshes=(GearMesh("mesh", driver.name, driven.name, table),),
+        drives=(ImposedRotation("drive", driver.shaft, speed),),
+        duration=duration,
+        bushings=bushings,
+        loads=(LoadTorque("load", driven.shaft, resisting_torque),),
+    )

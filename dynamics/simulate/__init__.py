@@ -1,6 +1,0 @@
-"""The doors: from a scene to its result, in memory or streamed to a file."""
-
-from dynamics.simulate.in_memory import simulate
-from dynamics.simulate.to_file import interrupted_run, simulate_to_file
-
-__all__ = ["interrupted_run", "simulate", "simulate_to_file"]

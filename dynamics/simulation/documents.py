@@ -1,0 +1,175 @@
+"""What a result says beside its series, from the system and how its run ended."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from dynamics.assembly.assemble import System
+from dynamics.effects.gyroscopic import Gyroscopic
+from dynamics.errors import SolveError
+from dynamics.integrators.march import Ending
+from dynamics.integrators.workspace import Count
+from dynamics.linearize import natural_modes
+from dynamics.linearize.campbell import whirl_branches
+from dynamics.linearize.linear_system import LinearSystem, linearize
+from dynamics.linearize.speeds import leading_law, mesh_frequencies
+from dynamics.motion.observation import observe
+from dynamics.motion.sampled_states import States
+from dynamics.plausibility import scene_findings
+from dynamics.results import EnergyAudit, StepStatistics
+from dynamics.results.case import resolved_case
+from dynamics.results.effect_ledger import effect_ledger
+from dynamics.results.energy_check import energy_check
+from dynamics.results.histories import filtered, histories, unfiltered
+from dynamics.results.run_checks import RunChecks
+from dynamics.scene import Integration
+from dynamics.simulation.violations import FIRST, EarlierRun
+from dynamics.types import FloatArray, Json
+from dynamics.worth import Decided, Worth, estimate_worths
+
+ERROR_CHECK_FACTOR = 0.1
+IMPLICIT_STAGES_PER_STEP = 5
+LEAST_WORK = 500_000
+"""Steps times freedoms of a run whose ledger has estimates that no tolerance asked for."""
+WHIRL_SPEEDS = 33
+
+
+def documents(
+    system: System,
+    end: Ending,
+    checks: RunChecks,
+    seconds: dict[str, float],
+    error: Json,
+    decided: Decided,
+    before: EarlierRun = FIRST,
+) -> dict[str, Any]:
+    """Return the fields of `RunResult` that are no series; `before` is the run that this one repeats."""
+    automatic = {**decided.automatic, **before.reasons}
+    began = clock.process_time()
+    worths = {name: worth.to_json() for name, worth in known_worths(decided, system, end).items()}
+    seconds = {**seconds, "worth_estimates": clock.process_time() - began + decided.seconds}
+    audit = None
+    if system.scene.outputs.energy_audit:
+        audit = EnergyAudit.from_arrays(end.work, end.stored, end.fallen)
+    found = [*checks.found(), *([] if audit is None else [energy_check(audit)])]
+    return {
+        "status": end.status,
+        "statistics": _statistics(system, end),
+        "energy": audit,
+        "effect_ledger": effect_ledger(system, found, automatic, worths),
+        "receipt": {
+            "seconds": seconds,
+            "error": {**error, "sampling": end.figures.error(system)},
+            "sampling": system.sampling.to_json(),
+            "peaks": end.figures.to_json(system),
+        }
+        | before.to_json()
+        | system.corrections,
+        "case": resolved_case(system),
+        "warnings": [finding.to_json() for finding in scene_findings(decided.scene)],
+        "modes": _modes(system),
+    }
+
+
+def known_worths(decided: Decided, system: System, end: Ending) -> Mapping[str, Worth]:
+    """Return what effects are worth: as decided by, else estimated if the run was worth it."""
+    scene = decided.scene
+    work = int(end.count[Count.ACCEPTED]) * len(system.freedoms.name)
+    if decided.worths or scene.outputs.receipt != "full" or work < LEAST_WORK:
+        return decided.worths
+    return estimate_worths(scene)
+
+
+def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return all series of `RunResult` for the `states` at `time` (T,), as stored and unfiltered."""
+    seen = observe(system.arrays, time, states.q, states.v, states.moved)
+    raw = histories(system, time, states, seen, unfiltered(system, seen, states))
+    if system.sampling.stop_band == 0.0:
+        return raw, raw
+    return histories(system, time, states, seen, filtered(system, states)), raw
+
+
+def _modes(system: System) -> Json:
+    """Return the natural modes in plain numbers; nothing where there is no equilibrium."""
+    try:
+        linear = linearize(system)
+    except SolveError:
+        return {}
+    found = natural_modes(linear)
+    most = np.argmax(found.kinetic_energy, axis=1) if found.frequency.size else []
+    turning = any(part.speed.extreme != 0.0 for part in system.scene.references) and any(
+        entry.effect == Gyroscopic().name and entry.on for entry in system.ledger.entries
+    )
+    return {
+        "frequency": [float(value) for value in found.frequency],
+        "damping_ratio": [float(value) for value in found.damping_ratio],
+        "freedom": [found.freedom[index] for index in most],
+        **({"over_speed": _over_speed(system, linear)} if turning else {}),
+    }
+
+
+def _over_speed(system: System, linear: LinearSystem) -> Json:
+    """Return the whirl modes up to the largest speeds of the run, those that oscillate at all of them."""
+    law = leading_law(system)
+    extreme = system.scene.references[law].speed.extreme
+    speed = np.linspace(0.0, abs(extreme), WHIRL_SPEEDS)
+    found = whirl_branches(system, linear, speed)
+    whole = np.all(np.isfinite(found.frequency), axis=0)
+    most = np.argmax(found.kinetic_energy[-1], axis=1)
+    return {
+        "shaft": system.scene.references[law].shaft,
+        "speed": speed.tolist(),
+        "mesh_frequency": mesh_frequencies(system, speed).tolist(),
+        "frequency": found.frequency[:, whole].T.tolist(),
+        "damping_ratio": found.damping_ratio[:, whole].T.tolist(),
+        "whirl": found.whirl[:, whole].T.tolist(),
+        "freedom": [linear.freedom[index] for index in most[whole]],
+    }
+
+
+def finer(integration: Integration) -> Integration:
+    """Return the settings of the run that an error is measured against."""
+    return replace(
+        integration,
+        tolerance=ERROR_CHECK_FACTOR * integration.tolerance,
+        fixed_step=integration.fixed_step and ERROR_CHECK_FACTOR * integration.fixed_step,
+    )
+
+
+def asked_error(integration: Integration) -> Json:
+    """Return the step error of the transmission error, m rms, that the step control was asked for."""
+    return {"time_step": {"rms": integration.tolerance, "unit": "m", "source": "tolerance of step control"}}
+
+
+def measured_error(total: float, samples: int, meshes: int, seconds: float) -> Json:
+    """Return the step error from the sum of squared differences from a finer run."""
+    rms = float(np.sqrt(total / max(samples * meshes, 1)))
+    source = f"difference from a run at {ERROR_CHECK_FACTOR:g} of the tolerance"
+    return {"time_step": {"rms": rms, "unit": "m", "source": source, "seconds": seconds}}
+
+
+def squared_difference(system: System, q: FloatArray, other: FloatArray) -> float:
+    """Return the sum of the squared differences in the transmission errors of the states (T, n)."""
+    difference = (q - other) @ system.arrays.direction[system.driving_rows].T
+    return float(np.sum(difference**2))
+
+
+def _statistics(system: System, end: Ending) -> StepStatistics:
+    """Name the counts."""
+    count = [int(value) for value in end.count]
+    implicit = system.scene.integration.method == "implicit"
+    stages = IMPLICIT_STAGES_PER_STEP * max(count[Count.ACCEPTED] + count[Count.REJECTED], 1)
+    return StepStatistics(
+        count[Count.ACCEPTED],
+        count[Count.REJECTED],
+        count[Count.NEWTON_FAILED],
+        count[Count.NEWTON_TOTAL] / stages if implicit else 0.0,
+        count[Count.NEWTON_MOST],
+        float(end.step_range[0]),
+        float(end.step_range[1]),
+    )

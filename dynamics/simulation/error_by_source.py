@@ -1,0 +1,87 @@
+"""The error of a run by source: what its receipt says of transmission errors and bearing forces."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.assembly.assemble import System
+from dynamics.assembly.thin_tables import with_thin_tables
+from dynamics.simulation.documents import ERROR_CHECK_FACTOR, asked_error, finer
+from dynamics.simulation.error_windows import (
+    Difference,
+    StatesOf,
+    Window,
+    run_again,
+    windows,
+)
+from dynamics.types import Json
+
+TIME_STEP_REST = 1.0 / (1.0 - ERROR_CHECK_FACTOR**0.75)
+"""Error over the difference to a run at a tenth of the tolerance: it falls as the tolerance^(3/4)."""
+TABLE_REST = 1.0 / 3.0
+"""Error over the difference to half the positions: second order, as kinks at handovers allow."""
+
+
+def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
+    """Return the estimates of a run, measured in windows of it; what was asked for where it is too short.
+
+    Sources: time steps, table interpolation between positions, effects that are off.
+    """
+    asked, integration = asked_error(system.scene.integration), system.scene.integration
+    left_out = left_out_effects(system)
+    began = clock.process_time()
+    full = system.scene.outputs.receipt == "full"
+    looked = windows(system, states_of, samples) if full else []
+    if not looked:
+        return {**asked, "left_out_effects": left_out}
+    steps = [run_again(window, window.system, finer(integration)) for window in looked]
+    tables = [run_again(window, with_thin_tables(window.system), integration) for window in looked]
+    seconds = clock.process_time() - began
+    return {
+        "time_step": _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")
+        or asked["time_step"],
+        "table_interpolation": _estimate(tables, TABLE_REST, "runs of windows on every second position"),
+        "left_out_effects": left_out,
+        "windows": _places(looked),
+        "cpu_seconds": seconds,
+    }
+
+
+def left_out_effects(system: System) -> Json:
+    """Return what effects that are off would move the flanks by at rest; bearing forces are not known."""
+    off = [entry for entry in system.ledger.entries if not entry.on and entry.worth > 0.0]
+    largest = max((entry.worth for entry in off), default=0.0)
+    return {
+        "rms": largest,
+        "unit": "m",
+        "source": "largest static displacement along the line of action by one effect that is off",
+        "effects": {f"{entry.effect} of {entry.part}": entry.worth for entry in off},
+    }
+
+
+def _estimate(found: Sequence[Difference | None], rest: float, source: str) -> Json:
+    """Put the windows together: rms over all, the worst amplitudes; empty if one of them failed."""
+    known = [difference for difference in found if difference is not None]
+    if len(known) < len(found):
+        return {}
+    orders = min(difference.error_orders.size for difference in known)
+    return {
+        "rms": rest * float(np.sqrt(np.mean([difference.rms**2 for difference in known]))),
+        "unit": "m",
+        "source": source,
+        "transmission_error_orders": [
+            rest * max(float(difference.error_orders[k]) for difference in known) for k in range(orders)
+        ],
+        "bearing_force_orders": [
+            rest * max(float(difference.force_orders[k]) for difference in known) for k in range(orders)
+        ],
+        "bearing_force_unit": "N",
+    }
+
+
+def _places(looked: Sequence[Window]) -> list[list[int]]:
+    """First and last sample of each window."""
+    return [[window.first, window.stop - 1] for window in looked]

@@ -1,0 +1,228 @@
+"""From a scene to its result in a file: states stream to disk, checkpoints let the run be taken up again."""
+
+from __future__ import annotations
+
+import json
+import time as clock
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bounds import warn_of
+from dynamics.assembly.assemble import System, assemble
+from dynamics.assembly.static_reference import with_static_reference
+from dynamics.errors import ResultError, SolveError
+from dynamics.integrators import Cancel, Progress, static_equilibrium
+from dynamics.integrators.march import Ending
+from dynamics.integrators.state_sink import blocks
+from dynamics.integrators.taking_over import Trail
+from dynamics.motion.sampled_states import States
+from dynamics.plausibility import scene_findings
+from dynamics.results.netcdf import attributes
+from dynamics.results.run_checks import RunChecks
+from dynamics.results.run_file import RunFile
+from dynamics.results.verdict import ending
+from dynamics.scene import Scene
+from dynamics.simulation.documents import (
+    asked_error,
+    documents,
+    finer,
+    measured_error,
+    series_of,
+    squared_difference,
+)
+from dynamics.simulation.error_by_source import error_by_source
+from dynamics.simulation.in_memory import require_equilibrium
+from dynamics.simulation.leg import Leg, MadeRun
+from dynamics.simulation.violations import FIRST, EarlierRun, needed_effects
+from dynamics.types import Json, RunStatus
+from dynamics.worth import Decided, decide_effects
+from dynamics.worth.spared_check import SparedChecks
+
+CHECKPOINT_EVERY = 5.0  # s of wall time
+REPEATED = "repeated.json"
+"""In the folder of a run that repeats another: which effects are on because of that, and what it took."""
+
+
+def interrupted_run(path: str | Path) -> Path:
+    """Return the folder that holds an unfinished run to `path`, whether it exists or not."""
+    return Path(path).with_name(f"{Path(path).name}.partial")
+
+
+def simulate_to_file(
+    scene: Scene,
+    path: str | Path,
+    *,
+    resume: bool = False,
+    progress: Progress | None = None,
+    cancel: Cancel | None = None,
+    checkpoint_every: float = CHECKPOINT_EVERY,
+) -> RunStatus:
+    """Run `scene` as `simulate` does, with memory that does not grow with its duration.
+
+    While it runs, its states and checkpoints are in the folder `interrupted_run(path)`. At the end, or when
+    cancelled, everything computed is written to `path`, bit by bit what `simulate` gives. A cancelled run
+    keeps the folder, and so does one whose process was killed: started again with `resume`, it goes on from
+    its last checkpoint and ends bit by bit as if it had never stopped (its times in the receipt apart).
+
+    Parameters
+    ----------
+    scene : Scene
+    path : str or Path
+        netCDF file, see `RunResult.from_netcdf`.
+    resume : bool
+        Go on from the checkpoint if there is one. Else whatever there is of another run is removed.
+    progress, cancel : callable, optional
+        As in `simulate`.
+    checkpoint_every : float
+        s of wall time between checkpoints.
+
+    Returns
+    -------
+    RunStatus
+        How the run ended, also in the file.
+
+    Raises
+    ------
+    InputError
+        If the scene's parts do not fit each other, or another process runs to the same file.
+    SolveError
+        If there is no equilibrium to start from, or something that the run took for granted is wrong and the
+        scene's ``on_violation`` is "fail", or "repeat" and no effect mends it; the file is then complete.
+    ResultError
+        If the checkpoint is damaged, or that of another scene.
+    """
+    path = Path(path)
+    folder = interrupted_run(path)
+    how = _How(resume, progress, cancel, checkpoint_every)
+    before = _read_earlier(folder) if resume else FIRST
+    warn_of(scene_findings(scene))
+    decided = decide_effects(scene)
+    run = _run_to_file(before.of(decided), path, before, how, None)
+    while needed := _needed(scene, path, run):
+        before = before.then(needed, run.seconds)
+        for checkpoint in folder.glob("*.checkpoint"):
+            checkpoint.unlink()  # of a system without these effects
+        (folder / REPEATED).write_text(json.dumps(before.to_json()), encoding="utf-8")
+        run = _run_to_file(before.of(decided), path, before, replace(how, resume=False), run)
+    if run.status is not RunStatus.CANCELLED:
+        _remove(folder)
+    if progress is not None:
+        progress(1.0, "done" if run.status.usable else run.status.name.lower())
+    return run.status
+
+
+def _needed(scene: Scene, path: Path, run: MadeRun) -> dict[str, str]:
+    """Return the effects that a run is to be repeated with; raises where it cannot be left as it is."""
+    if not run.status.usable:
+        return {}
+    needed = needed_effects(run.ledger) if scene.on_violation == "repeat" else {}
+    wrong = "" if needed else ending(run.ledger["checks"], scene.on_violation)
+    if wrong:
+        _remove(interrupted_run(path))
+        raise SolveError(f"assumptions of the run that do not hold: {wrong}. It is in {path}")
+    return needed
+
+
+@dataclass(frozen=True)
+class _How:
+    """What the caller wants of a run to a file; parameters of `simulate_to_file`."""
+
+    resume: bool
+    progress: Progress | None
+    cancel: Cancel | None
+    checkpoint_every: float
+
+
+def _run_to_file(
+    decided: Decided, path: Path, before: EarlierRun, how: _How, earlier: MadeRun | None
+) -> MadeRun:
+    """Run once; `before` says what of the run `earlier` it repeats."""
+    began, scene = clock.perf_counter(), decided.scene
+    system = assemble(scene)
+    start = static_equilibrium(system)
+    seconds = {"assembly_and_equilibrium": clock.perf_counter() - began}
+    require_equilibrium(system, start, seconds, decided)
+    system, trail = with_static_reference(system, start.displacement), Trail(system)
+    folder = interrupted_run(path)
+    folder.mkdir(exist_ok=True)
+    going = (how.progress, how.cancel, how.checkpoint_every)
+    with ExitStack() as stack:
+        leg = Leg(stack, folder / "run", system, start, scene.integration, how.resume, earlier)
+        before = replace(before, since=leg.since)
+        end = leg.go(*going, trail)
+        error = asked_error(scene.integration)
+        if end.status.usable:
+            error = error_by_source(system, leg.spool.states, end.samples)
+        if scene.integration.estimate_error and end.status.usable:
+            check = Leg(stack, folder / "check", system, start, finer(scene.integration), how.resume)
+            other = check.go(*going)
+            end = replace(end, status=other.status)
+            error = error | (_difference(system, leg, check, other) if other.status.usable else {})
+        seconds["integration"] = end.seconds
+        ledger = _write(path, system, leg, end, seconds, error, decided, before)
+    return MadeRun(end.status, ledger, sum(seconds.values()), trail, leg.march.widths)
+
+
+def _read_earlier(folder: Path) -> EarlierRun:
+    """Return the run that an interrupted one repeats; the first run if it repeats none."""
+    try:
+        found = json.loads((folder / REPEATED).read_text(encoding="utf-8"))["repeated"]
+        return EarlierRun({str(k): str(v) for k, v in found["turned_on"].items()}, float(found["seconds"]))
+    except FileNotFoundError:
+        return FIRST
+    except (OSError, ValueError, KeyError, AttributeError) as error:
+        raise ResultError(f"{folder / REPEATED}: not readable: {error}. Start the run anew.") from error
+
+
+def _difference(system: System, leg: Leg, check: Leg, end: Ending) -> Json:
+    """Measure the step error against the finer run."""
+    total = 0.0
+    for first, stop in blocks(end.samples):
+        total += squared_difference(
+            system, leg.spool.states(first, stop).q, check.spool.states(first, stop).q
+        )
+    return measured_error(total, end.samples, len(system.scene.meshes), end.seconds)
+
+
+def _write(
+    path: Path,
+    system: System,
+    leg: Leg,
+    end: Ending,
+    seconds: dict[str, float],
+    error: Json,
+    decided: Decided,
+    before: EarlierRun,
+) -> Json:
+    """Make the series from the states, block by block, into the file; return the effect ledger."""
+    began = clock.perf_counter()
+    checks = RunChecks(system, [SparedChecks(decided)])
+    with RunFile(path) as file:
+        for series, raw, states in _series(system, leg, end.samples):
+            checks.see(raw, states)
+            file.append(series)
+        seconds["outputs"] = clock.perf_counter() - began
+        about = documents(system, end, checks, seconds, error, decided, before)
+        file.publish(attributes(about))
+    return dict(about["effect_ledger"])
+
+
+def _series(
+    system: System, leg: Leg, samples: int
+) -> Iterator[tuple[dict[str, Any], dict[str, Any], States]]:
+    """Yield the series of all blocks as stored and unfiltered, and the states that they are of."""
+    for first, stop in blocks(samples):
+        states = leg.spool.states(first, stop)
+        yield *series_of(system, np.arange(first, stop) / system.sampling.rate, states), states
+
+
+def _remove(folder: Path) -> None:
+    """Remove what an ended run does not need."""
+    for file in folder.iterdir():
+        file.unlink()
+    folder.rmdir()

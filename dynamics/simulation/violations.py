@@ -1,0 +1,91 @@
+"""What to do where a run shows that something it took for granted is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+from dynamics.assembly.assemble import System
+from dynamics.integrators.taking_over import Taken, Trail, added_rows
+from dynamics.motion.sampled_states import States
+from dynamics.types import Json
+from dynamics.worth import Decided
+from dynamics.worth.spared_check import ANY_PART
+
+StatesOf = Callable[[int, int], States]
+
+
+@dataclass(frozen=True)
+class EarlierRun:
+    """A run that is repeated.
+
+    Attributes
+    ----------
+    turned_on : mapping of str to str
+        Automatic effects that it showed to be needed, and why.
+    seconds : float
+        What it took, s of wall time.
+    since : float
+        Time from which on it is repeated, s: before that the effects carry no force.
+    """
+
+    turned_on: Mapping[str, str] = field(default_factory=dict)
+    seconds: float = 0.0
+    since: float = 0.0
+
+    @property
+    def reasons(self) -> dict[str, str]:
+        """Why the effects are on, for the ledger."""
+        return {name: f"on after a run without it: {reason}" for name, reason in self.turned_on.items()}
+
+    def to_json(self) -> Json:
+        """Return what the receipt of the repetition says; nothing for a first run."""
+        if not self.turned_on:
+            return {}
+        found = {"turned_on": dict(self.turned_on), "seconds": self.seconds, "since": self.since}
+        return {"repeated": found}
+
+    def then(self, needed: Mapping[str, str], seconds: float) -> EarlierRun:
+        """Return what a further repetition repeats."""
+        return EarlierRun({**self.turned_on, **needed}, self.seconds + seconds)
+
+    def of(self, decided: Decided) -> Decided:
+        """Return the scene with these effects on."""
+        effects = {**decided.scene.effects, **dict.fromkeys(self.turned_on, "on")}
+        return replace(decided, scene=replace(decided.scene, effects=effects))
+
+
+FIRST = EarlierRun()
+
+
+def needed_effects(ledger: Json) -> dict[str, str]:
+    """Return the automatic effects that a run without them showed to be needed, and why.
+
+    What was switched off by name stays off, and what the scene has no data for cannot be switched on.
+    """
+    return {one["effect"]: f"{one['part']}: {one['reason']}".removeprefix(": ") for one in _wrong(ledger)}
+
+
+def taken_over(ledger: Json, trail: Trail, states: StatesOf, system: System) -> Taken | None:
+    """Return where `system`, with the effects that are needed, can go on; None: only from the start.
+
+    An effect that carried no force until then leaves what came before as it is, bit by bit: coast flanks
+    until driving flanks part. Every other one acts from the start on.
+    """
+    wrong = _wrong(ledger)
+    since = [float(one["since"]) for one in wrong if one.get("since") is not None]
+    if not since or len(since) < len(wrong):
+        return None
+    at, place = trail.before(min(since)), added_rows(trail.system, system)
+    return None if at is None or place is None else Taken(at, place, states)
+
+
+def _wrong(ledger: Json) -> list[Json]:
+    """Return the checks that do not hold and that an automatic effect mends."""
+    able = {
+        (entry["effect"], part)
+        for entry in ledger["entries"]
+        if entry["choice"] == "auto" and not entry["on"] and entry["possible"]
+        for part in (entry["part"], ANY_PART)
+    }
+    return [one for one in ledger["checks"] if one["holds"] is False and (one["effect"], one["part"]) in able]

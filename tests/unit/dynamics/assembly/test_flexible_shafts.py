@@ -1,0 +1,141 @@
+"""Flexible shafts at rest: closed forms of bending, twist and bearing forces."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flexible_scenes import (
+    STEEL,
+    bending_stiffness,
+    flexible_pair,
+    section_motion,
+    shear_stiffness,
+    torsional_stiffness,
+)
+from geared_scenes import with_gear
+
+from dynamics.assembly.assemble import assemble
+from dynamics.bodies import BeamSection, Inertia, Shaft
+from dynamics.integrators import static_equilibrium
+from dynamics.joints import Bushing, Coupling
+from dynamics.motion.force_balance import force_balance
+
+STIFF = 1e8
+HOLLOW = BeamSection(0.2, 0.05, 0.02)
+
+
+def rested(system):
+    """Static displacements, and the force of the shafts on the ground at every bearing."""
+    start = static_equilibrium(system)
+    assert start.status.usable
+    still = np.zeros((1, start.displacement.size))
+    local = force_balance(system.arrays, 0.0, start.displacement, still[0], still[0]).local
+    return start, system.bearing_force(local.force[:, None], start.displacement[None], still)[:, :, 0]
+
+
+@pytest.mark.parametrize("section", [STEEL, HOLLOW])
+def test_a_gear_between_bearings_sinks_as_the_closed_form_says(section):
+    """P a^2 b^2/(3 E I L) + P a b/(kappa A G L) after Timoshenko, and the bearings' own displacement."""
+    system = assemble(flexible_pair(section, gear=0.06))
+    start, _ = rested(system)
+    a, b, length = 0.06, 0.14, 0.2
+    per_force = a**2 * b**2 / (3.0 * bending_stiffness(section) * length)
+    per_force += a * b / (shear_stiffness(section) * length) + (a**2 + b**2) / length**2 / STIFF
+    moved = section_motion(system, "output", 0.06, start.displacement)
+    assert np.hypot(*moved[:2]) == pytest.approx(start.mesh_force[0] * per_force, rel=1e-9, abs=0.0)
+
+
+def test_an_overhung_gear_sinks_and_tilts_as_the_closed_form_says():
+    """P c^2 (l + c)/(3 E I) + P c (1 + c/l)/k A G, and P c l/(3 E I) + P c^2/(2 E I) + P c/(k A G l)."""
+    span, c = 0.13, 0.05
+    system = assemble(flexible_pair(gear=span + c, bearings=(0.0, span)))
+    start, _ = rested(system)
+    bent, shear = bending_stiffness(STEEL), shear_stiffness(STEEL)
+    sunk = c**2 * (span + c) / (3.0 * bent) + c * (1.0 + c / span) / shear
+    sunk += ((1.0 + c / span) ** 2 + (c / span) ** 2) / STIFF
+    tilted = c * span / (3.0 * bent) + c**2 / (2.0 * bent) + c / (shear * span)
+    tilted += (1.0 + 2.0 * c / span) / (span * STIFF)
+    moved = section_motion(system, "output", span + c, start.displacement)
+    force = float(start.mesh_force[0])
+    assert np.hypot(*moved[:2]) == pytest.approx(force * sunk, rel=1e-9, abs=0.0)
+    assert np.hypot(*moved[3:5]) == pytest.approx(force * tilted, rel=1e-9, abs=0.0)
+    # across the line of action: what the mesh reads as misalignment, not the tilt of the whole shaft
+    mean = np.hypot(*start.displacement[[system.freedoms.name.index(f"output.tilt_{k}") for k in "xy"]])
+    assert np.hypot(*moved[3:5]) > 1.2 * mean
+
+
+def test_shafts_wind_up_between_where_torque_enters_and_leaves():
+    """T l/(G J), from the drive to the pinion and from the wheel to the load."""
+    scene = flexible_pair(gear=0.06)
+    drive = replace(scene.drives[0], position=0.2)
+    load = replace(scene.loads[0], position=0.15)
+    system = assemble(replace(scene, drives=(drive,), loads=(load,)))
+    start, _ = rested(system)
+
+    def turned(shaft, place):
+        return section_motion(system, shaft, place, start.displacement)[5]
+
+    twisted = 100.0 * 0.14 / torsional_stiffness(STEEL)
+    assert turned("input", 0.2) == pytest.approx(0.0, abs=1e-12 * twisted)
+    assert turned("input", 0.06) == pytest.approx(-twisted, rel=1e-9, abs=0.0)
+    behind = float(
+        system.arrays.turn[0] @ start.displacement
+    )  # base pitches: as far as the pinion has turned
+    assert behind == pytest.approx(-twisted * 20 / (2.0 * math.pi), rel=1e-9, abs=0.0)
+    back = turned("output", 0.15) - turned("output", 0.06)
+    assert back == pytest.approx(100.0 * 0.09 / torsional_stiffness(STEEL), rel=1e-9, abs=0.0)
+
+
+def test_bearings_carry_the_mesh_force_and_its_moment():
+    """Action = reaction on each shaft: forces, and moments about the left bearing."""
+    scene = flexible_pair(gear=0.06)
+    scene = with_gear(with_gear(scene, 0, base_helix_angle=0.2), 1, base_helix_angle=-0.2)
+    system = assemble(scene)
+    assert "output.stretch_1" in system.freedoms.name
+    start, force = rested(system)
+    for shaft, sign in (("input", -1.0), ("output", 1.0)):
+        rows = [system.supports.name.index(f"{shaft}.{end}") for end in ("left", "right")]
+        pushed = sign * start.mesh_force[0] * system.lines[0].force
+        np.testing.assert_allclose(force[rows].sum(axis=0), pushed, rtol=1e-9)
+        axis = system.rotors[scene.shaft_index(shaft)].shaft.origin
+        moment = np.cross(system.lines[0].point - np.array(axis), pushed)
+        held = np.cross([0.0, 0.0, 0.2], force[rows[1]])
+        np.testing.assert_allclose(held[:2], moment[:2], rtol=1e-9)
+
+
+def test_torque_winds_a_shaft_up_between_its_two_gears_and_passes_its_coupling():
+    """Pinion, shaft with two gears, third gear; a machine behind a coupling takes the load."""
+    scene = flexible_pair(gear=0.06)
+    behind = replace(scene.gears[1], name="second", position=0.14)
+    third = replace(scene.gears[0], name="third", shaft="third", position=0.14)
+    shaft = replace(scene.shafts[0], name="third", origin=(0.16, 0.0, 0.0))
+    machine = Shaft("machine", 0.1, (0.16, 0.0, 0.2), Inertia(5.0, 0.02, 0.02))
+    ends = tuple(Bushing(f"third.{k}", "third", z, STIFF) for k, z in enumerate((0.0, 0.2)))
+    scene = replace(
+        scene,
+        shafts=(*scene.shafts, shaft, machine),
+        gears=(*scene.gears, behind, third),
+        bushings=(*scene.bushings, *ends),
+        meshes=(scene.meshes[0], replace(scene.meshes[0], name="next", driver="second", driven="third")),
+        couplings=(Coupling("joint", "third", "machine", 1e4, position=0.2),),
+        loads=(replace(scene.loads[0], shaft="machine"),),
+    )
+    system = assemble(scene)
+    q = static_equilibrium(system).displacement
+    assert [rotor.elastic is not None for rotor in system.rotors] == [True, True, True, False]
+    per_metre = 100.0 / torsional_stiffness(STEEL)
+
+    def turned(name, place):
+        return section_motion(system, name, place, q)[5]
+
+    before = turned("output", 0.06) - turned("output", 0.14)
+    assert before == pytest.approx(system.kinematics.sense[1] * 0.08 * per_metre, rel=1e-8, abs=0.0)
+    wound = turned("third", 0.14) - turned("third", 0.2)
+    assert abs(wound) == pytest.approx(0.06 * per_metre, rel=1e-8, abs=0.0)
+    joint = turned("third", 0.2) - turned("machine", 0.0)
+    assert abs(joint) == pytest.approx(100.0 / 1e4, rel=1e-8, abs=0.0)
+    assert wound * joint > 0.0
+    assert turned("output", 0.14) == pytest.approx(turned("output", 0.2), rel=1e-9)  # nothing passes there
