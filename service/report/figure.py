@@ -26,7 +26,7 @@ class Axis:
 class Line:
     """A curve, or points if `width` is 0. NaN breaks it. `x` and `y` have the shape (n,).
 
-    `band` is the half-height of an error band about it; 0 or NaN: none.
+    `band` is the half-height of an error band about it, one number or (n,); 0 or NaN: none.
     """
 
     name: str
@@ -36,7 +36,12 @@ class Line:
     dash: Dash = "solid"
     width: float = 1.8
     markers: bool = False
-    band: float = 0.0
+    band: float | FloatArray = 0.0
+
+    @property
+    def has_band(self) -> bool:
+        """Whether an error band is drawn."""
+        return bool(np.any(np.asarray(self.band) > 0.0))
 
 
 @dataclass(frozen=True)

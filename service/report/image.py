@@ -81,7 +81,7 @@ def _draw(ax: Axes, line: Line) -> Any:
     if line.markers:
         stroke |= {"marker": "o", "ms": 6}
     (handle,) = ax.plot(line.x, line.y, **stroke)
-    if line.band > 0.0:
+    if line.has_band:
         ax.fill_between(line.x, line.y - line.band, line.y + line.band, color=line.colour, alpha=0.2, lw=0)
     return handle
 

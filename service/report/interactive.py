@@ -28,6 +28,7 @@ _PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 520, 60, 62  # pixels
 _LABEL = 26  # pixels of an axis label between panels
 _LEGEND_ROW = 22  # pixels
 _NOTE_ROW = 15  # pixels
+_BAND_ALPHA = "33"  # of an error band, after the six digits of its colour
 _ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
@@ -134,19 +135,13 @@ def _line(line: Line, suffix: str, show: bool) -> Json:
 
 def _band(line: Line, suffix: str) -> list[Json]:
     """Shade the error band of a curve, without its own entry in the legend."""
-    if not line.band > 0.0:
+    if not line.has_band:
         return []
     edge: Json = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
     edge |= {"x": numbers(line.x), "xaxis": "x" + suffix, "yaxis": "y" + suffix}
     edge |= {"legendgroup": line.name, "showlegend": False}
-    filled = {"fill": "tonexty", "fillcolor": _pale(line.colour)}
+    filled = {"fill": "tonexty", "fillcolor": line.colour + _BAND_ALPHA}
     return [edge | {"y": numbers(line.y - line.band)}, edge | filled | {"y": numbers(line.y + line.band)}]
-
-
-def _pale(colour: str) -> str:
-    """Return a hex colour as a transparent one."""
-    red, green, blue = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
-    return f"rgba({red},{green},{blue},0.2)"
 
 
 def _panel_title(panel: Panel, suffix: str) -> list[Json]:

@@ -11,7 +11,7 @@ import numpy as np
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
 from service.convert.effect_sizes import by_size, influence_place, influence_words, trifles_title
-from service.report.aligned import headline_load, load_curve, load_labels
+from service.report.aligned import headline_load, load_curve, load_labels, shown_loads
 from service.report.database_surface import database_surface
 from service.report.deviation_curves import deviation_curves, has_deviations
 from service.report.face_load import face_load, has_face_load
@@ -20,6 +20,7 @@ from service.report.figure import Table, number
 from service.report.load_sharing import load_sharing
 from service.report.mesh_stiffness import mesh_stiffness
 from service.report.page import Headline, Section
+from service.report.ripple_over_torque import ripple_over_torque
 from service.report.ste_curves import ste_curves
 
 _RESIDUALS = ("equilibrium", "penetration", "tension", "complementarity")
@@ -54,7 +55,9 @@ def static_alarms(database: SteDatabase) -> tuple[str, ...]:
 
 def static_results(database: SteDatabase) -> tuple[Section, ...]:
     """Show what one database says of its pair."""
-    curves = Section("Static transmission error", figures=(ste_curves(database), load_sharing(database)))
+    over_torque = (ripple_over_torque(database),) if len(shown_loads(database)) > 1 else ()
+    drawn = (ste_curves(database), *over_torque, load_sharing(database))
+    curves = Section("Static transmission error", figures=drawn)
     # over a longer period the deflection holds the teeth's errors, and a secant through them means nothing
     secant = (mesh_stiffness(database),) if database.period == 1 else ()
     over_load = (database_surface(database),) if len(database.force) > 1 else ()

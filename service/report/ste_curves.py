@@ -78,7 +78,7 @@ def _half_error(curve: Curve) -> float:
 
 def _bands(ripple: Panel) -> str:
     """Say what the bands are, where there are any."""
-    if not any(line.band > 0.0 for line in ripple.lines):
+    if not any(line.has_band for line in ripple.lines):
         return ""
     return "Bands: half the error of peak-to-peak on either side. "
 

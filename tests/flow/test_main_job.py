@@ -71,7 +71,7 @@ def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
     assert str(folder / "report.html") in text
     page = (folder / "report.html").read_text(encoding="utf-8")
     keys = re.findall(r'<figure id="(\w+)">', page)
-    static = ["ste", "load_sharing", "mesh_stiffness", "database"]
+    static = ["ste", "ripple", "load_sharing", "mesh_stiffness", "database"]
     dynamic = [
         "dynamic_error",
         "bearing_force",

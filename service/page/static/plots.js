@@ -22,10 +22,10 @@ function luminance(colour) {
 
 /** A colour that stays legible on dark paper: what is too dark has its lightness turned over. */
 export function onDark(colour) {
-  if (!/^#[0-9a-f]{6}$/i.test(colour) || luminance(colour) > 0.16) return colour;
+  if (!/^#[0-9a-f]{6}([0-9a-f]{2})?$/i.test(colour) || luminance(colour) > 0.16) return colour;
   const rgb = channels(colour);
   const shift = 1 - Math.max(...rgb) - Math.min(...rgb);
-  return `#${rgb.map((c) => Math.round(255 * Math.min(Math.max(c + shift, 0), 1)).toString(16).padStart(2, "0")).join("")}`;
+  return `#${rgb.map((c) => Math.round(255 * Math.min(Math.max(c + shift, 0), 1)).toString(16).padStart(2, "0")).join("")}${colour.slice(7)}`;
 }
 
 function recoloured(value) {
@@ -130,10 +130,13 @@ function imageOf(url) {
   return new Blob([Uint8Array.from(bytes, (letter) => letter.charCodeAt(0))], { type: "image/png" });
 }
 
-function columnsOf(figure) {
-  return figure.data.filter((trace) => trace.x?.length > 1 || trace.z).flatMap((trace, k) => {
+/** The columns of all curves, named by curve and axis; the edges of error bands are left out. */
+function columnsOf({ data, layout }) {
+  const label = (axis, letter) => layout[`${letter}axis${(axis ?? letter).slice(1)}`]?.title?.text || letter;
+  const curves = data.filter((trace) => trace.hoverinfo !== "skip" && (trace.x?.length > 1 || trace.z));
+  return curves.flatMap((trace, k) => {
     const name = trace.name || trace.type || `curve ${k + 1}`;
-    if (!trace.z) return [[`${name}, x`, trace.x], [`${name}, y`, trace.y]];
+    if (!trace.z) return ["x", "y"].map((letter) => [`${name}, ${label(trace[`${letter}axis`], letter)}`, trace[letter]]);
     const rows = trace.z.map((row, r) => [`${name}, y = ${trace.y[r]}`, row]);
     return [[`${name}, x`, trace.x], ...rows];
   });

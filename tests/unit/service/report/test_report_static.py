@@ -15,6 +15,7 @@ from service.report.figure import Panel, Surface, number
 from service.report.load_sharing import load_sharing, pair_shares
 from service.report.mesh_stiffness import mesh_stiffness, secant_stiffness
 from service.report.pair import iso_mesh_stiffness
+from service.report.ripple_over_torque import ripple_over_torque
 from service.report.static_part import static_results
 from service.report.ste_curves import ste_curves
 
@@ -155,3 +156,20 @@ def test_a_single_load_names_its_mean_and_makes_no_surface(database: SteDatabase
     over_load = [f.key for section in static_results(single) for f in section.figures]
     assert "database" not in over_load
     assert "database" in [f.key for section in static_results(database) for f in section.figures]
+
+
+def test_ripple_over_torque_is_that_of_the_curves(database: SteDatabase) -> None:
+    ripple, harmonics = ripple_over_torque(database).content  # type: ignore[misc]
+    (line,) = ripple.lines
+    for k, load in enumerate(shown_loads(database)):
+        curve = database.curve(force=float(database.force[load]))
+        assert line.y[k] == pytest.approx(1e6 * curve.peak_to_peak.value)
+        assert line.band[k] == pytest.approx(1e6 * curve.peak_to_peak.error)
+        for drawn in harmonics.lines:
+            one = curve.harmonics[int(drawn.name) - 1]
+            if one.error >= one.value:
+                assert math.isnan(drawn.y[k])
+            else:
+                assert drawn.y[k] == pytest.approx(20.0 * math.log10(1e6 * one.value))
+    assert [note.text for note in harmonics.notes] == [drawn.name for drawn in harmonics.lines]
+    assert "ripple" in [f.key for s in static_results(database) for f in s.figures]
