@@ -13,15 +13,16 @@ from benchmarks import (
     dynamic_worth_estimates,
     dynamics_cost,
     effects_off,
-    error_honesty,
+    error_coverage,
     finite_width,
     full_contact_cost,
     full_contact_coverage,
     full_contact_picture,
-    live_honesty,
+    live_coverage,
     long_phase,
     other_engine,
     page_redraw,
+    predicted_errors,
     predicted_memory,
     predictions,
     quiet_helical,
@@ -31,7 +32,7 @@ from benchmarks import (
     service_queries,
     solvers_3d,
     static_table,
-    tolerance_promise,
+    tolerance_kept,
     worker_cost,
     worth_estimates,
 )
@@ -53,12 +54,13 @@ SUBJECTS = (
     dynamics_cost,
     solvers_3d,
     predictions,
+    predicted_errors,
     predicted_memory,
     receipt_cost,
-    error_honesty,
-    live_honesty,
+    error_coverage,
+    live_coverage,
     derivatives,
-    tolerance_promise,
+    tolerance_kept,
     worth_estimates,
     quiet_helical,
     dynamic_worth_estimates,
@@ -85,15 +87,17 @@ def main(arguments: Sequence[str]) -> int:
     _keep(record, tuple(names))
     if "--publish" in arguments:
         _publish(record, tuple(names))
-        if "error_honesty" in record:
-            error_honesty.publish(error_honesty.judged(), machine)
+        if "error_coverage" in record:
+            error_coverage.publish(error_coverage.assessed(), machine)
         if "full_contact_coverage" in record:
             full_contact_coverage.publish(full_contact_coverage.assessed(), machine)
             full_contact_picture.draw()
-        if "live_honesty" in record:
-            live_honesty.publish(live_honesty.judged(), machine)
-        if "tolerance_promise" in record:
-            tolerance_promise.publish(tolerance_promise.study())
+        if "live_coverage" in record:
+            live_coverage.publish(live_coverage.assessed(), machine)
+        if "tolerance_kept" in record:
+            tolerance_kept.publish(tolerance_kept.assessed())
+        if "predicted_errors" in record:
+            predicted_errors.publish(predicted_errors.assessed())
         if "worth_estimates" in record:
             worth_estimates.publish(worth_estimates.judged(), machine)
         if "quiet_helical" in record:

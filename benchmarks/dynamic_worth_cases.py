@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from benchmarks.honesty_cases import M, gear_of, spur_pair
+from benchmarks.pair_cases import M, gear_of, spur_pair
 from dynamics.bodies import BeamSection, GearBody, Inertia, TimeLaw, hollow_cylinder
 from dynamics.forces import CoastFlank, MeshTable, RollingContact
 from dynamics.scene import Outputs, Scene, pair_scene

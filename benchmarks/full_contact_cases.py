@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from benchmarks.honesty_cases import HonestyCase, M, gear_of, spur_pair
+from benchmarks.pair_cases import M, PairCase, gear_of, spur_pair
 from fe_contact import FlankModification, GearPair
 from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
@@ -15,7 +15,7 @@ _POLYMER, _ALUMINIUM = Material(9e9, 0.35), Material(70e9, 0.33)
 
 
 @dataclass(frozen=True)
-class FullContactCase(HonestyCase):
+class FullContactCase(PairCase):
     """A pair, its loads over the rated one, its regime, and whether no constant was set on it."""
 
     regime: str = ""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
+from benchmarks.assessed import QUANTITIES, Assessed, coverage_figures, coverage_table, error_cell
 from benchmarks.figures import Figure
 from benchmarks.full_contact_cases import FullContactCase, full_contact_cases
 from benchmarks.marked_section import replace_section
@@ -23,57 +24,33 @@ ROOT = Path(__file__).parents[1]
 REFERENCE = ROOT / "tests" / "reference" / "full_contact_curves.csv"
 PAGE, SECTION = ROOT / "docs" / "accuracy.md", "full contact"
 SUBJECT = "stated errors against full contact"
-QUANTITIES = ("mean", "peak-to-peak", "harmonic 1", "harmonic 2", "harmonic 3")
 LEVELS = ("standard", "fine")
-_COVERAGE, _MEDIAN = 90.0, 3.0
+_COVERAGE = 90.0
 _FITTED = 8
 """Harmonics of a fit: positions at which the reference has no solution are left out of both curves."""
 
 
 @dataclass(frozen=True)
-class Assessed:
-    """One pair at one level: value, stated, true, and the reference's own error (5 quantities, loads), m."""
+class AssessedCase(Assessed):
+    """The curves of one case, and its regime, loads and whether it set a constant."""
 
-    case: FullContactCase
-    level: str
-    value: FloatArray
-    stated: FloatArray
-    true: FloatArray
-    own: FloatArray
-
-    @property
-    def covered(self) -> FloatArray:
-        """Whether stated errors and that of the reference reach the difference (5, loads)."""
-        return np.asarray(self.true <= self.stated + self.own)
-
-    @property
-    def ratio(self) -> FloatArray:
-        """Stated over true errors; a true error counts as that of the reference at least."""
-        return np.asarray(self.stated / np.maximum(self.true, np.maximum(self.own, 1e-12)))
+    case: FullContactCase = field(kw_only=True)
 
 
 def figures() -> list[Figure]:
     """Return the coverage of pairs that set no constant."""
     held_out = [one for one in assessed() if one.case.held_out]
-    rows = [Figure(SUBJECT, "pairs not used for any constant", len(held_out) / len(LEVELS), "-", 6.0)]
-    for q, name in enumerate(QUANTITIES):
-        covered = np.concatenate([one.covered[q] for one in held_out])
-        ratio = np.concatenate([one.ratio[q] for one in held_out])
-        missed = 100.0 * float(np.mean(~covered))
-        rows += [
-            Figure(SUBJECT, f"{name}: not covered", missed, "%", 100.0 - _COVERAGE),
-            Figure(SUBJECT, f"{name}: median stated over true", float(np.median(ratio)), "times", _MEDIAN),
-        ]
-    return rows
+    pairs = Figure(SUBJECT, "pairs not used for any constant", len(held_out) / len(LEVELS), "-", 6.0)
+    return [pairs, *coverage_figures(held_out, SUBJECT, _COVERAGE)]
 
 
 @cache
-def assessed() -> tuple[Assessed, ...]:
+def assessed() -> tuple[AssessedCase, ...]:
     """Hold every pair at every level against full contact."""
     return tuple(assess(case, level) for case in full_contact_cases() for level in LEVELS)
 
 
-def assess(case: FullContactCase, level: str) -> Assessed:
+def assess(case: FullContactCase, level: str) -> AssessedCase:
     """Hold one table against full contact at the same positions."""
     position, exact, error = reference(case.name)
     table = analyze(case.pair, normal_forces=case.forces, model="plane_strain", level=level)
@@ -81,7 +58,7 @@ def assess(case: FullContactCase, level: str) -> Assessed:
     value = quantities(position, found)
     true = np.abs(value - quantities(position, exact))
     own = np.stack([np.mean(error, axis=0)] * len(QUANTITIES))
-    return Assessed(case, level, value, stated(table, case.pair), true, own)
+    return AssessedCase(case.name, level, value, stated(table, case.pair), true, own, case=case)
 
 
 def stated(table: SteDatabase, pair: ParallelAxes) -> FloatArray:
@@ -121,30 +98,13 @@ def quantities(position: FloatArray, ste: FloatArray) -> FloatArray:
     return np.stack([fitted[0], np.ptp(ste, axis=0), *amplitude[:3]])
 
 
-def markdown(found: Sequence[Assessed]) -> str:
+def markdown(found: Sequence[AssessedCase]) -> str:
     """Return the section of docs/accuracy.md."""
-    return _coverage(found) + "\n" + _cases(found)
-
-
-def _coverage(found: Sequence[Assessed]) -> str:
-    """Coverage by quantity: of all pairs, and of those that set no constant."""
-    lines = [
-        "| | curves | " + " | ".join(f"{name}: covered, stated / true" for name in QUANTITIES) + " |",
-        "|---|---:|" + "---:|" * len(QUANTITIES),
-    ]
     groups = {"all": list(found), "set no constant": [one for one in found if one.case.held_out]}
-    for name, group in groups.items():
-        covered = np.concatenate([one.covered for one in group], axis=1)
-        ratio = np.concatenate([one.ratio for one in group], axis=1)
-        cells = [
-            f"{100.0 * np.mean(yes):.0f} %, {np.median(part):.2g}"
-            for yes, part in zip(covered, ratio, strict=True)
-        ]
-        lines.append(f"| {name} | {covered.shape[1]} | " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
+    return coverage_table(groups) + "\n" + _cases(found)
 
 
-def _cases(found: Sequence[Assessed]) -> str:
+def _cases(found: Sequence[AssessedCase]) -> str:
     """Every pair and load at the level standard: true error, stated in brackets, of mean and peak-to-peak."""
     lines = [
         "| regime | pair | load | mean, um | off, % (stated) | peak-to-peak, um | off, % (stated) |",
@@ -155,15 +115,13 @@ def _cases(found: Sequence[Assessed]) -> str:
         for k, load in enumerate(one.case.loads):
             cells = []
             for q in range(2):
-                off, told = (100.0 * error[q, k] / one.value[q, k] for error in (one.true, one.stated))
-                text = f"{off:.2g} ({told:.2g})"
-                cells += [f"{1e6 * one.value[q, k]:.3g}", text if one.covered[q, k] else f"**{text}**"]
+                cells += [f"{1e6 * one.value[q, k]:.3g}", error_cell(one, q, k)]
             head = [one.case.regime, f"{one.case.name}{mark}", f"{load:.2g}"]
             lines.append("| " + " | ".join(head + cells) + " |")
     return "\n".join(lines) + "\n"
 
 
-def publish(found: Sequence[Assessed], machine: dict[str, str]) -> None:
+def publish(found: Sequence[AssessedCase], machine: dict[str, str]) -> None:
     """Write the section of the page between its marks."""
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
     replace_section(PAGE, SECTION, f"{markdown(found)}\nMeasured with {versions}.\n")

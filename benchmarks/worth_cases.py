@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from benchmarks.honesty_cases import HonestyCase, M, face_cases, plane_cases
+from benchmarks.pair_cases import M, PairCase, face_cases, plane_cases
 from fe_contact import BoreSeat, FlankModification, GearBlank, GearPair, PitchDeviation, Shaft
 from fe_contact.geometry import ParallelAxes
 
@@ -15,15 +15,13 @@ SKEW = 15e-6
 """Misalignment, m."""
 
 
-def worth_cases() -> list[HonestyCase]:
+def worth_cases() -> list[PairCase]:
     """Return pairs in which every effect has something to do, each twice or more."""
     named = {case.name: case for case in (*plane_cases(), *face_cases())}
-    for name in ("spur 40/40, 64 even positions", "spur 18/18 in 3-D"):
-        del named[name]
     return [replace(case, loads=LOADS) for case in (*named.values(), *_further(named))]
 
 
-def _further(named: dict[str, HonestyCase]) -> list[HonestyCase]:
+def _further(named: dict[str, PairCase]) -> list[PairCase]:
     """Pitch errors, shafts, seats and webs, and small amounts that a tolerance may leave off."""
     spur, small = named["spur 20/20"].pair, named["spur 18/18, misaligned"].pair
     helical = named["helical 18/23"].pair
@@ -54,7 +52,7 @@ def _further(named: dict[str, HonestyCase]) -> list[HonestyCase]:
         "spur 18/18, crowning of 0.1 um": (_with(small, modification=flat), even),
         "spur 20/20, pitch errors of 0.02 um": (_with(spur, pitch_deviation=exact), {}),
     }
-    return [HonestyCase(name, pair, options=how) for name, (pair, how) in made.items()]
+    return [PairCase(name, pair, options=how) for name, (pair, how) in made.items()]
 
 
 def _with(pair: ParallelAxes, **more: object) -> GearPair:

@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.figures import Figure
-from benchmarks.honesty_cases import HonestyCase
 from benchmarks.judged_worth import FACTOR, FLOOR, SHARE, JudgedWorth, WorthStudy, by_effect, per_cent_right
 from benchmarks.marked_section import replace_section
+from benchmarks.pair_cases import PairCase
 from benchmarks.worth_cases import worth_cases
 from fe_contact.analysis import check_request
 from fe_contact.analysis.ablation import EffectAblation, ablate
@@ -53,7 +53,7 @@ def judged() -> tuple[LoadedWorth, ...]:
         return tuple(study(worth_cases(), Path(folder)))
 
 
-def study(cases: Sequence[HonestyCase], folder: Path) -> list[LoadedWorth]:
+def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedWorth]:
     """Switch every effect of every case over."""
     found = []
     for case in cases:
@@ -78,7 +78,7 @@ def left_off(decided: Mapping[str, str], name: str) -> bool:
 
 
 def _judged(
-    case: HonestyCase, entry: EffectAblation, estimate: Worth | None, off_at: tuple[float, ...]
+    case: PairCase, entry: EffectAblation, estimate: Worth | None, off_at: tuple[float, ...]
 ) -> list[LoadedWorth]:
     """One effect at every load."""
     if estimate is None:

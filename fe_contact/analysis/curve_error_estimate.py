@@ -40,8 +40,8 @@ LEFT_BY_MESH = {
 elements half as large; over the face of a spur pair, of elements of two thirds; of a helical pair, over what
 second order leaves of that change (`FaceDiscretisation.remaining`). Coarse meshes are not in the range yet in
 which errors fall with a power of the size: a draft in the plane leaves less of its change than a finer mesh,
-one over the face more. Set on the cases of docs/accuracy.md not held out; the level fine has the parts of
-standard."""
+one over the face more. Set on pairs that docs/accuracy.md names under "Constants"; the level fine has the
+parts of standard."""
 HARMONIC_SHARE = 0.3
 """Least change of harmonic k of a helical pair over that of peak-to-peak, times the root of k: half the
 slices and coarse meshes err in other harmonics than the table, whose own may hardly change."""

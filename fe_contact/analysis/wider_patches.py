@@ -15,7 +15,7 @@ WIDER = 1.25
 """Width over that of the run at which the change is measured."""
 SEEN = 0.7
 """Of what second order leaves over that change, the part that is counted: the strips are not as narrow as a
-point. Decided on all pairs of docs/accuracy.md: first harmonics then hold in 95 %."""
+point. With it stated errors cover 95 % of the first harmonics of live answers (docs/accuracy.md)."""
 
 
 def left_by_patches(pair: ParallelAxes, plan: Plan) -> float:

@@ -2,8 +2,8 @@
 
 What a mesh or slices change is a part of the transmission error that the load adds, also where it is
 peak-to-peak that they change: the smaller the ripple, the larger its relative error. Constants are medians of
-what runs state, on the cases of docs/accuracy.md and on quiet helical pairs (docs/frontier.md, "Plan"); a
-run's own error estimate replaces what is said here.
+what runs state, on the pairs that docs/frontier.md names under "Plan"; a run's own error estimate replaces
+what is said here.
 """
 
 from __future__ import annotations

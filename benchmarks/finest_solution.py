@@ -1,14 +1,14 @@
-"""The finest discretisation that can be afforded: what error estimates and tolerances are held against."""
+"""The finest solution of a pair that can be afforded: the reference of stated errors and tolerances."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from benchmarks.honesty_cases import HonestyCase
+from benchmarks.assessed import HARMONICS
+from benchmarks.pair_cases import PairCase
 from fe_contact.analysis import check_request
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request import Checked
@@ -16,61 +16,56 @@ from fe_contact.analysis.table_places import table_places
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
 from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation, make_plan
-from fe_contact.planning.discretisation import Discretisation
+from fe_contact.planning.discretisation import FINER_SLICES, Discretisation
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 
-PLANE_FACTOR, SLICES = 1.5, 31
-PLANE_POSITIONS, FACE_POSITIONS = 512, 256
-_SAMPLES = 4096
+PLANE_FACTOR, SLICES = 1.5, FINER_SLICES[-1]
+PLANE_POSITIONS, FACE_POSITIONS = 512, 128
+_SAMPLES, _FEW = 4096, 50
 
 
-@dataclass(frozen=True)
-class Quantities:
-    """Mean, peak-to-peak and first harmonic by load, m."""
+def finest(case: PairCase, cache: Path) -> FloatArray:
+    """Return mean, peak-to-peak and three harmonics (5, loads) in m.
 
-    mean: FloatArray
-    peak_to_peak: FloatArray
-    first_harmonic: FloatArray
-
-    @property
-    def rows(self) -> FloatArray:
-        """All of them, (3, loads)."""
-        return np.stack([self.mean, self.peak_to_peak, self.first_harmonic])
-
-
-def finest(case: HonestyCase, cache: Path, model: str | None = None) -> Quantities:
-    """Solve a case on meshes finer than "fine", or in more slices, at many positions.
-
-    `model` "3d" takes three dimensions where the case itself asks for the plane: aligned spur pairs, for
-    which the mesh of the level fine is enough beside what the plane leaves out.
+    In the plane on elements `PLANE_FACTOR` times as fine as those of the level fine, over the face on the
+    mesh of the level fine in `SLICES` slices, at many positions.
     """
-    options: dict[str, Any] = {name: value for name, value in case.options.items() if name != "positions"}
-    options |= {"model": model} if model else {}
-    checked = check_request(case.pair, normal_forces=case.forces, level="fine", **options)
-    plan = finest_plan(checked, finer=model is None)
-    return solved_finely(checked, pair_contact(checked.request.pair, plan, cache))
+    checked = check_request(case.pair, normal_forces=case.forces, level="fine", **case.options)
+    return solved_finely(checked, pair_contact(checked.request.pair, finest_plan(checked), cache))
 
 
-def finest_plan(checked: Checked, *, finer: bool = True) -> Plan:
+def finest_plan(checked: Checked) -> Plan:
     """Plan a request of the level fine on meshes, or in slices, beyond it."""
     request = checked.request
     plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
-    if not finer:
-        return plan
     return replace(plan, discretisation=_finer(plan.discretisation, plan.bodies(request.pair)))
 
 
-def solved_finely(checked: Checked, contact: PairContact) -> Quantities:
-    """Solve the one place of a request at many positions."""
+def solved_finely(checked: Checked, contact: PairContact) -> FloatArray:
+    """Return the quantities (5, loads) in m of the one place of a request at many positions."""
     request = checked.request
     (place,) = table_places(request.scene, request.choices, contact).places
     flat = isinstance(contact.plan.discretisation, PlaneDiscretisation)
     position = np.arange(count := PLANE_POSITIONS if flat else FACE_POSITIONS) / count
-    curve = place.solve(position, request.load)[1].deflection
-    even = interpolate(Axis(position, 1.0), curve, np.arange(_SAMPLES) / _SAMPLES)
-    lines = 2.0 * np.abs(np.fft.rfft(even, axis=0)[1]) / _SAMPLES
-    return Quantities(even.mean(axis=0), np.ptp(curve, axis=0), lines)
+    curves = place.solve(position, request.load)[1].deflection
+    return np.stack([_quantities(position, curve) for curve in curves.T], axis=1)
+
+
+def _quantities(position: FloatArray, curve: FloatArray) -> FloatArray:
+    """Return the quantities (5,) of one curve (P,) in m; its neighbors stand in for a position that failed.
+
+    Raises
+    ------
+    RuntimeError
+        More than one in `_FEW` positions failed.
+    """
+    solved = np.isfinite(curve)
+    if np.sum(~solved) * _FEW > curve.size:
+        raise RuntimeError(f"{np.sum(~solved)} of {curve.size} positions of the finest solution failed")
+    even = interpolate(Axis(position[solved], 1.0), curve[solved], np.arange(_SAMPLES) / _SAMPLES)
+    lines = 2.0 * np.abs(np.fft.rfft(even)[1 : HARMONICS + 1]) / _SAMPLES
+    return np.array([even.mean(), np.ptp(even), *lines])
 
 
 def _finer(made: Discretisation, bodies: tuple[Toothing, Toothing]) -> Discretisation:

@@ -1,4 +1,4 @@
-"""Do the errors of live answers hold? Other flanks, loads and alignments against the finest rung."""
+"""Do the errors of live answers cover? Other flanks, loads and alignments against the finest solution."""
 
 from __future__ import annotations
 
@@ -9,21 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.error_honesty import PAGE, Judged, counts, table_of_counts
+from benchmarks.assessed import Assessed, coverage_figures, coverage_table
+from benchmarks.error_coverage import PAGE, SHARED
 from benchmarks.figures import Figure
-from benchmarks.finest_rung import finest_plan, solved_finely
-from benchmarks.held_out_cases import held_out_face_cases, held_out_plane_cases
-from benchmarks.honesty_cases import HonestyCase, M, face_cases, plane_cases
+from benchmarks.finest_solution import finest_plan, solved_finely
 from benchmarks.marked_section import replace_section
-from benchmarks.measured_rungs import ROOT, needs_face
+from benchmarks.pair_cases import M, PairCase, face_cases, plane_cases
+from benchmarks.stored_runs import FILE, errors_by_source, quantities, together
 from fe_contact import FlankModification, analyze
 from fe_contact.analysis import CondensedPair, check_request, condensed_pair
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
-SECTION, SUBJECT = "live honesty", "error estimates of live answers against the finest rung"
-FOLDER = ROOT / "live"
+SECTION, SUBJECT = "live answers", "stated errors of live answers against the finest solution"
+FOLDER = FILE.parent / "live"
+_COVERAGE = 90.0
 LOADS = (0.25, 0.5, 1.5)
 LEVELS = ("draft", "standard")
 PLAIN = FlankModification()
@@ -64,7 +65,7 @@ ACROSS = {
 class Bodies:
     """Gears that questions are asked of; `options` are of `analyze`."""
 
-    case: HonestyCase
+    case: PairCase
     plain: ParallelAxes
     options: Mapping[str, Any] = field(default_factory=dict)
 
@@ -80,44 +81,42 @@ class Bodies:
 
 
 def figures() -> list[Figure]:
-    """Return the counts."""
-    return counts(judged(), SUBJECT, "pair x level x flanks")
+    """Return the coverage."""
+    return coverage_figures(assessed(), SUBJECT, _COVERAGE)
 
 
 @cache
-def judged() -> tuple[Judged, ...]:
-    """Judge all questions."""
+def assessed() -> tuple[Assessed, ...]:
+    """Assess all answers."""
     return tuple(found for bodies in all_bodies() for found in study(bodies))
 
 
 def all_bodies() -> list[Bodies]:
-    """Return the pairs of the cases of docs/accuracy.md, each once and without its modifications."""
+    """Return the pairs of the shared cases, each once and without its modifications."""
     found: dict[str, Bodies] = {}
-    for case in (*plane_cases(), *face_cases(), *held_out_plane_cases(), *held_out_face_cases()):
+    for case, options in [(case, {}) for case in plane_cases()] + [
+        (c, {"model": "3d"}) for c in face_cases()
+    ]:
         plain = Question().pair(case.pair)
-        options = {"model": "3d"} if needs_face(case) else {}
         found.setdefault(repr((plain, options)), Bodies(case, plain, options))
     return list(found.values())
 
 
-def study(bodies: Bodies, levels: Sequence[str] = LEVELS) -> Iterator[Judged]:
-    """Hold the live answers of a pair against the finest rung of the same flanks."""
+def study(bodies: Bodies, levels: Sequence[str] = LEVELS) -> Iterator[Assessed]:
+    """Hold the live answers of a pair against the finest solution of the same flanks."""
     exact = _exact(bodies)
     for level in levels:
         live = _condensed(bodies, level)
         torques = live.checked.request.torque
         for name, question in bodies.questions.items():
             table = live.table(question.pair(bodies.plain), torques, question.misalignment)
-            curves = [table.curve(force=float(force)) for force in table.force]
-            shown = [[one.mean, one.peak_to_peak, one.harmonics[0]] for one in curves]
-            value = np.array([[each.value for each in row] for row in shown]).T
-            stated = np.array([[each.error for each in row] for row in shown]).T
-            rung = f"{'3d' if bodies.options else 'corrected'} {level}"
-            yield Judged(bodies.case.name, rung, value, stated, np.abs(value - exact[name]), name)
+            value, stated = quantities(table), together(errors_by_source(table), *SHARED)
+            mesh = f"{'over the face' if bodies.options else 'corrected plane'}, {level}"
+            yield Assessed(f"{bodies.case.name}: {name}", mesh, value, stated, np.abs(value - exact[name]))
 
 
 def _exact(bodies: Bodies) -> dict[str, FloatArray]:
-    """Return mean, peak-to-peak and first harmonic of every question on the finest rung, (3, loads) in m."""
+    """Return the quantities of every question of the finest solution, (5, loads) in m."""
     contact: PairContact | None = None
     found = {}
     for name, question in bodies.questions.items():
@@ -131,7 +130,7 @@ def _exact(bodies: Bodies) -> dict[str, FloatArray]:
         )
         if contact is None:
             contact = pair_contact(checked.request.pair, finest_plan(checked), FOLDER)
-        found[name] = solved_finely(checked, replace(contact, pair=checked.request.pair)).rows
+        found[name] = solved_finely(checked, replace(contact, pair=checked.request.pair))
     return found
 
 
@@ -145,18 +144,18 @@ def _condensed(bodies: Bodies, level: str) -> CondensedPair:
     return found
 
 
-def publish(found: Sequence[Judged], machine: Mapping[str, str]) -> None:
+def publish(found: Sequence[Assessed], machine: Mapping[str, str]) -> None:
     """Write the section of docs/accuracy.md."""
+    groups = {"all": list(found)}
+    groups |= {mesh: [one for one in found if one.level == mesh] for mesh in sorted({o.level for o in found})}
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
-    text = f"{head(found)}\n{table_of_counts(found)}\nMeasured with {versions}.\n"
+    text = f"{head(found)}\n{coverage_table(groups)}\nMeasured with {versions}.\n"
     replace_section(PAGE, SECTION, text)
 
 
-def head(found: Sequence[Judged]) -> str:
-    """Say what was judged."""
-    points = sum(one.value.shape[1] for one in found)
+def head(found: Sequence[Assessed]) -> str:
+    """Say what was assessed."""
     return (
-        f"{len({one.case for one in found})} pairs on two meshes each, with {len(PROFILES)} profiles, over "
-        f"the face with {len(ACROSS)} more that are crowned or misaligned: {len(found)} cases at "
-        f"{len(LOADS)} loads, {points} answers.\n"
+        f"{len(all_bodies())} pairs on two meshes, {len(PROFILES)} profiles, over the face {len(ACROSS)} "
+        f"more that are crowned or misaligned: {len(found)} answers of {len(LOADS)} loads.\n"
     )

@@ -1,0 +1,95 @@
+"""Stated errors beside true ones: how often they cover them, and by how much they exceed them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.figures import Figure
+from fe_contact.types import FloatArray
+
+HARMONICS = 3
+QUANTITIES = ("mean", "peak-to-peak", *(f"harmonic {k + 1}" for k in range(HARMONICS)))
+LARGEST_MEDIAN = 3.0
+"""Of stated over true errors."""
+
+
+@dataclass(frozen=True)
+class Assessed:
+    """The curves of one table under some loads.
+
+    Attributes
+    ----------
+    name, level : str
+        Of the pair and of its mesh.
+    value, stated, true : ndarray, shape (5, loads)
+        `QUANTITIES`, and their stated and true errors, m.
+    own : ndarray or float
+        Error of the reference that the true errors are against, m; it is forgiven.
+    """
+
+    name: str
+    level: str
+    value: FloatArray
+    stated: FloatArray
+    true: FloatArray
+    own: FloatArray | float = 0.0
+
+    @property
+    def covered(self) -> FloatArray:
+        """Whether stated errors and that of the reference reach the true ones (5, loads)."""
+        return np.asarray(self.true <= self.stated + self.own)
+
+    @property
+    def ratio(self) -> FloatArray:
+        """Stated over true errors (5, loads).
+
+        A true error counts as that of the reference at least, and as 1e-5 of the mean.
+        """
+        return np.asarray(self.stated / np.maximum(self.true, np.maximum(self.own, 1e-5 * self.value[0])))
+
+
+def coverage_figures(found: Sequence[Assessed], subject: str, target: float) -> list[Figure]:
+    """Return by quantity how many per cent are not covered, and the median of stated over true errors."""
+    rows = []
+    for name, covered, ratio in _by_quantity(found):
+        missed = 100.0 * float(np.mean(np.logical_not(covered)))
+        rows += [
+            Figure(subject, f"{name}: not covered", missed, "%", 100.0 - target),
+            Figure(
+                subject, f"{name}: median stated over true", float(np.median(ratio)), "times", LARGEST_MEDIAN
+            ),
+        ]
+    return rows
+
+
+def coverage_table(groups: Mapping[str, Sequence[Assessed]]) -> str:
+    """Return coverage and median ratio by group and quantity, as a table of Markdown."""
+    head = " | ".join(f"{name}: covered, stated / true" for name in QUANTITIES)
+    lines = [f"| | curves | {head} |", "|---|---:|" + "---:|" * len(QUANTITIES)]
+    for name, group in groups.items():
+        if group:
+            cells = [
+                f"{100.0 * np.mean(yes):.0f} %, {np.median(part):.2g}" for _, yes, part in _by_quantity(group)
+            ]
+            curves = sum(one.value.shape[1] for one in group)
+            lines.append(f"| {name} | {curves} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def error_cell(one: Assessed, quantity: int, load: int) -> str:
+    """Return true and, in brackets, stated error in per cent of the value; bold where it is not covered."""
+    off, told = (
+        100.0 * error[quantity, load] / one.value[quantity, load] for error in (one.true, one.stated)
+    )
+    text = f"{off:.2g} ({told:.2g})"
+    return text if one.covered[quantity, load] else f"**{text}**"
+
+
+def _by_quantity(found: Sequence[Assessed]) -> list[tuple[str, FloatArray, FloatArray]]:
+    """Return name, coverage and ratios of all curves by quantity."""
+    covered = np.concatenate([one.covered for one in found], axis=1)
+    ratio = np.concatenate([one.ratio for one in found], axis=1)
+    return list(zip(QUANTITIES, covered, ratio, strict=True))
