@@ -12,10 +12,16 @@ from pathlib import Path
 
 import pytest
 from compiled_once import compile_once
+from hypothesis import settings
 
 FIGURES = Path(__file__).parents[1] / "out" / "validation"
 
 RecordFigure = Callable[..., None]
+
+# The same examples on every machine with every change; random ones, and more of them, at night.
+settings.register_profile("suite", deadline=None, derandomize=True, max_examples=40)
+settings.register_profile("nightly", deadline=None, max_examples=640)
+settings.load_profile("suite")
 
 
 def pytest_configure() -> None:
