@@ -14,7 +14,9 @@ import pytest
 from compiled_once import compile_once
 from hypothesis import settings
 
-FIGURES = Path(__file__).parents[1] / "out" / "validation"
+TESTS = Path(__file__).parent
+FIGURES = TESTS.parent / "out" / "validation"
+SERVICES = ("api", "browser", "flow")
 
 RecordFigure = Callable[..., None]
 
@@ -36,6 +38,11 @@ def pytest_configure() -> None:
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let whole services come last: what all their processes need is compiled by then, once."""
+    items.sort(key=lambda item: item.path.relative_to(TESTS).parts[0] in SERVICES)
+
+
 def pytest_collection_finish() -> None:
     """Spare the collector of garbage what lives as long as the tests: modules, and the tests themselves."""
     gc.freeze()
@@ -53,7 +60,7 @@ def record_figure(request: pytest.FixtureRequest) -> RecordFigure:
 
     def record(name: str, value: float, target: float | str, unit: str, source: str) -> None:
         test = request.node.nodeid
-        kind = Path(str(request.node.path)).relative_to(Path(__file__).parent).parts[0]
+        kind = Path(str(request.node.path)).relative_to(TESTS).parts[0]
         figure = {
             "name": name,
             "value": float(value),
