@@ -12,10 +12,18 @@ from pathlib import Path
 
 import pytest
 from compiled_once import compile_once
+from hypothesis import settings
 
-FIGURES = Path(__file__).parents[1] / "out" / "validation"
+TESTS = Path(__file__).parent
+FIGURES = TESTS.parent / "out" / "validation"
+SERVICES = ("api", "browser", "flow")
 
 RecordFigure = Callable[..., None]
+
+# The same examples on every machine with every change; random ones, and more of them, at night.
+settings.register_profile("suite", deadline=None, derandomize=True, max_examples=40)
+settings.register_profile("nightly", deadline=None, max_examples=640)
+settings.load_profile("suite")
 
 
 def pytest_configure() -> None:
@@ -28,6 +36,11 @@ def pytest_configure() -> None:
         compile_once()
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Let whole services come last: what all their processes need is compiled by then, once."""
+    items.sort(key=lambda item: item.path.relative_to(TESTS).parts[0] in SERVICES)
 
 
 def pytest_collection_finish() -> None:
@@ -47,7 +60,7 @@ def record_figure(request: pytest.FixtureRequest) -> RecordFigure:
 
     def record(name: str, value: float, target: float | str, unit: str, source: str) -> None:
         test = request.node.nodeid
-        kind = Path(str(request.node.path)).relative_to(Path(__file__).parent).parts[0]
+        kind = Path(str(request.node.path)).relative_to(TESTS).parts[0]
         figure = {
             "name": name,
             "value": float(value),

@@ -9,7 +9,7 @@ import structlog
 
 from service.jobs.claims import Claim
 from service.jobs.memory import machine_memory_mb
-from service.jobs.order import WorkOrder
+from service.jobs.order import USABLE, WorkOrder
 from service.jobs.worker import Worker
 from service.settings import LEAST_MEMORY_MB, Settings
 
@@ -76,7 +76,7 @@ def _order(settings: Settings, entry: str, claim: Claim) -> WorkOrder:
         memory_limit_mb=_memory_mb(settings),
         database_url=settings.database_address,
         results_url=settings.results_url,
-        lease_s=settings.lease_s,
+        lease_until=claim.asked + USABLE * settings.lease_s,
         dask_scheduler=settings.dask_scheduler,
     )
 

@@ -1,10 +1,10 @@
 """The worker process: one order in, progress and one outcome out, then the end.
 
 Started as ``python -m service.jobs.child DESCRIPTOR`` in a session of its own. The order is the first line of
-standard input, which then stays open; on it comes a byte whenever the lease of the computation was renewed.
-When it closes, the service is gone; when it is silent for too long, another scheduler may have taken the
-computation up: then the whole process group (gmsh's process included) is killed. Progress and outcome are
-lines of JSON on DESCRIPTOR. Standard error is the log.
+standard input, which then stays open; on it comes a line whenever the lease of the computation was renewed:
+the instant until which. When it closes, the service is gone; when that instant passes, another scheduler may
+take the computation up: then the whole process group (gmsh's process included) is killed. Progress and
+outcome are lines of JSON on DESCRIPTOR. Standard error is the log.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from typing import Any, TextIO
 
 from service.jobs.disk import no_space
 from service.jobs.memory import hold_to, machine_memory_mb, out_of_memory
-from service.jobs.order import USABLE, Product, WorkOrder
+from service.jobs.order import Product, WorkOrder
 from service.jobs.usage import own_peak_mb
 from service.problems import ServiceError
 
@@ -40,8 +40,9 @@ def main() -> None:
         "ignore", message="implausible"
     )  # results say it in the caller's fields and units
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
-    order = WorkOrder.from_line(_first_line())
-    threading.Thread(target=_watch_parent, args=(order.lease_s,), daemon=True).start()
+    line, renewals = _first_line()
+    order = WorkOrder.from_line(line)
+    threading.Thread(target=_watch_parent, args=(order.lease_until, renewals), daemon=True).start()
     _alone_in(order.workspace)
     os.nice(_NICENESS)
     if order.memory_limit_mb is not None:
@@ -51,23 +52,27 @@ def main() -> None:
         _send(channel, _outcome(order, _Reporter(channel)) | {"peak_mb": own_peak_mb()})
 
 
-def _first_line() -> bytes:
-    """Read the order; signs of renewed leases may have come behind it."""
+def _first_line() -> tuple[bytes, bytes]:
+    """Read the order, and what has come behind it of renewed leases."""
     line = b""
     while b"\n" not in line:
         piece = os.read(0, 65536)
         if not piece:
             sys.exit("The service closed the channel before it gave an order.")
         line += piece
-    return line.partition(b"\n")[0]
+    order, _, rest = line.partition(b"\n")
+    return order, rest
 
 
-def _watch_parent(lease_s: float | None) -> None:
+def _watch_parent(until: float | None, rest: bytes) -> None:
     """Kill the process group when the service is gone, or the lease was not renewed in time."""
-    patience = None if lease_s is None else USABLE * lease_s
-    while select.select([0], [], [], patience)[0] and os.read(0, 4096):
-        pass
-    os.killpg(os.getpgrp(), signal.SIGKILL)
+    while True:
+        *renewed, rest = rest.split(b"\n")
+        until = float(renewed[-1]) if renewed else until
+        left = None if until is None else max(until - time.monotonic(), 0.0)
+        if not select.select([0], [], [], left)[0] or not (piece := os.read(0, 4096)):
+            os.killpg(os.getpgrp(), signal.SIGKILL)
+        rest += piece
 
 
 def _alone_in(workspace: Path) -> None:

@@ -29,7 +29,7 @@ class _Held:
 
     claim: Claim
     until: float
-    beat: Callable[[], None]
+    beat: Callable[[float], None]
 
 
 class Leases:
@@ -63,8 +63,8 @@ class Leases:
         with self._lock:
             self._held.clear()
 
-    def hold(self, claim: Claim, beat: Callable[[], None]) -> None:
-        """Renew the lease of a fresh claim from now on; `beat` is called after each renewal."""
+    def hold(self, claim: Claim, beat: Callable[[float], None]) -> None:
+        """Renew the lease of a fresh claim from now on; `beat` is told each new end."""
         with self._lock:
             self._held[claim.lease] = _Held(claim, claim.asked + USABLE * self._lease_s, beat)
 
@@ -106,4 +106,4 @@ class Leases:
             if one.claim.lease not in self._held:
                 return
             self._held[one.claim.lease] = _Held(one.claim, until, one.beat)
-        one.beat()
+        one.beat(until)

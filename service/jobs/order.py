@@ -39,8 +39,9 @@ class WorkOrder:
         Where the files of results are, if not in the data directory.
     dask_scheduler : str, optional
         Address of the scheduler whose workers do the tasks, if the service has one.
-    lease_s : float, optional
-        How long the worker may go on without hearing that its lease was renewed.
+    lease_until : float, optional
+        Instant on the monotonic clock, which all processes of a machine share, s: unless the worker hears by
+        then that its lease was renewed, it ends.
     """
 
     entry: str
@@ -51,7 +52,7 @@ class WorkOrder:
     memory_limit_mb: int | None = None
     database_url: str | None = None
     results_url: str | None = None
-    lease_s: float | None = None
+    lease_until: float | None = None
     dask_scheduler: str | None = None
 
     def line(self) -> bytes:

@@ -84,11 +84,11 @@ class Worker:
         """Seconds since the start."""
         return time.monotonic() - self.started
 
-    def beat(self) -> None:
-        """Tell the child that its lease was renewed; it ends itself if it does not hear of that in time."""
+    def beat(self, until: float) -> None:
+        """Tell the child until when its lease was renewed; it ends itself at that instant."""
         with self._giving, contextlib.suppress(BrokenPipeError, BlockingIOError):
             if self._process.stdin is not None and not self._process.stdin.closed:
-                os.write(self._process.stdin.fileno(), b".")
+                os.write(self._process.stdin.fileno(), b"%r\n" % until)
 
     def listen(self) -> tuple[list[tuple[str, float]], bool]:
         """Return the progress since the last call, and whether the child closed its channel."""

@@ -22,7 +22,6 @@ from service.store import stored_results
 KEY = "cd" * 32
 DURATION, RATE = 900.0, 20e3
 SAMPLE_BYTES = 8 * 2 * 5  # displacements and rates of five freedoms
-PATIENCE_S = 240.0
 
 
 @pytest.fixture
@@ -74,7 +73,6 @@ def written(data: Path) -> float:
     return sum(file.stat().st_size for file in files) / (SAMPLE_BYTES + 8) / RATE
 
 
-@pytest.mark.slow
 def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(
     client: LineOfActionClient, tmp_path: Path, data: Path
 ) -> None:
@@ -82,14 +80,14 @@ def test_a_long_run_keeps_its_memory_and_ends_when_cancelled(
     (mesh,) = given.meshes
     mesh = mesh.model_copy(update={"database_file": None, "database_hash": KEY})
     job = client.submit_scene(given.model_copy(update={"meshes": (mesh,)}))
-    until(lambda: written(data) > 2.0, PATIENCE_S)
+    until(lambda: written(data) > 2.0)
     (pid,) = workers()
     before, at = resident_bytes(pid), written(data)
-    until(lambda: written(data) > at + 40.0, PATIENCE_S)
+    until(lambda: written(data) > at + 20.0)
     held = (written(data) - at) * RATE * SAMPLE_BYTES
-    assert held > 40e6  # what it would have grown by, had the states stayed in memory
+    assert held > 30e6  # what it would have grown by, had the states stayed in memory
     assert resident_bytes(pid) - before < 0.2 * held
-    until(lambda: client.status(job.id).stage == "integration", PATIENCE_S)
+    until(lambda: client.status(job.id).stage == "integration")
     state = client.status(job.id)
     assert (state.status, state.stage) == ("running", "integration")
     assert 50 <= state.progress < 100

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import pytest
 import uvicorn
-from running_service import until
+from running_service import PATIENCE_S, until
 from service_stand_ins import REGISTRY
 
 from service.app import create_app
@@ -22,27 +22,32 @@ WHOLE = b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n"
 
 
 @pytest.fixture(scope="module")
-def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
-    """A server of little patience."""
-    with pytest.MonkeyPatch.context() as patch, socket.create_server(("127.0.0.1", 0)) as listener:
-        patch.setattr(bounded_http, "HEAD_WITHIN_S", 0.5)
-        patch.setattr(middleware, "PATIENCE_S", 0.5)
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[uvicorn.Server]:
+    """A server that runs."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
         app = create_app(
             Settings(data_directory=tmp_path_factory.mktemp("drip"), body_limit=100_000), REGISTRY
         )
         server = uvicorn.Server(uvicorn.Config(app, http=BoundedHttp, log_config=None, lifespan="off"))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
-        until(lambda: server.started, 60.0)
-        yield listener.getsockname()[1]
+        until(lambda: server.started)
+        yield server
         server.should_exit = True
         thread.join()
+
+
+@pytest.fixture
+def port(server: uvicorn.Server) -> int:
+    """Where it listens, once it has noticed that the connections of other tests are closed."""
+    until(lambda: not server.server_state.connections)
+    return int(server.servers[0].sockets[0].getsockname()[1])
 
 
 def answered(port: int, *pieces: bytes) -> bytes:
     """Send pieces and return all that comes until the other side closes."""
     found = b""
-    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as connection:
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as connection:
         try:
             for piece in pieces:
                 connection.sendall(piece)
@@ -53,17 +58,19 @@ def answered(port: int, *pieces: bytes) -> bytes:
     return found
 
 
-def test_a_head_that_does_not_end_is_not_waited_for(port: int) -> None:
+def test_a_head_that_does_not_end_is_not_waited_for(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bounded_http, "HEAD_WITHIN_S", 0.5)
     for begun in (b"", b"GET /health HTT", WHOLE[:-2]):
         assert answered(port, begun).startswith(b"HTTP/1.1 408 ")
 
 
-def test_nor_is_that_of_a_later_request(port: int) -> None:
-    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as connection:
+def test_nor_is_that_of_a_later_request(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as connection:
         connection.sendall(WHOLE)
         found = b""
         while not found.endswith(b'{"status":"ok"}'):
             found += connection.recv(65536)
+        monkeypatch.setattr(bounded_http, "HEAD_WITHIN_S", 0.5)
         connection.sendall(WHOLE[:-2])
         assert connection.recv(65536).startswith(b"HTTP/1.1 408 ")
         assert connection.recv(65536) == b""
@@ -74,7 +81,8 @@ def test_a_head_that_is_too_long_is_not_read(port: int, piece: bytes) -> None:
     assert answered(port, WHOLE[:-2], piece)[:13] in (b"HTTP/1.1 431 ", b"HTTP/1.1 400 ", b"")
 
 
-def test_a_body_that_does_not_come_is_not_waited_for(port: int) -> None:
+def test_a_body_that_does_not_come_is_not_waited_for(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(middleware, "PATIENCE_S", 0.5)
     answer = answered(port, POST + b"Content-Length: 1000\r\n\r\n", b"{")
     assert answer.startswith(b"HTTP/1.1 408 ") and b"urn:lineofaction:problem:too-slow" in answer
 
@@ -100,8 +108,9 @@ def test_where_every_connection_is_busy_one_more_is_told_so(
 ) -> None:
     monkeypatch.setattr(bounded_http, "MOST_CONNECTIONS", 1)
     monkeypatch.setattr(bounded_http, "MOST_BUSY_CONNECTIONS", 1)
-    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as busy:
-        busy.sendall(POST + b"Content-Length: 1000\r\n\r\n{")
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as busy:
+        busy.sendall(POST + b"Expect: 100-continue\r\nContent-Length: 1000\r\n\r\n")
+        assert busy.recv(65536).startswith(b"HTTP/1.1 100 ")  # the request is under way
         answer = answered(port)
     assert answer.startswith(b"HTTP/1.1 503 ") and b"retry-after: 1\r\n" in answer.lower()
     assert b"urn:lineofaction:problem:too-many-requests" in answer
@@ -110,6 +119,6 @@ def test_where_every_connection_is_busy_one_more_is_told_so(
 def test_an_idle_connection_makes_room_for_another(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bounded_http, "MOST_CONNECTIONS", 1)
     closing = WHOLE[:-2] + b"Connection: close\r\n\r\n"
-    with socket.create_connection(("127.0.0.1", port), timeout=60.0) as idle:
+    with socket.create_connection(("127.0.0.1", port), timeout=PATIENCE_S) as idle:
         assert b'{"status":"ok"}' in answered(port, closing)
         assert idle.recv(65536) == b""

@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 
 from killed_service import KilledService
+from running_service import PATIENCE_S
 
 CLIENTS_KEEP_S = 5.0  # the default of our client's library
 
@@ -14,7 +15,7 @@ CLIENTS_KEEP_S = 5.0  # the default of our client's library
 def test_an_idle_connection_is_closed_by_the_caller_not_under_its_request(tmp_path: Path) -> None:
     with KilledService(tmp_path, {}, ["serve"]) as service:
         service.request("GET", "/health")
-        connection = http.client.HTTPConnection(service.address.removeprefix("http://"), timeout=60.0)
+        connection = http.client.HTTPConnection(service.address.removeprefix("http://"), timeout=PATIENCE_S)
         for pause in (0.0, 1.4 * CLIENTS_KEEP_S):
             time.sleep(pause)
             connection.request("GET", "/health")

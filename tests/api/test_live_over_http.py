@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
-from running_service import REFERENCES
+from running_service import PATIENCE_S, REFERENCES, until
 
 from service.app import create_app
 from service.client import LineOfActionClient
@@ -45,11 +44,9 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 def analysed(client: TestClient, asked: dict[str, Any]) -> str:
     """Return the hash of the table of a case, computed as a job."""
     job = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": asked}}).json()
-    end = time.monotonic() + 120.0
-    while (status := client.get(f"/v1/jobs/{job['jobID']}").json())["status"] in ("accepted", "running"):
-        assert time.monotonic() < end
-        time.sleep(0.05)
-    assert status["status"] == "successful", status
+    where = f"/v1/jobs/{job['jobID']}"
+    until(lambda: client.get(where).json()["status"] not in ("accepted", "running"))
+    assert (status := client.get(where).json())["status"] == "successful", status
     return str(client.get(f"/v1/jobs/{job['jobID']}/results", params=REFERENCES).json()["database"]["hash"])
 
 
@@ -157,11 +154,11 @@ def test_a_table_that_is_unknown_or_removed_is_not_found(client: TestClient, key
     context = client.app.state.context  # type: ignore[attr-defined]
     inputs = {"key": key, "file": "/removed", "cache": "/none", "question": question}
     assert client.post(f"/v1/databases/{key}/ste", json=question).status_code == 200
-    known = context.live.ask(LiveOrder(STE, inputs)).result(timeout=60.0)
+    known = context.live.ask(LiveOrder(STE, inputs)).result(timeout=PATIENCE_S)
     assert len(json.loads(known)["curves"]) == 1  # from memory
     context.live.stop()
     with pytest.raises(ServiceError, match="removed from the store") as gone:
-        context.live.ask(LiveOrder(STE, inputs)).result(timeout=60.0)
+        context.live.ask(LiveOrder(STE, inputs)).result(timeout=PATIENCE_S)
     assert gone.value.as_json()["status"] == 404
 
 

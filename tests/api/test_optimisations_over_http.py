@@ -30,7 +30,7 @@ STUDY: dict[str, Any] = {
     "variables": {"pinion": FREE, "wheel": FREE},
     "scatter": {"pinion": {"profile_slope_um": 2.0}, "points": 2},
     "limits": {"max_pressure_mpa": 4000.0},
-    "search": {"evaluations": 60, "positions": 16},
+    "search": {"evaluations": 24, "positions": 16},
 }
 TIMES = ("cpu_seconds", "wall_seconds", "peak_memory_bytes")
 

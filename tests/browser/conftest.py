@@ -40,6 +40,14 @@ def browser() -> Iterator[Browser]:
         started.close()
 
 
+@pytest.fixture(scope="module", autouse=True)
+def _closed(browser: Browser) -> Iterator[None]:
+    """Close the pages of a file at its end: one with a surface draws it anew all the time."""
+    yield
+    for context in browser.contexts:
+        context.close()
+
+
 @pytest.fixture(scope="session")
 def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """One service for all tests of the page."""

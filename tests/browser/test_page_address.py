@@ -7,8 +7,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from page_visit import CASE, Visit, choose_case, computed, opened, shown, until
+from page_visit import CASE, Visit, choose_case, computed, opened, shown
 from playwright.sync_api import Browser, Page, Route, expect
+from running_service import until
 
 from service.client import LineOfActionClient
 
@@ -144,6 +145,7 @@ def test_an_unknown_address_is_said_on_the_first_screen(
     page.close()
 
 
+@pytest.mark.nightly
 def test_a_study_whose_answer_is_lost_is_asked_again(visit: Visit, address: str, analysed: str) -> None:
     page = visit.page
     computed(address, "scatter", case=CASE, tolerance_class=8, samples=50)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from page_visit import Visit, answers, opened, shown, until
+from page_visit import Visit, answers, opened, shown
 from playwright.sync_api import Browser, Page
+from running_service import until
 
 FOCUS = """() => {
   const node = document.activeElement;

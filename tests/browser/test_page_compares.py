@@ -8,8 +8,9 @@ import re
 from pathlib import Path
 
 import pytest
-from page_visit import CASE, GEAR, Visit, answers, computed, found_inaccessible, opened, shown, unfold, until
+from page_visit import CASE, GEAR, Visit, answers, computed, found_inaccessible, opened, shown, unfold
 from playwright.sync_api import Browser, Page, expect
+from running_service import until
 
 OTHER = CASE | {
     "pair": CASE["pair"] | {"center_distance_mm": 22.0, "wheel": GEAR | {"teeth": 24}},
@@ -77,6 +78,7 @@ def test_flanks_are_compared_with_those_that_were_kept(visit: Visit, tmp_path: P
     assert "reference, y" not in curves(page, tmp_path)
 
 
+@pytest.mark.nightly
 def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
     visit: Visit, other: str, tmp_path: Path
 ) -> None:
@@ -99,6 +101,7 @@ def test_another_pair_is_compared_at_the_torque_that_is_looked_at(
     assert visit.complaints == []
 
 
+@pytest.mark.nightly
 def test_in_three_dimensions_misalignment_and_crowning_act(
     browser: Browser, address: str, other: str
 ) -> None:
@@ -125,6 +128,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     assert visit.complaints == []
 
 
+@pytest.mark.nightly
 def test_one_button_computes_in_three_dimensions(browser: Browser, address: str, analysed: str) -> None:
     visit = opened(browser, f"{address}/#database={analysed}")
     page = visit.page

@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, opened, shown, until
+from page_visit import CASE, Visit, answers, choose_case, found_inaccessible, opened, shown
 from playwright.sync_api import Browser, expect
+from running_service import until
 
 from service.client import LineOfActionClient
 
@@ -52,8 +53,10 @@ def test_a_result_opens_again_in_another_window(visit: Visit, browser: Browser, 
     later.close()
 
 
-def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, tmp_path: Path) -> None:
+def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, address: str, tmp_path: Path) -> None:
     page = visit.page
+    with LineOfActionClient(address) as client:
+        busy = client.submit("frontier", {"case": LONG})  # the one worker: the job waits
     choose_case(page, tmp_path)
     page.locator("#f-load-torque_n_m").fill("0.7, 1.3")
     page.wait_for_selector("#plan dl")
@@ -66,6 +69,8 @@ def test_a_job_under_way_outlasts_a_service_that_is_away(visit: Visit, tmp_path:
     count = answers(page)
     page.locator("#live-pinion-tip_relief_um").press("End")
     page.context.set_offline(False)
+    with LineOfActionClient(address) as client:
+        client.dismiss(busy.id)
     expect(page.locator("#away")).to_be_empty()
     expect(page.locator("#analyze-job")).to_contain_text("analyze done")
     until(lambda: answers(page) > count)

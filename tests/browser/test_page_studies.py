@@ -1,4 +1,4 @@
-"""Every study of the page in a real browser: run by its button, drawn, saved, accessible."""
+"""Every study of the page in a real browser: run by its button, drawn, saved, accessible; all at night."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from page_visit import PATIENCE, Visit, found_inaccessible, shown, unfold
 from playwright.sync_api import Browser, Locator, Page, expect
+from running_service import until
 
 # title, button, what is typed or chosen by label, figures, whether the result is netCDF
 STUDIES = {
@@ -35,6 +36,9 @@ STUDIES = {
         ["dynamic_error", "bearing_force", "bearing_spectrum"], True,
     ),
 }  # fmt: skip
+
+FEW = ("flank", "optimise", "modes")
+EACH = [pytest.param(name, marks=[pytest.mark.nightly] * (name not in FEW)) for name in STUDIES]
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +69,7 @@ def ran(visit: Visit, name: str) -> Locator:
     return part
 
 
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("name", EACH)
 def test_every_plot_of_a_study_is_drawn_and_has_words(visit: Visit, name: str) -> None:
     part = ran(visit, name)
     assert part.get_by_role("alert").all_text_contents() == []
@@ -85,7 +89,7 @@ def saved(page: Page, button: Locator) -> bytes:
     return Path(given.value.path()).read_bytes()
 
 
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("name", EACH)
 def test_every_figure_and_every_result_is_saved(visit: Visit, name: str) -> None:
     part = ran(visit, name)
     for key in STUDIES[name][3]:
@@ -123,16 +127,25 @@ def test_a_refused_study_names_the_field_and_only_once(visit: Visit) -> None:
     assert not (found := found_inaccessible(visit.page)), json.dumps(found, indent=1)
 
 
-@pytest.mark.parametrize(("scheme", "width"), [("light", 1400), ("dark", 400)])
-def test_the_page_with_all_studies_is_accessible(visit: Visit, scheme: str, width: int) -> None:
+@pytest.mark.parametrize(
+    ("names", "scheme", "width"),
+    [
+        (FEW, "dark", 400),
+        pytest.param(STUDIES, "light", 1400, marks=pytest.mark.nightly),
+        pytest.param(STUDIES, "dark", 400, marks=pytest.mark.nightly),
+    ],
+)
+def test_the_page_with_studies_is_accessible(
+    visit: Visit, names: tuple[str, ...], scheme: str, width: int
+) -> None:
     page = visit.page
-    for name in STUDIES:
+    for name in names:
         ran(visit, name)
     page.emulate_media(color_scheme=scheme)  # type: ignore[arg-type]
     page.set_viewport_size({"width": width, "height": 900})
     unfold(page)
     assert not (told := found_inaccessible(page)), json.dumps(told, indent=1)
-    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    until(lambda: page.evaluate("document.documentElement.scrollWidth") <= width)
 
 
 def test_nothing_is_complained_about(visit: Visit) -> None:

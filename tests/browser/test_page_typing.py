@@ -42,7 +42,7 @@ def typed(page: Page, key: str, text: str) -> None:
     assert field.input_value() == text
 
 
-@pytest.mark.parametrize("begin", ["empty", "helical_automotive"])
+@pytest.mark.parametrize("begin", ["empty", pytest.param("helical_automotive", marks=pytest.mark.nightly)])
 def test_a_pair_typed_in_reading_order_is_the_pair_that_is_planned(visit: Visit, begin: str) -> None:
     page = visit.page
     page.locator("#example").select_option(begin)

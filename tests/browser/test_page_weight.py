@@ -58,6 +58,7 @@ def weight(session: CDPSession) -> tuple[float, float]:
     return found["JSEventListeners"], found["JSHeapUsedSize"]
 
 
+@pytest.mark.nightly
 def test_many_results_add_no_listeners_and_little_memory(
     browser: Browser, address: str, analysed: str, other: str
 ) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
+from page_visit import PATIENCE
 from playwright.sync_api import Browser, Page
 
 from service.report import write_report
@@ -65,7 +66,7 @@ def visit(browser: Browser, report: Path) -> Visit:
     seen.page.on("pageerror", lambda error: seen.console.append(f"error: {error}"))
     seen.page.on("request", lambda request: seen.requests.append(request.url))
     seen.page.goto(report.as_uri())
-    seen.page.wait_for_selector("html[data-drawn=yes]", timeout=60_000)
+    seen.page.wait_for_selector("html[data-drawn=yes]", timeout=PATIENCE)
     return seen
 
 
@@ -131,7 +132,7 @@ def test_nothing_is_fetched_but_the_page(visit: Visit, report: Path) -> None:
 def test_the_page_does_not_scroll_sideways_on_a_phone(browser: Browser, report: Path) -> None:
     page = browser.new_page(viewport={"width": 390, "height": 800})
     page.goto(report.as_uri())
-    page.wait_for_selector("html[data-drawn=yes]", timeout=60_000)
+    page.wait_for_selector("html[data-drawn=yes]", timeout=PATIENCE)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.close()
 

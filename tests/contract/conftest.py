@@ -1,16 +1,5 @@
 """The stand-ins of the service are importable here too."""
 
-from __future__ import annotations
+from service_surroundings import quiet_log
 
-from collections.abc import Iterator
-
-import pytest
-import structlog.testing
-
-
-@pytest.fixture(autouse=True)
-def _quiet_log() -> Iterator[None]:
-    """Keep the log out of the tests' output."""
-    structlog.configure(processors=[structlog.testing.LogCapture()])
-    yield
-    structlog.reset_defaults()
+__all__ = ["quiet_log"]

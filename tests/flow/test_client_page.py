@@ -39,7 +39,7 @@ def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[subproce
         line = process.stdout.readline()
         yield process, line[line.index("http://") :].strip()
         process.terminate()
-        process.wait(30)
+        process.wait()
 
 
 @pytest.fixture(autouse=True)
@@ -84,7 +84,7 @@ def test_the_paper_s_flow_runs_again_without_the_service(
 
     first = run(tmp_path / "first.nc")
     service[0].terminate()
-    service[0].wait(30)
+    service[0].wait()
     with pytest.warns(OfflineWarning, match=re.escape(service[1])):
         run(tmp_path / "second.nc")
     runs = [RunResult.from_netcdf(tmp_path / f"{name}.nc") for name in ("first", "second")]

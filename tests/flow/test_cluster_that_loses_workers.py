@@ -133,6 +133,7 @@ def assert_same(one: SteDatabase, other: SteDatabase) -> None:
             np.testing.assert_array_equal(getattr(other, name), getattr(one, name), err_msg=name)
 
 
+@pytest.mark.nightly
 def test_a_table_of_three_workers_one_of_which_is_killed(
     cluster: Cluster, cache: Path, alone: SteDatabase
 ) -> None:
@@ -144,6 +145,7 @@ def test_a_table_of_three_workers_one_of_which_is_killed(
     assert workers.spent.cpu_seconds > 0.0 and not workers.spent.lost
 
 
+@pytest.mark.nightly
 def test_a_sensitivity_sweep_of_three_workers_one_of_which_is_killed(cluster: Cluster, cache: Path) -> None:
     cluster.at_least(3)
     workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "solve_block")
@@ -160,6 +162,7 @@ def test_a_sensitivity_sweep_of_three_workers_one_of_which_is_killed(cluster: Cl
             assert second.error.tolist() == first.error.tolist()
 
 
+@pytest.mark.nightly
 def test_a_monte_carlo_of_two_workers_one_of_which_is_killed(cluster: Cluster, cache: Path) -> None:
     cluster.at_least(2)
     slopes = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 5e-6})
@@ -198,9 +201,10 @@ def test_a_cluster_without_workers_ends_the_run_and_says_so(cluster: Cluster) ->
     assert time.monotonic() - begun > 0.5
 
 
+@pytest.mark.nightly
 def test_a_scheduler_that_goes_ends_the_run_and_says_so() -> None:
     scheduler = distributed.LocalCluster(n_workers=0, dashboard_address=None, host="127.0.0.1")
-    with distributed.Client(scheduler, set_as_default=False, timeout=1.0) as client:
+    with distributed.Client(scheduler, set_as_default=False, timeout=5.0) as client:
         workers = ByDask(client)
         results = workers.run(divided, 1.0, [2.0])
         scheduler.close()

@@ -7,10 +7,10 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
+from running_service import PATIENCE_S, until
 
 ROOT = Path(__file__).parents[2]
 JOB = ROOT / "examples" / "main_job.py"
@@ -56,7 +56,6 @@ def number(text: str, label: str) -> float:
     return float(found.group(1))
 
 
-@pytest.mark.slow
 def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
     _, text = job
     assert number(text, "mean STE at 100 N m") == pytest.approx(6.245, rel=0.003)
@@ -65,7 +64,6 @@ def test_the_summary_holds_the_known_figures(job: tuple[Path, str]) -> None:
     assert 286.5 <= number(text, "spectrum: fundamental") <= 302.5
 
 
-@pytest.mark.slow
 def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
     folder, text = job
     assert str(folder / "report.html") in text
@@ -84,12 +82,10 @@ def test_the_report_and_its_images_are_written(job: tuple[Path, str]) -> None:
     assert sorted(path.stem for path in (folder / "images").iterdir()) == sorted(keys)
 
 
-@pytest.mark.slow
 def test_nothing_is_left_running(job: tuple[Path, str]) -> None:
     assert running(job[0]) == []
 
 
-@pytest.mark.slow
 def test_stopped_in_the_middle_it_stops_its_service(tmp_path: Path) -> None:
     started = subprocess.Popen(
         [sys.executable, str(JOB), "--out", str(tmp_path / "out")],
@@ -99,11 +95,9 @@ def test_stopped_in_the_middle_it_stops_its_service(tmp_path: Path) -> None:
         text=True,
     )
     log = tmp_path / "out" / "service.log"
-    end = time.monotonic() + 120
-    while not (log.exists() and "execution" in log.read_text()) and time.monotonic() < end:
-        time.sleep(0.1)
+    until(lambda: log.exists() and "execution" in log.read_text())
     assert started.poll() is None
     started.send_signal(signal.SIGTERM)
-    output, _ = started.communicate(timeout=60)
+    output, _ = started.communicate(timeout=PATIENCE_S)
     assert started.returncode == 143, output
     assert running(tmp_path) == []

@@ -6,7 +6,6 @@ here, 640 of each in `scripts/nightly`. What finite elements add obeys the same 
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,11 +22,7 @@ from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviatio
 from fe_contact.material import Material
 from fe_contact.planning import make_plan
 
-LAWS = settings(
-    max_examples=int(os.environ.get("LOA_EXAMPLES_PER_LAW", "40")),
-    deadline=None,
-    suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow],
-)
+LAWS = settings(suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
 POSITIONS = np.arange(24) / 24
 LINE_LOAD = 10e6  # Pa of face width times module
 

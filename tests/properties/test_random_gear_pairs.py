@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.errors import InfeasibleGeometry
@@ -25,7 +25,6 @@ RACKS = st.fixed_dictionaries(
 )
 TEETH = st.integers(6, 200)
 SHIFTS = st.floats(-0.6, 1.0)
-quick = settings(max_examples=60, deadline=None)
 
 
 def build(teeth: int, shift: float, rack: dict[str, float], **more: Any) -> Gear:
@@ -59,7 +58,6 @@ def pairs(draw: st.DrawFn) -> GearPair:
         raise
 
 
-@quick
 @given(gears())
 def test_profile_is_one_continuous_curve_of_unit_speed(gear: Gear) -> None:
     profile = tooth_profile(gear)
@@ -73,7 +71,6 @@ def test_profile_is_one_continuous_curve_of_unit_speed(gear: Gear) -> None:
         assert np.sum(np.hypot(*np.diff(profile.flank(s), axis=0).T)) == pytest.approx(high - low, rel=1e-3)
 
 
-@quick
 @given(gears())
 def test_normals_are_unit_everywhere_and_smooth_at_the_form_point_unless_undercut(gear: Gear) -> None:
     profile = tooth_profile(gear)
@@ -86,7 +83,6 @@ def test_normals_are_unit_everywhere_and_smooth_at_the_form_point_unless_undercu
         assert np.hypot(*kink) < 1e-4
 
 
-@quick
 @given(gears())
 def test_tooth_has_material_and_space_at_every_radius(gear: Gear) -> None:
     profile = tooth_profile(gear)
@@ -98,7 +94,6 @@ def test_tooth_has_material_and_space_at_every_radius(gear: Gear) -> None:
     assert np.max(radius) == pytest.approx(gear.tip_radius, rel=1e-12)
 
 
-@quick
 @given(pairs())
 def test_feasible_pair_keeps_contact_on_the_involutes(pair: GearPair) -> None:
     path = pair.path_of_contact
@@ -108,7 +103,6 @@ def test_feasible_pair_keeps_contact_on_the_involutes(pair: GearPair) -> None:
     assert pair.transverse_base_backlash >= -1e-6 * pair.pinion.normal_module
 
 
-@quick
 @given(pairs())
 def test_swapping_and_mirroring_change_nothing_that_matters(pair: GearPair) -> None:
     swapped = pair.swapped()
@@ -123,7 +117,6 @@ def test_swapping_and_mirroring_change_nothing_that_matters(pair: GearPair) -> N
     assert mirrored.path_of_contact == pair.path_of_contact
 
 
-@quick
 @given(pairs(), st.floats(0.05, 20.0))
 def test_lengths_scale(pair: GearPair, scale: float) -> None:
     def scaled(gear: Gear) -> Gear:
@@ -142,7 +135,6 @@ def test_lengths_scale(pair: GearPair, scale: float) -> None:
     assert large.transverse_base_backlash == pytest.approx(backlash, rel=1e-6, abs=1e-11 * scale * module)
 
 
-@quick
 @given(pairs(), st.sampled_from(["approach", "exit"]), st.floats(1e-6, 2.0))
 def test_corner_gap_is_never_negative_and_starts_from_contact(
     pair: GearPair, side: Any, reach: float

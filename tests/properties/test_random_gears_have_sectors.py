@@ -12,9 +12,7 @@ from fe_contact.mesh import SectorRecipe, quad_sector, swept_sector
 from fe_contact.mesh.quad_quality import quad_quality
 
 
-@settings(
-    max_examples=15, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.filter_too_much]
-)
+@settings(max_examples=15, suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     teeth=st.integers(5, 120),
     module=st.floats(0.2e-3, 40e-3),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.errors import InfeasibleGeometry
@@ -26,7 +26,6 @@ RACKS = st.fixed_dictionaries(
 RING_TEETH = st.integers(40, 300)
 RING_SHIFTS = st.floats(-1.0, 0.3)
 ROUNDINGS = st.floats(0.0, 0.25)
-quick = settings(max_examples=60, deadline=None)
 
 
 def build_ring(
@@ -71,7 +70,6 @@ def pairs(draw: st.DrawFn) -> InternalGearPair:
         raise
 
 
-@quick
 @given(rings())
 def test_profile_is_one_continuous_curve_of_unit_speed(gear: RingGear) -> None:
     profile, unit = tooth_profile(gear), gear.normal_module
@@ -87,7 +85,6 @@ def test_profile_is_one_continuous_curve_of_unit_speed(gear: RingGear) -> None:
         assert np.sum(np.hypot(*np.diff(profile.flank(s), axis=0).T)) == pytest.approx(high - low, rel=1e-3)
 
 
-@quick
 @given(rings())
 def test_tooth_has_material_and_space_at_every_radius(gear: RingGear) -> None:
     profile = tooth_profile(gear)
@@ -102,7 +99,6 @@ def test_tooth_has_material_and_space_at_every_radius(gear: RingGear) -> None:
     assert np.hypot(*profile.normal(s).T) == pytest.approx(np.ones(300), rel=1e-13)
 
 
-@quick
 @given(pairs())
 def test_feasible_pair_keeps_contact_on_the_involutes(pair: InternalGearPair) -> None:
     path, module = pair.path_of_contact, pair.pinion.normal_module
@@ -115,7 +111,6 @@ def test_feasible_pair_keeps_contact_on_the_involutes(pair: InternalGearPair) ->
     assert np.all(pair.relative_curvature(np.linspace(path.start, path.end, 9)[1:]) > 0.0)
 
 
-@quick
 @given(pairs(), st.floats(-0.5, 0.5))
 def test_outlines_of_a_feasible_pair_never_overlap(pair: InternalGearPair, phase: float) -> None:
     first, second = polar_flank(pair.pinion), polar_flank(pair.wheel)
@@ -159,7 +154,6 @@ def deepest(
     return float(np.max(depth, where=within, initial=-np.inf))
 
 
-@quick
 @given(pairs(), st.floats(0.05, 20.0))
 def test_lengths_scale_and_hands_mirror(pair: InternalGearPair, scale: float) -> None:
     def scaled(gear: Any, size: str) -> Any:

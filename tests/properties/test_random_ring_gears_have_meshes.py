@@ -13,9 +13,7 @@ from fe_contact.mesh import SectorRecipe, mesh_gear, mesh_quality, quad_sector
 from fe_contact.mesh.quad_quality import quad_quality
 
 
-@settings(
-    max_examples=12, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.filter_too_much]
-)
+@settings(max_examples=12, suppress_health_check=[HealthCheck.filter_too_much])
 @given(
     teeth=st.integers(30, 200),
     module=st.floats(0.2e-3, 40e-3),

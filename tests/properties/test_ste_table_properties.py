@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from fe_contact.ste import Metadata, PairFacts, SteDatabase
 
-SETTINGS = settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+SETTINGS = settings(suppress_health_check=[HealthCheck.too_slow])
 QUERIES = np.random.default_rng(0).uniform(-3.0, 3.0, 400)
 
 

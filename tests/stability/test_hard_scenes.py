@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import os
-
 import pytest
 
 from service.hardcases import HARD_SCENES, HardScene
 
-LONG = () if os.environ.get("LOA_LONG_SCENES") else ("ten_million_",)
+LONG = ("ten_million_",)
 """Scenes of the nightly run alone, by how their names begin."""
+SCENES = [
+    pytest.param(scene, marks=[pytest.mark.nightly] * scene.name.startswith(LONG), id=scene.name)
+    for scene in HARD_SCENES
+]
 
 
-@pytest.mark.parametrize("scene", HARD_SCENES, ids=lambda scene: scene.name)
+@pytest.mark.parametrize("scene", SCENES)
 def test_scene(scene: HardScene) -> None:
-    if scene.name.startswith(LONG):
-        pytest.skip("of the long run")
     outcome = scene.run()
     assert outcome.passed, f"{scene.criterion} But: {outcome.failure}"
 

@@ -9,6 +9,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from running_service import PATIENCE_S
+
 
 @dataclass
 class Part:
@@ -74,4 +76,4 @@ class Part:
         """Send a signal and wait."""
         assert self.process is not None
         self.process.send_signal(number)
-        return self.process.wait(timeout=30)
+        return self.process.wait(timeout=PATIENCE_S)

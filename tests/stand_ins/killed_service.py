@@ -17,10 +17,9 @@ from typing import Any
 import httpx2
 from killed_part import Part
 from result_witness import LOST, Witness
-from running_service import lives, until
+from running_service import PATIENCE_S, lives, until
 
 EXECUTION = "/v1/processes/standin/execution"
-PATIENCE_S = 600.0  # many times what a quiet machine needs: a hang, not a speed, is what this finds
 _MARK = "LOA_TEST_MARK"
 _BACKLOG = 3
 _ROOT = Path(__file__).resolve().parents[2]
@@ -66,7 +65,7 @@ class KilledService:
             self.parts.append(Part(role, environment, self.directory / f"{role}_{number}.log", descriptor))
         for part in self.parts:
             part.start()
-        self._client = httpx2.Client(base_url=self.address, headers=self.headers, timeout=60.0)
+        self._client = httpx2.Client(base_url=self.address, headers=self.headers, timeout=PATIENCE_S)
         self.witness = Witness(self.address, self.jobs, self.headers)
         self.witness.start()
         return self
@@ -120,7 +119,7 @@ class KilledService:
 
         Where nothing is left to do, an idle part is struck.
         """
-        until(self._can_be_struck, PATIENCE_S)
+        until(self._can_be_struck)
         time.sleep(chance.uniform(0.0, 1.2 * self.span))
         self.struck.append(kind)
         if kind in self.harms:
@@ -180,7 +179,7 @@ class KilledService:
         """Wait until every job has ended; return their states."""
         ends: dict[str, Any] = {}
         for job in self.jobs:
-            until(lambda job=job: self._ended(job, ends), PATIENCE_S)  # type: ignore[misc]
+            until(lambda job=job: self._ended(job, ends))  # type: ignore[misc]
         return ends
 
     def _ended(self, job: str, ends: dict[str, Any]) -> bool:
@@ -192,7 +191,7 @@ class KilledService:
         """Stop all parts as a supervisor does; return their exit codes."""
         self.witness.stop()
         for part in self.parts:
-            until(part.heeds_stops, PATIENCE_S)
+            until(part.heeds_stops)
         return [part.end(signal.SIGTERM) for part in self.parts]
 
 

@@ -6,15 +6,15 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import running_service
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect
+from running_service import PATIENCE_S
 
 from service.client import LineOfActionClient
 
@@ -24,7 +24,7 @@ CASE: dict[str, Any] = {
     "load": {"torque_n_m": [0.5, 1.0]},
     "accuracy": {"level": "draft", "model": "plane_strain", "positions": 16, "receipt": "minimal"},
 }
-PATIENCE = 120_000.0  # milliseconds; what never comes fails, what is slow does not
+PATIENCE = 1e3 * PATIENCE_S  # milliseconds
 
 
 @dataclass
@@ -96,11 +96,6 @@ def shown(browser: Browser, address: str, key: str) -> Visit:
     seen = opened(browser, f"{address}/#database={key}")
     seen.page.wait_for_selector("#live-body[data-answers]")
     return seen
-
-
-def until(condition: Callable[[], bool]) -> None:
-    """Wait as long as for anything else here."""
-    running_service.until(condition, PATIENCE / 1e3)
 
 
 def answers(page: Page) -> int:

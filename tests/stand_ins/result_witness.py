@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 
 import httpx2
-from running_service import REFERENCES
+from running_service import PATIENCE_S, REFERENCES
 from service_stand_in_work import is_slow_content
 
 FILE = {"Accept": "application/x-netcdf"}
@@ -59,7 +59,7 @@ class Witness:
     def _look(self) -> None:
         """Fetch what was not seen yet, and some of the rest."""
         chance = random.Random(1)
-        with httpx2.Client(base_url=self._address, headers=self._headers, timeout=60.0) as client:
+        with httpx2.Client(base_url=self._address, headers=self._headers, timeout=PATIENCE_S) as client:
             while not self._stop.wait(0.2):
                 known = list(self._jobs.items())
                 unseen = [one for one in known if one[1] not in self.served]

@@ -20,6 +20,8 @@ from service.store import ResultStore, identity_of, open_database, result_store
 
 REFERENCES = {"response": "document", "transmissionMode": "reference"}
 """Parameters of a job's results: where they are, whatever form was asked for."""
+PATIENCE_S = 300.0
+"""Many times what a busy machine needs: a hang, not a speed, is what this finds."""
 
 
 @dataclass(frozen=True)
@@ -81,9 +83,9 @@ def bench(directory: Path, registry: Registry, results: Path | None = None, **se
     return Bench(chosen, Submissions(engine, chosen.queue_limit), claims, store, scheduler, engine)
 
 
-def until(condition: Callable[[], bool], seconds: float = 30.0) -> None:
-    """Wait for a condition; fail if it does not come true (a hang, not a speed, is what this finds)."""
-    end = time.monotonic() + seconds
+def until(condition: Callable[[], bool]) -> None:
+    """Wait for a condition; fail if it never comes true."""
+    end = time.monotonic() + PATIENCE_S
     while not condition():
         assert time.monotonic() < end, "waited in vain"
         time.sleep(0.02)

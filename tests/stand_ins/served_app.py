@@ -21,7 +21,7 @@ def served(app: FastAPI) -> Iterator[int]:
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
         thread.start()
         try:
-            until(lambda: server.started, 60.0)
+            until(lambda: server.started)
             yield listener.getsockname()[1]
         finally:
             server.should_exit = True

@@ -63,7 +63,7 @@ def whole_service(directory: Path) -> WholeService:
     with TestClient(create_app(Settings(data_directory=directory))) as client:
         answer = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": _CASE}})
         location = answer.headers["location"]
-        until(lambda: client.get(location).json()["status"] == "successful", 600.0)
+        until(lambda: client.get(location).json()["status"] == "successful")
         reference = client.get(f"{location}/results", params=REFERENCES).json()["database"]
     secret = KeyFile(directory / "keys.json").add("generator")
     app = create_app(Settings(data_directory=directory, queue_limit=100_000), works=False)

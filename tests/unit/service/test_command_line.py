@@ -21,7 +21,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from running_service import lives, until
+from running_service import PATIENCE_S, lives, until
 from small_table import small_table
 from typer.testing import CliRunner, Result
 
@@ -318,7 +318,7 @@ def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
 def test_who_reads_the_address_may_connect(server: tuple[subprocess.Popen[str], str]) -> None:
     _, address = server
     host, _, port = address.removeprefix("http://").rpartition(":")
-    socket.create_connection((host, int(port)), timeout=10.0).close()
+    socket.create_connection((host, int(port)), timeout=PATIENCE_S).close()
 
 
 def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[str], str]) -> None:
@@ -342,16 +342,27 @@ def _cpu_s(pid: int) -> float:
 
 
 def _is_idle(pid: int) -> bool:
-    """Whether a process takes next to no CPU time for a while."""
+    """Whether a process takes next to no CPU time for a while, and not for want of a processor."""
     before = _cpu_s(pid)
-    time.sleep(1.0)
+    for _ in range(20):
+        time.sleep(0.05)
+        if any(_state(task) == "R" for task in Path(f"/proc/{pid}/task").iterdir()):
+            return False
     return _cpu_s(pid) - before < 0.02
+
+
+def _state(task: Path) -> str:
+    """Return the state of a thread: R runs or waits for its turn."""
+    try:
+        return (task / "stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:  # it has ended
+        return ""
 
 
 def _healthy(address: str) -> bool:
     """Whether the service answers."""
     try:
-        with urllib.request.urlopen(f"{address}/health", timeout=5) as answer:
+        with urllib.request.urlopen(f"{address}/health", timeout=PATIENCE_S) as answer:
             return bool(answer.status == 200)
     except OSError:
         return False
@@ -370,7 +381,7 @@ def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], 
 
     until(found)
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=30)
+    process.communicate(timeout=PATIENCE_S)
     assert process.returncode == 0
     until(lambda: not any(lives(pid) for pid in workers))
     modes = {
@@ -419,7 +430,7 @@ def test_interrupting_is_clean(tmp_path: Path) -> None:
     try:
         until(reads)
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=30)
+        _, said = process.communicate(timeout=PATIENCE_S)
     finally:
         process.kill()
         for descriptor in writer:

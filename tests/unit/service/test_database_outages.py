@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import socket
 import sqlite3
-import threading
 from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 from postgres_server import PostgresServer, migrated, running_server
 from running_service import Bench, bench
 from service_stand_ins import REGISTRY
-from sqlalchemy import event, false
+from sqlalchemy import Connection, event, false
 
 from service.app import create_app
 from service.jobs.caller import ANYBODY
@@ -79,21 +79,17 @@ def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) 
 
 
 def test_jobs_end_while_connections_are_ended_all_the_time(machine: Bench, postgres: PostgresServer) -> None:
-    machine.scheduler.start()
-    url, stop = str(machine.settings.database_address), threading.Event()
+    url, writes = str(machine.settings.database_address), count(1)
 
-    def disturb() -> None:
-        while not stop.wait(0.2):
+    def end_at_every_third(connection: Connection) -> None:
+        if connection.get_execution_options().get("immediate") and next(writes) % 3 == 0:
             postgres.end_connections(url)
 
-    disturber = threading.Thread(target=disturb)
-    disturber.start()
-    try:
-        ended = [machine.ended(machine.submit(text=text)) for text in ("one", "two")]
-    finally:
-        stop.set()
-        disturber.join()
+    event.listen(machine.engine, "commit", end_at_every_third)
+    machine.scheduler.start()
+    ended = [machine.ended(machine.submit(text=text)) for text in ("one", "two")]
     assert [(job.status, job.attempts) for job in ended] == [("successful", 1)] * 2
+    assert next(writes) > 6
 
 
 def test_a_server_that_is_gone_is_said_to_callers_with_a_time_to_try_again(tmp_path: Path) -> None:
@@ -150,14 +146,13 @@ def test_a_file_that_another_holds_is_waited_for_and_then_refused(
 ) -> None:
     monkeypatch.setattr("service.store.dialects._PRAGMAS", ("PRAGMA busy_timeout=20",))
     machine = bench(tmp_path, REGISTRY)
-    holder = sqlite3.connect(tmp_path / "service.sqlite3", isolation_level=None, check_same_thread=False)
+    holder = sqlite3.connect(tmp_path / "service.sqlite3", isolation_level=None)
     holder.execute("BEGIN IMMEDIATE")
     with pytest.raises(DatabaseUnavailable):
         machine.submit(text="refused")
-    timer = threading.Timer(0.2, holder.rollback)
-    timer.start()
+    # let go at the first refusal
+    monkeypatch.setattr("service.store.outages._note", lambda _state: holder.rollback())
     assert machine.submit(text="waits").status == "accepted"
-    timer.join()
     holder.close()
 
 

@@ -6,9 +6,14 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
-from running_service import lives, until
+import pytest
+from running_service import PATIENCE_S, lives, until
+
+from service.jobs.order import WorkOrder
+from service.jobs.worker import Worker
 
 SERVICE = """
 import sys
@@ -35,3 +40,21 @@ def test_kill_minus_nine_leaves_no_orphan(tmp_path: Path) -> None:
         os.kill(service.pid, signal.SIGKILL)
         service.wait()
     until(lambda: not lives(sleeper) and not lives(child))
+
+
+@pytest.mark.parametrize(("granted_s", "renewed_s"), [(-1.0, None), (PATIENCE_S, -1.0)])
+def test_a_worker_ends_at_the_end_of_its_lease_however_late_it_started(
+    tmp_path: Path, granted_s: float, renewed_s: float | None
+) -> None:
+    """It counted from when it had read the order: a slow start let it outlive a lease that nobody renewed."""
+    inputs = {"wish": {"mode": "hang"}}
+    now = time.monotonic()
+    order = WorkOrder(
+        "service_stand_in_work:work", inputs, "a" * 64, tmp_path, tmp_path, lease_until=now + granted_s
+    )
+    worker = Worker(order, tmp_path / "log")
+    if renewed_s is not None:
+        worker.beat(now + renewed_s)
+    until(lambda: worker.listen()[1])
+    outcome = worker.finish()
+    assert outcome.died and "SIGKILL" in outcome.failure

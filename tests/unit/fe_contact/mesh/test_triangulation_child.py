@@ -116,7 +116,7 @@ def test_a_missing_program_is_a_mesh_error(tmp_path: Path) -> None:
 def test_gmsh_refuses_a_boundary_that_crosses_itself() -> None:
     crossed = Region((np.array([[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]),))
     with pytest.raises(MeshError, match="gmsh"):
-        triangulate([crossed], 1.0, seconds=20.0)
+        triangulate([crossed], 1.0)
 
 
 def test_the_worker_leaves_signal_handlers_as_they_were() -> None:

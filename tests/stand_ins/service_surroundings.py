@@ -1,0 +1,35 @@
+"""Fixtures around every test of the service, for the conftest of its folder."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import structlog.testing
+
+STAND_INS = str(Path(__file__).resolve().parent)
+
+
+@pytest.fixture(autouse=True)
+def workers_find_stand_ins(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Let workers import the stand-ins, and keep caches out of the home directory."""
+    path = os.pathsep.join(part for part in (STAND_INS, os.environ.get("PYTHONPATH", "")) if part)
+    monkeypatch.setenv("PYTHONPATH", path)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+
+@pytest.fixture(autouse=True)
+def unhurried_readiness(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let a busy machine write late without being called not ready for it."""
+    monkeypatch.setattr("service.store.write_check.PATIENCE_S", 60.0)
+
+
+@pytest.fixture(autouse=True)
+def quiet_log() -> Iterator[None]:
+    """Keep the log out of the tests' output."""
+    structlog.configure(processors=[structlog.testing.LogCapture()])
+    yield
+    structlog.reset_defaults()
