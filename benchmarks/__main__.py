@@ -103,7 +103,7 @@ def main(arguments: Sequence[str]) -> int:
         if "quiet_helical" in record:
             quiet_helical.publish(quiet_helical.judged(), machine)
         if "dynamic_worth_estimates" in record:
-            dynamic_worth_estimates.publish(dynamic_worth_estimates.judged(), machine)
+            dynamic_worth_estimates.publish(dynamic_worth_estimates.assessed(), machine)
     measured = [figure for part in record.values() for figure in part.figures]
     return 0 if all(figure.met is not False for figure in measured) else 1
 

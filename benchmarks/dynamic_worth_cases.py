@@ -1,4 +1,4 @@
-"""Scenes on which the worth of dynamic effects is estimated and measured."""
+"""Scenes on which the influence of dynamic effects is estimated and measured."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ HELICAL = spur_pair(gear_of(18, helix_angle=HELIX, **PLAY), gear_of(23, helix_an
 AXES = {"misalignments": (-40e-6, 0.0, 40e-6), "center_distance_changes": (-40e-6, 0.0, 40e-6)}
 CONSTANT = TimeLaw.constant
 SHORT = {"flexible_shafts_scene": 1.0, "wind_turbine_scene": 0.4}
-"""Seconds of the examples that run too long to be switched over seven times."""
+"""Seconds of the examples that run too long to be toggled seven times."""
 
 
 @cache
 def table(pair: GearPair, axes: bool, folder: Path) -> MeshTable:
     """Return the mesh force of a pair by draft finite elements, with both axes or none."""
     how = {"level": "draft", "positions": 64, "receipt": "minimal", "cache": folder}
-    asked = AXES if axes else {}
-    return analyze(pair, torques=list(TORQUES), **how, **asked).force_table()  # type: ignore[arg-type]
+    axes_request = AXES if axes else {}
+    return analyze(pair, torques=list(TORQUES), **how, **axes_request).force_table()  # type: ignore[arg-type]
 
 
 def example_scenes() -> dict[str, Scene]:
@@ -154,9 +154,9 @@ def _with_mesh(scene: Scene, **changes: object) -> Scene:
     return replace(scene, meshes=(replace(scene.meshes[0], **changes),))  # type: ignore[arg-type]
 
 
-def _off_middle(scene: Scene, place: float) -> Scene:
-    """Put both gears at `place` along their shafts, m."""
-    return replace(scene, gears=tuple(replace(gear, position=place) for gear in scene.gears))
+def _off_middle(scene: Scene, position: float) -> Scene:
+    """Put both gears at `position` along their shafts, m."""
+    return replace(scene, gears=tuple(replace(gear, position=position) for gear in scene.gears))
 
 
 def _overhung(scene: Scene) -> Scene:

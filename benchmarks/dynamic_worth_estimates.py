@@ -1,4 +1,4 @@
-"""Is what dynamic effects are worth estimated well? Every effect of many scenes switched over in time."""
+"""Are influences of dynamic effects estimated well? Every effect of many scenes toggled in time."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from benchmarks.marked_section import replace_section
 from benchmarks.worth_estimates import PAGE
 from dynamics.ablation import RunFigures, ablate
 from dynamics.ablation.ablate import EffectAblation
+from dynamics.influence import decide_effects
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
-from dynamics.worth import decide_effects
 
 SECTION = "dynamic worth estimates"
 TOLERANCES = (0.01, 0.05, 0.2)
@@ -37,30 +37,30 @@ the largest in the scene) those of the bearing, of the largest measured change."
 
 def figures() -> list[Figure]:
     """Return how often the estimates are right."""
-    return STUDY.counts(judged())
+    return STUDY.counts(assessed())
 
 
 @cache
-def judged() -> tuple[JudgedWorth, ...]:
-    """Switch all effects of all scenes over, once: some five CPU minutes."""
+def assessed() -> tuple[JudgedWorth, ...]:
+    """Toggle all effects of all scenes, once: some five CPU minutes."""
     with tempfile.TemporaryDirectory() as folder:
         return tuple(study({**worth_scenes(Path(folder)), **example_scenes()}))
 
 
 def study(scenes: Mapping[str, Scene]) -> list[JudgedWorth]:
-    """Switch every effect of every scene over."""
+    """Toggle every effect of every scene."""
     found = []
     for name, scene in scenes.items():
         sys.stderr.write(f"  {name}\n")
-        asked = {tolerance: replace(scene, tolerance=tolerance) for tolerance in TOLERANCES}
-        left = {tolerance: set(decide_effects(one).left_off) for tolerance, one in asked.items()}
+        requested = {tolerance: replace(scene, tolerance=tolerance) for tolerance in TOLERANCES}
+        left = {tolerance: set(decide_effects(one).neglected) for tolerance, one in requested.items()}
         for entry in ablate(scene).effects:
             off_at = tuple(tolerance for tolerance in TOLERANCES if entry.name in left[tolerance])
-            found.append(judge(name, entry, off_at))
+            found.append(assess(name, entry, off_at))
     return found
 
 
-def judge(name: str, entry: EffectAblation, off_at: tuple[float, ...] = ()) -> JudgedWorth:
+def assess(name: str, entry: EffectAblation, off_at: tuple[float, ...] = ()) -> JudgedWorth:
     """Compare the estimate of one effect with its ablation; what was not estimated counts as nothing."""
     whole, without, estimate = entry.with_effect, entry.without_effect, entry.estimate
     measured = [
@@ -75,8 +75,8 @@ def judge(name: str, entry: EffectAblation, off_at: tuple[float, ...] = ()) -> J
             estimate.peak_to_peak / whole.peak_to_peak,
             estimate.bearing_force / max(float(np.max(_bearings(whole), initial=0.0)), 1e-300),
         ]
-    place = [int(np.argmax(np.abs(values))) for values in measured]
-    pairs = [(float(e[k]), float(m[k])) for e, m, k in zip(estimated, measured, place, strict=True)]
+    largest = [int(np.argmax(np.abs(values))) for values in measured]
+    pairs = [(float(e[k]), float(m[k])) for e, m, k in zip(estimated, measured, largest, strict=True)]
     return JudgedWorth(name, entry.name, tuple(e for e, _ in pairs), tuple(m for _, m in pairs), off_at)
 
 

@@ -63,8 +63,8 @@ def switched_off(path: str) -> dict[str, dict[str, float]]:
     found = {}
     for name, (given, choice) in able.items():
         off = replace(given, effects={**given.effects, **choice})
-        spent, same = _paired(off, scene)
-        found[name] = {"off": spent[0], "absent": spent[1], "same": same}
+        cost, same = _paired(off, scene)
+        found[name] = {"off": cost[0], "absent": cost[1], "same": same}
     return found
 
 
@@ -79,13 +79,13 @@ def _with_mesh(scene: Scene, **changes: Any) -> Scene:
 
 
 def _with_axes(table: MeshTable) -> PlainTable:
-    """Return the table at three misalignments and centre distances, the same at all, with levers."""
-    places = np.array([-1e-5, 0.0, 1e-5])
+    """Return the table at three misalignments and center distances, the same at all, with levers."""
+    knots = np.array([-1e-5, 0.0, 1e-5])
     shape = (3, 3, *np.shape(table.deflection)[2:])
     names = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
     fields = {name: np.broadcast_to(getattr(table, name), shape).copy() for name in names}
     levers = dict.fromkeys(("face_centroid", "sliding_share", "sliding_lever"), np.full(shape, 1e-3))
-    return PlainTable(table.position, table.level, places, places, **fields, period=table.period, **levers)
+    return PlainTable(table.position, table.level, knots, knots, **fields, period=table.period, **levers)
 
 
 def _cheapest(scene: Scene, repeats: int) -> tuple[float, Any]:

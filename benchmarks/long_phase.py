@@ -12,7 +12,7 @@ _STAND_INS = Path(__file__).parents[1] / "tests" / "stand_ins"
 _RUN = """
 import sys, time
 sys.path.insert(0, {stand_ins!r})
-from turning_trains import accelerating, imposed, phase_error
+from rotating_trains import accelerating, imposed, phase_error
 measured = {{}}
 for make in (imposed, accelerating):
     phase_error(make(1000))  # compiles where nothing is cached yet

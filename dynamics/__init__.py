@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from dynamics.ablation import ablate
+    from dynamics.accuracy import frontier
     from dynamics.bodies import GearBody, Inertia, Shaft, TimeLaw, hollow_cylinder
     from dynamics.forces import CoastFlank, GearMesh, LoadTorque, MeshTable, RollingContact
     from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation
-    from dynamics.ladder import frontier
     from dynamics.linearize import forced_response, modal_analysis
     from dynamics.mechanism import with_planets
     from dynamics.orders import mesh_orders
@@ -44,7 +44,7 @@ _HOME = {
     "TimeLaw": "bodies",
     "ablate": "ablation",
     "forced_response": "linearize",
-    "frontier": "ladder",
+    "frontier": "accuracy",
     "hollow_cylinder": "bodies",
     "mesh_orders": "orders",
     "modal_analysis": "linearize",

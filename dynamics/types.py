@@ -18,15 +18,15 @@ class RunStatus(IntEnum):
     """How a time integration ended, stored with its result."""
 
     COMPLETED = 0
-    STEP_FLOOR = 1  # the step control asked for less than the smallest step allowed
+    STEP_FLOOR = 1  # the step control needs less than the smallest step allowed
     STEP_LIMIT = 2  # the number of steps allowed was used up
-    NOT_FINITE = 3  # the motion diverged: NaN, or a step error of a metre
+    NOT_FINITE = 3  # the motion diverged: NaN, or a step error of a meter
     NO_EQUILIBRIUM = 4  # the run could not start: no static equilibrium under the load at t = 0
     CANCELLED = 5  # on request; the result holds what was computed, and a streamed run can be resumed
 
     @property
     def usable(self) -> bool:
-        """Whether the whole asked duration was computed."""
+        """Whether the whole requested duration was computed."""
         return self is RunStatus.COMPLETED
 
 

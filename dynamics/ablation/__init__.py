@@ -1,4 +1,4 @@
-"""Ablation of a scene: every effect switched over by itself, beside what the ledger says it is worth."""
+"""Ablation of a scene: every effect toggled by itself, beside its influence in the ledger."""
 
 from dynamics.ablation.ablate import Ablation, EffectAblation, ablate
 from dynamics.ablation.figures import RunFigures

@@ -1,4 +1,4 @@
-"""Switch each effect of a scene over and run again."""
+"""Toggle each effect of a scene and run again."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from dynamics.assembly.assemble import assemble
 from dynamics.checks import one_of
 from dynamics.effects import EFFECTS, MESH_EFFECTS
 from dynamics.errors import InputError, SolveError
+from dynamics.influence import Influence, decide_effects, estimate_influences
 from dynamics.integrators import Progress
 from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from dynamics.types import FloatArray, Json
-from dynamics.worth import Worth, decide_effects, estimate_worths
 
 WARM_UP = 0.01
 """Part of the duration that a scene runs for before it is timed."""
@@ -26,7 +26,7 @@ WARM_UP = 0.01
 
 @dataclass(frozen=True)
 class EffectAblation:
-    """One effect switched over in all parts of a scene.
+    """One effect toggled in all parts of a scene.
 
     Attributes
     ----------
@@ -35,9 +35,9 @@ class EffectAblation:
         Whether the scene has it on anywhere.
     reason : str
         Of the first part that has it, from the ledger.
-    worth : float
-        Largest static displacement that the ledger says it is worth, m.
-    estimate : Worth or None
+    influence : float
+        Largest static displacement that the ledger states, m.
+    estimate : Influence or None
         What leaving it out is estimated to change in that part of the run; None: nothing is known.
     with_effect, without_effect : RunFigures
         One of them is the scene itself.
@@ -46,8 +46,8 @@ class EffectAblation:
     name: str
     on: bool
     reason: str
-    worth: float
-    estimate: Worth | None
+    influence: float
+    estimate: Influence | None
     with_effect: RunFigures
     without_effect: RunFigures
 
@@ -82,7 +82,7 @@ class EffectAblation:
             "name": self.name,
             "on": self.on,
             "reason": self.reason,
-            "worth_m": self.worth,
+            "worth_m": self.influence,
             "estimate": None if self.estimate is None else self.estimate.to_json(),
             "with": self.with_effect.to_json(),
             "without": self.without_effect.to_json(),
@@ -96,7 +96,7 @@ class EffectAblation:
 
 @dataclass(frozen=True)
 class Ablation:
-    """All effects of a scene, each switched over by itself.
+    """All effects of a scene, each toggled by itself.
 
     Attributes
     ----------
@@ -106,7 +106,7 @@ class Ablation:
         Of the scene.
     effects : tuple of EffectAblation
     left_out : dict of str to str
-        Effects that were not switched over, and why.
+        Effects that were not toggled, and why.
     """
 
     mesh: tuple[str, ...]
@@ -127,7 +127,7 @@ class Ablation:
 
 
 def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress | None = None) -> Ablation:
-    """Switch each effect of a scene over, in all its parts, and report what that changes.
+    """Toggle each effect of a scene in all its parts and report the change.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
         Its ``on_violation`` plays no part: runs are taken as they are. Its tolerance decides once, for the
         scene itself.
     only : sequence of str, optional
-        Effects to switch over; default all.
+        Effects to toggle; default all.
     progress : callable, optional
         Called with the fraction done and what is being done.
 
@@ -155,38 +155,38 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
     known = [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
     for name in only or ():
         one_of("only", name, known)
-    asked = known if only is None else [name for name in known if name in only]
+    requested = known if only is None else [name for name in known if name in only]
     scene = assemble(decide_effects(scene).scene).resolved_scene  # one output grid for all runs
     scene = replace(scene, on_violation="report", tolerance=None)
     result, seconds = _timed(scene)
-    worths = estimate_worths(scene, SETTLED)
+    influences = estimate_influences(scene, SETTLED)
     nominal, found, left_out = run_figures(result, seconds), [], {}
-    for count, name in enumerate(asked):
+    for count, name in enumerate(requested):
         if progress is not None:
-            progress(count / len(asked), name)
+            progress(count / len(requested), name)
         parts = [one for one in result.effect_ledger["entries"] if one["effect"] == name]
         able = [one for one in parts if one["possible"]]
         if not able:
             left_out[name] = parts[0]["reason"] if parts else "no part of the scene has it"
             continue
         try:
-            found.append(_switched(scene, name, able, nominal, worths.get(name)))
+            found.append(_switched(scene, name, able, nominal, influences.get(name)))
         except (InputError, SolveError) as error:
             left_out[name] = str(error)
     return Ablation(result.mesh, result.bearing, nominal, tuple(found), left_out)
 
 
 def _switched(
-    scene: Scene, name: str, parts: Sequence[Json], nominal: RunFigures, estimate: Worth | None
+    scene: Scene, name: str, parts: Sequence[Json], nominal: RunFigures, estimate: Influence | None
 ) -> EffectAblation:
-    """Run with one effect switched over; what is on anywhere goes off everywhere."""
+    """Run with one effect toggled; what is on anywhere goes off everywhere."""
     on = any(part["on"] for part in parts)
     choice = "off" if on else "on"
     other = run_figures(*_timed(replace(scene, effects={**scene.effects, name: choice})))
     first = next((part for part in parts if part["on"] == on), parts[0])
-    worth = float(np.max([part["worth"] for part in parts]))
+    influence = float(np.max([part["worth"] for part in parts]))
     both = (nominal, other) if on else (other, nominal)
-    return EffectAblation(name, on, first["reason"], worth, estimate, *both)
+    return EffectAblation(name, on, first["reason"], influence, estimate, *both)
 
 
 def _timed(scene: Scene) -> tuple[RunResult, float]:

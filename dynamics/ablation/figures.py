@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dynamics.influence.linear_figures import COMPARED
 from dynamics.orders import order_track
 from dynamics.results import RunResult
 from dynamics.types import FloatArray, Json
-from dynamics.worth.linear_figures import COMPARED
 
 HIGHEST = COMPARED
 """Mesh orders that are compared."""

@@ -45,7 +45,7 @@ class Reference(NamedTuple):
     period : (m + f,) int array
         Base pitches after which the mesh's table repeats; 1.
     freedom : (k,) int array
-        For the law of a free train the place of its shaft's rotation in q; -1 for a drive.
+        For the law of a free train the index of its shaft's rotation in q; -1 for a drive.
     vector : (k, n) array
         Change of q when the law's shaft turns by one radian and all parts with it.
     """
@@ -70,7 +70,7 @@ class Loads(NamedTuple):
     torque : LawArrays
         One law per load, N m.
     direction : (l, n) array
-        Generalised force per unit torque.
+        Generalized force per unit torque.
     reference : (l, k) array
         Work per unit torque and per unit angle of each law in the kinematic motion.
     drive : (l, k) array
@@ -97,7 +97,7 @@ class Drives(NamedTuple):
     inertia : (k, k) array
         kg m^2.
     constant : (k,) array
-        Torque of pins off their place, N m.
+        Torque of pins off their nominal position, N m.
     """
 
     direction: FloatArray
@@ -127,7 +127,7 @@ class SystemArrays(NamedTuple):
     turn : (m + f, n) array
         Derivative of the meshes' positions in q, base pitches; 0.
     constant : (n,) array
-        External force that never changes: of pins off their place, of preloaded bearings.
+        External force that never changes: of pins off their nominal position, of preloaded bearings.
     inertial : (k, n) array
         External force per angular acceleration of each law: minus inertia times kinematic vector.
     total_inertia : (k, k) array
@@ -135,9 +135,9 @@ class SystemArrays(NamedTuple):
     drive : Drives
         What it takes to impose the motion.
     scale : (n,) array
-        Metres per unit of q, for error norms: 1, or a base radius for rotations.
+        Meters per unit of q, for error norms: 1, or a base radius for rotations.
     rate_scale : (n,) array
-        Metres per unit of q': `scale` over the natural frequency of the freedom alone, held by its bushings
+        Meters per unit of q': `scale` over the natural frequency of the freedom alone, held by its bushings
         and meshes. An error of the rate becomes an error of the displacement of this size a quarter period
         later.
     """

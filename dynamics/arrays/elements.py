@@ -13,13 +13,13 @@ from dynamics.types import FloatArray
 
 @dataclass(frozen=True)
 class Element:
-    """One element with p local coordinates y = gradient q + offset, in metres.
+    """One element with p local coordinates y = gradient q + offset, in meters.
 
     Attributes
     ----------
     law : Law
-    place : int
-        Its place in the arrays of its law.
+    entry : int
+        Its index in the arrays of its law.
     mesh : int
         The mesh whose position it reads; -1: none.
     gradient : (p, N) array
@@ -29,13 +29,13 @@ class Element:
     drift : (p, k) array or None
         Rate of the coordinates per unit speed of each law of the kinematic motion, m/rad; None: 0.
     speed : (2, k) array or None
-        Spin and speed of the frame per unit speed of each law, for turning terms; None: 0.
+        Spin and speed of the frame per unit speed of each law, for rotating-frame terms; None: 0.
     stiffness : (p,) array or None
         Typical stiffness of a bearing, N/m; None: 0.
     """
 
     law: Law
-    place: int
+    entry: int
     mesh: int
     gradient: FloatArray
     offset: FloatArray
@@ -58,7 +58,7 @@ def pack_elements(elements: Sequence[Element], laws: ElementLaws, motions: int) 
     sizes = [element.offset.size for element in elements]
     packed = Elements(
         np.array([int(element.law) for element in elements], dtype=np.int64),
-        np.array([element.place for element in elements], dtype=np.int64),
+        np.array([element.entry for element in elements], dtype=np.int64),
         np.cumsum([0, *sizes], dtype=np.int64),
         np.array([element.mesh for element in elements], dtype=np.int64),
         np.concatenate([np.empty(0), *(element.offset for element in elements)]),

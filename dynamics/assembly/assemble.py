@@ -92,7 +92,7 @@ class System:
     @property
     def corrections(self) -> Json:
         """Say what of the scene was corrected; nothing where nothing was."""
-        found = {name: {"given": given, "used": used} for name, (given, used) in self.corrected.items()}
+        found = {name: {"given": stated, "used": used} for name, (stated, used) in self.corrected.items()}
         return {"base_radius_corrected": found} if found else {}
 
     @property

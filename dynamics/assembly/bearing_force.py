@@ -65,7 +65,7 @@ def bearing_force_map(
     constant = np.zeros((count, rows))
     constant[:, :3] -= supports.stiffness * supports.error
     if seats.name:
-        constant[seats.place, :SEAT] -= seats.preload.reshape(-1, SEAT)
+        constant[seats.support, :SEAT] -= seats.preload.reshape(-1, SEAT)
     first = elements.first[len(elements.law) - len(bearings) :]
     for start, at in zip(first, bearings, strict=False):
         for local, way in enumerate(at.way, start=start):

@@ -60,12 +60,12 @@ def _springs(
     for e, law in enumerate(elements.law):
         first, end = elements.first[e], elements.first[e + 1]
         if law == Law.ROLLING_CONTACT:
-            place = elements.place[e]
+            entry = elements.entry[e]
             carried = float(np.linalg.norm(on_row[first:end]))
-            press = (carried / laws.rolling_contact.stiffness[place]) ** (
-                1.0 / laws.rolling_contact.exponent[place]
+            press = (carried / laws.rolling_contact.stiffness[entry]) ** (
+                1.0 / laws.rolling_contact.exponent[entry]
             )
-            way = laws.rolling_contact.clearance[place] + press
+            way = laws.rolling_contact.clearance[entry] + press
             stiffness[first:end] = carried / way if way > 0.0 else 0.0
         elif law == Law.SPRING_CURVE:
             stiffness[first] = local.tangent[first, 0]

@@ -94,5 +94,5 @@ def _on_ground(
     if not tilted:
         return plain
     full = np.concatenate([plain, np.zeros_like(plain)], axis=1)
-    full[seats.place, :SEAT] += (matrix @ freedoms.keep(seats.motion)).reshape(-1, SEAT, plain.shape[2])
+    full[seats.support, :SEAT] += (matrix @ freedoms.keep(seats.motion)).reshape(-1, SEAT, plain.shape[2])
     return full

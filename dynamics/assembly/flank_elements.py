@@ -26,7 +26,7 @@ def flank_elements(
     """Return one element per entry of ``flanks.law``, in its order.
 
     A driving flank's coordinate is the transmission error. A coast flank pushes along the line of action of
-    the opposite sense, and its coordinate is the approach along that less the backlash: a smaller centre
+    the opposite sense, and its coordinate is the approach along that less the backlash: a smaller center
     distance closes both.
     """
     driving = [
@@ -34,11 +34,11 @@ def flank_elements(
         for index, line in enumerate(lines)
     ]
     coasting = []
-    for place, index in enumerate(flanks.coast, start=len(lines)):
+    for entry, index in enumerate(flanks.coast, start=len(lines)):
         line, back = line_of_action(scene, index, -senses[index]), scene.meshes[index].coast
         gap = back.backlash if back is not None else 0.0
         gradient = approach(scene, rotors, index, line)[None, :]
-        coasting.append(Element(Law.FLANK, place, index, gradient, np.array([-gap])))
+        coasting.append(Element(Law.FLANK, entry, index, gradient, np.array([-gap])))
     return (*driving, *coasting)
 
 

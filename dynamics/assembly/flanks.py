@@ -1,4 +1,4 @@
-"""Force laws of all flanks as resolved: table at its place, technique applied, damping filled in."""
+"""Force laws of all flanks: table at its operating point, technique applied, damping filled in."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Flanks:
     static : PackedTables
         The driving flanks' tables themselves, whatever the technique: the static reference.
     tables : tuple of PlainTable
-        Those of `law`, each at its mesh's constant place.
+        Those of `law`, each at its mesh's constant operating point.
     """
 
     nominal_force: FloatArray
@@ -100,7 +100,7 @@ def with_coast_flanks(flanks: Flanks, meshes: Sequence[GearMesh], coast: Sequenc
 def _coast_table(mesh: GearMesh, flanks: Flanks, index: int) -> PlainTable:
     """Return the table of a coast flank against the position of the driving flank.
 
-    Seen turned about the line of centres, the gap of a misalignment grows towards the other end.
+    Seen turned about the line of centers, the gap of a misalignment grows towards the other end.
     """
     back = mesh.coast
     if back is None:
@@ -133,7 +133,7 @@ def _apply_technique(technique: str, table: PlainTable, force: float) -> PlainTa
 def _damping(
     scene: Scene, kinematics: Kinematics, index: int, stiffness: float, polar_inertia: Sequence[float]
 ) -> float:
-    """Return it as given, or from the ratio, for the gears turning against each other on the mesh."""
+    """Return it as given, or from the ratio, for the gears rotating against each other on the mesh."""
     mesh = scene.meshes[index]
     if mesh.damping is not None:
         return mesh.damping
@@ -142,7 +142,7 @@ def _damping(
 
 
 def mesh_mobility(scene: Scene, kinematics: Kinematics, index: int, polar_inertia: Sequence[float]) -> float:
-    """Return 1/m of the gears turning against each other on mesh `index`: sum of base_radius^2 / inertia."""
+    """Return 1/m of the gears rotating against each other on mesh `index`: sum of base_radius^2 / inertia."""
     mesh, mobility = scene.meshes[index], 0.0
     for gear in (scene.gear(mesh.driver), scene.gear(mesh.driven)):
         shaft = scene.shaft_index(gear.shaft)

@@ -1,4 +1,4 @@
-"""All force elements of a model, in their order: flanks, torques by speed, turning, frames, bearings."""
+"""All force elements of a model: flanks, torques by speed, rotating frames, couplings, bearings."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dynamics.arrays.elements import Element
 from dynamics.assembly.flank_elements import flank_elements
 from dynamics.assembly.frame_couplings import frame_coupling_elements
 from dynamics.assembly.model import Model
+from dynamics.assembly.rotating_frame_elements import rotating_frame_elements
 from dynamics.assembly.spatial_elements import spatial_elements
 from dynamics.assembly.speed_elements import speed_elements
-from dynamics.assembly.turning_elements import turning_elements
 from dynamics.forces.element_laws import ElementLaws
 from dynamics.mechanism.bearing_elements import bearing_elements, tilt_lever
 
@@ -21,10 +21,10 @@ def force_elements(model: Model) -> tuple[tuple[Element, ...], ElementLaws]:
     plain = flank_elements(scene, rotors, senses, mechanism.lines, flanks)
     in_space, spatial = spatial_elements(scene, rotors, senses, flanks, plain, ledger, vectors)
     by_speed, speed = speed_elements(scene, rotors, kinematics)
-    by_turning, turning = turning_elements(
+    in_frames, rotating_frame = rotating_frame_elements(
         scene, rotors, kinematics, vectors, model.freedoms, joined.supports, joined.seats, ledger
     )
     on_bearings, contact, curve = bearing_elements(scene, rotors, mechanism.bearings, mechanism.bearing_load)
     across, frame = frame_coupling_elements(scene, rotors, tilt_lever(scene))
-    laws = ElementLaws(flanks.law, speed, contact, curve, spatial, turning, frame)
-    return (*in_space, *by_speed, *by_turning, *across, *on_bearings), laws
+    laws = ElementLaws(flanks.law, speed, contact, curve, spatial, rotating_frame, frame)
+    return (*in_space, *by_speed, *in_frames, *across, *on_bearings), laws

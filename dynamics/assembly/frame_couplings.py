@@ -30,7 +30,7 @@ class FrameCoupling:
     Attributes
     ----------
     coupling : int
-        Its place in the scene.
+        Its index in the scene.
     first, second : int
         Rotors: that in the fixed frame first, if there is one.
     height : float
@@ -88,22 +88,22 @@ def frame_coupling_elements(
     elements = []
     size = np.array([1.0, 1.0, lever, lever])
     laws = [np.zeros((len(parts), 4, 4)) for _ in range(2)]
-    for place, part in enumerate(parts):
+    for entry, part in enumerate(parts):
         coupling, n = scene.couplings[part.coupling], part.directions
         for law, matrix in zip(laws, (coupling.stiffness, coupling.damping), strict=True):
-            law[place] = full_matrix(matrix, 0.0)[np.ix_(ACROSS, ACROSS)] / np.outer(size, size)
+            law[entry] = full_matrix(matrix, 0.0)[np.ix_(ACROSS, ACROSS)] / np.outer(size, size)
         ends = (section_rows(rotors, rotor, part.height) for rotor in (part.first, part.second))
         gradient = np.concatenate([(moves[list(ACROSS)] * size[:, None])[:n] for moves in ends])
-        typical = np.tile(np.diag(laws[0][place])[:n], 2)
-        phase = len(scene.meshes) + place
+        typical = np.tile(np.diag(laws[0][entry])[:n], 2)
+        phase = len(scene.meshes) + entry
         offset = np.zeros(2 * n)
-        elements.append(Element(Law.FRAME_COUPLING, place, phase, gradient, offset, stiffness=typical))
+        elements.append(Element(Law.FRAME_COUPLING, entry, phase, gradient, offset, stiffness=typical))
     directions = np.array([part.directions for part in parts], dtype=np.int64)
     return tuple(elements), FrameCouplingLaws(directions, *laws)
 
 
 def stiffness_across(arrays: SystemArrays, time: float) -> FloatArray:
-    """Return the stiffness (n, n) of all couplings across frames, as their frames stand at `time`."""
+    """Return the stiffness (n, n) of all couplings across frames, at their angles at `time`."""
     elements, n = arrays.elements, arrays.mass.shape[0]
     found, crossing = np.zeros((n, n)), np.flatnonzero(elements.law == Law.FRAME_COUPLING)
     if crossing.size:

@@ -1,4 +1,4 @@
-"""How misalignment and centre distance of a mesh follow from its bodies, and how far the load moves them."""
+"""How misalignment and center distance of a mesh follow from its bodies, and how far the load moves them."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def misalignment_gradient(
 
 
 def distance_gradient(scene: Scene, rotors: Sequence[Rotor], index: int, line: LineOfAction) -> FloatArray:
-    """Return the derivative of the centre distance at mid-face in all rotors' freedoms, (N,)."""
+    """Return the derivative of the center distance at mid-face in all rotors' freedoms, (N,)."""
     mesh = scene.meshes[index]
     shafts = [scene.shaft_index(scene.gear(name).shaft) for name in (mesh.driver, mesh.driven)]
     apart = np.subtract(scene.shafts[shafts[1]].origin, scene.shafts[shafts[0]].origin)

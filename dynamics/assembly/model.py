@@ -1,4 +1,4 @@
-"""What a scene is modelled with: freedoms, connections, flanks, and the effects decided on."""
+"""What a scene is modeled with: freedoms, connections, flanks, and the effects decided on."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from dynamics.assembly.connections import Connections, gather_connections
 from dynamics.assembly.flanks import Flanks, flank_laws, with_coast_flanks
 from dynamics.assembly.loaded_meshes import loaded_meshes
 from dynamics.assembly.mesh_axes import mesh_axes
+from dynamics.assembly.rotor_rotations import rotor_rotations
 from dynamics.assembly.shaft_bending import bending_shafts, with_elastic
 from dynamics.assembly.supported_rotors import supported_rotors
-from dynamics.assembly.turning_rotors import turning_rotors
 from dynamics.effects import BendingShaft
 from dynamics.effects.flexible_shafts import FlexibleShafts
 from dynamics.effects.ledger import EffectLedger, keep_ledger, with_mesh_effects
@@ -74,7 +74,7 @@ def _flanks(mechanism: Mechanism) -> Flanks:
 def _on_rotors(mechanism: Mechanism, bending: Sequence[BendingShaft]) -> EffectLedger:
     """Decide the effects of rotors."""
     scene, rotors = mechanism.scene, mechanism.rotors
-    turns = turning_rotors(scene, mechanism.kinematics, rotors)
+    turns = rotor_rotations(scene, mechanism.kinematics, rotors)
     forces, loads = mechanism.nominal_force, mechanism.bearing_load
     found = supported_rotors(scene, rotors, mechanism.lines, forces, loads, turns, bending)
     return keep_ledger(scene.effects, found)
@@ -99,13 +99,13 @@ def _on_meshes(
     scene, kinematics, rotors = mechanism.scene, mechanism.kinematics, mechanism.rotors
     senses, supports = kinematics.mesh_sense, connections.supports
     axes = mesh_axes(scene, rotors, senses, mechanism.lines, freedoms, supports, flanks)
-    inertia = mechanism.turning_inertia
+    inertia = mechanism.rotational_inertia
     meshes = loaded_meshes(scene, kinematics, flanks, mechanism.polar_inertia, inertia, axes)
     return with_mesh_effects(ledger, scene.effects, meshes)
 
 
 def _check_mass(freedoms: Freedoms, rotors: Sequence[Rotor]) -> None:
     """Every free direction needs inertia."""
-    for name, value in zip(freedoms.name, mass_terms(rotors)[0][freedoms.place], strict=True):
+    for name, value in zip(freedoms.name, mass_terms(rotors)[0][freedoms.column], strict=True):
         if value <= 0.0:
             raise InputError(f"inertia of {name}", float(value), above(0.0), GIVE_INERTIA)

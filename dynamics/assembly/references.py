@@ -48,7 +48,7 @@ def lay_out_reference(
         np.array([*(mesh.position_offset for mesh in scene.meshes), *[0.0] * none], dtype=float),
         np.array([*(mesh.table.period for mesh in scene.meshes), *[1] * none], dtype=np.int64),
         np.array(free, dtype=np.int64),
-        np.ascontiguousarray(vectors[:, freedoms.place]),
+        np.ascontiguousarray(vectors[:, freedoms.column]),
     )
 
 
@@ -111,7 +111,7 @@ def _turned_alone(mechanism: Mechanism, freedoms: Freedoms) -> FloatArray:
     """Motion of all rotors per radian of each rigid drive's shaft alone, (k, N); 0 for other laws."""
     kinematics = mechanism.kinematics
     turned = np.zeros((len(kinematics.law_shaft), column_count(mechanism.rotors)))
-    carried = carried_motion(mechanism.rotors, freedoms.place)
+    carried = carried_motion(mechanism.rotors, freedoms.column)
     for law, motion in enumerate(_own_motions(mechanism)):
         if kinematics.rigid[law]:
             turned[law] = carried @ motion
@@ -119,7 +119,7 @@ def _turned_alone(mechanism: Mechanism, freedoms: Freedoms) -> FloatArray:
 
 
 def _own_motions(mechanism: Mechanism) -> FloatArray:
-    """Motion of each law's shaft per radian at the place where its rotation is imposed, (k, N).
+    """Motion of each law's shaft per radian at the position where its rotation is imposed, (k, N).
 
     Of all motions of a flexible shaft with that rotation the one that shares no kinetic energy with its
     elastic coordinates: the work on it leaves out their accelerations.

@@ -1,4 +1,4 @@
-"""What flexible shafts are worth: how far the nominal forces bend and twist them, at their meshes."""
+"""The influence of flexible shafts: how far the nominal forces bend and twist them, at their meshes."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from dynamics.effects import BendingShaft
 from dynamics.joints.seat import SEAT
 from dynamics.mechanism.columns import column_count, elastic_columns, elastic_terms, section_rows, turn_row
 from dynamics.mechanism.mechanism import Mechanism
-from dynamics.mechanism.shaft_grips import elastic_of, why_rigid
+from dynamics.mechanism.points_of_application import elastic_of, why_rigid
 from dynamics.types import FloatArray
 
 ROUNDING = 1e-9
 NOTHING_BENDS = (
-    "forces act at one place of the shaft alone, or it is not held there: nothing bends or twists it"
+    "forces act at one position of the shaft alone, or it is not held there: nothing bends or twists it"
 )
 
 
 def bending_shafts(mechanism: Mechanism, flanks: Flanks) -> list[BendingShaft]:
-    """Return for each shaft whether it can bend and twist, its elastic coordinates and their worth."""
+    """Return for each shaft whether it can bend and twist, its elastic coordinates and their influence."""
     refusals = [why_rigid(mechanism, index) for index in range(len(mechanism.rotors))]
     elastic = [None if refusal else elastic_of(mechanism, i) for i, refusal in enumerate(refusals)]
     for index, part in enumerate(elastic):
@@ -37,7 +37,7 @@ def bending_shafts(mechanism: Mechanism, flanks: Flanks) -> list[BendingShaft]:
     flexible = with_elastic(mechanism, elastic)
     held = _held(flexible)
     return [
-        BendingShaft(refusal) if part is None else _worth(flexible, flanks, index, held, part)
+        BendingShaft(refusal) if part is None else _influence(flexible, flanks, index, held, part)
         for index, (refusal, part) in enumerate(zip(refusals, elastic, strict=True))
     ]
 
@@ -48,10 +48,10 @@ def with_elastic(mechanism: Mechanism, elastic: Sequence[ElasticShaft | None]) -
     return replace(mechanism, rotors=tuple(replace(rotor, elastic=part) for rotor, part in pairs))
 
 
-def _worth(
+def _influence(
     mechanism: Mechanism, flanks: Flanks, index: int, held: FloatArray, elastic: ElasticShaft
 ) -> BendingShaft:
-    """Return what the shaft `index` is worth under the nominal forces, its neighbours at rest."""
+    """Return the influence of bending of the shaft `index` by the nominal forces, its neighbors at rest."""
     scene, rotors = mechanism.scene, mechanism.rotors
     rigid = _held_kinds(mechanism, index)
     coordinates = elastic_columns(rotors, index)

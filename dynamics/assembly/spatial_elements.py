@@ -83,18 +83,18 @@ def spatial_elements(
     ledger: EffectLedger,
     vectors: FloatArray,
 ) -> tuple[tuple[Element, ...], SpatialFlankLaws]:
-    """Return the elements `plain` with those of such meshes replaced, each at its place, and their laws.
+    """Return the elements `plain` with those of such meshes replaced, each at its index, and their laws.
 
     `vectors` (k, N) are the kinematic ones, along which flanks slide but keep their deflection.
     """
     elements: list[Element] = []
     found: list[SpatialFlank] = []
-    for place, element in enumerate(plain):
+    for entry, element in enumerate(plain):
         effects = spatial_effects(ledger, scene.meshes[element.mesh].name)
         if not effects.any:
             elements.append(element)
             continue
-        flank = _flank(scene, rotors, senses[element.mesh], flanks, place, element, effects)
+        flank = _flank(scene, rotors, senses[element.mesh], flanks, entry, element, effects)
         drift = np.where(flank.slides[:, None], flank.gradient @ vectors.T, 0.0)
         elements.append(
             Element(Law.SPATIAL_FLANK, len(found), element.mesh, flank.gradient, flank.offset, drift)
@@ -108,17 +108,17 @@ def _flank(
     rotors: Sequence[Rotor],
     driving: int,
     flanks: Flanks,
-    place: int,
+    entry: int,
     element: Element,
     effects: SpatialEffects,
 ) -> SpatialFlank:
-    """Return the flank at `place` among all, which `element` has in the plane."""
+    """Return the flank at `entry` among all, which `element` has in the plane."""
     index = element.mesh
-    mesh, coast = scene.meshes[index], place >= len(scene.meshes)
+    mesh, coast = scene.meshes[index], entry >= len(scene.meshes)
     sense = -driving if coast else driving
     line = line_of_action(scene, index, sense)
     fixed = (-mesh.misalignment if coast else mesh.misalignment, mesh.center_distance_change)
-    table = _table(scene, flanks, place, index, effects)
+    table = _table(scene, flanks, entry, index, effects)
     follows = (
         int(effects.misalignment and np.size(table.misalignment) > 1),
         int(effects.center_distance and np.size(table.center_distance_change) > 1),
@@ -140,8 +140,8 @@ def _flank(
     coefficient = (mesh.friction or 0.0) / math.cos(driver.base_helix_angle)
     return SpatialFlank(
         table,
-        float(flanks.law.damping[place]),
-        float(flanks.law.reach[place]),
+        float(flanks.law.damping[entry]),
+        float(flanks.law.reach[entry]),
         (row_m, row_a, slides),
         fixed,
         follows,
@@ -155,12 +155,12 @@ def _flank(
     )
 
 
-def _table(scene: Scene, flanks: Flanks, place: int, index: int, effects: SpatialEffects) -> MeshTable:
-    """Return the table over its axes where one of them moves, else the plane flank's at its place."""
+def _table(scene: Scene, flanks: Flanks, entry: int, index: int, effects: SpatialEffects) -> MeshTable:
+    """Return the table over its axes where one moves, else the plane flank's at its operating point."""
     mesh = scene.meshes[index]
     if not (effects.misalignment or effects.center_distance):
-        return flanks.tables[place]
-    if place < len(scene.meshes):
+        return flanks.tables[entry]
+    if entry < len(scene.meshes):
         return mesh.table
     if mesh.coast is None:
         raise InputError(f"meshes[{index}].coast", None, "given")

@@ -26,14 +26,14 @@ def speed_elements(
     """
     radius = max((gear.base_radius for gear in scene.gears), default=1.0)
     found = []
-    for place, part in enumerate(scene.speed_torques):
+    for entry, part in enumerate(scene.speed_torques):
         shaft = scene.shaft_index(part.shaft)
         sense = kinematics.sense[shaft]
         if sense == 0:
-            field = f"speed_torques[{place}].shaft"
+            field = f"speed_torques[{entry}].shaft"
             raise InputError(field, part.shaft, "a shaft that turns", "A held shaft needs no load.")
         gradient = np.zeros((1, column_count(rotors)))
         gradient[0] += sense * radius * turn_row(rotors, shaft, part.position)
         drift = sense * radius * kinematics.float_ratio[shaft][None, :]
-        found.append(Element(Law.SPEED_TORQUE, place, -1, gradient, np.zeros(1), drift))
+        found.append(Element(Law.SPEED_TORQUE, entry, -1, gradient, np.zeros(1), drift))
     return tuple(found), pack_speed_torques(scene.speed_torques, radius)

@@ -1,4 +1,4 @@
-"""The static reference where the bodies rest: tables read at the misalignment and centre distance there."""
+"""The static reference where the bodies rest: tables read at the misalignment and center distance there."""
 
 from __future__ import annotations
 
@@ -8,15 +8,15 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.forces.element_laws import SPATIAL_FLANK
-from dynamics.forces.grid_place import table_at_place
+from dynamics.forces.operating_point_table import table_at_operating_point
 from dynamics.forces.packed_tables import pack_tables
 from dynamics.forces.technique import table_at
 from dynamics.motion.observation import local_state
 from dynamics.types import FloatArray
 
 
-def places_at(system: System, displacement: FloatArray, time: float = 0.0) -> FloatArray:
-    """Return misalignment and centre-distance change of every mesh in m, (m, 2).
+def operating_points_at(system: System, displacement: FloatArray, time: float = 0.0) -> FloatArray:
+    """Return misalignment and center-distance change of every mesh in m, (m, 2).
 
     Those of the bodies displaced by `displacement` (n,) where the mesh's table follows them, else the mesh's
     constant ones.
@@ -28,10 +28,10 @@ def places_at(system: System, displacement: FloatArray, time: float = 0.0) -> Fl
     for index in range(found.shape[0]):
         if elements.law[index] != SPATIAL_FLANK:
             continue
-        place = elements.place[index]
+        entry = elements.entry[index]
         for axis in range(2):
-            if laws.row[place, axis] > 0 and laws.follows[place, axis] == 1:
-                found[index, axis] = coordinate[elements.first[index] + laws.row[place, axis]]
+            if laws.row[entry, axis] > 0 and laws.follows[entry, axis] == 1:
+                found[index, axis] = coordinate[elements.first[index] + laws.row[entry, axis]]
     return found
 
 
@@ -41,12 +41,12 @@ def with_static_reference(system: System, displacement: FloatArray, time: float 
     Where no table follows the bodies it is `system` itself.
     """
     fixed = np.array([[mesh.misalignment, mesh.center_distance_change] for mesh in system.scene.meshes])
-    place = places_at(system, displacement, time)
-    moved = np.any(place != fixed, axis=1)
+    points = operating_points_at(system, displacement, time)
+    moved = np.any(points != fixed, axis=1)
     if not np.any(moved):
         return system
     tables = [
-        (table_at_place if moves else table_at)(mesh.table, float(m), float(a))
-        for mesh, moves, (m, a) in zip(system.scene.meshes, moved, place, strict=True)
+        (table_at_operating_point if moves else table_at)(mesh.table, float(m), float(a))
+        for mesh, moves, (m, a) in zip(system.scene.meshes, moved, points, strict=True)
     ]
     return replace(system, flanks=replace(system.flanks, static=pack_tables(tables)))

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.effects import BendingShaft, MeshOnRotor, SupportedRotor, TurningRotor
-from dynamics.mechanism.bearing_elements import nonlinear_worths
+from dynamics.effects import BendingShaft, MeshOnRotor, RotorRotation, SupportedRotor
+from dynamics.mechanism.bearing_elements import nonlinear_influences
 from dynamics.mechanism.line_of_action import LineOfAction
 from dynamics.mechanism.rotor import Rotor
 from dynamics.scene.scene import Scene
@@ -21,7 +21,7 @@ def supported_rotors(
     lines: Sequence[LineOfAction],
     forces: FloatArray,
     loads: dict[str, float],
-    turns: Sequence[TurningRotor],
+    turns: Sequence[RotorRotation],
     bending: Sequence[BendingShaft],
 ) -> list[SupportedRotor]:
     """Gather what the effects decide on; a carrier feels the meshes of its planets at their pins."""
@@ -38,9 +38,9 @@ def supported_rotors(
             carrier = rotors[index].carrier
             if carrier is not None:
                 arm = rotors[index].center - rotors[carrier].center
-                place = float(arm[2]), axial, float(np.hypot(arm[0], arm[1]))
-                meshes[carrier].append(MeshOnRotor(float(force), *place, direction))
-    clearances = nonlinear_worths(scene, loads)
+                arms = float(arm[2]), axial, float(np.hypot(arm[0], arm[1]))
+                meshes[carrier].append(MeshOnRotor(float(force), *arms, direction))
+    clearances = nonlinear_influences(scene, loads)
     return [
         SupportedRotor(
             rotor.shaft.name,
@@ -50,7 +50,7 @@ def supported_rotors(
             rotor.tilt_stiffness,
             rotor.elastic_lever,
             tuple(on_rotor),
-            tuple(worth for name, worth in clearances if name == rotor.shaft.name),
+            tuple(influence for name, influence in clearances if name == rotor.shaft.name),
             turn,
             bent,
         )

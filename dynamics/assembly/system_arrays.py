@@ -82,7 +82,7 @@ def _turns(scene: Scene, rotors: Sequence[Rotor], kinematics: Kinematics) -> Flo
 
 
 def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatArray:
-    """Metres per unit of each freedom, (n,): for rotations the largest base or pin radius on the shaft."""
+    """Meters per unit of each freedom, (n,): for rotations the largest base or pin radius on the shaft."""
     largest = max((gear.base_radius for gear in scene.gears), default=1.0)
     radius = np.zeros(len(rotors))
     for gear in scene.gears:
@@ -99,4 +99,4 @@ def _scales(scene: Scene, rotors: Sequence[Rotor], freedoms: Freedoms) -> FloatA
         for rotor, own in zip(rotors, scale, strict=True)
         if rotor.elastic is not None
     ]
-    return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic])[freedoms.place])
+    return np.ascontiguousarray(np.concatenate([scale.ravel(), *elastic])[freedoms.column])

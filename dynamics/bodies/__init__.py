@@ -1,7 +1,7 @@
 """Bodies: shafts rigid and elastic, the gears on them, their inertia, laws of time that move or load them."""
 
 from dynamics.bodies.angle_law import AngleLaw
-from dynamics.bodies.beam_families import Disc, Grip
+from dynamics.bodies.beam_families import Disc, PointOfApplication
 from dynamics.bodies.craig_bampton import ReducedBody, craig_bampton
 from dynamics.bodies.elastic_shaft import ElasticShaft, elastic_shaft
 from dynamics.bodies.gear_body import GearBody
@@ -17,8 +17,8 @@ __all__ = [
     "Disc",
     "ElasticShaft",
     "GearBody",
-    "Grip",
     "Inertia",
+    "PointOfApplication",
     "ReducedBody",
     "Shaft",
     "SpeedCurve",

@@ -16,8 +16,8 @@ from dynamics.types import FloatArray
 class AngleLaw:
     """Angles at times, joined by a cubic spline: speed and acceleration are continuous.
 
-    Before the first and after the last time the shaft turns on at the speed it has there. As a law it stands
-    for the speed, like `TimeLaw`; only differences of the angles matter.
+    Before the first and after the last time the shaft turns on at the speed it has there. As a law it gives
+    the speed, like `TimeLaw`; only differences of the angles matter.
 
     Attributes
     ----------

@@ -20,15 +20,15 @@ ACROSS, ALONG, TURN = (0, 4), 2, 5  # freedoms of a node: bending in the plane x
 
 @dataclass(frozen=True)
 class Disc:
-    """A rigid body on a shaft: a gear. `position` of its centre along the shaft, m."""
+    """A rigid body on a shaft: a gear. `position` of its center along the shaft, m."""
 
     position: float
     inertia: Inertia
 
 
 @dataclass(frozen=True)
-class Grip:
-    """A place where forces act on a shaft, and on which motions of its section there.
+class PointOfApplication:
+    """A point of application of forces on a shaft, and the motions of its section there.
 
     Attributes
     ----------
@@ -62,8 +62,8 @@ def families(
     mass, nodes = beam.mass.copy(), beam.position.size
     for disc in discs:
         i = disc.inertia
-        places = beam.freedoms(disc.position)
-        mass[places, places] += (i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar)
+        columns = beam.freedoms(disc.position)
+        mass[columns, columns] += (i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar)
     first = PER_NODE * np.arange(nodes)
     bent = (first[:, None] + np.array(ACROSS)).ravel()
     ones = np.ones((nodes, 1))
@@ -71,8 +71,8 @@ def families(
     moved = np.stack([np.ones(nodes), np.zeros(nodes)], axis=1).ravel()
     turned = -1 if held is None else int(np.argmin(np.abs(beam.position - held)))
 
-    def part(places: IntArray, rigid: FloatArray, at: int = -1) -> Family:
-        own = np.ix_(places, places)
+    def part(columns: IntArray, rigid: FloatArray, at: int = -1) -> Family:
+        own = np.ix_(columns, columns)
         return Family(mass[own], beam.stiffness[own], rigid, at)
 
     return (
@@ -85,12 +85,12 @@ def families(
 def fine_beam(
     sections: Sequence[BeamSection],
     discs: Sequence[Disc],
-    grips: Sequence[Grip],
+    points: Sequence[PointOfApplication],
     highest: float,
     held: float | None,
 ) -> tuple[TimoshenkoBeam, float]:
     """Return a beam and the estimated error of its frequencies; errors fall with the length squared."""
-    stations = [*(disc.position for disc in discs), *(grip.position for grip in grips)]
+    stations = [*(disc.position for disc in discs), *(point.position for point in points)]
     length, parts = sum(section.length for section in sections), FIRST_PARTS
     beam = timoshenko_beam(sections, stations, length / parts)
     found = _frequencies(beam, discs, held)

@@ -63,8 +63,8 @@ def elastic_modes(
 ) -> ElasticModes:
     """Reduce a family and split it into its rigid motions and elastic coordinates.
 
-    A Craig-Bampton reduction to the freedoms `interface`, diagonalised: its motions that are orthogonal in
-    mass to the rigid ones, so that rigid motions stay those of the centre of mass. With a freedom `held`,
+    A Craig-Bampton reduction to the freedoms `interface`, diagonalized: its motions that are orthogonal in
+    mass to the rigid ones, so that rigid motions stay those of the center of mass. With a freedom `held`,
     whose motion is imposed, the motions that leave it at rest.
 
     Parameters
@@ -126,8 +126,8 @@ def _of_reduced(
 ) -> tuple[FloatArray, FloatArray]:
     """Squared circular frequencies and shapes of a reduced body: rigid motions are those of its interface."""
     none = np.zeros((reduced.frequency.size, rigid.shape[1]))
-    place = int(np.flatnonzero(interface == held)[0]) if held >= 0 else -1
-    return _split(reduced.mass, reduced.stiffness, np.concatenate([rigid[interface], none]), place)
+    held_index = int(np.flatnonzero(interface == held)[0]) if held >= 0 else -1
+    return _split(reduced.mass, reduced.stiffness, np.concatenate([rigid[interface], none]), held_index)
 
 
 def _split(

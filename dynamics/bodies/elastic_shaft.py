@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from dynamics.bodies.beam_families import Disc, Family, Grip, families, fine_beam
+from dynamics.bodies.beam_families import Disc, Family, PointOfApplication, families, fine_beam
 from dynamics.bodies.elastic_modes import ElasticModes, elastic_modes
 from dynamics.bodies.timoshenko_beam import PER_NODE, BeamSection
 from dynamics.types import BoolArray, FloatArray
@@ -18,7 +18,7 @@ from dynamics.types import BoolArray, FloatArray
 class ElasticShaft:
     """Elastic coordinates of a shaft: bending in x z, bending alike in y z, extension, torsion.
 
-    They are measured against the motion of the shaft as a rigid body about its centre of mass with which they
+    They are measured against the motion of the shaft as a rigid body about its center of mass with which they
     share no kinetic energy; torsion against the rotation at `held` where that is imposed.
 
     Attributes
@@ -112,32 +112,32 @@ class ElasticShaft:
 def elastic_shaft(
     sections: tuple[BeamSection, ...],
     discs: tuple[Disc, ...],
-    grips: tuple[Grip, ...],
+    points: tuple[PointOfApplication, ...],
     highest: float,
     damping_ratio: float,
     held: float | None = None,
 ) -> ElasticShaft:
     """Return the elastic coordinates of a shaft of `sections` with `discs` on it, held by nothing.
 
-    Timoshenko beam elements between sections, discs and grips, halved until the frequencies of interest are
-    within 0.1 %; reduced after Craig and Bampton to what `grips` act on and to as many modes with these held
-    as keep the frequencies of interest within 1 %. Deflections under forces at grips are exact.
+    Timoshenko beam elements between sections, discs and `points`, halved until the frequencies of interest
+    are within 0.1 %; reduced after Craig and Bampton to what `points` act on and to as many modes with these
+    held as keep the frequencies of interest within 1 %. Deflections under forces at these points are exact.
 
     Parameters
     ----------
     sections : tuple of BeamSection
         From the left end.
-    discs, grips : tuples
+    discs, points : tuples
     highest : float
         Hz; modes of the free shaft up to it, and the first of each family anyway, are of interest.
     damping_ratio : float
     held : float or None
-        Where along the shaft its rotation is imposed, m: one of the grips.
+        Where along the shaft its rotation is imposed, m: one of the points of application.
     """
-    beam, error = fine_beam(sections, discs, grips, highest, held)
+    beam, error = fine_beam(sections, discs, points, highest, held)
     across, along, turn = families(beam, discs, held)
-    nodes = [int(np.argmin(np.abs(beam.position - grip.position))) for grip in grips]
-    pairs = list(zip(nodes, grips, strict=True))
+    nodes = [int(np.argmin(np.abs(beam.position - point.position))) for point in points]
+    pairs = list(zip(nodes, points, strict=True))
     bent = [2 * k for k, g in pairs if g.across] + [2 * k + 1 for k, g in pairs if g.tilt]
     return ElasticShaft(
         beam.position,
@@ -153,8 +153,8 @@ def elastic_shaft(
 
 def _reduced(family: Family, interface: Sequence[int], highest: float) -> ElasticModes:
     """Return the coordinates of a family; none where nothing acts on it."""
-    places = np.array(sorted(set(interface)), dtype=np.int64)
-    if places.size == 0:
+    interfaces = np.array(sorted(set(interface)), dtype=np.int64)
+    if interfaces.size == 0:
         n, k = family.rigid.shape
         return ElasticModes(np.zeros((n, 0)), np.zeros(0), np.zeros(0), np.zeros((0, k)), 0, highest, 0.0)
-    return elastic_modes(family.mass, family.stiffness, family.rigid, places, highest, family.held)
+    return elastic_modes(family.mass, family.stiffness, family.rigid, interfaces, highest, family.held)

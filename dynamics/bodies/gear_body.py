@@ -31,7 +31,7 @@ class GearBody:
     base_helix_angle : float
         rad; > 0: right hand, < 0: left hand, 0: spur.
     inertia : Inertia
-        Of the gear alone, about its own centre at mid-face.
+        Of the gear alone, about its own center at mid-face.
     internal : bool
         True: a ring gear, its teeth point inwards. All numbers stay positive.
     """

@@ -13,7 +13,7 @@ from dynamics.errors import InputError
 
 @dataclass(frozen=True)
 class Inertia:
-    """Inertia of a body of revolution about its own centre of mass.
+    """Inertia of a body of revolution about its own center of mass.
 
     Attributes
     ----------
@@ -22,7 +22,7 @@ class Inertia:
     polar : float
         Moment of inertia about the axis of rotation, kg m^2, >= 0.
     transverse : float
-        Moment of inertia about any axis across it, through the centre of mass, kg m^2, >= 0.
+        Moment of inertia about any axis across it, through the center of mass, kg m^2, >= 0.
     """
 
     mass: float = 0.0

@@ -8,7 +8,7 @@ from itertools import accumulate
 
 from bounds import Quantity, Text
 from dynamics.bodies.inertia import Inertia, hollow_cylinder
-from dynamics.bodies.places import SAME_PLACE
+from dynamics.bodies.shaft_position import SAME_POSITION
 from dynamics.bodies.timoshenko_beam import BeamSection
 from dynamics.checks import finite, not_negative, positive
 from dynamics.errors import InputError
@@ -29,11 +29,11 @@ class Shaft:
     origin : tuple of three floats
         The axis point at the left end, m, in the fixed frame (x, y, z).
     frame : str or None
-        The carrier's shaft in whose turning frame this shaft's place and displacements are described: that
+        The carrier's shaft in whose rotating frame this shaft's origin and displacements are described: that
         of all members of a planetary set (sun, ring, planets and the carrier itself, which names itself).
-        `origin` is then the place at t = 0. None: the fixed frame.
+        `origin` is then the position at t = 0. None: the fixed frame.
     inertia : Inertia
-        Of the bare shaft, its centre of mass at mid-length; the gears on it are added. Left out where
+        Of the bare shaft, its center of mass at mid-length; the gears on it are added. Left out where
         `sections` are given.
     sections : tuple of BeamSection
         From the left end, together as long as the shaft: for the effect ``"flexible_shafts"``, and for the
@@ -61,7 +61,7 @@ class Shaft:
     def _check_sections(self) -> None:
         """Sections make up the shaft, and its inertia."""
         together = math.fsum(section.length for section in self.sections)
-        if abs(together / self.length - 1.0) > SAME_PLACE:
+        if abs(together / self.length - 1.0) > SAME_POSITION:
             bound = Text.of("sections that are together as long as the shaft, ", Quantity(self.length, "m"))
             raise InputError("sections", Quantity(together, "m"), bound)
         if self.inertia != Inertia():
@@ -69,7 +69,7 @@ class Shaft:
 
     @property
     def cylinders(self) -> tuple[tuple[Inertia, float], ...]:
-        """Parts of the bare shaft: inertia about its own centre, and place of that from the left end, m."""
+        """Parts of the bare shaft: inertia about its own center, and its position from the left end, m."""
         if not self.sections:
             return ((self.inertia, self.length / 2.0),)
         ends = [0.0, *accumulate(section.length for section in self.sections)]

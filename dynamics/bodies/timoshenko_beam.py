@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from bounds import Text, above, below, between
-from dynamics.bodies.places import SAME_PLACE, nearest_on, on_length
+from dynamics.bodies.shaft_position import SAME_POSITION, nearest_on, on_length
 from dynamics.bodies.steel import STEEL_DENSITY, STEEL_POISSON_RATIO, STEEL_YOUNGS_MODULUS
 from dynamics.checks import finite, not_negative, positive, within
 from dynamics.errors import InputError
@@ -88,9 +88,9 @@ class TimoshenkoBeam:
     stiffness: FloatArray
 
     def freedoms(self, position: float) -> IntArray:
-        """Return the places of the six freedoms of the node at `position` (m)."""
+        """Return the indices of the six freedoms of the node at `position` (m)."""
         node = int(np.argmin(np.abs(self.position - position)))
-        if abs(self.position[node] - position) > SAME_PLACE * self.position[-1]:
+        if abs(self.position[node] - position) > SAME_POSITION * self.position[-1]:
             raise InputError("position", position, "at a node", "Name it as a station of the beam.")
         return np.arange(PER_NODE * node, PER_NODE * node + PER_NODE, dtype=np.int64)
 
@@ -110,7 +110,7 @@ def timoshenko_beam(
     ----------
     sections : sequence of BeamSection
     stations : sequence of float
-        Places where forces act, m from the left end; each becomes a node.
+        Positions where forces act, m from the left end; each becomes a node.
     longest : float
         No element is longer, m.
 
@@ -125,11 +125,11 @@ def timoshenko_beam(
         raise InputError("longest", longest, above(0.0))
     ends = np.cumsum([0.0, *(section.length for section in sections)])
     length = float(ends[-1])
-    for index, place in enumerate(stations):
-        if not on_length(finite(f"stations[{index}]", place), length):
+    for index, station in enumerate(stations):
+        if not on_length(finite(f"stations[{index}]", station), length):
             bound = Text.of("on the beam, ", between(0.0, length, "m"))
-            raise InputError(f"stations[{index}]", place, bound)
-    node = _nodes(ends, [nearest_on(place, length) for place in stations], longest)
+            raise InputError(f"stations[{index}]", station, bound)
+    node = _nodes(ends, [nearest_on(station, length) for station in stations], longest)
     size = PER_NODE * node.size
     mass, stiffness = np.zeros((size, size)), np.zeros((size, size))
     for k, (left, right) in enumerate(pairwise(node)):
@@ -143,14 +143,14 @@ def timoshenko_beam(
 
 def _nodes(ends: FloatArray, stations: Sequence[float], longest: float) -> FloatArray:
     """Return ends of sections, stations, and equal parts between them where these are too long."""
-    given = np.sort(np.concatenate([ends, np.asarray(stations, dtype=float)]))
-    apart = np.concatenate([[True], np.diff(given) > SAME_PLACE * ends[-1]])
-    places = given[apart]
+    positions = np.sort(np.concatenate([ends, np.asarray(stations, dtype=float)]))
+    apart = np.concatenate([[True], np.diff(positions) > SAME_POSITION * ends[-1]])
+    nodes = positions[apart]
     parts = []
-    for left, right in pairwise(places):
-        count = max(math.ceil((right - left) / longest * (1.0 - SAME_PLACE)), 1)
+    for left, right in pairwise(nodes):
+        count = max(math.ceil((right - left) / longest * (1.0 - SAME_POSITION)), 1)
         parts.append(np.linspace(left, right, count, endpoint=False))
-    return np.concatenate([*parts, places[-1:]])
+    return np.concatenate([*parts, nodes[-1:]])
 
 
 def _element(section: BeamSection, length: float) -> tuple[FloatArray, FloatArray]:
@@ -158,10 +158,10 @@ def _element(section: BeamSection, length: float) -> tuple[FloatArray, FloatArra
     mass, stiffness = np.zeros((12, 12)), np.zeros((12, 12))
     bent_mass, bent = _bending(section, length)
     # u_x' = tilt_y, u_y' = -tilt_x
-    for places, slope in (((0, 4, 6, 10), 1.0), ((1, 3, 7, 9), -1.0)):
+    for columns, slope in (((0, 4, 6, 10), 1.0), ((1, 3, 7, 9), -1.0)):
         sign = np.array([1.0, slope, 1.0, slope])
-        mass[np.ix_(places, places)] = sign[:, None] * bent_mass * sign
-        stiffness[np.ix_(places, places)] = sign[:, None] * bent * sign
+        mass[np.ix_(columns, columns)] = sign[:, None] * bent_mass * sign
+        stiffness[np.ix_(columns, columns)] = sign[:, None] * bent * sign
     polar = 2.0 * section.second_moment
     pull = np.array([[1.0, -1.0], [-1.0, 1.0]]) / length
     share = section.density * length / 6.0 * np.array([[2.0, 1.0], [1.0, 2.0]])

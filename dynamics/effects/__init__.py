@@ -8,8 +8,8 @@ from dynamics.effects.effect import (
     MeshAxes,
     MeshEffect,
     MeshOnRotor,
+    RotorRotation,
     SupportedRotor,
-    TurningRotor,
     Verdict,
 )
 from dynamics.effects.registry import EFFECTS, LEFT_OUT, MESH_EFFECTS
@@ -25,7 +25,7 @@ __all__ = [
     "MeshAxes",
     "MeshEffect",
     "MeshOnRotor",
+    "RotorRotation",
     "SupportedRotor",
-    "TurningRotor",
     "Verdict",
 ]

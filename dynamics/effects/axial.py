@@ -19,7 +19,7 @@ class Axial:
         """Call for it where a helical mesh pushes along an axis that bushings hold."""
         if rotor.axial_stiffness == 0.0:
             return Verdict(False, False, "no bushing with axial stiffness: held rigidly", 0.0)
-        worth = sum(mesh.force * mesh.axial**2 for mesh in rotor.meshes) / rotor.axial_stiffness
-        if worth == 0.0:
+        influence = sum(mesh.force * mesh.axial**2 for mesh in rotor.meshes) / rotor.axial_stiffness
+        if influence == 0.0:
             return Verdict(False, True, "spur: no force along the axis", 0.0)
-        return Verdict(True, True, "a helical mesh pushes along the axis", worth)
+        return Verdict(True, True, "a helical mesh pushes along the axis", influence)

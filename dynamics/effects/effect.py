@@ -20,7 +20,7 @@ class MeshOnRotor:
     force : float
         Nominal transverse mesh force, N.
     lever : float
-        Axial distance from the rotor's centre of mass, m.
+        Axial distance from the rotor's center of mass, m.
     axial : float
         Axial over transverse force, tan(base helix angle), >= 0.
     radius : float
@@ -37,17 +37,17 @@ class MeshOnRotor:
 
 
 @dataclass(frozen=True)
-class TurningRotor:
-    """How a rotor turns, and what that does to its natural frequencies.
+class RotorRotation:
+    """Rotation of a rotor, and its share in the natural frequencies.
 
     Attributes
     ----------
     tilt_share : float
         I_p w/(2 sqrt(I_t k_t)) at the largest speed w of the run.
     frame_share : float
-        Largest W/omega of all members of its turning frame: its speed over their lateral natural frequency.
+        Largest W/omega of all members of its rotating frame: its speed over their lateral natural frequency.
     framed, free : bool
-        Whether it is described in a turning frame; whether free rotations turn it.
+        Whether it is described in a rotating frame; whether free rotations turn it.
     """
 
     tilt_share: float = 0.0
@@ -94,11 +94,11 @@ class SupportedRotor:
     radial_stiffness, axial_stiffness, tilt_stiffness : float
         Of all its bushings together, N/m and N m/rad; 0: held rigidly, because nothing else holds it.
     elastic_lever : float
-        Axial distance from the centre of mass to the bushings' elastic centre, m.
+        Axial distance from the center of mass to the bushings' elastic center, m.
     meshes : tuple of MeshOnRotor
     nonlinear : tuple of float
         For each law of its bearings that is not linear, what its tangent misses of the displacement, m.
-    turning : TurningRotor
+    rotation : RotorRotation
     bending : BendingShaft
     """
 
@@ -110,7 +110,7 @@ class SupportedRotor:
     elastic_lever: float
     meshes: tuple[MeshOnRotor, ...]
     nonlinear: tuple[float, ...] = ()
-    turning: TurningRotor = TurningRotor()
+    rotation: RotorRotation = RotorRotation()
     bending: BendingShaft = BendingShaft()
 
     @property
@@ -133,7 +133,7 @@ class MeshAxes:
     misalignments, center_distances : int
         Knots of the table.
     tilts, moves_apart : bool
-        Whether freedoms change misalignment and centre distance.
+        Whether freedoms change misalignment and center distance.
     misaligned, apart : float
         Change of the mean transmission error as the nominal force tilts the shafts and moves them apart, m.
     lever : float or None
@@ -202,17 +202,17 @@ class Verdict:
     ----------
     on : bool
     possible : bool
-        False: the scene has no such freedom or data, and asking for it changes nothing.
+        False: the scene has no such freedom or data, and requesting it changes nothing.
     reason : str
         In words.
-    worth : float
+    influence : float
         Static displacement along the line of action that the effect adds at the nominal force, m.
     """
 
     on: bool
     possible: bool
     reason: str
-    worth: float
+    influence: float
 
 
 class Effect(Protocol):

@@ -21,5 +21,5 @@ class Lateral:
             return Verdict(False, False, "no bushing with radial stiffness: held rigidly", 0.0)
         if not rotor.meshes:
             return Verdict(False, True, "no mesh on this shaft", 0.0)
-        worth = rotor.pushed / rotor.radial_stiffness
-        return Verdict(True, True, "mesh forces push the shaft aside on its bushings", worth)
+        influence = rotor.pushed / rotor.radial_stiffness
+        return Verdict(True, True, "mesh forces displace the shaft on its bushings", influence)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 
 from dynamics.checks import one_of
 from dynamics.effects.effect import Effect, LoadedMesh, MeshEffect, SupportedRotor, Verdict
@@ -22,13 +22,13 @@ class LedgerEntry:
     effect, part : str
         What, and for which shaft or mesh.
     choice : str
-        What the scene asked for: ``"auto"``, ``"on"``, ``"off"``.
+        What the scene requests: ``"auto"``, ``"on"``, ``"off"``.
     on : bool
         What was done.
     reason : str
         Why.
-    worth : float
-        Static displacement along the line of action that the effect is worth at the nominal force, m.
+    influence : float
+        Static displacement along the line of action that the effect adds at the nominal force, m.
     called_for, possible : bool
         What the scene calls for, and whether it has the freedom or the data at all.
     cost : str
@@ -40,17 +40,32 @@ class LedgerEntry:
     choice: str
     on: bool
     reason: str
-    worth: float
+    influence: float
     called_for: bool
     possible: bool
     cost: str
+
+    def to_json(self) -> Json:
+        """Return plain JSON; the influence has the key ``worth``."""
+        return {
+            "effect": self.effect,
+            "part": self.part,
+            "choice": self.choice,
+            "on": self.on,
+            "reason": self.reason,
+            "worth": self.influence,
+            "called_for": self.called_for,
+            "possible": self.possible,
+            "cost": self.cost,
+            "price": self.price,
+        }
 
     @property
     def price(self) -> str:
         """What a choice against the scene costs; empty where it does not."""
         if self.on == self.called_for:
             return ""
-        return self.cost if self.on else f"{1e6 * self.worth:.3g} um of static displacement left out"
+        return self.cost if self.on else f"{1e6 * self.influence:.3g} um of static displacement left out"
 
 
 @dataclass(frozen=True)
@@ -70,7 +85,7 @@ class EffectLedger:
 
     def to_json(self) -> Json:
         """Return plain lists and dictionaries."""
-        entries = [asdict(entry) | {"price": entry.price} for entry in self.entries]
+        entries = [entry.to_json() for entry in self.entries]
         return {"entries": entries, "left_out": dict(LEFT_OUT)}
 
 
@@ -115,6 +130,6 @@ def _decide(
     if choice != "auto" and verdict.possible:
         on = choice == "on"
         if on != verdict.on:
-            reason = f"asked for; else: {verdict.reason}" if on else f"switched off, though: {verdict.reason}"
-    decided = (effect.name, part, choice, on, reason, verdict.worth)
+            reason = f"requested; else: {verdict.reason}" if on else f"switched off, though: {verdict.reason}"
+    decided = (effect.name, part, choice, on, reason, verdict.influence)
     return LedgerEntry(*decided, called_for=verdict.on, possible=verdict.possible, cost=effect.cost)

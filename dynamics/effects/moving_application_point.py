@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from dynamics.effects.effect import LoadedMesh, Verdict
 
-CENTRED = 1e-9  # of the face width
+CENTERED = 1e-9  # of the face width
 
 
 @dataclass(frozen=True)
@@ -18,12 +18,12 @@ class MovingApplicationPoint:
 
     def called_for(self, mesh: LoadedMesh) -> Verdict:
         """Call for it where the load's centroid leaves mid-face and a shaft can tilt."""
-        lever, worth = mesh.axes.lever, mesh.axes.moment
-        if lever is None or worth is None:
+        lever, influence = mesh.axes.lever, mesh.axes.moment
+        if lever is None or influence is None:
             return Verdict(False, False, "the table does not say where along the face the load acts", 0.0)
         if not mesh.axes.tilts:
             return Verdict(False, False, "no shaft can tilt in the plane of action", 0.0)
-        if lever <= CENTRED:
-            return Verdict(False, True, "the load stays centred on the face", 0.0)
+        if lever <= CENTERED:
+            return Verdict(False, True, "the load stays centered on the face", 0.0)
         reason = f"the load's centroid leaves mid-face by up to {100.0 * lever:.3g} % of the face"
-        return Verdict(True, True, reason, worth)
+        return Verdict(True, True, reason, influence)

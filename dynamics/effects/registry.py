@@ -38,5 +38,5 @@ LEFT_OUT: dict[str, str] = {
     "friction of bearings": "bearings turn without loss",
     "point of application along the path of contact": "the mesh force acts at the operating pitch point",
     "flexible members of planetary sets": "sun, ring, carrier and planets are rigid on their shafts",
-    "damping that turns with a flexible shaft": "material damping acts as if the shaft stood",
+    "damping that turns with a flexible shaft": "material damping acts as on a shaft at rest",
 }

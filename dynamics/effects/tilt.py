@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from dynamics.effects.effect import SupportedRotor, Verdict
 
-CENTRED = 1e-9  # of the shaft's length
+CENTERED = 1e-9  # of the shaft's length
 
 
 @dataclass(frozen=True)
@@ -18,23 +18,25 @@ class Tilt:
     cost: str = "two freedoms per shaft"
 
     def called_for(self, rotor: SupportedRotor) -> Verdict:
-        """Call for it where a mesh is off the supports' centre, or has an axial force, which tilts.
+        """Call for it where a mesh is off the supports' center, or has an axial force, which tilts.
 
-        A centre of mass off the supports' centre couples tilt to lateral motion and calls for it too.
+        A center of mass off the supports' center couples tilt to lateral motion and calls for it too.
         """
         if rotor.tilt_stiffness == 0.0:
             return Verdict(False, False, "the bushings do not hold tilt: held rigidly", 0.0)
         arms = [(mesh.lever - rotor.elastic_lever, mesh.axial * mesh.radius) for mesh in rotor.meshes]
-        worth = sum(
+        influence = sum(
             mesh.force * (along**2 + across**2)
             for mesh, (along, across) in zip(rotor.meshes, arms, strict=True)
         )
-        worth /= rotor.tilt_stiffness
-        limit = CENTRED * rotor.length
+        influence /= rotor.tilt_stiffness
+        limit = CENTERED * rotor.length
         if any(across > 0.0 for _, across in arms):
-            return Verdict(True, True, "a helical mesh tilts the shaft", worth)
+            return Verdict(True, True, "a helical mesh tilts the shaft", influence)
         if any(abs(along) > limit for along, _ in arms):
-            return Verdict(True, True, "a mesh is off the supports' centre", worth)
+            return Verdict(True, True, "a mesh is off the supports' center", influence)
         if rotor.meshes and abs(rotor.elastic_lever) > limit:
-            return Verdict(True, True, "the centre of mass is off the supports' centre", worth)
-        return Verdict(False, True, "meshes and mass centred between the supports, no axial force", worth)
+            return Verdict(True, True, "the center of mass is off the supports' center", influence)
+        return Verdict(
+            False, True, "meshes and mass centered between the supports, no axial force", influence
+        )

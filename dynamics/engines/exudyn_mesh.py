@@ -42,7 +42,7 @@ class PlanarMesh:
     internal : bool
         One of the gears is a ring gear.
     misalignment, center_distance_change : float
-        Place on the table's axes, m.
+        Operating point of the table, m.
     """
 
     element: MeshElement
@@ -66,9 +66,9 @@ class PlanarMesh:
 
     def laws(self) -> FlankLaws:
         """Return the force law for the compiled look-up."""
-        place = table_at(self.element.table, self.misalignment, self.center_distance_change)
+        table = table_at(self.element.table, self.misalignment, self.center_distance_change)
         damping, reach = np.array([self.element.damping]), np.array([self.element.reach])
-        return by_address(FlankLaws(pack_tables([place]), damping, reach))
+        return by_address(FlankLaws(pack_tables([table]), damping, reach))
 
 
 def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Drive | None = None) -> Any:
@@ -113,7 +113,7 @@ def add_gear_mesh(mbs: Any, mesh: PlanarMesh, nodes: tuple[Any, Any], drive: Dri
 def user_functions(mesh: PlanarMesh, drive: Drive | None = None) -> tuple[Force, Jacobian]:
     """Return the two functions of the mesh that Exudyn calls.
 
-    Force: (system, t, item, q, v) to the generalised forces on the coordinates q, which are x, y, angle of
+    Force: (system, t, item, q, v) to the generalized forces on the coordinates q, which are x, y, angle of
     the driver and of the driven gear, without the driver's angle if there is a `drive`. Jacobian: (system, t,
     item, q, v, a, b) to -a df/dq - b df/dv at constant position.
     """
@@ -176,5 +176,5 @@ def _evaluate(
         deflection += gradient[k] * coordinate[k]
         speed += gradient[k] * rate[k]
     x = facts[0] + facts[1] * angle
-    force, _, tangent, viscous, place = flank_force(law, 0, x, deflection, speed, hint[0])
-    found[0], found[1], found[2], hint[0] = force, tangent, viscous, place
+    force, _, tangent, viscous, interval = flank_force(law, 0, x, deflection, speed, hint[0])
+    found[0], found[1], found[2], hint[0] = force, tangent, viscous, interval

@@ -144,15 +144,15 @@ def _constant_value(field: str, law: object) -> float:
 
 def _planar_mesh(system: System, sense: int) -> PlanarMesh:
     """Return the mesh in the plane."""
-    given = system.scene.meshes[0]
-    gears = [system.scene.gear(name) for name in (given.driver, given.driven)]
+    scene_mesh = system.scene.meshes[0]
+    gears = [system.scene.gear(name) for name in (scene_mesh.driver, scene_mesh.driven)]
     return PlanarMesh(
-        mesh_element(system.scene, given.name),
+        mesh_element(system.scene, scene_mesh.name),
         (float(system.lines[0].force[0]), float(system.lines[0].force[1])),
         sense,
         any(gear.internal for gear in gears),
-        given.misalignment,
-        given.center_distance_change,
+        scene_mesh.misalignment,
+        scene_mesh.center_distance_change,
     )
 
 
@@ -166,24 +166,24 @@ def _bodies(mbs: Any, system: System, start: dict[str, float], speed: float) -> 
     items, scene, mesh = exudyn().itemInterface, system.scene, system.scene.meshes[0]
     ground = mbs.AddMarker(items.MarkerNodePosition(nodeNumber=mbs.AddNode(items.NodePointGround())))
     nodes = []
-    for place, gear in enumerate((mesh.driver, mesh.driven)):
+    for side, gear in enumerate((mesh.driver, mesh.driven)):
         shaft = scene.shaft_index(scene.gear(gear).shaft)
         rotor, name = system.rotors[shaft], scene.shafts[shaft].name
         at = [start.get(f"{name}.{freedom}", 0.0) for freedom in PLANAR]
-        turning = float(system.kinematics.ratio[shaft][0]) * speed
-        if place == 0:
+        shaft_speed = float(system.kinematics.ratio[shaft][0]) * speed
+        if side == 0:
             node = mbs.AddNode(items.NodePoint2D(referenceCoordinates=[0.0, 0.0], initialCoordinates=at[:2]))
             mbs.AddObject(items.ObjectMassPoint2D(mass=rotor.inertia.mass, nodeNumber=node))
         else:
             node = mbs.AddNode(
-                items.NodeRigidBody2D(initialCoordinates=at, initialVelocities=[0.0, 0.0, turning])
+                items.NodeRigidBody2D(initialCoordinates=at, initialVelocities=[0.0, 0.0, shaft_speed])
             )
             body = {"mass": rotor.inertia.mass, "inertia": rotor.inertia.polar, "nodeNumber": node}
             mbs.AddObject(items.ObjectRigidBody2D(**body))
             marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
             torque = sum(load.torque.value[0] for load in scene.loads if load.shaft == name)
             mbs.AddLoad(
-                items.LoadCoordinate(markerNumber=marker, load=-math.copysign(torque, turning * torque))
+                items.LoadCoordinate(markerNumber=marker, load=-math.copysign(torque, shaft_speed * torque))
             )
         _add_bushings(mbs, [ground, mbs.AddMarker(items.MarkerNodePosition(nodeNumber=node))], rotor.bushings)
         nodes.append(node)

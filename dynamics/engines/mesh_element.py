@@ -28,7 +28,7 @@ class MeshElement:
     Attributes
     ----------
     table : MeshTable
-        May have axes of misalignment and centre-distance change.
+        May have axes of misalignment and center-distance change.
     teeth : (int, int)
         Of the driver and the driven gear.
     base_radius : (float, float)
@@ -101,15 +101,15 @@ def mesh_element(scene: Scene, mesh: str) -> MeshElement:
         raise InputError("mesh", mesh, f"one of {', '.join(names)}")
     index = names.index(mesh)
     system = assemble(scene)
-    flanks, given = system.flanks, scene.meshes[index]
-    driver, driven = system.scene.gear(given.driver), system.scene.gear(given.driven)
+    flanks, scene_mesh = system.flanks, scene.meshes[index]
+    driver, driven = system.scene.gear(scene_mesh.driver), system.scene.gear(scene_mesh.driven)
     return MeshElement(
-        given.table if given.technique == "variable_torque" else flanks.used[index],
+        scene_mesh.table if scene_mesh.technique == "variable_torque" else flanks.used[index],
         (driver.teeth, driven.teeth),
         (driver.base_radius, driven.base_radius),
         driver.base_helix_angle,
         float(flanks.law.damping[index]),
         float(flanks.law.reach[index]),
-        given.position_offset,
-        given.coast if index in flanks.coast else None,
+        scene_mesh.position_offset,
+        scene_mesh.coast if index in flanks.coast else None,
     )

@@ -88,11 +88,11 @@ def units_dataset() -> str:
 
 
 def nodes_dataset(nodes: Iterable[tuple[int, FloatArray]]) -> str:
-    """Return dataset 2411: labels and places (3,) in m, in the fixed frame."""
+    """Return dataset 2411: labels and positions (3,) in m, in the fixed frame."""
     records = []
-    for label, place in nodes:
+    for label, origin in nodes:
         records.append(f"{label:10d}{1:10d}{1:10d}{11:10d}")
-        records.append("".join(f"{value:25.16E}" for value in place).replace("E", "D"))
+        records.append("".join(f"{value:25.16E}" for value in origin).replace("E", "D"))
     return _dataset(2411, records)
 
 
@@ -100,14 +100,14 @@ def function_dataset(function: NodalFunction) -> str:
     """Return dataset 58 of one function."""
     lines = [line[:80] for line in (*function.lines, *["NONE"] * 5)][:5]
     entity = f"{function.entity[:10]:<10}"
-    place = f" {entity}{function.node:10d}{function.direction:4d} {'NONE':<10}{0:10d}{0:4d}"
+    node = f" {entity}{function.node:10d}{function.direction:4d} {'NONE':<10}{0:10d}{0:4d}"
     form = f"{DOUBLE:10d}{function.values.size:10d}{EVEN:10d}"
     axes = [_axis(quantity) for quantity in (function.abscissa, function.ordinate, None, None)]
     return _dataset(
         58,
         [
             *lines,
-            f"{function.kind:5d}{0:10d}{0:5d}{0:10d}{place}",
+            f"{function.kind:5d}{0:10d}{0:5d}{0:10d}{node}",
             f"{form}{function.first:13.5E}{function.increment:13.5E}{0.0:13.5E}",
             *axes,
             *_numbers(function.values),

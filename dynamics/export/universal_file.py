@@ -54,7 +54,7 @@ def write_universal_file(
 ) -> int:
     """Write bearing forces, moments and accelerations, mesh forces and transmission errors, if there.
 
-    Units (dataset 164), places of bearings and meshes (2411), one dataset 58 per component. Directions 1, 2,
+    Units (dataset 164), positions of bearings and meshes (2411), a dataset 58 per component. Directions 1, 2,
     3 are x, y, z of the fixed frame (of a planet bearing: of its carrier's), 4, 5, 6 moments about them, 0 a
     scalar. The format keeps six digits of the abscissa's increment and thirteen of every ordinate.
 
@@ -117,15 +117,17 @@ def _functions(result: RunResult, function: str) -> Iterator[NodalFunction]:
         at_mesh = values.ndim == 2
         names = result.mesh if at_mesh else result.bearing
         turned = 3 if series in ROTATIONS else 0
-        for place in np.ndindex(values.shape[:-1]):
-            direction = 0 if at_mesh else place[1] + 1 + turned
-            component = "" if at_mesh else f" {'xyz'[place[1]]}"
-            title = f"{series} {names[place[0]]}{component} ({ordinate.unit})"
+        for component_index in np.ndindex(values.shape[:-1]):
+            direction = 0 if at_mesh else component_index[1] + 1 + turned
+            component = "" if at_mesh else f" {'xyz'[component_index[1]]}"
+            title = f"{series} {names[component_index[0]]}{component} ({ordinate.unit})"
             rate = f"{result.sample_rate:.17g} samples per second"
             lines = (title, TEXT[function], "NONE", f"lineofaction, {rate}")
-            node = place[0] + (FIRST_MESH_NODE if at_mesh else 1)
+            node = component_index[0] + (FIRST_MESH_NODE if at_mesh else 1)
             axes = (abscissa, ordinate, first, increment)
-            yield NodalFunction(kind, lines, names[place[0]], node, direction, *axes, values[place])
+            yield NodalFunction(
+                kind, lines, names[component_index[0]], node, direction, *axes, values[component_index]
+            )
 
 
 def _values(result: RunResult, series: str, function: str) -> tuple[float, float, FloatArray]:
@@ -141,7 +143,7 @@ def _values(result: RunResult, series: str, function: str) -> tuple[float, float
 
 
 def _nodes(result: RunResult) -> list[tuple[int, FloatArray]]:
-    """Label and place of every bearing that was stored, and of every mesh."""
+    """Label and position of every bearing that was stored, and of every mesh."""
     origin = {shaft["name"]: np.array(shaft["origin"]) for shaft in result.case["shafts"]}
     parts: list[Json] = [*result.case["bushings"], *result.case["planet_bearings"]]
     seat = {part["name"]: origin[part["shaft"]] + [0.0, 0.0, part["position"]] for part in parts}

@@ -166,23 +166,23 @@ def _read_field(context: Any, builder: Any, kind: AddressType, address: Any, nam
     found = kind.find(name)
     assert found is not None  # typing has found it
     field, first = found
-    place = builder.gep(address, [WORD(first)])
+    location = builder.gep(address, [WORD(first)])
     if isinstance(field, AddressType):
-        return place
+        return location
     if isinstance(field, types.Array):
-        return _array(context, builder, field, place)
-    word = _load(builder, place)
+        return _array(context, builder, field, location)
+    word = _load(builder, location)
     if field is types.boolean:
         return builder.icmp_unsigned("!=", word, WORD(0))
     return builder.bitcast(word, ir.DoubleType()) if field is types.float64 else word
 
 
-def _array(context: Any, builder: Any, field: Any, place: Any) -> Any:
-    """Return the array whose address and lengths begin at `place`."""
+def _array(context: Any, builder: Any, field: Any, location: Any) -> Any:
+    """Return the array whose address and lengths begin at `location`."""
     array = make_array(field)(context, builder)
     item = context.get_data_type(field.dtype)
-    data = builder.inttoptr(_load(builder, place), item.as_pointer())
-    shape = [_load(builder, builder.gep(place, [WORD(1 + axis)])) for axis in range(field.ndim)]
+    data = builder.inttoptr(_load(builder, location), item.as_pointer())
+    shape = [_load(builder, builder.gep(location, [WORD(1 + axis)])) for axis in range(field.ndim)]
     size = context.get_abi_sizeof(item)
     strides = [WORD(size)]
     for length in shape[:0:-1]:
@@ -191,8 +191,8 @@ def _array(context: Any, builder: Any, field: Any, place: Any) -> Any:
     return array._getvalue()
 
 
-def _load(builder: Any, place: Any) -> Any:
+def _load(builder: Any, location: Any) -> Any:
     """Read a word that never changes, so that the compiler may read it once for a whole loop."""
-    word = builder.load(place)
+    word = builder.load(location)
     word.set_metadata("invariant.load", builder.module.add_metadata([]))
     return word

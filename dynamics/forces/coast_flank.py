@@ -1,6 +1,6 @@
 """The coast flank: the other side of the teeth, which touches when backlash is used up.
 
-Turned by pi about the line of centres, a pair that is pushed on its coast flanks looks like the same pair
+Turned by pi about the line of centers, a pair that is pushed on its coast flanks looks like the same pair
 driven in the other sense: hands stay, and the force law is the driving flank's as long as teeth are alike on
 both sides. What changes is the position: the driver's coast flank passes the pitch point when the driver has
 turned on by its tooth's thickness from where the drive flank passed. With x the position of the driving
@@ -26,7 +26,7 @@ class CoastFlank:
     Attributes
     ----------
     backlash : float
-        m, >= 0, along the transverse line of action (an arc of the base circles), at the scene's centre
+        m, >= 0, along the transverse line of action (an arc of the base circles), at the scene's center
         distance; 0 is that of nominal gears.
     thickness : float
         Thickness of the driver's teeth over the pitch, both on the operating pitch circle.

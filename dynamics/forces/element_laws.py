@@ -1,6 +1,6 @@
 """Compiled force elements: one evaluation for all, which hands each to its law by kind.
 
-An element has p local coordinates y = G q + y0 in metres and gives p local forces f(y, y', x) in newtons,
+An element has p local coordinates y = G q + y0 in meters and gives p local forces f(y, y', x) in newtons,
 which act on the freedoms as -G^T f. To add a law: its file (what a scene holds, packed arrays, compiled
 function), a member of `Law`, a field of `ElementLaws`, a branch in `evaluate` and in `potential`.
 """
@@ -26,11 +26,11 @@ from dynamics.forces.rolling_contact import (
     rolling_contact,
     rolling_contact_energy,
 )
+from dynamics.forces.rotating_frame import RotatingFrameLaws, rotating_frame, rotating_frame_energy
 from dynamics.forces.spatial_flank import SpatialFlankLaws, spatial_energy, spatial_flank
 from dynamics.forces.speed_torque import SpeedTorqueLaws, speed_torque
 from dynamics.forces.spring_curve import SpringCurveLaws, spring_curve, spring_curve_energy
 from dynamics.forces.table_energy import table_energy
-from dynamics.forces.turning import TurningLaws, turning, turning_energy
 from dynamics.types import FloatArray, IntArray
 
 
@@ -41,15 +41,15 @@ class Law(IntEnum):
     SPEED_TORQUE = 1  # p = 1: a torque that depends on a shaft's speed
     ROLLING_CONTACT = 2  # p = 2: a rolling bearing's radial force
     SPRING_CURVE = 3  # p = 1: a bearing's force by displacement in one direction
-    SPATIAL_FLANK = 4  # p = 1 to 5: a flank that feels misalignment, centre distance, friction
-    TURNING = 5  # p = 2 or 3: gyroscopic moments, Coriolis and centripetal terms
+    SPATIAL_FLANK = 4  # p = 1 to 5: a flank that feels misalignment, center distance, friction
+    ROTATING_FRAME = 5  # p = 2 or 3: gyroscopic moments, Coriolis and centripetal terms
     FRAME_COUPLING = 6  # p = 4 or 8: a coupling of shafts in frames that turn against each other
 
 
 FLANK, SPEED_TORQUE = int(Law.FLANK), int(Law.SPEED_TORQUE)
 ROLLING_CONTACT, SPRING_CURVE = int(Law.ROLLING_CONTACT), int(Law.SPRING_CURVE)
 SPATIAL_FLANK = int(Law.SPATIAL_FLANK)
-TURNING, FRAME_COUPLING = int(Law.TURNING), int(Law.FRAME_COUPLING)
+ROTATING_FRAME, FRAME_COUPLING = int(Law.ROTATING_FRAME), int(Law.FRAME_COUPLING)
 
 
 class ElementLaws(NamedTuple):
@@ -60,7 +60,7 @@ class ElementLaws(NamedTuple):
     rolling_contact: RollingContactLaws
     spring_curve: SpringCurveLaws
     spatial_flank: SpatialFlankLaws
-    turning: TurningLaws
+    rotating_frame: RotatingFrameLaws
     frame_coupling: FrameCouplingLaws
 
 
@@ -71,7 +71,7 @@ class Elements(NamedTuple):
     ----------
     law : (E,) int array
         See `Law`.
-    place : (E,) int array
+    entry : (E,) int array
         Of each within the arrays of its law.
     first : (E + 1,) int array
         First row of each element, and R.
@@ -85,12 +85,12 @@ class Elements(NamedTuple):
     stiffness : (R,) array
         Typical stiffness of bearings, N/m, for error norms and first guesses; 0 for all others.
     speed : (E, 2, k) array
-        Spin of a shaft and speed of its frame per unit speed of each law; for turning terms.
+        Spin of a shaft and speed of its frame per unit speed of each law; for rotating-frame terms.
     laws : ElementLaws
     """
 
     law: IntArray
-    place: IntArray
+    entry: IntArray
     first: IntArray
     mesh: IntArray
     offset: FloatArray
@@ -124,7 +124,7 @@ ROUTINES = {
     Law.ROLLING_CONTACT: (rolling_contact, rolling_contact_energy),
     Law.SPRING_CURVE: (spring_curve, spring_curve_energy),
     Law.SPATIAL_FLANK: (spatial_flank, spatial_energy),
-    Law.TURNING: (turning, turning_energy),
+    Law.ROTATING_FRAME: (rotating_frame, rotating_frame_energy),
     Law.FRAME_COUPLING: (frame_coupling, frame_coupling_energy),
 }
 """What a kind of law is compiled from, when a scene first has it; flanks are compiled into every loop."""
@@ -141,12 +141,12 @@ def prepare_laws(elements: Elements) -> None:
 @inner
 def evaluate(elements: Elements, local: LocalState, e: int) -> None:
     """Write forces and derivatives of element `e` at the coordinates, rates and position in `local`."""
-    row, place, laws = elements.first[e], elements.place[e], elements.laws
+    row, entry, laws = elements.first[e], elements.entry[e], elements.laws
     kind = elements.law[e]
     if kind == FLANK:
         force, elastic, tangent, viscous, hint = flank_force(
             laws.flank,
-            place,
+            entry,
             local.position[elements.mesh[e]],
             local.coordinate[row],
             local.rate[row],
@@ -155,59 +155,59 @@ def evaluate(elements: Elements, local: LocalState, e: int) -> None:
         local.force[row], local.elastic[row], local.hint[e] = force, elastic, hint
         local.tangent[row, 0], local.viscous[row, 0] = tangent, viscous
     elif kind == SPEED_TORQUE:
-        speed_torque(laws.speed_torque, place, local, row)
+        speed_torque(laws.speed_torque, entry, local, row)
     elif kind == ROLLING_CONTACT:
-        rolling_contact(laws.rolling_contact, place, local, row)
+        rolling_contact(laws.rolling_contact, entry, local, row)
     elif kind == SPRING_CURVE:
-        spring_curve(laws.spring_curve, place, local, row)
+        spring_curve(laws.spring_curve, entry, local, row)
     elif kind == SPATIAL_FLANK:
-        spatial_flank(laws.spatial_flank, place, local, row, e, elements.mesh[e])
-    elif kind == TURNING:
-        turning(laws.turning, place, local, row, e)
+        spatial_flank(laws.spatial_flank, entry, local, row, e, elements.mesh[e])
+    elif kind == ROTATING_FRAME:
+        rotating_frame(laws.rotating_frame, entry, local, row, e)
     elif kind == FRAME_COUPLING:
-        frame_coupling(laws.frame_coupling, place, local, row, elements.mesh[e])
+        frame_coupling(laws.frame_coupling, entry, local, row, elements.mesh[e])
 
 
 @inner
 def potential(elements: Elements, local: LocalState, e: int) -> tuple[float, float]:
     """Return the energy element `e` stores, J, and its derivative in the position, J per base pitch."""
-    row, place, laws = elements.first[e], elements.place[e], elements.laws
+    row, entry, laws = elements.first[e], elements.entry[e], elements.laws
     kind = elements.law[e]
     if kind == FLANK:
         x = local.position[elements.mesh[e]]
-        return table_energy(laws.flank.table, place, x, local.coordinate[row], local.hint[e])
+        return table_energy(laws.flank.table, entry, x, local.coordinate[row], local.hint[e])
     if kind == ROLLING_CONTACT:
-        return rolling_contact_energy(laws.rolling_contact, place, local, row), 0.0
+        return rolling_contact_energy(laws.rolling_contact, entry, local, row), 0.0
     if kind == SPRING_CURVE:
-        return spring_curve_energy(laws.spring_curve, place, local, row), 0.0
+        return spring_curve_energy(laws.spring_curve, entry, local, row), 0.0
     if kind == SPATIAL_FLANK:
-        energy, slope, _, _ = spatial_energy(laws.spatial_flank, place, local, row, elements.mesh[e])
+        energy, slope, _, _ = spatial_energy(laws.spatial_flank, entry, local, row, elements.mesh[e])
         return energy, slope
     energy, slope = 0.0, 0.0
-    if kind == TURNING:
-        energy = turning_energy(laws.turning, place, local, row, e)
+    if kind == ROTATING_FRAME:
+        energy = rotating_frame_energy(laws.rotating_frame, entry, local, row, e)
     elif kind == FRAME_COUPLING:
-        energy, slope = frame_coupling_energy(laws.frame_coupling, place, local, row, elements.mesh[e])
+        energy, slope = frame_coupling_energy(laws.frame_coupling, entry, local, row, elements.mesh[e])
     return energy, slope
 
 
 @inner
-def given_along_axes(elements: Elements, local: LocalState, e: int) -> float:
+def power_along_axes(elements: Elements, local: LocalState, e: int) -> float:
     """Return the power that the elastic forces along a table's axes give to the bodies, W."""
     if elements.law[e] != SPATIAL_FLANK:
         return 0.0
-    row, place, laws = elements.first[e], elements.place[e], elements.laws.spatial_flank
+    row, entry, laws = elements.first[e], elements.entry[e], elements.laws.spatial_flank
     power = 0.0
     for axis in range(2):
-        to = laws.row[place, axis]
+        to = laws.row[entry, axis]
         if to > 0:
             power += local.elastic[row + to] * local.rate[row + to]
     return power
 
 
 @inner
-def given_by_frames(elements: Elements, local: LocalState, e: int) -> float:
-    """Return what the turning of frames against each other stores in a coupling across them, W."""
+def power_by_frames(elements: Elements, local: LocalState, e: int) -> float:
+    """Return what the rotation of frames against each other stores in a coupling across them, W."""
     if elements.law[e] != FRAME_COUPLING:
         return 0.0
     return potential(elements, local, e)[1] * float(local.pace[elements.mesh[e]])
@@ -218,5 +218,5 @@ def slides(elements: Elements, e: int, row: int) -> bool:
     """Return whether `row` of element `e` carries sliding friction."""
     if elements.law[e] != SPATIAL_FLANK:
         return False
-    first = elements.laws.spatial_flank.row[elements.place[e], 2]
+    first = elements.laws.spatial_flank.row[elements.entry[e], 2]
     return bool(first > 0 and row >= elements.first[e] + first)

@@ -61,22 +61,22 @@ def _strain_rate(
 
 
 @routine
-def frame_coupling(laws: FrameCouplingLaws, place: int, local: LocalState, row: int, turned: int) -> None:
+def frame_coupling(laws: FrameCouplingLaws, entry: int, local: LocalState, row: int, turned: int) -> None:
     """Write forces and derivatives into the 2 n rows of a coupling, the first of which is `row`.
 
     The position `turned` is psi, in revolutions.
     """
     coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
     tangent, viscous = local.tangent, local.viscous
-    n, k, damping = laws.size[place], laws.stiffness, laws.damping
+    n, k, damping = laws.size[entry], laws.stiffness, laws.damping
     angle, turn = 2.0 * math.pi * local.position[turned], 2.0 * math.pi * local.pace[turned]
     c, s = math.cos(angle), math.sin(angle)
     for i in range(n):
         spring, total = 0.0, 0.0
         for j in range(n):
-            pull = k[place, i, j] * _strain(row, n, j, c, s, coordinate)
+            pull = k[entry, i, j] * _strain(row, n, j, c, s, coordinate)
             spring += pull
-            total += pull + damping[place, i, j] * _strain_rate(row, n, j, c, s, turn, coordinate, rate)
+            total += pull + damping[entry, i, j] * _strain_rate(row, n, j, c, s, turn, coordinate, rate)
         elastic[row + i], force[row + i] = spring, total
     for i in range(n):  # turned back into the second frame
         elastic[row + n + i] = -_turned(row, i, c, -s, elastic)
@@ -86,31 +86,31 @@ def frame_coupling(laws: FrameCouplingLaws, place: int, local: LocalState, row: 
             other = j + 1 if j % 2 == 0 else j - 1
             sign = 1.0 if j % 2 == 0 else -1.0
             # d d'/d b = -psi' J R adds C psi' J to the stiffness that b sees
-            seen = k[place, i, j] + turn * sign * damping[place, i, other]
-            beside = k[place, i, other] - turn * sign * damping[place, i, j]
-            tangent[row + i, j] = k[place, i, j]
+            seen = k[entry, i, j] + turn * sign * damping[entry, i, other]
+            beside = k[entry, i, other] - turn * sign * damping[entry, i, j]
+            tangent[row + i, j] = k[entry, i, j]
             tangent[row + i, n + j] = -(c * seen + sign * s * beside)
             tangent[row + n + i, n + j] = seen
             # R^T K = K R^T
-            tangent[row + n + i, j] = -(c * k[place, i, j] - sign * s * k[place, i, other])
-            viscous[row + i, j] = damping[place, i, j]
-            viscous[row + i, n + j] = -(c * damping[place, i, j] + sign * s * damping[place, i, other])
-            viscous[row + n + i, n + j] = damping[place, i, j]
-            viscous[row + n + i, j] = -(c * damping[place, i, j] - sign * s * damping[place, i, other])
+            tangent[row + n + i, j] = -(c * k[entry, i, j] - sign * s * k[entry, i, other])
+            viscous[row + i, j] = damping[entry, i, j]
+            viscous[row + i, n + j] = -(c * damping[entry, i, j] + sign * s * damping[entry, i, other])
+            viscous[row + n + i, n + j] = damping[entry, i, j]
+            viscous[row + n + i, j] = -(c * damping[entry, i, j] - sign * s * damping[entry, i, other])
 
 
 @routine
 def frame_coupling_energy(
-    laws: FrameCouplingLaws, place: int, local: LocalState, row: int, turned: int
+    laws: FrameCouplingLaws, entry: int, local: LocalState, row: int, turned: int
 ) -> tuple[float, float]:
     """Return the energy stored, J, and its derivative in psi, J per revolution."""
-    n, coordinate, angle = laws.size[place], local.coordinate, 2.0 * math.pi * local.position[turned]
+    n, coordinate, angle = laws.size[entry], local.coordinate, 2.0 * math.pi * local.position[turned]
     c, s = math.cos(angle), math.sin(angle)
     energy, slope = 0.0, 0.0
     for i in range(n):
         spring = 0.0
         for j in range(n):
-            spring += laws.stiffness[place, i, j] * _strain(row, n, j, c, s, coordinate)
+            spring += laws.stiffness[entry, i, j] * _strain(row, n, j, c, s, coordinate)
         other = i + 1 if i % 2 == 0 else i - 1
         sign = -1.0 if i % 2 == 0 else 1.0
         energy += 0.5 * spring * _strain(row, n, i, c, s, coordinate)

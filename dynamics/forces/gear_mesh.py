@@ -39,7 +39,7 @@ class GearMesh:
     position_offset : float
         Position in base pitches at t = 0.
     misalignment, center_distance_change : float
-        m; where the table has such axes, the constant place at which it is used.
+        m; where the table has such axes, the constant operating point at which it is used.
     coast : CoastFlank or None
         The backs of the teeth, for the effect ``"backlash"``. None: only the driving flank carries force.
     friction : float or None

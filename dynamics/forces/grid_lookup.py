@@ -1,7 +1,7 @@
-"""Compiled look-up over position, misalignment, centre distance and deflection, with all derivatives.
+"""Compiled look-up over position, misalignment, center distance and deflection, with all derivatives.
 
 Every knot carries a value and its mixed derivatives; the interpolant is the tensor product of cubic Hermite
-pieces, as fe_contact evaluates it. Beyond the ends of misalignment and centre distance the last value holds.
+pieces, as fe_contact evaluates it. Beyond the ends of misalignment and center distance the last value holds.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Cell(NamedTuple):
 
 
 class Sample(NamedTuple):
-    """A quantity with its derivatives in position, misalignment and centre distance."""
+    """A quantity with its derivatives in position, misalignment and center distance."""
 
     value: float
     x: float

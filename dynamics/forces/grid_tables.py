@@ -1,4 +1,4 @@
-"""Mesh-force tables over position, misalignment and centre distance, laid out for the compiled look-up."""
+"""Mesh-force tables over position, misalignment and center distance, laid out for the compiled look-up."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ class GridTables(NamedTuple):
     Attributes
     ----------
     base : PackedTables
-        Knots of position and levels, and the first place of the other axes.
+        Knots of position and levels, and the first knot of the other axes.
     shape : (k, 3) int array
-        Knots of misalignment, centre distance and position.
+        Knots of misalignment, center distance and position.
     channels : (k,) int array
         Quantities per level: deflection, stiffness, then the value and slope in force of each lever.
     axis_first : (k, 2) int array
-        First knot of misalignment and centre distance in `axis`.
+        First knot of misalignment and center distance in `axis`.
     axis : flat array
         Their knots, m.
     first : (k,) int array
         First number of each table.
     number : flat array
-        By misalignment, centre distance, position, level, channel and order of differentiation: in
-        misalignment and centre distance (where they have a second knot), then in position.
+        By misalignment, center distance, position, level, channel and order of differentiation: in
+        misalignment and center distance (where they have a second knot), then in position.
     """
 
     base: PackedTables
@@ -45,7 +45,7 @@ class GridTables(NamedTuple):
 
 
 def pack_grids(tables: Sequence[MeshTable]) -> GridTables:
-    """Lay out `tables`; those with more than one place carry their derivatives along the axes."""
+    """Lay out `tables`; those with more than one operating point carry their derivatives along the axes."""
     numbers = [_numbers(table) for table in tables]
     axes = [np.ravel(getattr(t, name)) for t in tables for name in ("misalignment", "center_distance_change")]
     starts = np.cumsum([0, *(axis.size for axis in axes)])[:-1].reshape(-1, 2)
@@ -66,8 +66,8 @@ def pack_grids(tables: Sequence[MeshTable]) -> GridTables:
 def _numbers(table: MeshTable) -> FloatArray:
     """Return (M, D, P, L, channels, orders)."""
     channels = [
-        _given(table, "deflection"),
-        _given(table, "stiffness"),
+        _values_of(table, "deflection"),
+        _values_of(table, "stiffness"),
     ]
     for name in LEVERS:
         values = getattr(table, name, None)
@@ -78,7 +78,7 @@ def _numbers(table: MeshTable) -> FloatArray:
     return np.stack([np.stack([c[order] for order in orders], axis=-1) for c in channels], axis=-2)
 
 
-def _given(table: MeshTable, name: str) -> FloatArray:
+def _values_of(table: MeshTable, name: str) -> FloatArray:
     """Return a quantity with the derivatives that the table gives, (2, 2, 2, M, D, P, L)."""
     derivative = getattr(table, f"{name}_derivative", None)
     if derivative is not None:

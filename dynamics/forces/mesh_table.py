@@ -40,12 +40,12 @@ class MeshTable(Protocol):
     A table may also have, for effects that need them (None or left out: it has not):
 
     deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays
-        Differentiated once (1) or not (0) in misalignment, centre-distance change and position.
+        Differentiated once (1) or not (0) in misalignment, center-distance change and position.
     face_centroid : (M, D, P, L) array
         Centroid of the load from mid-face of the driving gear, m, towards positive z of a driving gear that
         turns clockwise seen from there.
     sliding_share, sliding_lever : (M, D, P, L) arrays
-        Sums over the pairs of load share times the sign of y, and times |y| (m), y the place of a pair's
+        Sums over the pairs of load share times the sign of y, and times |y| (m), y the position of a pair's
         contact from the pitch point, > 0 where it recedes.
     """
 
@@ -97,9 +97,9 @@ def _check_optional(field: str, table: MeshTable, shape: tuple[int, ...]) -> Non
     """Raise `InputError` if an array that a table may have is there with another shape."""
     for names, wanted in ((DERIVATIVES, (2, 2, 2, *shape)), (LEVERS, shape)):
         for name in names:
-            given = getattr(table, name, None)
-            if given is None:
+            field_values = getattr(table, name, None)
+            if field_values is None:
                 continue
-            values = np.asarray(given)
+            values = np.asarray(field_values)
             if values.shape != wanted or not np.all(np.isfinite(values)):
                 raise InputError(f"{field}.{name}", f"shape {values.shape}", f"finite, of shape {wanted}")

@@ -49,7 +49,7 @@ class PackedTables(NamedTuple):
 
 
 def pack_tables(tables: Sequence[MeshTable]) -> PackedTables:
-    """Lay out `tables`, each with misalignment and centre-distance axes of length 1."""
+    """Lay out `tables`, each with misalignment and center-distance axes of length 1."""
     knots = [_closed(table) for table in tables]
     relative = [knot - knot[0] for knot in knots]
     buckets = [bucket_starts(knot) for knot in relative]

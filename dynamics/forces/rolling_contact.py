@@ -70,7 +70,7 @@ class RollingContact:
         return self.exponent * force / press
 
     def typical_load(self, load: float) -> float:
-        """Return `load` (N), or what presses the contact by a micrometre where that is more."""
+        """Return `load` (N), or what presses the contact by a micrometer where that is more."""
         return float(max(load, self.stiffness * LEAST_PRESS**self.exponent))
 
 
@@ -109,7 +109,7 @@ def pack_rolling_contacts(
 
 
 @routine
-def rolling_contact(laws: RollingContactLaws, place: int, local: LocalState, row: int) -> None:
+def rolling_contact(laws: RollingContactLaws, entry: int, local: LocalState, row: int) -> None:
     """Write forces and derivatives of a contact into its two rows, the first of which is `row`.
 
     With e = u/r and w = e u': F = max(0, K(r) + c s(K/reach) w), s as for flanks, force F e, and
@@ -120,19 +120,19 @@ def rolling_contact(laws: RollingContactLaws, place: int, local: LocalState, row
     tangent, viscous = local.tangent, local.viscous
     x, y = coordinate[row], coordinate[row + 1]
     distance = math.sqrt(x * x + y * y)
-    press = distance - laws.clearance[place]
+    press = distance - laws.clearance[entry]
     for k in range(2):
         force[row + k], elastic[row + k] = 0.0, 0.0
         for j in range(2):
             tangent[row + k, j], viscous[row + k, j] = 0.0, 0.0
     if press <= 0.0:
         return
-    exponent = laws.exponent[place]
-    spring = laws.stiffness[place] * press**exponent
+    exponent = laws.exponent[entry]
+    spring = laws.stiffness[entry] * press**exponent
     slope = exponent * spring / press
-    ratio = min(spring / laws.reach[place], 1.0)
-    fade = laws.damping[place] * ratio * ratio * (3.0 - 2.0 * ratio)
-    fade_slope = laws.damping[place] * 6.0 * ratio * (1.0 - ratio) / laws.reach[place] * slope
+    ratio = min(spring / laws.reach[entry], 1.0)
+    fade = laws.damping[entry] * ratio * ratio * (3.0 - 2.0 * ratio)
+    fade_slope = laws.damping[entry] * 6.0 * ratio * (1.0 - ratio) / laws.reach[entry] * slope
     e = (x / distance, y / distance)
     moving = (rate[row], rate[row + 1])
     along = e[0] * moving[0] + e[1] * moving[1]
@@ -152,11 +152,11 @@ def rolling_contact(laws: RollingContactLaws, place: int, local: LocalState, row
 
 
 @routine
-def rolling_contact_energy(laws: RollingContactLaws, place: int, local: LocalState, row: int) -> float:
+def rolling_contact_energy(laws: RollingContactLaws, entry: int, local: LocalState, row: int) -> float:
     """Return the energy stored at the displacement in `row` and the next, J."""
     x, y = local.coordinate[row], local.coordinate[row + 1]
-    press = math.sqrt(x * x + y * y) - laws.clearance[place]
+    press = math.sqrt(x * x + y * y) - laws.clearance[entry]
     if press <= 0.0:
         return 0.0
-    higher = laws.exponent[place] + 1.0
-    return float(laws.stiffness[place] * press**higher / higher)
+    higher = laws.exponent[entry] + 1.0
+    return float(laws.stiffness[entry] * press**higher / higher)

@@ -2,7 +2,7 @@
 
 What an ordinary compiled function calls becomes part of it, and is compiled anew with every caller. A routine
 is compiled once, when it is prepared, and found through a slot that holds its address: for what is large and
-called from several places, and for what most runs never call.
+called from several functions, and for what most runs never call.
 """
 
 # numba annotates little of what extends it
@@ -47,9 +47,9 @@ class Routine:
         """Compile it or read the cache, once; `tuples` show the layout of those it takes, in their order."""
         if self._slot[0]:
             return
-        given = iter(tuples)
+        values = iter(tuples)
         hints = self._arguments
-        kinds = tuple(SCALARS.get(hint) or by_address(next(given))._numba_type_ for hint in hints)
+        kinds = tuple(SCALARS.get(hint) or by_address(next(values))._numba_type_ for hint in hints)
         self._dispatcher.compile(kinds)
         found = self._dispatcher.overloads[kinds]
         self._slot[0] = found.library.get_pointer_to_function(found.fndesc.llvm_func_name)
@@ -58,9 +58,9 @@ class Routine:
         """Call it from Python."""
         return self._dispatcher(*arguments)
 
-    def typed(self, given: tuple[Any, ...]) -> Any:
+    def typed(self, values: tuple[Any, ...]) -> Any:
         """Return the compiled signature: numbers as annotated, tuples as given."""
-        kinds = (SCALARS.get(hint, kind) for hint, kind in zip(self._arguments, given, strict=True))
+        kinds = (SCALARS.get(hint, kind) for hint, kind in zip(self._arguments, values, strict=True))
         return signature(self._result, *kinds)
 
     @cached_property

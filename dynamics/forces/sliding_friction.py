@@ -1,7 +1,7 @@
 """Compiled Coulomb friction of sliding flanks: against the sliding velocity, never driving.
 
-A table tells, of the pairs in contact at y_j with the load shares c_j, sigma = sum c_j sign(y_j) and
-kappa = sum c_j |y_j|. They stand for two contacts at +-kappa with the shares (1 +- sigma)/2. With v the rate
+A table states, of the pairs in contact at y_j with the load shares c_j, sigma = sum c_j sign(y_j) and
+kappa = sum c_j |y_j|. They represent two contacts at +-kappa with the shares (1 +- sigma)/2. With v the rate
 of sliding at the pitch point and w the relative rotation of the gears these slide at v +- kappa w, and a
 normal force f loses the power
 
@@ -19,7 +19,7 @@ from dynamics.forces.compiled import inner
 
 CREEP_SPEED = 1e-3
 """m/s: friction has its full size from this sliding speed on, and a smooth one through zero below it. Flanks
-that stick in truth creep at up to it; a pair of 4 mm module turning at 10 rpm slides ten times as fast at the
+that stick in truth creep at up to it; a pair of 4 mm module at 10 rpm slides ten times as fast at the
 ends of contact."""
 
 

@@ -1,7 +1,7 @@
-"""Compiled force of a flank in space: misalignment, centre distance, place of the load, friction.
+"""Compiled force of a flank in space: misalignment, center distance, point of application, friction.
 
-Local coordinates, in metres: the deflection d; the misalignment m (growth of the gap over the common face,
-towards positive z of the table's driving gear) if the element has a row for it; the centre-distance change a
+Local coordinates, in meters: the deflection d; the misalignment m (growth of the gap over the common face,
+towards positive z of the table's driving gear) if the element has a row for it; the center-distance change a
 likewise; sliding at the pitch point and rolling on it, if there is friction. With lambda = (face centroid)/
 (face width), the force f along the line of action has the moment -lambda f on m, and the flanks approach
 each other at the centroid by d - lambda m.
@@ -45,10 +45,10 @@ class SpatialFlankLaws(NamedTuple):
     reach : (k,) array
         Elastic force in N from which the damping acts in full.
     row : (k, 3) int array
-        Row of misalignment, centre-distance change and sliding after that of the deflection; -1: none. The
+        Row of misalignment, center-distance change and sliding after that of the deflection; -1: none. The
         row of rolling follows that of sliding.
     fixed : (k, 2) array
-        Their values in m where the table is used at one place.
+        Their values in m where the table is used at one operating point.
     follows : (k, 2) int array
         1 where the force follows the row, 0 where it stays at the fixed value.
     per_face : (k,) array
@@ -83,9 +83,9 @@ def as_running(laws: SpatialFlankLaws) -> SpatialFlankLaws:
 
 
 @inner
-def _lever(laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce, channel: int) -> Lever:
+def _lever(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, channel: int) -> Lever:
     """Return a per-level quantity at the force found: cubic in the force between two levels."""
-    level = laws.grid.base.offset[place, 4] + force.interval
+    level = laws.grid.base.offset[entry, 4] + force.interval
     start = laws.grid.base.level[level]
     width = laws.grid.base.level[level + 1] - start
     u = min((force.value - start) / width, 1.0)
@@ -102,25 +102,25 @@ def _lever(laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce, cha
 
 
 @inner
-def _centroid(laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce) -> Lever:
+def _centroid(laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce) -> Lever:
     """Return lambda, the face centroid over the face width from the middle of the common face."""
-    if laws.per_face[place] == 0.0:
+    if laws.per_face[entry] == 0.0:
         return Lever(0.0, 0.0, 0.0, 0.0)
-    found, per_face = _lever(laws, place, cell, force, CENTROID), laws.per_face[place]
-    moved = found.value - laws.mid_face[place]
+    found, per_face = _lever(laws, entry, cell, force, CENTROID), laws.per_face[entry]
+    moved = found.value - laws.mid_face[entry]
     return Lever(moved * per_face, found.d * per_face, found.m * per_face, found.a * per_face)
 
 
 @inner
-def _along_axis(laws: SpatialFlankLaws, place: int, axis: int, coordinate: FloatArray, row: int) -> float:
-    """Return the misalignment (axis 0) or centre-distance change (1) at which the table is read."""
-    if laws.follows[place, axis] == 0:
-        return float(laws.fixed[place, axis])
-    return float(coordinate[row + laws.row[place, axis]])
+def _along_axis(laws: SpatialFlankLaws, entry: int, axis: int, coordinate: FloatArray, row: int) -> float:
+    """Return the misalignment (axis 0) or center-distance change (1) at which the table is read."""
+    if laws.follows[entry, axis] == 0:
+        return float(laws.fixed[entry, axis])
+    return float(coordinate[row + laws.row[entry, axis]])
 
 
 @routine
-def spatial_flank(laws: SpatialFlankLaws, place: int, local: LocalState, row: int, e: int, mesh: int) -> None:
+def spatial_flank(laws: SpatialFlankLaws, entry: int, local: LocalState, row: int, e: int, mesh: int) -> None:
     """Write forces and derivatives of element `e` from `row` on, and its next hint.
 
     f = max(0, F + c s(F/reach) (d' - lambda m')): the damping takes the approach at the centroid, so it only
@@ -128,13 +128,13 @@ def spatial_flank(laws: SpatialFlankLaws, place: int, local: LocalState, row: in
     """
     coordinate, rate, force, elastic = local.coordinate, local.rate, local.force, local.elastic
     tangent, viscous = local.tangent, local.viscous
-    m = _along_axis(laws, place, 0, coordinate, row)
-    a = _along_axis(laws, place, 1, coordinate, row)
-    cell = find_cell(laws.grid, place, local.position[mesh], m, a)
-    found = grid_force(laws.grid, place, cell, coordinate[row], local.hint[e])
+    m = _along_axis(laws, entry, 0, coordinate, row)
+    a = _along_axis(laws, entry, 1, coordinate, row)
+    cell = find_cell(laws.grid, entry, local.position[mesh], m, a)
+    found = grid_force(laws.grid, entry, cell, coordinate[row], local.hint[e])
     local.hint[e] = found.interval
-    arm = _centroid(laws, place, cell, found)
-    to_m, to_a, to_s = laws.row[place, 0], laws.row[place, 1], laws.row[place, 2]
+    arm = _centroid(laws, entry, cell, found)
+    to_m, to_a, to_s = laws.row[entry, 0], laws.row[entry, 1], laws.row[entry, 2]
     rows = 1 + (to_m > 0) + (to_a > 0) + 2 * (to_s > 0)
     for r in range(row, row + rows):
         force[r], elastic[r] = 0.0, 0.0
@@ -142,24 +142,24 @@ def spatial_flank(laws: SpatialFlankLaws, place: int, local: LocalState, row: in
             tangent[r, k], viscous[r, k] = 0.0, 0.0
     m_rate = rate[row + to_m] if to_m > 0 else 0.0
     approach = rate[row] - arm.value * m_rate
-    ratio = min(found.value / laws.reach[place], 1.0)
-    damping = laws.damping[place] * ratio * ratio * (3.0 - 2.0 * ratio)
-    damping_slope = laws.damping[place] * 6.0 * ratio * (1.0 - ratio) / laws.reach[place]
+    ratio = min(found.value / laws.reach[entry], 1.0)
+    damping = laws.damping[entry] * ratio * ratio * (3.0 - 2.0 * ratio)
+    damping_slope = laws.damping[entry] * 6.0 * ratio * (1.0 - ratio) / laws.reach[entry]
     elastic[row] = found.value
     if to_m > 0:
         elastic[row + to_m] = -arm.value * found.value
     total = found.value + damping * approach
     if total < 0.0:
         return
-    gain, turning = 1.0 + damping_slope * approach, damping * m_rate
-    read_m = to_m if laws.follows[place, 0] == 1 else -1
-    force[row], tangent[row, 0], viscous[row, 0] = total, found.d * gain - turning * arm.d, damping
+    gain, tilting = 1.0 + damping_slope * approach, damping * m_rate
+    read_m = to_m if laws.follows[entry, 0] == 1 else -1
+    force[row], tangent[row, 0], viscous[row, 0] = total, found.d * gain - tilting * arm.d, damping
     if to_m > 0:
         viscous[row, to_m] = -damping * arm.value
     if read_m > 0:
-        tangent[row, read_m] = found.m * gain - turning * arm.m
+        tangent[row, read_m] = found.m * gain - tilting * arm.m
     if to_a > 0:
-        tangent[row, to_a] = found.a * gain - turning * arm.a
+        tangent[row, to_a] = found.a * gain - tilting * arm.a
     if to_m > 0:
         back = Lever(-arm.value, -arm.d, -arm.m, -arm.a)
         _in_proportion(force, tangent, viscous, row, row + to_m, rows, back, read_m, to_a)
@@ -168,7 +168,7 @@ def spatial_flank(laws: SpatialFlankLaws, place: int, local: LocalState, row: in
             rate[row + to_s] + local.drift[row + to_s],
             rate[row + to_s + 1] + local.drift[row + to_s + 1],
         )
-        slid = _sliding(laws, place, cell, found, slip, spin)
+        slid = _sliding(laws, entry, cell, found, slip, spin)
         _in_proportion(force, tangent, viscous, row, row + to_s, rows, slid.along, read_m, to_a)
         _in_proportion(force, tangent, viscous, row, row + to_s + 1, rows, slid.about, read_m, to_a)
         viscous[row + to_s, to_s] += force[row] * slid.along_rate
@@ -179,13 +179,13 @@ def spatial_flank(laws: SpatialFlankLaws, place: int, local: LocalState, row: in
 
 @inner
 def _sliding(
-    laws: SpatialFlankLaws, place: int, cell: Cell, force: GridForce, slip: float, roll: float
+    laws: SpatialFlankLaws, entry: int, cell: Cell, force: GridForce, slip: float, roll: float
 ) -> Sliding:
     """Return the forces along the rows of sliding and rolling, whose rates are `slip` and `roll`, m/s."""
-    share = _lever(laws, place, cell, force, SLIDING_SHARE)
-    lever = _lever(laws, place, cell, force, SLIDING_LEVER)
-    mu, per_radius = laws.friction[place], 1.0 / laws.radius[place]
-    found = sliding(share, lever, slip, roll * per_radius, laws.running[place])
+    share = _lever(laws, entry, cell, force, SLIDING_SHARE)
+    lever = _lever(laws, entry, cell, force, SLIDING_LEVER)
+    mu, per_radius = laws.friction[entry], 1.0 / laws.radius[entry]
+    found = sliding(share, lever, slip, roll * per_radius, laws.running[entry])
     return Sliding(
         scaled(found.along, mu),
         scaled(found.about, mu * per_radius),
@@ -221,17 +221,17 @@ def _in_proportion(
 
 @routine
 def spatial_energy(
-    laws: SpatialFlankLaws, place: int, local: LocalState, row: int, mesh: int
+    laws: SpatialFlankLaws, entry: int, local: LocalState, row: int, mesh: int
 ) -> tuple[float, float, float, float]:
     """Return the energy stored, J, and its derivatives in position, m and a; 0 along a fixed axis."""
     coordinate = local.coordinate
-    m = _along_axis(laws, place, 0, coordinate, row)
-    a = _along_axis(laws, place, 1, coordinate, row)
-    cell = find_cell(laws.grid, place, local.position[mesh], m, a)
-    found = grid_energy(laws.grid, place, cell, coordinate[row])
+    m = _along_axis(laws, entry, 0, coordinate, row)
+    a = _along_axis(laws, entry, 1, coordinate, row)
+    cell = find_cell(laws.grid, entry, local.position[mesh], m, a)
+    found = grid_energy(laws.grid, entry, cell, coordinate[row])
     return (
         found.value,
         found.x,
-        found.m * laws.follows[place, 0],
-        found.a * laws.follows[place, 1],
+        found.m * laws.follows[entry, 0],
+        found.a * laws.follows[entry, 1],
     )

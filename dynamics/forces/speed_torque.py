@@ -73,12 +73,12 @@ def pack_speed_torques(parts: Sequence[SpeedTorque], radius: float) -> SpeedTorq
 
 
 @routine
-def speed_torque(laws: SpeedTorqueLaws, place: int, local: LocalState, row: int) -> None:
+def speed_torque(laws: SpeedTorqueLaws, entry: int, local: LocalState, row: int) -> None:
     """Write force and derivative at the speed that the rate of `row` and the kinematic motion make."""
-    radius = laws.radius[place]
+    radius = laws.radius[entry]
     speed = (local.rate[row] + local.drift[row]) / radius
-    piece = laws.first[place]
-    while piece + 1 < laws.first[place + 1] and speed >= laws.start[piece + 1]:
+    piece = laws.first[entry]
+    while piece + 1 < laws.first[entry + 1] and speed >= laws.start[piece + 1]:
         piece += 1
     s, c = speed - laws.start[piece], laws.coefficient
     torque = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))

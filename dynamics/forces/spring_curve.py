@@ -125,20 +125,20 @@ def _area(c: FloatArray, s: float) -> float:
 
 
 @inner
-def _piece(laws: SpringCurveLaws, place: int, displacement: float) -> int:
+def _piece(laws: SpringCurveLaws, entry: int, displacement: float) -> int:
     """Return the piece that holds `displacement`."""
-    piece = laws.first[place]
-    while piece + 1 < laws.first[place + 1] and displacement >= laws.start[piece + 1]:
+    piece = laws.first[entry]
+    while piece + 1 < laws.first[entry + 1] and displacement >= laws.start[piece + 1]:
         piece += 1
     return int(piece)
 
 
 @routine
-def spring_curve(laws: SpringCurveLaws, place: int, local: LocalState, row: int) -> None:
+def spring_curve(laws: SpringCurveLaws, entry: int, local: LocalState, row: int) -> None:
     """Write force and derivative at the coordinate of `row`."""
-    lever = laws.lever[place]
+    lever = laws.lever[entry]
     displacement = local.coordinate[row] / lever
-    piece = _piece(laws, place, displacement)
+    piece = _piece(laws, entry, displacement)
     s, c = displacement - laws.start[piece], laws.coefficient
     force = c[piece, 0] + s * (c[piece, 1] + s * (c[piece, 2] + s * c[piece, 3]))
     slope = c[piece, 1] + s * (2.0 * c[piece, 2] + 3.0 * s * c[piece, 3])
@@ -147,10 +147,10 @@ def spring_curve(laws: SpringCurveLaws, place: int, local: LocalState, row: int)
 
 
 @routine
-def spring_curve_energy(laws: SpringCurveLaws, place: int, local: LocalState, row: int) -> float:
+def spring_curve_energy(laws: SpringCurveLaws, entry: int, local: LocalState, row: int) -> float:
     """Return the energy at the coordinate of `row` less that at 0, J."""
-    displacement = local.coordinate[row] / laws.lever[place]
-    piece = _piece(laws, place, displacement)
+    displacement = local.coordinate[row] / laws.lever[entry]
+    piece = _piece(laws, entry, displacement)
     s, c = displacement - laws.start[piece], laws.coefficient
     area = s * (c[piece, 0] + s * (c[piece, 1] / 2.0 + s * (c[piece, 2] / 3.0 + s * c[piece, 3] / 4.0)))
     return float(laws.energy[piece] + area)

@@ -36,12 +36,12 @@ class PlainTable:
 
 
 def table_at(table: MeshTable, misalignment: float, center_distance_change: float) -> PlainTable:
-    """Return `table` at one misalignment and centre-distance change, linear between their knots.
+    """Return `table` at one misalignment and center-distance change, linear between their knots.
 
     Raises
     ------
     InputError
-        If the place is outside the table, or not the table's only one.
+        If the operating point is outside the table, or not the table's only one.
     """
     weight_m = _weights("misalignment", table.misalignment, misalignment)
     weight_d = _weights("center_distance_change", table.center_distance_change, center_distance_change)
@@ -117,5 +117,5 @@ def _weights(field: str, knots: FloatArray, value: float) -> FloatArray:
     knots = np.atleast_1d(np.asarray(knots, dtype=float))
     if not knots[0] <= value <= knots[-1]:
         bound = between(float(knots[0]), float(knots[-1]), "m", note=", the table's")
-        raise InputError(field, value, bound, "Compute the table for this place.")
+        raise InputError(field, value, bound, "Compute the table for this operating point.")
     return np.array([np.interp(value, knots, unit) for unit in np.eye(knots.size)])

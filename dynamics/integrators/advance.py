@@ -12,7 +12,7 @@ from dynamics.integrators.law_knots import next_jump, step_to_jump
 from dynamics.integrators.powers import add_drive_work, write_powers
 from dynamics.integrators.sample_ring import Sampler, SampleRing
 from dynamics.integrators.sampler import move_sampled_trains, sample_start, sample_step
-from dynamics.integrators.step_control import Control, next_rung, slow_enough, step_error
+from dynamics.integrators.step_control import Control, next_level, slow_enough, step_error
 from dynamics.integrators.table_work import add_table_work, keep_motion
 from dynamics.integrators.tableaus import EXPLICIT_WEIGHTS, IMPLICIT_WEIGHTS
 from dynamics.integrators.workspace import LOSSES, Count, Workspace
@@ -21,7 +21,7 @@ from dynamics.types import RunStatus
 
 COMPLETED, STEP_FLOOR = int(RunStatus.COMPLETED), int(RunStatus.STEP_FLOOR)
 STEP_LIMIT, NOT_FINITE = int(RunStatus.STEP_LIMIT), int(RunStatus.NOT_FINITE)
-UNSOLVED = 1e10  # stands for the error of a step in which Newton's method failed
+UNSOLVED = 1e10  # the error of a step in which Newton's method failed
 DIVERGED = 1.0  # m
 
 
@@ -62,26 +62,26 @@ def advance(
         count = work.counts
         if count[Count.ACCEPTED] + count[Count.REJECTED] >= control.step_limit:
             return STEP_LIMIT
-        rung, jump = count[Count.RUNG], math.inf
+        level, jump = count[Count.LEVEL], math.inf
         if control.adaptive:
-            rung = slow_enough(system, work, rung)
-            count[Count.RUNG] = rung
+            level = slow_enough(system, work, level)
+            count[Count.LEVEL] = level
             jump = next_jump(system.reference.speed, work.time[0])
-            rung = step_to_jump(system, work, rung, jump)
-        landing = rung == work.ladder.size - 2
+            level = step_to_jump(system, work, level, jump)
+        landing = level == work.step_sizes.size - 2
         if control.implicit:
-            solved = implicit_step(system, work, rung, control.force_tolerance, control.audit)
+            solved = implicit_step(system, work, level, control.force_tolerance, control.audit)
         else:
-            solved = explicit_step(system, work, rung, control.audit)
+            solved = explicit_step(system, work, level, control.audit)
         error = step_error(system, work) / control.tolerance if solved else UNSOLVED
         diverged = solved and error * control.tolerance >= DIVERGED
         accepted = error <= 1.0 or (not control.adaptive and solved and not diverged)
         if control.adaptive and not (landing and accepted):
-            count[Count.RUNG] = next_rung(work, control, error, accepted)
+            count[Count.LEVEL] = next_level(work, control, error, accepted)
         if accepted:
-            end = jump if landing else work.time[0] + (work.ladder[rung] + work.time_rest[0])
-            sample_step(system, work, sampler, ring, work.ladder[rung], end, out)
-            _accept(system, work, control, rung, end)
+            end = jump if landing else work.time[0] + (work.step_sizes[level] + work.time_rest[0])
+            sample_step(system, work, sampler, ring, work.step_sizes[level], end, out)
+            _accept(system, work, control, level, end)
             move_sampled_trains(system, work, ring)
             if landing:
                 _enter(system, work, control)
@@ -90,8 +90,8 @@ def advance(
             continue
         count[Count.REJECTED] += 1
         count[Count.NEWTON_FAILED] += 0 if solved else 1
-        below_the_ladder = count[Count.RUNG] > work.ladder.size - 3
-        if below_the_ladder or not control.adaptive:
+        below_smallest = count[Count.LEVEL] > work.step_sizes.size - 3
+        if below_smallest or not control.adaptive:
             return NOT_FINITE if diverged else STEP_FLOOR
     return COMPLETED
 
@@ -110,9 +110,9 @@ def _enter(system: SystemArrays, work: Workspace, control: Control) -> None:
 
 
 @inner
-def _accept(system: SystemArrays, work: Workspace, control: Control, rung: int, end: float) -> None:
+def _accept(system: SystemArrays, work: Workspace, control: Control, level: int, end: float) -> None:
     """Add the step's works, and make its end the new state."""
-    step = work.ladder[rung]
+    step = work.step_sizes[level]
     if control.audit:
         _add_works(work, control.implicit, step)
         add_drive_work(system, work)
@@ -120,9 +120,9 @@ def _accept(system: SystemArrays, work: Workspace, control: Control, rung: int, 
         _watch_losses(work)
     _move_on(work, control.implicit, step, end)
     work.counts[Count.ACCEPTED] += 1
-    if rung < work.ladder.size - 2:
-        work.counts[Count.SMALLEST_RUNG] = min(work.counts[Count.SMALLEST_RUNG], rung)
-        work.counts[Count.LARGEST_RUNG] = max(work.counts[Count.LARGEST_RUNG], rung)
+    if level < work.step_sizes.size - 2:
+        work.counts[Count.SMALLEST_LEVEL] = min(work.counts[Count.SMALLEST_LEVEL], level)
+        work.counts[Count.LARGEST_LEVEL] = max(work.counts[Count.LARGEST_LEVEL], level)
 
 
 @inner

@@ -59,7 +59,7 @@ def restore(state: Any, arrays: Arrays, path: Path) -> None:
 
 
 def write_checkpoint(path: Path, state: Any, **facts: Any) -> None:
-    """Write the arrays of `state`, and `facts`, to a neighbour of `path`; then move it there in one step."""
+    """Write the arrays of `state`, and `facts`, to a neighbor of `path`; then move it there in one step."""
     part = path.with_suffix(".part")
     with part.open("wb") as file:
         np.savez(file, **dict(leaves(state)), **{f"fact {name}": value for name, value in facts.items()})

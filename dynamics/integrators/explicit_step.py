@@ -6,8 +6,8 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.element_laws import evaluate
 from dynamics.forces.routine import routine
 from dynamics.integrators.powers import write_powers
-from dynamics.integrators.rung import prepare_rung, row_product
 from dynamics.integrators.stage import finish_step, set_motion
+from dynamics.integrators.step_level import prepare_level, row_product
 from dynamics.integrators.tableaus import (
     EXPLICIT_EMBEDDED,
     EXPLICIT_NODES,
@@ -21,9 +21,9 @@ STAGE_COUNT = 7
 
 
 @routine
-def explicit_step(system: SystemArrays, work: Workspace, rung: int, audit: bool) -> bool:
+def explicit_step(system: SystemArrays, work: Workspace, level: int, audit: bool) -> bool:
     """Try one step from the state in `work`; fill what `implicit_step` fills; return True."""
-    step, size = work.ladder[rung], work.q.size
+    step, size = work.step_sizes[level], work.q.size
     for i in range(size):
         work.stage_v[0, i], work.stage_a[0, i] = work.v[i], work.a[i]
     for stage in range(1, STAGE_COUNT):
@@ -49,12 +49,12 @@ def explicit_step(system: SystemArrays, work: Workspace, rung: int, audit: bool)
 def accelerate(system: SystemArrays, work: Workspace, time: float, stage: int) -> None:
     """Write the accelerations in the state ``q_new``, ``v_new`` at `time` into row `stage` of ``stage_a``.
 
-    The local state goes into `work`. The last rung's step is 0, so its matrix is M alone.
+    The local state goes into `work`. The last level's step is 0, so its matrix is M alone.
     """
     q, v, acceleration = work.q_new, work.v_new, work.stage_a[stage]
-    rung = work.ladder.size - 1
-    if not work.ready[rung]:
-        prepare_rung(system, work, rung, 0.0)
+    level = work.step_sizes.size - 1
+    if not work.ready[level]:
+        prepare_level(system, work, level, 0.0)
     local = work.local
     set_motion(system, work, time, local.position)
     add_motion(system, q, v, local.position, local.coordinate, local.rate)
@@ -62,10 +62,10 @@ def accelerate(system: SystemArrays, work: Workspace, time: float, stage: int) -
         work.external[i] -= row_product(system.damping, system.block, v, i)
         work.external[i] -= row_product(system.stiffness, system.block, q, i)
     for i in range(q.size):
-        acceleration[i] = row_product(work.inverse[rung], system.block, work.external, i)
+        acceleration[i] = row_product(work.inverse[level], system.block, work.external, i)
     for e in range(system.elements.law.size):
         evaluate(system.elements, local, e)
     for r in range(work.force.size):
         work.force[r] = local.force[r]
         for i in range(system.reach[r, 0], system.reach[r, 1]):
-            acceleration[i] -= work.response[rung, r, i] * work.force[r]
+            acceleration[i] -= work.response[level, r, i] * work.force[r]

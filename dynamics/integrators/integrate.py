@@ -8,9 +8,9 @@ import numpy as np
 
 from dynamics.assembly.assemble import System
 from dynamics.integrators.march import Cancel, Ending, Progress, ending, march_on, now, start_march
+from dynamics.integrators.start_value import StartValue, Trail
 from dynamics.integrators.state_sink import MemorySink
 from dynamics.integrators.static import StaticSolution
-from dynamics.integrators.taking_over import Taken, Trail
 from dynamics.motion.sampled_states import States
 from dynamics.scene import Integration
 from dynamics.types import FloatArray, IntArray
@@ -55,12 +55,12 @@ def integrate(
     velocity: FloatArray | None = None,
     cancel: Cancel | None = None,
     trail: Trail | None = None,
-    taken: Taken | None = None,
+    taken: StartValue | None = None,
 ) -> Trajectory:
     """Run `system` over its scene's duration, from rest in `start` or from the `velocity` (n,) there.
 
     At rest means without any deviation from the kinematic motion: the shafts turn with the drive. `cancel` is
-    asked about fifty times or more whether to stop. `trail` remembers where the run stood on its way; `taken`
+    polled about fifty times or more. `trail` saves the states of the run; `taken`
     is where it goes on for another run.
     """
     began = now()

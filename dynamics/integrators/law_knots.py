@@ -36,12 +36,12 @@ def next_jump(laws: LawArrays, time: float) -> float:
 
 
 @inner
-def step_to_jump(system: SystemArrays, work: Workspace, rung: int, jump: float) -> int:
-    """Return the landing rung, made to end at `jump`, if the step of `rung` would pass it; else `rung`."""
+def step_to_jump(system: SystemArrays, work: Workspace, level: int, jump: float) -> int:
+    """Return the landing level, made to end at `jump`, if the step of `level` would pass it; else `level`."""
     step = jump * (1.0 - ROUNDING) - work.time[0]
-    if not 0.0 < step <= work.ladder[rung]:
-        return rung
-    landing = int(work.ladder.size - 2)
-    work.ladder[landing] = step
+    if not 0.0 < step <= work.step_sizes[level]:
+        return level
+    landing = int(work.step_sizes.size - 2)
+    work.step_sizes[landing] = step
     work.ready[landing] = False
     return landing

@@ -17,7 +17,7 @@ ITERATION_LIMIT = 25
 
 @inner
 def solve_local_forces(
-    system: SystemArrays, work: Workspace, rung: int, span: float, tolerance: float
+    system: SystemArrays, work: Workspace, level: int, span: float, tolerance: float
 ) -> int:
     """Find ``work.force`` such that each force is its law's at the motion it causes; return the iterations.
 
@@ -29,71 +29,71 @@ def solve_local_forces(
     elements = system.elements
     for iteration in range(ITERATION_LIMIT):
         for m in range(work.free_position.size):
-            _move_position(work, rung, span, m)
+            _move_position(work, level, span, m)
         for e in range(elements.law.size):
             first, end = elements.first[e], elements.first[e + 1]
             for k in range(first, end):
-                _move_row(work, rung, span, k)
+                _move_row(work, level, span, k)
             evaluate(elements, work.local, e)
-            _linearise(work, rung, span, first, end)
+            _linearize(work, level, span, first, end)
         if update_forces(work.jacobian, work.force) <= tolerance:
-            _settle(work, rung, span)
+            _settle(work, level, span)
             return iteration + 1
     return -1
 
 
 @inner
-def _settle(work: Workspace, rung: int, span: float) -> None:
+def _settle(work: Workspace, level: int, span: float) -> None:
     """Let the forces found act on all coordinates, rates and positions."""
     for m in range(work.free_position.size):
-        _move_position(work, rung, span, m)
+        _move_position(work, level, span, m)
     for k in range(work.force.size):
-        _move_row(work, rung, span, k)
+        _move_row(work, level, span, k)
 
 
 @inner
-def _move_row(work: Workspace, rung: int, span: float, k: int) -> None:
+def _move_row(work: Workspace, level: int, span: float, k: int) -> None:
     """Let the forces act: force r changes coordinate k by -span^2 approach[k, r], its rate by -span ..."""
     moved = 0.0
     for r in range(work.force.size):
-        moved += work.approach[rung, k, r] * work.force[r]
+        moved += work.approach[level, k, r] * work.force[r]
     work.local.coordinate[k] = work.free[k] - span * span * moved
     work.local.rate[k] = work.free_rate[k] - span * moved
 
 
 @inner
-def _move_position(work: Workspace, rung: int, span: float, m: int) -> None:
+def _move_position(work: Workspace, level: int, span: float, m: int) -> None:
     """Let the forces turn the driver of mesh m."""
     turned = 0.0
     for r in range(work.force.size):
-        turned += work.turning[rung, m, r] * work.force[r]
+        turned += work.position_response[level, m, r] * work.force[r]
     work.local.position[m] = work.free_position[m] - span * span * turned
 
 
 @inner
-def _linearise(work: Workspace, rung: int, span: float, first: int, end: int) -> None:
+def _linearize(work: Workspace, level: int, span: float, first: int, end: int) -> None:
     """Write the equations of one element's rows: I + (span^2 df/dy + span df/dy') approach | law - force."""
     rows, local = work.force.size, work.local
     if end - first == 1:  # most elements: no sum over an element's own coordinates
         gain = span * (span * local.tangent[first, 0] + local.viscous[first, 0])
         for r in range(rows):
-            work.jacobian[first, r] = gain * work.approach[rung, first, r]
+            work.jacobian[first, r] = gain * work.approach[level, first, r]
     else:
-        _chain(work, rung, span, first, end)
+        _chain(work, level, span, first, end)
     for k in range(first, end):
         work.jacobian[k, k] += 1.0
         work.jacobian[k, rows] = local.force[k] - work.force[k]
 
 
 @inner
-def _chain(work: Workspace, rung: int, span: float, first: int, end: int) -> None:
+def _chain(work: Workspace, level: int, span: float, first: int, end: int) -> None:
     """Write (span^2 df/dy + span df/dy') approach for an element of several rows."""
     for k in range(first, end):
         for r in range(work.force.size):
             total = 0.0
             for j in range(end - first):
                 gain = span * (span * work.local.tangent[k, j] + work.local.viscous[k, j])
-                total += gain * work.approach[rung, first + j, r]
+                total += gain * work.approach[level, first + j, r]
             work.jacobian[k, r] = total
 
 

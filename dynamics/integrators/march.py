@@ -21,7 +21,7 @@ from dynamics.integrators.state_sink import BLOCK, StateSink
 from dynamics.integrators.static import StaticSolution
 from dynamics.integrators.step_control import Control
 from dynamics.integrators.tableaus import EXPLICIT_EMBEDDED_ORDER, IMPLICIT_EMBEDDED_ORDER
-from dynamics.integrators.workspace import Count, Workspace, make_workspace, step_ladder
+from dynamics.integrators.workspace import Count, Workspace, geometric_steps, make_workspace
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration
 from dynamics.types import FloatArray, IntArray, RunStatus
@@ -122,9 +122,9 @@ class Ending:
 def start_march(
     system: System, start: StaticSolution, integration: Integration, velocity: FloatArray | None = None
 ) -> March:
-    """Stand at t = 0 in `start`, at rest or with the `velocity` (n,)."""
-    ladder = _ladder(integration)
-    work = make_workspace(system.arrays, ladder, start.displacement, integration.fixed_step or FIRST_STEP)
+    """Start at t = 0 from `start`, at rest or with the `velocity` (n,)."""
+    step_sizes = _step_sizes(integration)
+    work = make_workspace(system.arrays, step_sizes, start.displacement, integration.fixed_step or FIRST_STEP)
     if velocity is not None:
         work.v[:] = velocity
     scene = system.scene
@@ -155,7 +155,7 @@ def march_on(
     cancel: Cancel | None = None,
     after_block: Callable[[], None] | None = None,
 ) -> RunStatus:
-    """Go on to the end of the run, block by block; asked by `cancel` after each block whether to stop."""
+    """Go on to the end of the run, block by block; after each block `cancel` says whether to stop."""
     duration = march.system.scene.duration
     block = min(duration / CHUNKS, BLOCK / march.system.sampling.rate)
     while True:
@@ -175,7 +175,7 @@ def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
     """Step until the time passes `stop`; the last step may pass it by the largest one."""
     rate, counts = march.system.sampling.rate, march.work.counts
     first = int(counts[Count.OUTPUT])
-    last = int(np.floor((stop + float(march.work.ladder[0])) * rate)) + 2
+    last = int(np.floor((stop + float(march.work.step_sizes[0])) * rate)) + 2
     room = sink.room(first, max(min(last, march.samples) - first, 1 if first == 0 else 0))
     counts[Count.FIRST_ROW] = first
     status = RunStatus(advance(*march.compiled, stop, by_address(room)))
@@ -184,7 +184,7 @@ def _advance_to(march: March, stop: float, sink: StateSink) -> RunStatus:
 
 
 def ending(march: March, sink: StateSink, status: RunStatus, seconds: float) -> Ending:
-    """Return how the march stands; the samples that the filter still holds go into `sink`.
+    """Return the status of the march; the samples that the filter still holds go into `sink`.
 
     They are filtered as if the motion went on turned about its last point. The march itself stays as it
     is, and can go on.
@@ -219,11 +219,11 @@ def now() -> float:
     return clock.perf_counter()
 
 
-def _ladder(integration: Integration) -> FloatArray:
-    """Step sizes: a ladder, or the one fixed step."""
+def _step_sizes(integration: Integration) -> FloatArray:
+    """Step sizes: geometric, or the one fixed step."""
     if integration.fixed_step is not None:
         return np.array([integration.fixed_step, 0.0, 0.0])
-    return step_ladder(integration.largest_step, integration.smallest_step)
+    return geometric_steps(integration.largest_step, integration.smallest_step)
 
 
 def _control(system: System, integration: Integration) -> Control:
@@ -247,5 +247,8 @@ def _step_range(work: Workspace) -> FloatArray:
     if work.counts[Count.ACCEPTED] == 0:
         return np.zeros(2)
     return np.array(
-        [work.ladder[work.counts[Count.LARGEST_RUNG]], work.ladder[work.counts[Count.SMALLEST_RUNG]]]
+        [
+            work.step_sizes[work.counts[Count.LARGEST_LEVEL]],
+            work.step_sizes[work.counts[Count.SMALLEST_LEVEL]],
+        ]
     )

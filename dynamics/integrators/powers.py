@@ -6,15 +6,15 @@ from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
 from dynamics.forces.element_laws import (
     FLANK,
+    ROTATING_FRAME,
     SPATIAL_FLANK,
     SPEED_TORQUE,
-    TURNING,
-    given_along_axes,
-    given_by_frames,
+    power_along_axes,
+    power_by_frames,
     slides,
 )
 from dynamics.forces.routine import routine
-from dynamics.integrators.rung import row_product
+from dynamics.integrators.step_level import row_product
 from dynamics.integrators.workspace import Power, Workspace
 from dynamics.motion.motion import ACCELERATION, SPEED, law_value
 from dynamics.types import FloatArray
@@ -26,7 +26,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 
     Drives supply the torque on their own shafts times their speeds. A table V(x, d) exerts dV/dd only along
     the line of action; what dV/dx stores as the position moves on is counted as supplied by the position,
-    and likewise along the table's other axes, less the work of forces along them. The turning of frames
+    and likewise along the table's other axes, less the work of forces along them. The rotation of frames
     counts with the position.
     """
     velocity = work.stage_v[stage]
@@ -50,8 +50,8 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
         bushing += velocity[i] * row_product(system.damping, system.block, velocity, i)
     axes, position = 0.0, 0.0
     for e in range(system.elements.law.size):
-        axes -= given_along_axes(system.elements, work.local, e)
-        position += given_by_frames(system.elements, work.local, e)
+        axes -= power_along_axes(system.elements, work.local, e)
+        position += power_by_frames(system.elements, work.local, e)
     work.power[stage, Power.DRIVE] = drives
     work.power[stage, Power.LOAD] = loads
     work.power[stage, Power.POSITION] = position
@@ -65,7 +65,7 @@ def write_powers(system: SystemArrays, work: Workspace, stage: int, time: float)
 def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, float, float, float]:
     """Return the powers lost in bearings, flanks and friction, and the one that torques by speed supply.
 
-    Then that which the kinematic motion exchanges with turning frames: kinetic energy in the product of
+    Then that which the kinematic motion exchanges with rotating frames: kinetic energy in the product of
     displacements and speeds, which the balance does not hold.
     """
     bearing, mesh, friction, supplied, kept = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -80,7 +80,7 @@ def _in_elements(system: SystemArrays, work: Workspace) -> tuple[float, float, f
                 mesh += lost
             else:
                 bearing += lost
-                if system.elements.law[e] == TURNING:
+                if system.elements.law[e] == ROTATING_FRAME:
                     kept += work.force[r] * work.local.drift[r]
     return bearing, mesh, friction, supplied, kept
 

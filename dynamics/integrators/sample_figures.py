@@ -72,8 +72,8 @@ def sample_figures(system: System, ring: SampleRing, points: int, samples: int) 
     largest, rms = ring.peaks.largest, np.sqrt(ring.peaks.square / max(points, 1))
     driving = system.driving_rows
     coast = np.zeros((2, driving.size))
-    for place, mesh in enumerate(system.flanks.coast, start=driving.size):
-        row = system.arrays.elements.first[place]
+    for element, mesh in enumerate(system.flanks.coast, start=driving.size):
+        row = system.arrays.elements.first[element]
         coast[:, mesh] = largest[row], rms[row]
     removed, folded = (np.sqrt(part[driving] / max(samples, 1)) for part in (ring.removed, ring.folded))
     return SampleFigures(

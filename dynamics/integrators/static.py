@@ -127,9 +127,9 @@ def _first_guess(system: System, time: float, external: FloatArray) -> FloatArra
     carrying = np.arange(flanks.nominal_force.size)
     loads = _accelerating(system.arrays, external + _by_speed(system.arrays, time))
     q, force = _on_springs(system, time, loads, carrying)
-    for place, mesh in enumerate(flanks.coast, start=carrying.size):
+    for element, mesh in enumerate(flanks.coast, start=carrying.size):
         if force[mesh] < 0.0:
-            carrying[mesh] = place
+            carrying[mesh] = element
     if np.any(carrying >= carrying.size):
         q, _ = _on_springs(system, time, loads, carrying)
     return q
@@ -163,7 +163,7 @@ def _on_springs(
 
 
 def _solve(arrays: SystemArrays, matrix: FloatArray, force: FloatArray, q: FloatArray) -> FloatArray:
-    """Return the change of `q` that `force` makes, with the law's shaft of each free train at its place.
+    """Return the change of `q` that `force` makes, with the law's shaft of each free train at its angle.
 
     Nothing holds a free train, and no force is left along its motion: without that it could rest anywhere.
     """

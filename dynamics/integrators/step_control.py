@@ -1,4 +1,4 @@
-"""Compiled step size control on the ladder of step sizes."""
+"""Compiled control of the step level."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from dynamics.arrays.arrays import SystemArrays
 from dynamics.forces.compiled import inner
-from dynamics.integrators.workspace import RUNGS_PER_OCTAVE, Count, Workspace
+from dynamics.integrators.workspace import LEVELS_PER_OCTAVE, Count, Workspace
 from dynamics.motion.motion import law_speed, write_motion
 
 SAFETY = math.log2(0.9)  # octaves of the step size, like the limits of its change
@@ -24,7 +24,7 @@ class Control(NamedTuple):
     implicit : bool
         Which method.
     adaptive : bool
-        False: every step is accepted, and all have the size of the rung at the start.
+        False: every step is accepted, and all have the size of the level at the start.
     audit : bool
         Whether to integrate the powers.
     order : int
@@ -47,7 +47,7 @@ class Control(NamedTuple):
 
 @inner
 def step_error(system: SystemArrays, work: Workspace) -> float:
-    """Return the largest error estimate of any freedom over one step, in metres; NaN counts as infinite.
+    """Return the largest error estimate of any freedom over one step, in meters; NaN counts as infinite.
 
     An error of the rate counts as what it makes of the displacement: where a force jumps, steps get so short
     that their displacements are right long before the impulse is.
@@ -63,8 +63,8 @@ def step_error(system: SystemArrays, work: Workspace) -> float:
 
 
 @inner
-def slow_enough(system: SystemArrays, work: Workspace, rung: int) -> int:
-    """Return the first rung, `rung` or later, in whose step no mesh moves by more than POSITION_LIMIT.
+def slow_enough(system: SystemArrays, work: Workspace, level: int) -> int:
+    """Return the first level, `level` or later, in whose step no mesh moves by more than POSITION_LIMIT.
 
     An error estimate knows the table only where the stages look; a step over half a pitch could miss a
     handover.
@@ -78,28 +78,28 @@ def slow_enough(system: SystemArrays, work: Workspace, rung: int) -> int:
             per_turn = reference.numerator[m, k] / reference.denominator[m, k]
             moving += law_speed(reference, k, work.motion, work.v) / (2.0 * math.pi) * per_turn
         rate = max(rate, abs(moving))
-    while rate * work.ladder[rung] > POSITION_LIMIT and rung < work.ladder.size - 3:
-        rung += 1
-    return rung
+    while rate * work.step_sizes[level] > POSITION_LIMIT and level < work.step_sizes.size - 3:
+        level += 1
+    return level
 
 
 @inner
-def next_rung(work: Workspace, control: Control, error: float, accepted: bool) -> int:
-    """Return the rung of the next step from this step's error over the tolerance.
+def next_level(work: Workspace, control: Control, error: float, accepted: bool) -> int:
+    """Return the level of the next step from this step's error over the tolerance.
 
     Proportional-integral control (Gustafsson): the factor depends on the last accepted error too, so that the
-    step size does not oscillate where the solution is stiff. A rejected step falls by at least one rung, and
-    no accepted one rises by less than a whole rung, so the step stays put unless it pays. After an accepted
-    step the rung is on the ladder; after a rejected one it may be the one below it, which has no step.
+    step size does not oscillate where the solution is stiff. A rejected step falls by at least one level, and
+    no accepted one rises by less than a whole level, so the step stays put unless it pays. After an accepted
+    step the level has a step size; after a rejected one it may be the one below, which has none.
     """
-    exponent, level = 1.0 / (control.order + 1), math.log2(max(error, 1e-10))
-    octaves = SAFETY - 0.7 * exponent * level + 0.4 * exponent * math.log2(work.error[0])
+    exponent, log_error = 1.0 / (control.order + 1), math.log2(max(error, 1e-10))
+    octaves = SAFETY - 0.7 * exponent * log_error + 0.4 * exponent * math.log2(work.error[0])
     if not accepted:
-        octaves = min(SAFETY - exponent * level, 0.0)
-    rise = math.floor(RUNGS_PER_OCTAVE * min(max(octaves, FALL_LIMIT), RISE_LIMIT))
-    rung = work.counts[Count.RUNG] - int(rise)
-    smallest = work.ladder.size - 3
+        octaves = min(SAFETY - exponent * log_error, 0.0)
+    rise = math.floor(LEVELS_PER_OCTAVE * min(max(octaves, FALL_LIMIT), RISE_LIMIT))
+    level = work.counts[Count.LEVEL] - int(rise)
+    smallest = work.step_sizes.size - 3
     if not accepted:
-        rung = max(rung, work.counts[Count.RUNG] + 1)
-        smallest += 1  # below the ladder: the caller ends there
-    return int(min(max(rung, 0), smallest))
+        level = max(level, work.counts[Count.LEVEL] + 1)
+        smallest += 1  # below the smallest: the caller ends there
+    return int(min(max(level, 0), smallest))

@@ -64,7 +64,7 @@ def add_table_work(system: SystemArrays, work: Workspace, step: float) -> None:
             table = elements.laws.spatial_flank.grid.base
         else:
             continue
-        m, period = elements.mesh[e], table.period[elements.place[e]]
+        m, period = elements.mesh[e], table.period[elements.entry[e]]
         ahead = 0.5 * step * (before.pace[m] + after.pace[m])
         first, last = before.position[m], after.position[m]
         last += period * math.floor((first + ahead - last) / period + 0.5)
@@ -75,14 +75,14 @@ def add_table_work(system: SystemArrays, work: Workspace, step: float) -> None:
 @inner
 def _along(elements: Elements, work: Workspace, table: PackedTables, e: int, path: Path, step: float) -> None:
     """Integrate one element from knot to knot."""
-    place = elements.place[e]
-    row, u, per_width = position_interval(table, place, path[0])
-    interval = (row - table.offset[place, 3]) // table.offset[place, 5]
-    knot = table.offset[place, 0]
+    entry = elements.entry[e]
+    row, u, per_width = position_interval(table, entry, path[0])
+    interval = (row - table.offset[entry, 3]) // table.offset[entry, 5]
+    knot = table.offset[entry, 0]
     forward = path[2] >= path[0]
     start = 0.0
     base = path[0] - u / per_width - table.knot[knot + interval]  # where knot 0 of this period lies
-    intervals = _intervals(table, place)
+    intervals = _intervals(table, entry)
     while start < 1.0:
         at = base + table.knot[knot + interval + (1 if forward else 0)]
         end = _fraction(path, at, start)
@@ -90,15 +90,15 @@ def _along(elements: Elements, work: Workspace, table: PackedTables, e: int, pat
         start = end
         interval += 1 if forward else -1
         if interval == intervals:
-            interval, base = 0, base + table.period[place]
+            interval, base = 0, base + table.period[entry]
         elif interval < 0:
-            interval, base = intervals - 1, base - table.period[place]
+            interval, base = intervals - 1, base - table.period[entry]
 
 
 @inner
-def _intervals(table: PackedTables, place: int) -> int:
+def _intervals(table: PackedTables, entry: int) -> int:
     """Return the number of position intervals."""
-    return int(table.offset[place, 2] // BUCKETS_PER_KNOT)
+    return int(table.offset[entry, 2] // BUCKETS_PER_KNOT)
 
 
 @inner
@@ -144,13 +144,13 @@ def _piece(
 @inner
 def _rates(elements: Elements, local: LocalState, e: int) -> tuple[float, float]:
     """Return V_x, J per base pitch, and V_m m' + V_a a' in the local state; rates per step."""
-    row, place, m = elements.first[e], elements.place[e], elements.mesh[e]
+    row, entry, m = elements.first[e], elements.entry[e], elements.mesh[e]
     if elements.law[e] == FLANK:
         x, d = local.position[m], local.coordinate[row]
-        return table_energy(elements.laws.flank.table, place, x, d, local.hint[e])[1], 0.0
+        return table_energy(elements.laws.flank.table, entry, x, d, local.hint[e])[1], 0.0
     laws = elements.laws.spatial_flank
-    _, in_x, in_m, in_a = spatial_energy(laws, place, local, row, m)
-    to_m, to_a, axes = laws.row[place, 0], laws.row[place, 1], 0.0
+    _, in_x, in_m, in_a = spatial_energy(laws, entry, local, row, m)
+    to_m, to_a, axes = laws.row[entry, 0], laws.row[entry, 1], 0.0
     if to_m > 0:
         axes += in_m * local.rate[row + to_m]
     if to_a > 0:

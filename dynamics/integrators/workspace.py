@@ -14,7 +14,7 @@ from dynamics.motion.motion import MOTION_COLUMNS
 from dynamics.types import BoolArray, FloatArray, IntArray
 
 STAGES = 7  # of the method with the most stages
-RUNGS_PER_OCTAVE = 4
+LEVELS_PER_OCTAVE = 4
 
 
 class Power(IntEnum):
@@ -25,7 +25,7 @@ class Power(IntEnum):
     POSITION = 2  # supplied by the table's change with position
     BUSHING = 3  # dissipated in bushings
     MESH = 4  # dissipated in meshes
-    AXES = 5  # supplied by the tables' change with misalignment and centre distance
+    AXES = 5  # supplied by the tables' change with misalignment and center distance
     FRICTION = 6  # dissipated by sliding flanks
 
 
@@ -36,15 +36,15 @@ LOSSES = (int(Power.BUSHING), int(Power.MESH), int(Power.FRICTION))
 class Count(IntEnum):
     """Entries of the step statistics."""
 
-    RUNG = 0  # of the current step size
+    LEVEL = 0  # of the current step size
     OUTPUT = 1  # next output sample
     ACCEPTED = 2
     REJECTED = 3
     NEWTON_TOTAL = 4
     NEWTON_MOST = 5  # in one stage
     NEWTON_FAILED = 6  # steps repeated because Newton failed
-    SMALLEST_RUNG = 7  # of an accepted step: the largest step
-    LARGEST_RUNG = 8
+    SMALLEST_LEVEL = 7  # of an accepted step: the largest step
+    LARGEST_LEVEL = 8
     FIRST_ROW = 9  # output sample that the first row of the output arrays is for
     POINT = 10  # next point of the inner grid
 
@@ -72,8 +72,8 @@ class StepEnd(NamedTuple):
 class Workspace(NamedTuple):
     """State and scratch of a run with n freedoms, m meshes and R local coordinates of elements.
 
-    The step sizes are those of a ladder, RUNGS_PER_OCTAVE to a factor of 2, so that the matrices of the
-    implicit stages are inverted once per rung and run.
+    The step sizes are geometric, LEVELS_PER_OCTAVE to a factor of 2, so that the matrices of the
+    implicit stages are inverted once per level and run.
 
     Attributes
     ----------
@@ -111,20 +111,20 @@ class Workspace(NamedTuple):
         Highest value of each of `LOSSES` so far, J, and how far it fell below it at most.
     counts : int array
         See `Count`.
-    ladder : (r,) array
+    step_sizes : (r,) array
         Step sizes, falling, s; then the one that lands on a law's knot, and 0, for the matrices of an
         explicit evaluation.
     matrix : (n, n) array
         Scratch: the matrix to invert.
     ready : (r,) bool array
-        Whether the matrices of a rung are there.
+        Whether the matrices of a level are there.
     inverse : (r, n, n) array
         Of M + h g C + (h g)^2 K.
     response : (r, R, n) array
         inverse times the rows' directions.
     approach : (r, R, R) array
         Local coordinate k per response to local force r.
-    turning : (r, m, R) array
+    position_response : (r, m, R) array
         Position of each mesh per response to local force r.
     """
 
@@ -159,31 +159,33 @@ class Workspace(NamedTuple):
     highest: FloatArray
     fallen: FloatArray
     counts: IntArray
-    ladder: FloatArray
+    step_sizes: FloatArray
     matrix: FloatArray
     ready: BoolArray
     inverse: FloatArray
     response: FloatArray
     approach: FloatArray
-    turning: FloatArray
+    position_response: FloatArray
 
 
-def step_ladder(largest: float, smallest: float) -> FloatArray:
-    """Return step sizes falling from `largest` to at most `smallest` by equal factors, and two more places.
+def geometric_steps(largest: float, smallest: float) -> FloatArray:
+    """Return step sizes falling from `largest` to at most `smallest` by equal factors, and two more entries.
 
-    See ``Workspace.ladder``.
+    See ``Workspace.step_sizes``.
     """
-    rungs = int(np.ceil(RUNGS_PER_OCTAVE * np.log2(largest / smallest))) + 1
-    return np.append(largest * 2.0 ** (-np.arange(rungs) / RUNGS_PER_OCTAVE), [0.0, 0.0])
+    levels = int(np.ceil(LEVELS_PER_OCTAVE * np.log2(largest / smallest))) + 1
+    return np.append(largest * 2.0 ** (-np.arange(levels) / LEVELS_PER_OCTAVE), [0.0, 0.0])
 
 
-def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, first_step: float) -> Workspace:
+def make_workspace(
+    system: SystemArrays, step_sizes: FloatArray, q: FloatArray, first_step: float
+) -> Workspace:
     """Allocate for a run that starts at t = 0 at rest in the displacements `q` (n,)."""
-    n, rows, meshes, r = q.size, system.direction.shape[0], system.turn.shape[0], ladder.size
+    n, rows, meshes, r = q.size, system.direction.shape[0], system.turn.shape[0], step_sizes.size
     laws = system.inertial.shape[0]
     counts = np.zeros(len(Count), dtype=np.int64)
-    counts[Count.RUNG] = min(int(np.searchsorted(-ladder, -first_step)), r - 3)
-    counts[Count.SMALLEST_RUNG] = r - 1
+    counts[Count.LEVEL] = min(int(np.searchsorted(-step_sizes, -first_step)), r - 3)
+    counts[Count.SMALLEST_LEVEL] = r - 1
     per_freedom = ("v", "v_rest", "a", "q_new", "v_new", "a_new", "q_error", "v_error", "external", "linear")
     return Workspace(
         time=np.zeros(1),
@@ -206,13 +208,13 @@ def make_workspace(system: SystemArrays, ladder: FloatArray, q: FloatArray, firs
         highest=np.zeros(len(LOSSES)),
         fallen=np.zeros(len(LOSSES)),
         counts=counts,
-        ladder=ladder,
+        step_sizes=step_sizes,
         matrix=np.zeros((n, n)),
         ready=np.zeros(r, dtype=np.bool_),
         inverse=np.zeros((r, n, n)),
         response=np.zeros((r, rows, n)),
         approach=np.zeros((r, rows, rows)),
-        turning=np.zeros((r, meshes, rows)),
+        position_response=np.zeros((r, meshes, rows)),
     )
 
 

@@ -14,7 +14,7 @@ class Bushing(Seat):
     """A bushing between a shaft and the ground.
 
     The shaft's section at the bushing moves by d = (x, y, z, tilt_x, tilt_y); the bushing pushes the ground
-    with K d + C d' - preload, forces and moments about its centre, in N, m, rad. The radial and axial figures
+    with K d + C d' - preload, forces and moments about its center, in N, m, rad. The radial and axial figures
     are the isotropic part of K and C; a matrix is added to them.
 
     Attributes

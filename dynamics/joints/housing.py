@@ -51,20 +51,20 @@ class Housing:
             check_matrix("damping", np.asarray(self.damping, dtype=float), (rows,), PRECISION)
 
     @property
-    def places(self) -> tuple[int, ...]:
+    def columns(self) -> tuple[int, ...]:
         """Rows of the matrix among the five directions of all seats, without rotations about z."""
         per = len(self.stiffness) // len(self.bushings)
         kept = min(per, SEAT)
         return tuple(SEAT * seat + kind for seat in range(len(self.bushings)) for kind in range(kept))
 
     def matrices(self) -> tuple[FloatArray, FloatArray]:
-        """Return stiffness and damping over `places`, symmetric, rotations about z condensed out."""
+        """Return stiffness and damping over `columns`, symmetric, rotations about z condensed out."""
         rows, per = len(self.stiffness), len(self.stiffness) // len(self.bushings)
         stiffness = np.array(self.stiffness, dtype=float)
         damping = np.zeros_like(stiffness) if self.damping is None else np.array(self.damping, dtype=float)
         stiffness, damping = 0.5 * (stiffness + stiffness.T), 0.5 * (damping + damping.T)
-        turning = np.arange(rows) % per == SEAT
-        kept, out = np.flatnonzero(~turning), np.flatnonzero(turning)
+        rotational = np.arange(rows) % per == SEAT
+        kept, out = np.flatnonzero(~rotational), np.flatnonzero(rotational)
         follow = np.zeros((rows, kept.size))
         follow[kept] = np.eye(kept.size)
         follow[out] = -np.linalg.pinv(stiffness[np.ix_(out, out)]) @ stiffness[np.ix_(out, kept)]

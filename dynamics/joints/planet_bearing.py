@@ -36,7 +36,7 @@ class PlanetBearing(Seat):
     damping_ratio : float
         Used where a damping is None.
     radial_error, tangential_error : float
-        m; how far the pin is off its place: away from the carrier's axis, and along z x (away).
+        m; how far the pin is off its nominal position: away from the carrier's axis, and along z x (away).
     stiffness, damping, preload
         As of a `Bushing`, in N, m, rad: tilt stiffness, cross terms; a pin that yields more in one direction.
     """

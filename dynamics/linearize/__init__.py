@@ -1,4 +1,4 @@
-"""The system linearised about its static equilibrium: modes at rest and over speed, forced response."""
+"""The system linearized about its static equilibrium: modes at rest and over speed, forced response."""
 
 from dynamics.linearize.common_period import CommonPeriod, common_period
 from dynamics.linearize.forced_response import ForcedResponse, Peak, forced_response, peaks

@@ -12,7 +12,7 @@ from dynamics.assembly.assemble import System
 from dynamics.linearize.energy_shares import kinetic_shares, strain_shares
 from dynamics.linearize.linear_system import LinearSystem
 from dynamics.linearize.speeds import law_speeds
-from dynamics.linearize.whirl import ComplexArray, WhirlModes, terms_at, turning_modes
+from dynamics.linearize.whirl import ComplexArray, WhirlModes, terms_at, whirl_modes_with
 from dynamics.types import FloatArray, IntArray
 
 TIE = 0.05  # weight of the frequencies beside the shapes: it decides between modes of one shape's likeness
@@ -32,9 +32,9 @@ class WhirlBranches:
         Damped, Hz; -Re/|eigenvalue|.
     whirl : (S, A) array
         Of the shaft that moves most across its axis: from -1 (circular, against its rotation) over 0 (in a
-        plane, or no shaft moves much, or it stands) to +1 (circular, in the sense of its rotation).
+        plane, or no shaft moves much, or it is at rest) to +1 (circular, in the sense of its rotation).
     shape : (S, A, n) complex array
-        The largest entry in metres is 1.
+        The largest entry in meters is 1.
     strain_energy, kinetic_energy : (S, A, p), (S, A, n) arrays
         Shares, mean over a cycle.
     """
@@ -50,7 +50,7 @@ class WhirlBranches:
 
 def modes_at(system: System, linear: LinearSystem, speed: float) -> WhirlModes:
     """Return the whirl modes where the leading law has `speed` in rad/s."""
-    return turning_modes(linear, *terms_at(system, law_speeds(system, speed)))
+    return whirl_modes_with(linear, *terms_at(system, law_speeds(system, speed)))
 
 
 def whirl_branches(
@@ -65,16 +65,16 @@ def whirl_branches(
     mass), all assigned together; equal likeness is decided by the nearness of the frequencies.
     """
     found: list[WhirlModes] = []
-    places: list[list[int]] = []
+    branches: list[list[int]] = []
     for index, value in enumerate(speed):
         modes = modes_at(system, linear, float(value))
         found.append(modes)
         fresh = list(range(modes.frequency.size))
-        places.append(_continued(linear, found[-2], places[-1], modes) if index else fresh)
+        branches.append(_continued(linear, found[-2], branches[-1], modes) if index else fresh)
         if progress is not None:
             progress((index + 1) / speed.size)
-    count = 1 + max((int(np.max(place, initial=-1)) for place in places), default=-1)
-    return _gathered(system, linear, speed, found, places, count)
+    count = 1 + max((int(np.max(branch, initial=-1)) for branch in branches), default=-1)
+    return _gathered(system, linear, speed, found, branches, count)
 
 
 def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -84,13 +84,13 @@ def likeness(linear: LinearSystem, first: ComplexArray, second: ComplexArray) ->
     return np.asarray(product / (size[0][:, None] * size[1]))
 
 
-def _continued(linear: LinearSystem, before: WhirlModes, place: list[int], modes: WhirlModes) -> list[int]:
+def _continued(linear: LinearSystem, before: WhirlModes, branch: list[int], modes: WhirlModes) -> list[int]:
     """Return the branch of each mode: that of its predecessor, or a new one."""
     apart = np.abs(before.frequency[:, None] - modes.frequency)
     apart = apart / (before.frequency[:, None] + modes.frequency)
     rows, columns = linear_sum_assignment(TIE * apart - likeness(linear, before.shape, modes.shape))
-    known = dict(zip(columns.tolist(), (place[row] for row in rows), strict=True))
-    fresh = max(place, default=-1)
+    known = dict(zip(columns.tolist(), (branch[row] for row in rows), strict=True))
+    fresh = max(branch, default=-1)
     found = []
     for index in range(modes.frequency.size):
         if index not in known:
@@ -104,7 +104,7 @@ def _gathered(
     linear: LinearSystem,
     speed: FloatArray,
     found: list[WhirlModes],
-    places: list[list[int]],
+    branches: list[list[int]],
     count: int,
 ) -> WhirlBranches:
     """Put the branches together."""
@@ -112,12 +112,12 @@ def _gathered(
     frequency, ratio, whirl = (np.full((speed.size, count), np.nan) for _ in range(3))
     shape = np.full((speed.size, count, n), np.nan + 0j)
     strain, kinetic = np.full((speed.size, count, p), np.nan), np.full((speed.size, count, n), np.nan)
-    for row, (modes, place) in enumerate(zip(found, places, strict=True)):
-        frequency[row, place], ratio[row, place] = modes.frequency, modes.damping_ratio
-        shape[row, place] = modes.shape
-        strain[row, place] = strain_shares(linear, modes.shape)
-        kinetic[row, place] = kinetic_shares(linear, modes.shape)
-        whirl[row, place] = _whirl(system, linear, float(speed[row]), modes)
+    for row, (modes, branch) in enumerate(zip(found, branches, strict=True)):
+        frequency[row, branch], ratio[row, branch] = modes.frequency, modes.damping_ratio
+        shape[row, branch] = modes.shape
+        strain[row, branch] = strain_shares(linear, modes.shape)
+        kinetic[row, branch] = kinetic_shares(linear, modes.shape)
+        whirl[row, branch] = _whirl(system, linear, float(speed[row]), modes)
     return WhirlBranches(speed, frequency, ratio, whirl, shape, strain, kinetic)
 
 
@@ -137,7 +137,7 @@ def _whirl(system: System, linear: LinearSystem, speed: float, modes: WhirlModes
 
 
 def _clusters(frequency: FloatArray) -> list[IntArray]:
-    """Group modes, sorted by frequency, whose neighbours are alike."""
+    """Group modes, sorted by frequency, whose neighbors are alike."""
     ends = np.flatnonzero(np.diff(frequency) > SAME * frequency[1:]) + 1
     return [part for part in np.split(np.arange(frequency.size), ends) if part.size]
 
@@ -155,12 +155,12 @@ def _senses(
 
     Sums over its modes: traces, which are the same in every orthonormal basis.
     """
-    places = [
+    candidates = [
         (rotor, *(system.freedoms.find(rotor, kind) for kind in kinds))
         for rotor in range(len(system.rotors))
         for kinds in ((0, 1), (3, 4))
     ]
-    pairs = np.array([place for place in places if min(place[1:]) >= 0], dtype=np.int64).reshape(-1, 3)
+    pairs = np.array([found for found in candidates if min(found[1:]) >= 0], dtype=np.int64).reshape(-1, 3)
     if pairs.size == 0 or not clusters:
         return np.zeros(len(clusters))
     (rotor, i, j), first = pairs.T, [cluster[0] for cluster in clusters]

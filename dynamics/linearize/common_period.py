@@ -19,20 +19,20 @@ AGREEMENT = 1e-12
 
 @dataclass(frozen=True)
 class CommonPeriod:
-    """After how many base pitches all meshes stand as before, with the laws' speeds in fixed proportion.
+    """After how many base pitches all meshes are in phase again, with the laws' speeds in fixed proportion.
 
     Frames that a coupling crosses have turned by whole revolutions then, too.
 
     Attributes
     ----------
     law : int
-        The law whose speed stands for all: the first that turns.
+        The leading law: the first that turns.
     proportion : (k,) array
         Speed of each law over that of `law`.
     revolutions : Fraction
         Of the law's shaft in one common period.
     pitches : tuple of int
-        Base pitches of each mesh in one common period, > 0 in its driver's sense; 0: it stands.
+        Base pitches of each mesh in one common period, > 0 in its driver's sense; 0: at rest.
     """
 
     law: int

@@ -132,7 +132,7 @@ def _refined(
 def _newton(
     linear: LinearSystem, matrices: SpeedMatrices, between: _Between
 ) -> tuple[float, float, float, float] | None:
-    """Solve P(s, W) x = 0 with Im s = 2 pi rate W for x, Re s and W; None if that leads elsewhere.
+    """Solve P(s, W) x = 0 with Im s = 2 pi rate W for x, Re s and W; None without convergence to it.
 
     The steps x + dx = -P^-1 (P_s ds + P_W dW) x keep c^H x = 1, c along the first guess: a complex equation
     for the two real unknowns.

@@ -57,9 +57,9 @@ def spring_parts(system: System, spring: Sequence[str]) -> tuple[tuple[str, str]
     kinds |= {part.name: "drive" for part in scene.drives}
     meshes = {mesh.name for mesh in scene.meshes}
     found = []
-    for place, name in enumerate(spring):
+    for index, name in enumerate(spring):
         part = name
-        if place < len(scene.meshes) and name in meshes:
+        if index < len(scene.meshes) and name in meshes:
             found.append((name, "mesh"))
             continue
         if name not in kinds:

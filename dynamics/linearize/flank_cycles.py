@@ -58,7 +58,7 @@ def flank_cycles(
 ) -> tuple[FlankCycle, ...]:
     """Return the cycle of every driving flank about the equilibrium of `linear`, loads taken at `time`.
 
-    The coordinates beside the transmission error (misalignment, centre distance, sliding) are those of the
+    The coordinates beside the transmission error (misalignment, center distance, sliding) are those of the
     bodies at rest, so tables are read where these are. `orders` harmonics per base pitch are wanted, at up to
     `samples` positions per base pitch.
     """
@@ -67,10 +67,10 @@ def flank_cycles(
     probe = by_address(_by_coordinates(arrays))  # laid out once for thousands of look-ups
     origin = local_state(probe, time, *_states(probe, np.zeros(at_rest.coordinate.size), 0.0)).position
     force = linear.equilibrium.mesh_force
-    places = [positions(mesh.table.period, orders, samples) for mesh in system.scene.meshes]
+    grids = [positions(mesh.table.period, orders, samples) for mesh in system.scene.meshes]
     return tuple(
         _cycle(system, probe, time, at_rest, origin, index, float(force[index]), position)
-        for index, position in enumerate(places)
+        for index, position in enumerate(grids)
     )
 
 

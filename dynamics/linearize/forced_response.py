@@ -45,7 +45,7 @@ STORED = {
 
 @dataclass(frozen=True)
 class ForcedResponse(HarmonicResponse):
-    """Harmonic response over S speeds with what tells how far to trust it.
+    """Harmonic response over S speeds with a measure of its validity.
 
     Attributes
     ----------
@@ -149,11 +149,11 @@ def _difference(found: HarmonicResponse, other: HarmonicResponse) -> FloatArray:
     """Return how unlike the largest transmission errors are, (m, H); harmonics that one lacks count whole."""
     first = np.max(np.abs(found.dynamic_transmission_error), axis=1)
     second = np.zeros_like(first)
-    place = {order: index for index, order in enumerate(other.order.tolist())}
+    index_of = {order: index for index, order in enumerate(other.order.tolist())}
     amplitude = np.max(np.abs(other.dynamic_transmission_error), axis=1)
     for index, order in enumerate(found.order.tolist()):
-        if order in place:
-            second[:, index] = amplitude[:, place[order]]
+        if order in index_of:
+            second[:, index] = amplitude[:, index_of[order]]
     return np.asarray(np.abs(second - first) / np.max(first, initial=1e-300))
 
 
@@ -190,7 +190,7 @@ class Peak:
 def peaks(found: ForcedResponse) -> tuple[Peak, ...]:
     """Return the peaks of all mesh and bearing forces by order, those of meshes first, the largest first.
 
-    A peak is a speed of the study at which an amplitude is above those at both neighbours.
+    A peak is a speed of the study at which an amplitude is above those at both neighbors.
     """
     gain = np.abs(found.dynamic_transmission_error)
     size = np.abs(found.static_transmission_error)[:, None]

@@ -35,7 +35,7 @@ class HarmonicResponse:
     ----------
     mesh, bearing, freedom : tuples of str
     speed : (S,) array
-        Of the drive that stands for all, rad/s.
+        Of the leading drive, rad/s.
     order : (H,) array
         Multiples of the frequency of the first mesh that turns, those that are excited; fractions where
         tables or trains repeat after several pitches.
@@ -92,7 +92,7 @@ def harmonic_response(
     """Return the linear response of `system` to its transmission errors at the speeds given.
 
     M u'' + C u' + (K + sum k g^T g) u = sum k g STE(t), with k the mean over the positions of the tangent
-    stiffness at the static mesh force, and the tables read at the misalignment and centre distance at which
+    stiffness at the static mesh force, and the tables read at the misalignment and center distance at which
     the bodies rest; how stiffness varies with position (parametric excitation) is left out. Where the load
     moves along the face or there is friction, moment and friction of the static mesh force excite too.
 
@@ -125,10 +125,10 @@ def harmonic_response(
         positive(f"speed[{index}]", float(value))
     at = excited(system, time, orders)
     harmonics = np.arange(1, orders * at.period.counted + 1, dtype=np.int64)
-    return told(at, speed, steady_vibration(at, speed, harmonics, excitation, progress=progress))
+    return response_of(at, speed, steady_vibration(at, speed, harmonics, excitation, progress=progress))
 
 
-def told(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
+def response_of(at: Excited, speed: FloatArray, steady: Steady) -> HarmonicResponse:
     """Say what a vibration at `speed` (S,) does to meshes and bearings."""
     system, linear = at.system, at.linear
     dte = np.moveaxis(steady.displacement @ system.arrays.direction[system.driving_rows].T, 2, 0)

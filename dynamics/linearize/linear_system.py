@@ -29,7 +29,7 @@ class LinearSystem:
     freedom : tuple of str
         "shaft.kind", as in `Freedoms`.
     scale : (n,) array
-        Metres per unit of each freedom: 1, or a radius for rotations.
+        Meters per unit of each freedom: 1, or a radius for rotations.
     mass, damping, stiffness : (n, n) arrays
         M, C, K; symmetric.
     rigid : (k, n) array
@@ -69,7 +69,7 @@ def about_running(system: System) -> System:
 
 
 def linearize(system: System, time: float = 0.0) -> LinearSystem:
-    """Linearise `system` about its static equilibrium under the loads at `time`, gears running.
+    """Linearize `system` about its static equilibrium under the loads at `time`, gears running.
 
     Raises
     ------
@@ -82,7 +82,7 @@ def linearize(system: System, time: float = 0.0) -> LinearSystem:
         raise SolveError(f"no static equilibrium: {start.status.name.lower()}, {start.residual:.3g} N left")
     arrays = system.arrays
     rest = np.zeros(start.displacement.size)
-    balance = force_balance(arrays, time, start.displacement, rest, rest, turning=False)
+    balance = force_balance(arrays, time, start.displacement, rest, rest, gyroscopic=False)
     free = arrays.reference.freedom >= 0
     names, strain, coefficient = _springs(system, time, balance.local.tangent)
     return LinearSystem(
@@ -133,7 +133,7 @@ def _springs(
     rows, stiffness = [system.arrays.direction[first]], [tangent[first, 0]]
     supports = system.supports
     moves = system.freedoms.keep(supports.motion)
-    plain = [index for index in range(len(supports.name)) if index not in system.seats.place]
+    plain = [index for index in range(len(supports.name)) if index not in system.seats.support]
     names += [f"{supports.name[index]}.{axis}" for index in plain for axis in "xyz"]
     rows.append(moves[plain].reshape(-1, moves.shape[-1]))
     stiffness.append(supports.stiffness[plain].ravel())
@@ -149,9 +149,9 @@ def _springs(
         names.append(drive.name)
         rows.append(row[None, :])
         stiffness.append(np.array([drive.stiffness]))
-    springs = elastic_terms(system.rotors)[0][system.freedoms.place]
+    springs = elastic_terms(system.rotors)[0][system.freedoms.column]
     bent = np.flatnonzero(springs > 0.0)
-    names += [system.freedoms.name[place] for place in bent]
+    names += [system.freedoms.name[freedom] for freedom in bent]
     rows.append(np.eye(springs.size)[bent])
     stiffness.append(springs[bent])
     return tuple(names), np.concatenate(rows), np.concatenate(stiffness)

@@ -172,7 +172,7 @@ def modal_analysis(
     progress : callable, optional
         Called with the fraction done; what it raises ends the analysis.
     highest_frequency : float, optional
-        Hz to which shafts that bend and twist are resolved, whatever the scene's output asks for; left out:
+        Hz to which shafts that bend and twist are resolved, whatever the scene's output needs; left out:
         the highest of the `orders` at the highest of the speeds, or of the scene's where none is given.
 
     Raises
@@ -202,12 +202,12 @@ def modal_analysis(
 
 
 def _facts(
-    system: System, linear: LinearSystem, time: float, orders: int, seconds: Json, turning: bool
+    system: System, linear: LinearSystem, time: float, orders: int, seconds: Json, rotating: bool
 ) -> Json:
     """Return what is no array."""
     scene, start = system.scene, linear.equilibrium
     return {
-        "leading_shaft": scene.references[leading_law(system)].shaft if turning else "",
+        "leading_shaft": scene.references[leading_law(system)].shaft if rotating else "",
         "time": time,
         "orders": orders,
         "equilibrium": {

@@ -1,4 +1,4 @@
-"""Natural modes of a linearised system: frequencies, shapes, damping, and where their energy is."""
+"""Natural modes of a linearized system: frequencies, shapes, damping, and where their energy is."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Modes:
     freedom : tuple of str
         Names of the columns, "shaft.kind".
     scale : (n,) array
-        Metres per unit of each freedom: ``shape * scale`` compares translations and rotations.
+        Meters per unit of each freedom: ``shape * scale`` compares translations and rotations.
     spring : tuple of str
         Names of the springs: meshes, bearings with direction, elastic drives.
     strain_energy : (n, p) array
@@ -76,14 +76,14 @@ def natural_modes(system: System | LinearSystem, time: float = 0.0) -> Modes:
 
 def _solve(linear: LinearSystem) -> tuple[FloatArray, FloatArray]:
     """Squared circular frequencies (n,) and shapes (n, n) of unit modal mass, rigid motions exactly."""
-    per_metre = 1.0 / linear.scale
-    mass, stiffness = (per_metre[:, None] * a * per_metre for a in (linear.mass, linear.stiffness))
+    per_meter = 1.0 / linear.scale
+    mass, stiffness = (per_meter[:, None] * a * per_meter for a in (linear.mass, linear.stiffness))
     rigid = linear.rigid * linear.scale
     if rigid.shape[0] == 0:
         square, vectors = eigh(stiffness, mass)
-        return square, np.asarray(vectors.T * per_metre)
+        return square, np.asarray(vectors.T * per_meter)
     still = np.linalg.solve(np.linalg.cholesky(rigid @ mass @ rigid.T), rigid)
     rest = null_space(still @ mass)
     square, vectors = eigh(rest.T @ stiffness @ rest, rest.T @ mass @ rest)
     shapes = np.concatenate([still, (rest @ vectors).T])
-    return np.concatenate([np.zeros(still.shape[0]), square]), np.asarray(shapes * per_metre)
+    return np.concatenate([np.zeros(still.shape[0]), square]), np.asarray(shapes * per_meter)

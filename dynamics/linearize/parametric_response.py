@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from dynamics.linearize.harmonic_response import HarmonicResponse, extremes, told
+from dynamics.linearize.harmonic_response import HarmonicResponse, extremes, response_of
 from dynamics.linearize.steady_vibration import ComplexArray, Excited, Steady, swept_vibration
 from dynamics.types import FloatArray, IntArray
 
@@ -36,19 +36,19 @@ class Family:
     Attributes
     ----------
     meshes : (f,) int array
-    place : (H,) int array
+    harmonic : (H,) int array
         Of the harmonics 1 to H of the mesh frequency among those of the vibration.
     stiffness : (f, 4 H + 1) complex array
         Fourier coefficients -2 H to 2 H of the tangent stiffness less its mean, N/m.
     """
 
     meshes: IntArray
-    place: IntArray
+    harmonic: IntArray
     stiffness: ComplexArray
 
 
 def parametric_response(
-    at: Excited, speed: FloatArray, rate: FloatArray, orders: int = 10, turning: bool = False
+    at: Excited, speed: FloatArray, rate: FloatArray, orders: int = 10, gyroscopic: bool = False
 ) -> ParametricResponse:
     """Return the response of a system to its transmission errors, the stiffness varying with position.
 
@@ -68,23 +68,23 @@ def parametric_response(
         Of the leading law, rad/s, and how fast it changes, rad/s^2.
     orders : int
         H; fewer where many meshes share a frequency.
-    turning : bool
+    gyroscopic : bool
         With gyroscopic and frame terms.
     """
     harmonics, meshes = _all_harmonics(at, orders), len(at.cycles)
-    steady = swept_vibration(at, speed, rate, harmonics, turning)
+    steady = swept_vibration(at, speed, rate, harmonics, gyroscopic)
     u, extra = steady.displacement.copy(), np.zeros((meshes, *steady.omega.shape), dtype=complex)
     shift = np.zeros((meshes, speed.size))
     row = at.system.arrays.direction[at.system.driving_rows]
     still = _at_rest(at, row)
     for family in _families(at, harmonics, orders):
         for s in range(speed.size):
-            moved = np.concatenate([still[None], steady.receptance[s, family.place]])[..., family.meshes]
+            moved = np.concatenate([still[None], steady.receptance[s, family.harmonic]])[..., family.meshes]
             push = _push(family, row[family.meshes] @ moved, _made(family, row, steady, s))
-            u[s, family.place] -= 2.0 * np.einsum("hnf,hf->hn", moved[1:], push[1:])
-            extra[family.meshes[:, None], s, family.place] += 2.0 * push[1:].T
+            u[s, family.harmonic] -= 2.0 * np.einsum("hnf,hf->hn", moved[1:], push[1:])
+            extra[family.meshes[:, None], s, family.harmonic] += 2.0 * push[1:].T
             shift[:, s] -= row @ np.real(moved[0] @ push[0])
-    found = told(at, speed, replace(steady, displacement=u))
+    found = response_of(at, speed, replace(steady, displacement=u))
     force = found.mesh_force + extra
     least = found.mean_force[:, None] + extremes(force, found.order)[0]
     return ParametricResponse(replace(found, mesh_force=force, least_mesh_force=least), shift)
@@ -109,9 +109,9 @@ def _families(at: Excited, harmonics: IntArray, orders: int) -> list[Family]:
     found = []
     for pitches, meshes in by_pitches.items():
         count = min(orders, max(LEAST_ORDERS, MOST_UNKNOWNS // (2 * len(meshes))))
-        place = np.searchsorted(harmonics, pitches * np.arange(1, count + 1))
+        harmonic = np.searchsorted(harmonics, pitches * np.arange(1, count + 1))
         stiffness = np.array([_coefficients(at, mesh, 2 * count) for mesh in meshes])
-        found.append(Family(np.array(meshes), place, stiffness))
+        found.append(Family(np.array(meshes), harmonic, stiffness))
     return found
 
 
@@ -130,8 +130,8 @@ def _coefficients(at: Excited, mesh: int, highest: int) -> ComplexArray:
 
 def _made(family: Family, row: FloatArray, steady: Steady, s: int) -> ComplexArray:
     """Fourier coefficients 1 to H (H, f) of what makes force with the mean stiffness, m."""
-    response = steady.displacement[s, family.place] @ row[family.meshes].T
-    return np.asarray(0.5 * (response - steady.static[family.meshes][:, family.place].T))
+    response = steady.displacement[s, family.harmonic] @ row[family.meshes].T
+    return np.asarray(0.5 * (response - steady.static[family.meshes][:, family.harmonic].T))
 
 
 def _push(family: Family, receptance: ComplexArray, made: ComplexArray) -> ComplexArray:
@@ -149,18 +149,18 @@ def _push(family: Family, receptance: ComplexArray, made: ComplexArray) -> Compl
     (H + 1, f) complex array
         Fourier coefficients 0 to H of the force by which the varying part of the stiffness presses, N.
     """
-    count = family.place.size
+    count = family.harmonic.size
     whole = np.concatenate([receptance[:0:-1].conj(), receptance])
-    given = np.concatenate([made[::-1].conj(), np.zeros((1, made.shape[1])), made])
+    forcing = np.concatenate([made[::-1].conj(), np.zeros((1, made.shape[1])), made])
     step = np.arange(2 * count + 1)
     varying = family.stiffness[:, step[:, None] - step[None, :] + 2 * count]  # (f, 2 H + 1, 2 H + 1)
-    matrix = np.einsum("iab,bij->iajb", whole, varying).reshape(given.size, given.size)
-    w = np.linalg.solve(matrix + np.eye(given.size), given.reshape(-1)).reshape(given.shape)
+    matrix = np.einsum("iab,bij->iajb", whole, varying).reshape(forcing.size, forcing.size)
+    w = np.linalg.solve(matrix + np.eye(forcing.size), forcing.reshape(-1)).reshape(forcing.shape)
     return np.asarray(np.einsum("bij,jb->ib", varying, w)[count:])
 
 
 def _at_rest(at: Excited, row: FloatArray) -> ComplexArray:
     """Displacements per static force along rows (f, n), (n, f)."""
-    per_metre = 1.0 / at.linear.scale
-    held = per_metre[:, None] * at.linear.stiffness * per_metre
-    return np.asarray(np.linalg.solve(held, (row * per_metre).T) * per_metre[:, None], dtype=complex)
+    per_meter = 1.0 / at.linear.scale
+    held = per_meter[:, None] * at.linear.stiffness * per_meter
+    return np.asarray(np.linalg.solve(held, (row * per_meter).T) * per_meter[:, None], dtype=complex)

@@ -1,4 +1,4 @@
-"""The matrices of a turning system as polynomials of speed, in metres."""
+"""The matrices of a rotating system as polynomials of speed, in meters."""
 
 from __future__ import annotations
 
@@ -18,43 +18,43 @@ ComplexMatrix = NDArray[np.complex128]
 
 @dataclass(frozen=True)
 class SpeedMatrices:
-    """P(s, W) = s^2 M + s (C + W G) + K + W S + W^2 T of n freedoms in metres, W the leading law's speed.
+    """P(s, W) = s^2 M + s (C + W G) + K + W S + W^2 T of n freedoms in meters, W the leading law's speed.
 
     Gyroscopic terms grow with the speed, centripetal ones with its square, dampers across frames with it.
 
     Attributes
     ----------
-    mass, damping, stiffness, turning, swept, centripetal : (n, n) arrays
+    mass, damping, stiffness, gyroscopic, swept, centripetal : (n, n) arrays
         M, C, K, G, S, T.
     """
 
     mass: FloatArray
     damping: FloatArray
     stiffness: FloatArray
-    turning: FloatArray
+    gyroscopic: FloatArray
     swept: FloatArray
     centripetal: FloatArray
 
     def at(self, eigenvalue: complex, speed: float) -> ComplexMatrix:
         """Return P."""
-        rate = self.damping + speed * self.turning
+        rate = self.damping + speed * self.gyroscopic
         rest = self.stiffness + speed * self.swept + speed**2 * self.centripetal
         return np.asarray(eigenvalue**2 * self.mass + eigenvalue * rate + rest)
 
     def by_eigenvalue(self, eigenvalue: complex, speed: float) -> ComplexMatrix:
         """Return dP/ds."""
-        return np.asarray(2.0 * eigenvalue * self.mass + self.damping + speed * self.turning)
+        return np.asarray(2.0 * eigenvalue * self.mass + self.damping + speed * self.gyroscopic)
 
     def by_speed(self, eigenvalue: complex, speed: float) -> ComplexMatrix:
         """Return dP/dW."""
-        return np.asarray(eigenvalue * self.turning + self.swept + 2.0 * speed * self.centripetal)
+        return np.asarray(eigenvalue * self.gyroscopic + self.swept + 2.0 * speed * self.centripetal)
 
 
 def speed_matrices(system: System, linear: LinearSystem, speed: float) -> SpeedMatrices:
     """Return the matrices, their speed terms from those at `speed` (rad/s, not 0) and at twice that."""
-    per_metre = 1.0 / linear.scale
-    turning, once = terms_at(system, law_speeds(system, speed))
+    per_meter = 1.0 / linear.scale
+    gyroscopic, once = terms_at(system, law_speeds(system, speed))
     twice = terms_at(system, law_speeds(system, 2.0 * speed))[1]
     swept, centripetal = (4.0 * once - twice) / (2.0 * speed), (twice - 2.0 * once) / (2.0 * speed**2)
-    parts = (linear.mass, linear.damping, linear.stiffness, turning / speed, swept, centripetal)
-    return SpeedMatrices(*(per_metre[:, None] * part * per_metre for part in parts))
+    parts = (linear.mass, linear.damping, linear.stiffness, gyroscopic / speed, swept, centripetal)
+    return SpeedMatrices(*(per_meter[:, None] * part * per_meter for part in parts))

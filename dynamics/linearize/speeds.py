@@ -21,12 +21,12 @@ def leading_law(system: System) -> int:
     Raises
     ------
     InputError
-        If all stand.
+        If all are at rest.
     """
     extreme = [part.speed.extreme for part in system.scene.references]
     found = next((index for index, speed in enumerate(extreme) if speed != 0.0), None)
     if found is None:
-        raise InputError("drives", 0.0, "turning, at least one of them", "Give one a speed other than 0.")
+        raise InputError("drives", 0.0, "rotating, at least one of them", "Give one a speed other than 0.")
     return found
 
 

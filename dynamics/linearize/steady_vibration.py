@@ -69,7 +69,7 @@ class Steady:
     residual : float
         Largest force left by the linear solves, of the largest exciting force.
     receptance : (S, H, n, m) complex array
-        Displacements per force along each mesh's line of action; empty where not asked for.
+        Displacements per force along each mesh's line of action; empty where not requested.
     """
 
     harmonics: IntArray
@@ -115,18 +115,18 @@ def steady_vibration(
 
 
 def swept_vibration(
-    at: Excited, speed: FloatArray, rate: FloatArray, harmonics: IntArray, turning: bool = False
+    at: Excited, speed: FloatArray, rate: FloatArray, harmonics: IntArray, gyroscopic: bool = False
 ) -> Steady:
     """Return the vibration at `speed` (S,) with the receptances of the meshes, all `harmonics` (H,).
 
     Where the speed changes at a `rate` (S,), rad/s^2, resonances are as high as they can grow while they are
-    passed. With `turning`, gyroscopic and frame terms are in.
+    passed. With `gyroscopic`, gyroscopic and frame terms are in.
     """
     static, force = _excitation(at.system, at.cycles, at.period, harmonics, "static_error")
     omega = _omega(at, speed, harmonics)
     decay = SWEPT * np.sqrt(omega * (np.abs(rate) / np.abs(speed))[:, None])
     rows = at.system.arrays.direction[at.system.driving_rows]
-    terms = turning_terms(at.system, speed) if turning else []
+    terms = gyroscopic_terms(at.system, speed) if gyroscopic else []
     u, residual = _solve(at, force, omega - 1j * decay, terms, rows)
     return Steady(harmonics, omega, static, force, u[..., 0], residual, u[..., 1:])
 
@@ -137,8 +137,8 @@ def _omega(at: Excited, speed: FloatArray, harmonics: IntArray) -> FloatArray:
     return np.asarray(2.0 * math.pi * harmonics / duration)
 
 
-def turning_terms(system: System, speed: FloatArray) -> list[Terms]:
-    """Return what turning adds to damping and stiffness (n, n) where the leading law has each `speed`."""
+def gyroscopic_terms(system: System, speed: FloatArray) -> list[Terms]:
+    """Return the gyroscopic and frame terms (n, n) of damping and stiffness at each leading `speed`."""
     return [terms_at(system, law_speeds(system, abs(float(w)))) for w in speed]
 
 
@@ -153,16 +153,16 @@ def _excitation(
     static = np.zeros((len(cycles), harmonics.size), dtype=complex)
     force = np.zeros((cycles[-1].rows.stop, harmonics.size), dtype=complex)
     for f, (mesh, cycle) in enumerate(zip(system.scene.meshes, cycles, strict=True)):
-        place = period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
-        static[f] = harmonics_of(cycle.static_error, *place)
+        grid = period.pitches[f], mesh.table.period, mesh.position_offset, harmonics
+        static[f] = harmonics_of(cycle.static_error, *grid)
         for p, row in enumerate(range(cycle.rows.start, cycle.rows.stop)):
             if kind == "static_error":
                 held = (
-                    harmonics_of(cycle.force[:, p], *place) if p else 0.0
+                    harmonics_of(cycle.force[:, p], *grid) if p else 0.0
                 )  # the first force is the same all along
                 force[row] = cycle.tangent[p, 0] * static[f] - held
             else:
-                force[row] = -harmonics_of(cycle.blocked[:, p], *place)
+                force[row] = -harmonics_of(cycle.blocked[:, p], *grid)
     return static, force
 
 
@@ -193,16 +193,16 @@ def _solve(
     """Displacements (S, H, n, 1 + f), and the relative residual; a block of speeds at a time.
 
     The first are those of `force` (R', H) on the driving flanks' rows, the others per force along each of
-    `rows` (f, n). `terms` are what turning adds to damping and stiffness at each speed; none: nothing.
+    `rows` (f, n). `terms` are those of `gyroscopic_terms` at each speed; none: nothing.
     """
-    linear, per_metre = at.linear, 1.0 / at.linear.scale
+    linear, per_meter = at.linear, 1.0 / at.linear.scale
     g = at.system.arrays.direction[: force.shape[0]]
     mass, damping, total = (
-        per_metre[:, None] * a * per_metre for a in (linear.mass, linear.damping, linear.stiffness)
+        per_meter[:, None] * a * per_meter for a in (linear.mass, linear.damping, linear.stiffness)
     )
-    pushed = (force.T @ g * per_metre)[None, :, :, None]
+    pushed = (force.T @ g * per_meter)[None, :, :, None]
     if rows is not None:
-        each = np.broadcast_to((rows * per_metre).T, (*pushed.shape[:3], rows.shape[0]))
+        each = np.broadcast_to((rows * per_meter).T, (*pushed.shape[:3], rows.shape[0]))
         pushed = np.concatenate([pushed, each], axis=-1)
     found = np.empty((*omega.shape, *pushed.shape[2:]), dtype=complex)
     block = max(BLOCK // max(omega.shape[1] * g.shape[1] ** 2, 1), 1)
@@ -213,14 +213,14 @@ def _solve(
         matrix = np.asarray(total - w * w * mass + 1j * w * damping, dtype=complex)
         if terms:
             swept = [
-                np.stack([per_metre[:, None] * term[k] * per_metre for term in terms[part]]) for k in (0, 1)
+                np.stack([per_meter[:, None] * term[k] * per_meter for term in terms[part]]) for k in (0, 1)
             ]
             matrix += 1j * w * swept[0][:, None] + swept[1][:, None]
         right = np.broadcast_to(pushed, (*matrix.shape[:-1], pushed.shape[-1]))
         solved = np.linalg.solve(matrix, right)
         miss = np.abs(matrix @ solved - right)[..., 0]
         left = max(left, float(np.max(miss, initial=0.0)))
-        found[part] = solved * per_metre[:, None]
+        found[part] = solved * per_meter[:, None]
         if progress is not None:
             progress(min(start + block, omega.shape[0]) / omega.shape[0])
     return found, left / max(float(np.max(np.abs(pushed[..., 0]), initial=0.0)), 1e-300)

@@ -1,4 +1,4 @@
-"""Natural modes of a turning system: gyroscopic moments, Coriolis and centripetal terms of turning frames."""
+"""Natural modes of a rotating system, with gyroscopic, Coriolis and centripetal terms."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ class WhirlModes:
     damping_ratio : (a,) array
         -Re/|eigenvalue|; below 0: unstable.
     shape : (a, n) complex array
-        One mode per row, per freedom in m and rad; the largest entry in metres is 1.
+        One mode per row, per freedom in m and rad; the largest entry in meters is 1.
     freedom : tuple of str
         Names of the columns, "shaft.kind".
     scale : (n,) array
-        Metres per unit of each freedom.
+        Meters per unit of each freedom.
     """
 
     frequency: FloatArray
@@ -59,12 +59,12 @@ def whirl_modes(system: System, time: float = 0.0) -> WhirlModes:
     SolveError
         If there is no static equilibrium.
     """
-    return turning_modes(linearize(system, time), *speed_terms(system, time))
+    return whirl_modes_with(linearize(system, time), *speed_terms(system, time))
 
 
-def turning_modes(linear: LinearSystem, turning: FloatArray, stiffening: FloatArray) -> WhirlModes:
+def whirl_modes_with(linear: LinearSystem, gyroscopic: FloatArray, stiffening: FloatArray) -> WhirlModes:
     """Return the modes of `linear` with the terms G and S (n, n) of its speeds."""
-    eigenvalue, vector = _eigen(linear, linear.damping + turning, linear.stiffness + stiffening)
+    eigenvalue, vector = _eigen(linear, linear.damping + gyroscopic, linear.stiffness + stiffening)
     kept = np.flatnonzero(eigenvalue.imag > OSCILLATING * np.max(np.abs(eigenvalue), initial=0.0))
     kept = kept[np.argsort(eigenvalue[kept].imag)]
     shape = vector[: linear.scale.size, kept].T
@@ -95,7 +95,7 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
     """Return G and S (n, n) of `speed_terms` at the speeds `law_speed` (k,) of the laws, rad/s."""
     speed = system.kinematics.float_ratio @ law_speed
     size = column_count(system.rotors)
-    turning, stiffening = np.zeros((size, size)), np.zeros((size, size))
+    gyroscopic, stiffening = np.zeros((size, size)), np.zeros((size, size))
     for index, rotor in enumerate(system.rotors):
         frame = 0.0 if rotor.frame is None else float(speed[rotor.frame])
         inertia, spin = rotor.inertia, float(speed[index])
@@ -107,9 +107,9 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
                 (inertia.polar * spin - inertia.transverse * frame) * frame,
             ),
         ):
-            place = np.ix_([6 * index + k for k in kinds], [6 * index + k for k in kinds])
-            turning[place] += rate * QUARTER_TURN
-            stiffening[place] += rest * np.eye(2)
+            block = np.ix_([6 * index + k for k in kinds], [6 * index + k for k in kinds])
+            gyroscopic[block] += rate * QUARTER_TURN
+            stiffening[block] += rest * np.eye(2)
     supports = system.supports
     for bearing, carrier in enumerate(supports.frame):
         if carrier is not None:
@@ -122,13 +122,13 @@ def terms_at(system: System, law_speed: FloatArray) -> tuple[FloatArray, FloatAr
         stiffening += seats.motion.T @ (seats.turned_damping * np.repeat(of_frame, SEAT)) @ seats.motion
     for index, rotor in enumerate(system.rotors):
         if rotor.elastic is not None and rotor.elastic.bends:
-            turning += _along_the_shaft(system, index, float(speed[index]))
+            gyroscopic += _along_the_shaft(system, index, float(speed[index]))
     motion = system.freedoms.motion
-    return motion.T @ turning @ motion, motion.T @ stiffening @ motion + _across_frames(system, law_speed)
+    return motion.T @ gyroscopic @ motion, motion.T @ stiffening @ motion + _across_frames(system, law_speed)
 
 
 def _across_frames(system: System, law_speed: FloatArray) -> FloatArray:
-    """Return what dampers across frames add to the stiffness, (n, n), as the frames stand at t = 0."""
+    """Return what dampers across frames add to the stiffness, (n, n), at the frames' angles at t = 0."""
     arrays, rest = system.arrays, np.zeros(system.arrays.mass.shape[0])
     local, pace = local_state(arrays, 0.0, rest, rest), arrays.reference.per_radian @ law_speed
     swept = block_diagonal(arrays.elements, swept_by_frames(arrays.elements, local, pace))
@@ -146,9 +146,9 @@ def _along_the_shaft(system: System, index: int, spin: float) -> FloatArray:
 def _eigen(
     linear: LinearSystem, damping: FloatArray, stiffness: FloatArray
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Eigenvalues and vectors of the first-order system, freedoms in metres."""
-    per_metre, n = 1.0 / linear.scale, linear.scale.size
-    mass, damping, stiffness = (per_metre[:, None] * a * per_metre for a in (linear.mass, damping, stiffness))
+    """Eigenvalues and vectors of the first-order system, freedoms in meters."""
+    per_meter, n = 1.0 / linear.scale, linear.scale.size
+    mass, damping, stiffness = (per_meter[:, None] * a * per_meter for a in (linear.mass, damping, stiffness))
     state = np.zeros((2 * n, 2 * n))
     state[:n, n:] = np.eye(n)
     state[n:, :n], state[n:, n:] = -np.linalg.solve(mass, stiffness), -np.linalg.solve(mass, damping)

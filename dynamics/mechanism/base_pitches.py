@@ -24,7 +24,7 @@ Corrections = dict[str, tuple[float, float]]
 def with_common_base_pitches(scene: Scene) -> tuple[Scene, Corrections]:
     """Return `scene` with one base pitch per train of meshing gears, and what was corrected.
 
-    Radii are printed to one place after the point, so the pitch of a train is that of least squares of all
+    Radii are printed to one digit after the point, so the pitch of a train is that of least squares of all
     its base radii: each counts in proportion to its teeth.
 
     Raises

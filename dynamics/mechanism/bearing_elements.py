@@ -64,7 +64,7 @@ def bearing_loads(scene: Scene, rotors: Sequence[Rotor], forces: FloatArray) -> 
     }
 
 
-def nonlinear_worths(scene: Scene, loads: dict[str, float]) -> tuple[tuple[str, float], ...]:
+def nonlinear_influences(scene: Scene, loads: dict[str, float]) -> tuple[tuple[str, float], ...]:
     """Return for each law its shaft and what its tangent misses of the displacement under the load, m."""
     shaft = {part.name: part.shaft for part in (*scene.bushings, *scene.planet_bearings)}
     found = []
@@ -81,37 +81,39 @@ def nonlinear_worths(scene: Scene, loads: dict[str, float]) -> tuple[tuple[str, 
     return tuple(found)
 
 
-def bearing_places(
+def bearing_locations(
     scene: Scene, rotors: Sequence[Rotor], names: Sequence[str], loads: dict[str, float]
 ) -> tuple[BearingElement, ...]:
-    """Return one place per rolling contact, then per curve; `names` are those of all supports.
+    """Return one location per rolling contact, then per curve; `names` are those of all supports.
 
     A curve on a planet bearing is along its own axes, away from the carrier's and along z x (away).
     """
     radius = tilt_lever(scene)
-    place = {name: index for index, name in enumerate(names)}
+    support_index = {name: index for index, name in enumerate(names)}
     axes = {name: seat_axes(rotors, *at) for name, at in supports_by_name(rotors).items()}
     contacts, curves = [], []
     for part in scene.rolling_contacts:
         across = np.eye(SEAT)[:2]
         typical = part.tangent(part.typical_load(loads[part.bushing]))
-        contacts.append(BearingElement(place[part.bushing], across, across @ axes[part.bushing].T, typical))
+        contacts.append(
+            BearingElement(support_index[part.bushing], across, across @ axes[part.bushing].T, typical)
+        )
     for curve in scene.spring_curves:
         lever = radius if curve.direction.startswith("tilt") else 1.0
         own = lever * np.eye(SEAT)[[DIRECTIONS.index(curve.direction)]]
         way = own @ axes[curve.bushing]
-        curves.append(BearingElement(place[curve.bushing], way, own, curve.slope / lever**2))
+        curves.append(BearingElement(support_index[curve.bushing], way, own, curve.slope / lever**2))
     return (*contacts, *curves)
 
 
 def bearing_elements(
-    scene: Scene, rotors: Sequence[Rotor], places: Sequence[BearingElement], loads: dict[str, float]
+    scene: Scene, rotors: Sequence[Rotor], bearings: Sequence[BearingElement], loads: dict[str, float]
 ) -> tuple[tuple[Element, ...], RollingContactLaws, SpringCurveLaws]:
-    """Return the elements at `places`, and their laws."""
+    """Return the elements at `bearings`, and their laws."""
     found = supports_by_name(rotors)
     parts: list[RollingContact | SpringCurve] = [*scene.rolling_contacts, *scene.spring_curves]
     first_curve, elements = len(scene.rolling_contacts), []
-    for index, (part, at) in enumerate(zip(parts, places, strict=True)):
+    for index, (part, at) in enumerate(zip(parts, bearings, strict=True)):
         rotor, support = found[part.bushing]
         rolling = index < first_curve
         law = Law.ROLLING_CONTACT if rolling else Law.SPRING_CURVE

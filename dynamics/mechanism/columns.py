@@ -26,7 +26,7 @@ def elastic_columns(rotors: Sequence[Rotor], index: int) -> slice:
 
 
 def rigid_motion(arm: FloatArray) -> FloatArray:
-    """Return (3, 6): displacement of a point at `arm` (3,) from a body's centre per freedom of the body.
+    """Return (3, 6): displacement of a point at `arm` (3,) from a body's center per freedom of the body.
 
     u_point = u + r x arm for the small rotation r.
     """
@@ -46,8 +46,8 @@ def section_rows(rotors: Sequence[Rotor], index: int, z: float) -> FloatArray:
     rotor, rows = rotors[index], np.zeros((6, column_count(rotors)))
     rows[:, 6 * index : 6 * index + 6] = section(rotor, np.array([*rotor.center[:2], z]))
     if rotor.elastic is not None:
-        place = rotor.on_shaft(z - rotor.shaft.origin[2])
-        rows[:, elastic_columns(rotors, index)] = rotor.elastic.motion(place)
+        along = rotor.on_shaft(z - rotor.shaft.origin[2])
+        rows[:, elastic_columns(rotors, index)] = rotor.elastic.motion(along)
     return rows
 
 
@@ -88,8 +88,8 @@ def elastic_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
 def mass_terms(rotors: Sequence[Rotor]) -> tuple[FloatArray, FloatArray]:
     """Return the diagonal of the mass matrix, (N,), and how rotations couple with all freedoms, (N, r).
 
-    Rigid freedoms are those of the centres of mass, which elastic coordinates leave at rest. Only where a
-    rotation is imposed at one place, torsion is measured against that and coupled with it.
+    Rigid freedoms are those of the centers of mass, which elastic coordinates leave at rest. Only where a
+    rotation is imposed at one position, torsion is measured against that and coupled with it.
     """
     inertia = [rotor.inertia for rotor in rotors]
     rigid = [[i.mass, i.mass, i.mass, i.transverse, i.transverse, i.polar] for i in inertia]

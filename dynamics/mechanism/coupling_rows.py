@@ -17,7 +17,7 @@ from dynamics.types import FloatArray
 
 ROTATION = 5
 ACROSS = (0, 1, 3, 4)
-"""Strains that a turning frame mixes: x, y, tilt_x, tilt_y."""
+"""Strains that a rotating frame mixes: x, y, tilt_x, tilt_y."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ def gather_couplings(scene: Scene, rotors: Sequence[Rotor]) -> CouplingRows:
     motion = np.zeros((len(scene.couplings), 6, column_count(rotors)))
     for index, coupling in enumerate(scene.couplings):
         first, second = scene.shaft_index(coupling.first), scene.shaft_index(coupling.second)
-        place = np.add(scene.shafts[first].origin, (0.0, 0.0, coupling.position))
+        position = np.add(scene.shafts[first].origin, (0.0, 0.0, coupling.position))
         for shaft, sign in ((first, -1.0), (second, 1.0)):
-            motion[index] += sign * section_rows(rotors, shaft, place[2])
+            motion[index] += sign * section_rows(rotors, shaft, position[2])
     stiffness = [
         _constant(scene, c, full_matrix(c.stiffness, c.torsional_stiffness)) for c in scene.couplings
     ]

@@ -28,17 +28,17 @@ class Freedoms:
     ----------
     name : tuple of str
         "shaft.kind" with kind one of x, y, z (m), tilt_x, tilt_y, rotation (rad).
-    place : (n,) int array
+    column : (n,) int array
         Of each among the N freedoms of all rotors: 6 rotor + kind, elastic coordinates after all of these.
     motion : (N, n) array
-        All freedoms of all rotors per freedom: one at its place; planets go with their carrier where
+        All freedoms of all rotors per freedom: one at its index; planets go with their carrier where
         nothing lets them move on their own.
     turns : (n,) bool array
         Whether each is a rotation or a twist about the axis.
     """
 
     name: tuple[str, ...]
-    place: IntArray
+    column: IntArray
     motion: FloatArray
     turns: BoolArray
 
@@ -47,8 +47,8 @@ class Freedoms:
         return np.ascontiguousarray(np.asarray(matrix, dtype=float) @ self.motion)
 
     def find(self, rotor: int, kind: int) -> int:
-        """Return the place of one of a rotor's six freedoms among the free ones, or -1."""
-        found = np.flatnonzero(self.place == 6 * rotor + kind)
+        """Return the index of one of a rotor's six freedoms among the free ones, or -1."""
+        found = np.flatnonzero(self.column == 6 * rotor + kind)
         return int(found[0]) if found.size else -1
 
 
@@ -64,12 +64,12 @@ def find_freedoms(rotors: Sequence[Rotor], kinematics: Kinematics, ledger: Effec
             first, twists = elastic_columns(rotors, index).start, rotor.elastic.twists
             own += [(kind, first + k, bool(twists[k])) for k, kind in enumerate(rotor.elastic.kinds)]
             own.sort(key=lambda part: COUPLED.index(part[0].rstrip("_0123456789")))
-        found += [(f"{rotor.shaft.name}.{kind}", place, turns) for kind, place, turns in own]
-    place = np.array([part[1] for part in found], dtype=np.int64)
-    motion = carried_motion(rotors, place)[:, place]
+        found += [(f"{rotor.shaft.name}.{kind}", column, turns) for kind, column, turns in own]
+    column = np.array([part[1] for part in found], dtype=np.int64)
+    motion = carried_motion(rotors, column)[:, column]
     return Freedoms(
         tuple(part[0] for part in found),
-        place,
+        column,
         np.ascontiguousarray(motion),
         np.array([part[2] for part in found], dtype=np.bool_),
     )

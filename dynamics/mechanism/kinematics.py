@@ -12,8 +12,8 @@ from dynamics.mechanism.train_speeds import TrainSpeeds
 from dynamics.scene.scene import Scene
 from dynamics.types import FloatArray
 
-STANDSTILL = 1e-12  # of the fastest law: slower is not turning
-STARTING_SPEED = 1e-6  # rad/s; stands for the speed of a free rotation that starts from rest, for its sense
+STANDSTILL = 1e-12  # of the fastest law: slower is at rest
+STARTING_SPEED = 1e-6  # rad/s; the speed assumed of a free rotation that starts from rest, for its sense
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Kinematics:
     mesh_rate : tuple of tuples of Fraction
         (meshes, laws): base pitches per revolution of each law, in the driver's sense; exact.
     sense : tuple of int
-        +1, -1 about +z, or 0 for a shaft that stands: in which sense each shaft turns when it is fastest.
+        +1, -1 about +z, or 0 for a shaft at rest: in which sense each shaft turns when it is fastest.
     mesh_sense : tuple of int
         +1 or -1: the same for the driver of each mesh, seen from the carrier it runs on, if any.
     """
@@ -57,14 +57,14 @@ class Kinematics:
 def solve_kinematics(scene: Scene) -> Kinematics:
     """Solve for the speeds of all shafts.
 
-    A mesh of gears a and b on the carrier c (none: w_c = 0) asks for (w_a - w_c) z_a = -(w_b - w_c) z_b, with
+    A mesh of gears a and b on the carrier c (none: w_c = 0) requires (w_a - w_c) z_a = -(w_b - w_c) z_b, with
     + for a ring gear and its pinion; a coupling for equal speeds. What they leave open, drives and free
     rotations set.
 
     Raises
     ------
     InputError
-        If a mesh asks for another ratio than the rest of the train, two drives set the same train, or
+        If a mesh requires another ratio than the rest of the train, two drives set the same train, or
         nothing sets a shaft's speed.
     """
     speeds = TrainSpeeds(len(scene.shafts))
@@ -77,10 +77,10 @@ def solve_kinematics(scene: Scene) -> Kinematics:
             bound = f"a shaft of the same speed, not of {found} times it"
             raise InputError(f"couplings[{index}].second", coupling.second, bound)
         speeds.join(*ends, None, Fraction(1))
-    for place, part in enumerate(scene.references):
+    for number, part in enumerate(scene.references):
         if not speeds.set_by_law(scene.shaft_index(part.shaft)):
             drives = len(scene.drives)
-            field = f"drives[{place}]" if place < drives else f"free_rotations[{place - drives}]"
+            field = f"drives[{number}]" if number < drives else f"free_rotations[{number - drives}]"
             bound = "a shaft whose speed no other drive sets"
             raise InputError(f"{field}.shaft", part.shaft, bound, "Leave out one of them.")
     open_shaft = speeds.open_shaft()
@@ -117,11 +117,11 @@ def _add_mesh(scene: Scene, speeds: TrainSpeeds, index: int) -> None:
     ratio = Fraction(driver.teeth, driven.teeth) * (1 if driver.internal or driven.internal else -1)
     found = speeds.ratio(a, b, carrier)
     if found is not None and found != ratio:
-        raise InputError(f"meshes[{index}]", str(ratio), f"of ratio {found}, as other meshes ask")
+        raise InputError(f"meshes[{index}]", str(ratio), f"of ratio {found}, as other meshes require")
     speeds.join(a, b, carrier, ratio)
     for other in range(index + 1):
         first, _, frame = mesh_shafts(scene, other)
-        if speeds.stands(first, frame):
+        if speeds.at_rest(first, frame):
             bound = "of a ratio that lets the train turn"
             raise InputError(
                 f"meshes[{index}]", str(ratio), bound, f'It locks mesh "{scene.meshes[other].name}".'
@@ -170,7 +170,7 @@ def _speeds_over_time(scene: Scene) -> FloatArray:
 
 
 def _sense(row: tuple[Fraction, ...], course: FloatArray, limit: float) -> int:
-    """Sign of the fastest speed of what turns at `row` times the laws; 0 if it stands."""
+    """Sign of the fastest speed of what turns at `row` times the laws; 0 if it is at rest."""
     speed = np.array([float(value) for value in row]) @ course
     fastest = float(speed[np.argmax(np.abs(speed))])
     return 0 if abs(fastest) <= limit else (1 if fastest > 0.0 else -1)

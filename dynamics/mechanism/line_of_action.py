@@ -45,15 +45,15 @@ class LineOfAction:
 def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     """Return the line of action of mesh `index` whose driver pushes in the `sense` (+1 or -1) about +z.
 
-    With e from the driver's centre to the pitch point and alpha the working pressure angle, the driver
-    turning in +z pushes along n = sin(alpha) e + cos(alpha) (z x e); a ring gear that drives pushes inwards,
+    With e from the driver's center to the pitch point and alpha the working pressure angle, the driver
+    rotating in +z pushes along n = sin(alpha) e + cos(alpha) (z x e); a ring gear that drives pushes inwards,
     along n = -sin(alpha) e + cos(alpha) (z x e). The other `sense` is the coast flank. A right-hand driver
     (beta_b > 0) pushed on by F feels the axial force sense F tan(beta_b).
 
     Raises
     ------
     InputError
-        If the gears cannot mesh: hand, faces or centre distance do not fit.
+        If the gears cannot mesh: hand, faces or center distance do not fit.
     """
     mesh = scene.meshes[index]
     driver, driven = scene.gear(mesh.driver), scene.gear(mesh.driven)
@@ -65,12 +65,12 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
     bases = _acting_base_radii(driver, driven)
     if distance <= bases:
         what = "difference" if driver.internal or driven.internal else "sum"
-        bound = Text.of("at a centre distance ", above(bases, "m", f"the base radii's {what},"))
+        bound = Text.of("at a center distance ", above(bases, "m", f"the base radii's {what},"))
         raise InputError(field, Quantity(distance, "m"), bound)
     angle = math.acos(bases / distance)
     e = (
         apart / distance * (-1.0 if driven.internal else 1.0)
-    )  # a pinion meets its ring away from the ring's centre
+    )  # a pinion meets its ring away from the ring's center
     across = np.array([-e[1], e[0], 0.0])
     inwards = -1.0 if driver.internal else 1.0
     force = inwards * math.sin(angle) * e + sense * math.cos(angle) * across
@@ -81,14 +81,14 @@ def line_of_action(scene: Scene, index: int, sense: int) -> LineOfAction:
 
 
 def _center(scene: Scene, gear: GearBody) -> FloatArray:
-    """Mid-face centre of a gear in the fixed frame."""
+    """Mid-face center of a gear in the fixed frame."""
     shaft = scene.shafts[scene.shaft_index(gear.shaft)]
     x, y, z = shaft.origin
     return np.array([x, y, z + gear.position])
 
 
 def _acting_base_radii(driver: GearBody, driven: GearBody) -> float:
-    """Centre distance times the cosine of the working pressure angle, m: sum, or difference in a ring."""
+    """Center distance times the cosine of the working pressure angle, m: sum, or difference in a ring."""
     if driver.internal:
         return driver.base_radius - driven.base_radius
     if driven.internal:
@@ -112,10 +112,10 @@ def _check_fit(field: str, driver: GearBody, driven: GearBody) -> None:
 
 
 def _middle_of_common_face(field: str, z1: float, driver: GearBody, z2: float, driven: GearBody) -> float:
-    """Axial place of the force."""
+    """Axial position of the force."""
     low = max(z1 - driver.face_width / 2.0, z2 - driven.face_width / 2.0)
     high = min(z1 + driver.face_width / 2.0, z2 + driven.face_width / 2.0)
     if high <= low:
-        place = Quantity(driven.position, "m")
-        raise InputError(field, place, "at an axial place where the faces overlap")
+        position = Quantity(driven.position, "m")
+        raise InputError(field, position, "at an axial position where the faces overlap")
     return (low + high) / 2.0

@@ -11,14 +11,14 @@ from dynamics.mechanism.base_pitches import Corrections, with_common_base_pitche
 from dynamics.mechanism.bearing_elements import (
     BearingElement,
     bearing_loads,
-    bearing_places,
+    bearing_locations,
     supports_by_name,
 )
 from dynamics.mechanism.coupled_rotors import with_couplings
 from dynamics.mechanism.kinematics import Kinematics, solve_kinematics
 from dynamics.mechanism.line_of_action import LineOfAction, line_of_action
 from dynamics.mechanism.nominal_forces import nominal_forces
-from dynamics.mechanism.planets import kinematic_vectors, turning_inertia
+from dynamics.mechanism.planets import kinematic_vectors, rotational_inertia
 from dynamics.mechanism.rotor import Rotor, build_rotor
 from dynamics.mechanism.supports import gather_supports
 from dynamics.mechanism.thrust_check import check_thrust
@@ -63,9 +63,9 @@ class Mechanism:
         return [rotor.inertia.polar for rotor in self.rotors]
 
     @property
-    def turning_inertia(self) -> FloatArray:
+    def rotational_inertia(self) -> FloatArray:
         """Of each rotor with the planets it takes along, (r,), kg m^2."""
-        return turning_inertia(self.rotors)
+        return rotational_inertia(self.rotors)
 
     @property
     def vectors(self) -> FloatArray:
@@ -86,7 +86,7 @@ def gather_mechanism(scene: Scene) -> Mechanism:
     kinematics = solve_kinematics(scene)
     rotors = tuple(build_rotor(scene, shaft) for shaft in scene.shafts)
     lines = tuple(line_of_action(scene, index, sense) for index, sense in enumerate(kinematics.mesh_sense))
-    forces = nominal_forces(scene, kinematics, turning_inertia(rotors))
+    forces = nominal_forces(scene, kinematics, rotational_inertia(rotors))
     loads = bearing_loads(scene, rotors, forces)
     bearings, rotors = _with_bearings(scene, rotors, loads)
     rotors = with_couplings(scene, rotors)
@@ -100,13 +100,13 @@ def _with_bearings(
 ) -> tuple[tuple[BearingElement, ...], tuple[Rotor, ...]]:
     """Return where laws of bearings act, and the rotors with their typical stiffness."""
     names = gather_supports(rotors, frozenset()).name
-    places = bearing_places(scene, rotors, names, loads)
+    bearings = bearing_locations(scene, rotors, names, loads)
     known, found = supports_by_name(rotors), list(rotors)
-    for at in places:
+    for at in bearings:
         index, support = known[names[at.support]]
         rotor = found[index]
         found[index] = replace(rotor, curved=(*rotor.curved, (at.seat, rotor.lever(support))))
-    return places, tuple(found)
+    return bearings, tuple(found)
 
 
 def _check_rotation(rotors: Sequence[Rotor], kinematics: Kinematics) -> None:

@@ -18,7 +18,7 @@ def check_motion(scene: Scene) -> Kinematics:
     Raises
     ------
     InputError
-        If gears cannot mesh, a train is locked or not driven, a load acts on a shaft that stands, or one
+        If gears cannot mesh, a train is locked or not driven, a load acts on a shaft at rest, or one
         pulls flanks apart that have no coast flank behind them.
     """
     scene, _ = with_common_base_pitches(scene)
@@ -40,7 +40,7 @@ def check_load_flow(scene: Scene) -> None:
 
 
 def check_loads(scene: Scene, kinematics: Kinematics) -> None:
-    """Refuse a load on a shaft that stands in the kinematic motion.
+    """Refuse a load on a shaft at rest in the kinematic motion.
 
     Raises
     ------

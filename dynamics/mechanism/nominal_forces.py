@@ -26,11 +26,11 @@ def nominal_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray) ->
         If the balance does not determine a force that is needed, or a load pulls flanks apart that have no
         coast flank behind them.
     """
-    given = [mesh.nominal_force for mesh in scene.meshes]
-    if all(force is not None for force in given):
-        return np.array(given, dtype=float)
+    stated = [mesh.nominal_force for mesh in scene.meshes]
+    if all(force is not None for force in stated):
+        return np.array(stated, dtype=float)
     balanced = _balance(scene, kinematics, inertia)
-    return np.array([b if g is None else g for g, b in zip(given, balanced, strict=True)], dtype=float)
+    return np.array([b if g is None else g for g, b in zip(stated, balanced, strict=True)], dtype=float)
 
 
 def _balance(scene: Scene, kinematics: Kinematics, inertia: FloatArray) -> FloatArray:
@@ -74,8 +74,8 @@ def mean_forces(scene: Scene, kinematics: Kinematics, inertia: FloatArray, momen
 def telling_moments(scene: Scene) -> FloatArray:
     """Return times that show how loads and drives run: the laws' knots, just before them, and between."""
     laws = [*(drive.speed for drive in scene.drives), *(load.torque for load in scene.loads)]
-    given = np.concatenate([np.empty(0), *(np.asarray(law.time, dtype=float) for law in laws)])
-    inside = given[(given > 0.0) & (given < scene.duration)]
+    stated = np.concatenate([np.empty(0), *(np.asarray(law.time, dtype=float) for law in laws)])
+    inside = stated[(stated > 0.0) & (stated < scene.duration)]
     knots = np.unique(np.concatenate([[0.0, scene.duration], inside]))
     part = np.linspace(0.0, 1.0, BETWEEN_KNOTS, endpoint=False)
     between = knots[:-1, None] + np.diff(knots)[:, None] * part
@@ -105,7 +105,7 @@ def _loads(scene: Scene, kinematics: Kinematics, moments: FloatArray) -> FloatAr
 def _levers(scene: Scene, kinematics: Kinematics) -> FloatArray:
     """Torque on each shaft per mesh force (m) and per torque of a coupling, (shafts, meshes + couplings).
 
-    The planets' centres go with the carrier, so that a mesh turns it by the difference of what it turns
+    The planets' centers go with the carrier, so that a mesh turns it by the difference of what it turns
     both gears by.
     """
     lever = np.zeros((len(scene.shafts), len(scene.meshes) + len(scene.couplings)))

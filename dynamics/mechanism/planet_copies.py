@@ -117,7 +117,7 @@ def _offsets(
     """How far the meshes of each planet are ahead of the first one's, base pitches, by name of the mesh.
 
     The teeth of a central gear that turns against the carrier in the sense s come to a planet at the angle
-    psi s z psi / (2 pi) pitches later. What several central gears ask of one planet gear must be one tooth.
+    psi s z psi / (2 pi) pitches later. All central gears of a planet gear must require the same tooth.
     """
     found: dict[str, list[Turn]] = {}
     first: dict[str, list[Turn]] = {}
@@ -159,8 +159,8 @@ def _turned(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, index: i
     """Return the shaft of another planet, turned about the carrier's axis."""
     c, s = math.cos(2.0 * math.pi * float(turn)), math.sin(2.0 * math.pi * float(turn))
     x, y = shaft.origin[0] - axis[0], shaft.origin[1] - axis[1]
-    place = (axis[0] + c * x - s * y, axis[1] + s * x + c * y, shaft.origin[2])
-    return replace(shaft, name=_numbered(shaft.name, index), origin=place)
+    origin = (axis[0] + c * x - s * y, axis[1] + s * x + c * y, shaft.origin[2])
+    return replace(shaft, name=_numbered(shaft.name, index), origin=origin)
 
 
 def _mesh_again(mesh: GearMesh, of_shaft: set[str], index: int, ahead: Turn) -> GearMesh:

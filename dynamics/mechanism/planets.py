@@ -15,9 +15,9 @@ PLANET_KINDS = 5  # x, y, z, tilt_x, tilt_y: the carrier takes a planet along in
 
 
 def carried_motion(rotors: Sequence[Rotor], free: IntArray) -> FloatArray:
-    """Return (N, N): what all freedoms do where only the places `free` move on their own.
+    """Return (N, N): what all freedoms do where only the freedoms `free` move on their own.
 
-    What is not free goes with the carrier on a planet and with nothing elsewhere.
+    What is not free goes with the carrier on a planet and with nothing else.
     """
     motion = np.eye(column_count(rotors))
     for index, rotor in enumerate(rotors):
@@ -32,9 +32,9 @@ def carried_motion(rotors: Sequence[Rotor], free: IntArray) -> FloatArray:
 
 
 def kinematic_vectors(rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatArray:
-    """Return (k, N): motion of all rotors per radian of each law, planets' centres with their carriers.
+    """Return (k, N): motion of all rotors per radian of each law, planets' centers with their carriers.
 
-    In the frame of a carrier its planets stand still in the kinematic motion. These vectors are that motion
+    In the frame of a carrier its planets are at rest in the kinematic motion. These vectors are that motion
     seen from where the frame was: what a little more rotation of the law does to the freedoms, and what an
     acceleration of it loads with inertia.
     """
@@ -51,7 +51,7 @@ def kinematic_vectors(rotors: Sequence[Rotor], kinematics: Kinematics) -> FloatA
     return full
 
 
-def turning_inertia(rotors: Sequence[Rotor]) -> FloatArray:
+def rotational_inertia(rotors: Sequence[Rotor]) -> FloatArray:
     """Return (r,): polar inertia of each rotor; on a carrier also its planets' masses about its axis."""
     inertia = np.array([rotor.inertia.polar for rotor in rotors], dtype=float)
     for rotor in rotors:

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from dynamics.bodies import ElasticShaft, Inertia, Shaft
-from dynamics.bodies.places import nearest_on
+from dynamics.bodies.shaft_position import nearest_on
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.scene.frame_check import on_axis
 from dynamics.scene.scene import Scene
@@ -25,15 +25,15 @@ class Rotor:
     ----------
     shaft : Shaft
     inertia : Inertia
-        Of shaft and gears about their common centre of mass.
+        Of shaft and gears about their common center of mass.
     center : (3,) array
-        That centre in the fixed frame, m: the point whose displacements are the freedoms.
+        That center in the fixed frame, m: the point whose displacements are the freedoms.
     bushings : tuple of Bushing
         Its supports on the ground, with damping filled in.
     planet_bearings : tuple of PlanetBearing
         Its supports on the carrier's pin, with damping filled in.
     frame : int or None
-        Rotor of the carrier in whose turning frame it is described.
+        Rotor of the carrier in whose rotating frame it is described.
     carrier : int or None
         The same for a planet: a rotor off the carrier's axis, which the carrier takes along.
     curved : tuple of ((5, 5) array, float)
@@ -70,11 +70,11 @@ class Rotor:
         return ("x", "y", "tilt_x", "tilt_y") if bends else ()
 
     def on_shaft(self, position: float) -> float:
-        """Return the place on the shaft nearest to `position`, m from its left end."""
+        """Return the position on the shaft nearest to `position`, m from its left end."""
         return nearest_on(position, self.shaft.length)
 
     def lever(self, support: Bushing | PlanetBearing) -> float:
-        """Axial distance of `support` from the centre of mass, m."""
+        """Axial distance of `support` from the center of mass, m."""
         return float(self.shaft.origin[2] + support.position - self.center[2])
 
     @property
@@ -91,7 +91,7 @@ class Rotor:
 
     @property
     def elastic_lever(self) -> float:
-        """Axial distance from the centre of mass to where a radial force does not tilt the shaft, m."""
+        """Axial distance from the center of mass to where a radial force does not tilt the shaft, m."""
         moment = sum(support.radial_stiffness * self.lever(support) for support in self.supports)
         for k, lever in self._matrices:
             moment += 0.5 * float((k[0, 0] + k[1, 1]) * lever + k[0, 4] - k[1, 3])
@@ -99,7 +99,7 @@ class Rotor:
 
     @property
     def tilt_stiffness(self) -> float:
-        """Moment per tilt about the elastic centre, N m/rad."""
+        """Moment per tilt about the elastic center, N m/rad."""
         arms = [(b.radial_stiffness, self.lever(b) - self.elastic_lever) for b in self.supports]
         plain = sum(stiffness * arm**2 for stiffness, arm in arms)
         added = [(k, lever - self.elastic_lever) for k, lever in self._matrices]
@@ -111,8 +111,8 @@ class Rotor:
     @property
     def _matrices(self) -> list[tuple[FloatArray, float]]:
         """Stiffness on top of the isotropic one, with levers; means of x and y are used."""
-        given = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
-        return [*given, *self.curved]
+        stated = [(b.added_stiffness, self.lever(b)) for b in self.supports if b.stiffness is not None]
+        return [*stated, *self.curved]
 
 
 def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
@@ -120,8 +120,8 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
     gears = [gear for gear in scene.gears if gear.shaft == shaft.name]
     parts = [*shaft.cylinders, *((gear.inertia, gear.position) for gear in gears)]
     mass = sum(part.mass for part, _ in parts)
-    along = sum(part.mass * place for part, place in parts) / mass if mass > 0.0 else shaft.length / 2.0
-    transverse = sum(part.transverse + part.mass * (place - along) ** 2 for part, place in parts)
+    along = sum(part.mass * center for part, center in parts) / mass if mass > 0.0 else shaft.length / 2.0
+    transverse = sum(part.transverse + part.mass * (center - along) ** 2 for part, center in parts)
     inertia = Inertia(mass, sum(part.polar for part, _ in parts), transverse)
     center = np.array(shaft.origin, dtype=float) + np.array([0.0, 0.0, along])
     bushings = [bushing for bushing in scene.bushings if bushing.shaft == shaft.name]
@@ -144,8 +144,8 @@ def build_rotor(scene: Scene, shaft: Shaft) -> Rotor:
 def _damped(support: Support, share: float) -> Support:
     """Fill in the damping that follows from the damping ratio and the support's share of the mass."""
 
-    def damping(given: float | None, stiffness: float) -> float:
-        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share)) if given is None else given
+    def damping(stated: float | None, stiffness: float) -> float:
+        return 2.0 * support.damping_ratio * float(np.sqrt(stiffness * share)) if stated is None else stated
 
     return replace(
         support,

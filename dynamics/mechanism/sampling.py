@@ -18,7 +18,7 @@ PER_BAND = 2.56
 STOP_BAND = 80.0
 """Attenuation of what would fold, dB."""
 DESIGN = STOP_BAND + 3.0
-"""What Kaiser's formulas are asked for: they miss by up to 2 dB."""
+"""Attenuation required of Kaiser's formulas: they miss by up to 2 dB."""
 INNER_PER_PITCH = 64.0
 """Inner samples per base pitch at the least: as many as the integrator takes steps."""
 LEAST_FACTOR = 3
@@ -134,10 +134,10 @@ def top_mode(
     `mesh_rows` (m, n) and `mesh_stiffness` (m,) are springs in place of the meshes, `other` (n, n) is the
     stiffness of all other force elements.
     """
-    per_metre = 1.0 / arrays.scale
-    rows = mesh_rows * per_metre
+    per_meter = 1.0 / arrays.scale
+    rows = mesh_rows * per_meter
     meshes = rows.T @ (mesh_stiffness[:, None] * rows)
-    mass, rest = (per_metre[:, None] * a * per_metre for a in (arrays.mass, arrays.stiffness + other))
+    mass, rest = (per_meter[:, None] * a * per_meter for a in (arrays.mass, arrays.stiffness + other))
     square, shape = eigh(meshes + rest, mass)
     strain = mesh_stiffness @ (rows @ shape) ** 2
     excited = strain >= MESH_SHARE * np.maximum(square, 0.0)

@@ -43,7 +43,7 @@ def seat_axes(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBear
 
 
 def seat_error(rotors: Sequence[Rotor], index: int, support: Bushing | PlanetBearing) -> FloatArray:
-    """Return the strains at which a support exerts no force, (5,): those of a pin off its place, m."""
+    """Return the strains at which a support exerts no force, (5,): of a pin off its nominal position, m."""
     if not isinstance(support, PlanetBearing):
         return np.zeros(SEAT)
     own = np.array([support.radial_error, support.tangential_error, 0.0, 0.0, 0.0])

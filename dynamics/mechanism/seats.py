@@ -27,10 +27,10 @@ class Seats:
     Attributes
     ----------
     name : tuple of str
-    place : (s,) int array
+    support : (s,) int array
         Of each among the supports.
     frame : tuple of int or None
-        Rotor of the carrier in whose turning frame the ground is seen from each; None in the fixed frame and
+        Rotor of the carrier in whose rotating frame the ground is seen from each; None in the fixed frame and
         on planet bearings, whose pins stay in the carrier's.
     group : tuple of (str, slice)
         Parts of the matrix that nothing couples: a bushing or a housing, and its rows.
@@ -39,11 +39,11 @@ class Seats:
     stiffness, damping : (5 s, 5 s) arrays
         Of bearing and housing in series.
     preload : (5 s,) array
-        On the shaft where d = 0, N and N m; on a planet also what a pin off its place exerts.
+        On the shaft where d = 0, N and N m; on a planet also what a pin off its nominal position exerts.
     """
 
     name: tuple[str, ...]
-    place: IntArray
+    support: IntArray
     frame: tuple[int | None, ...]
     group: tuple[tuple[str, slice], ...]
     motion: FloatArray
@@ -103,7 +103,7 @@ def gather_seats(scene: Scene, rotors: Sequence[Rotor], names: Sequence[str]) ->
 
 
 def _frame(rotors: Sequence[Rotor], index: int, part: Bushing | PlanetBearing) -> int | None:
-    """Return the carrier in whose turning frame the ground is seen from a bearing."""
+    """Return the carrier in whose rotating frame the ground is seen from a bearing."""
     return None if isinstance(part, PlanetBearing) else rotors[index].frame
 
 
@@ -118,17 +118,17 @@ def condense_housing(
 
     the exact stiffness, and the exact damping at frequencies at which damping is small against stiffness.
     """
-    size, places = stiffness.shape[0], list(housing.places)
+    size, followed = stiffness.shape[0], list(housing.columns)
     ground, loss = housing.matrices()
-    scale = 1.0 / np.sqrt(np.maximum(np.diag(stiffness[np.ix_(places, places)] + ground), 1e-300))
-    both = scale[:, None] * (stiffness[np.ix_(places, places)] + ground) * scale
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(stiffness[np.ix_(followed, followed)] + ground), 1e-300))
+    both = scale[:, None] * (stiffness[np.ix_(followed, followed)] + ground) * scale
     follow = np.zeros((size, size))
-    follow[places] = scale[:, None] * (
-        np.linalg.pinv(both, hermitian=True) @ (scale[:, None] * stiffness[places])
+    follow[followed] = scale[:, None] * (
+        np.linalg.pinv(both, hermitian=True) @ (scale[:, None] * stiffness[followed])
     )
     left = np.eye(size) - follow
     series = stiffness @ left
-    moved = follow[places]
+    moved = follow[followed]
     return (
         0.5 * (series + series.T),
         left.T @ damping @ left + moved.T @ loss @ moved,

@@ -22,14 +22,14 @@ class Supports:
     ----------
     name : tuple of str
     frame : tuple of int or None
-        Rotor of the carrier whose turning frame the ground is seen from; None: forces are in the fixed frame
+        Rotor of the carrier whose rotating frame the ground is seen from; None: forces are in the fixed frame
         as they are, or, of a planet bearing, stay in the carrier's.
     motion : (b, 3, N) array
         Strain per freedom: displacement of the axis there, less that of the pin on a planet bearing.
     stiffness, damping : (b, 3) arrays
         N/m, N s/m.
     error : (b, 3) array
-        Strain-free displacement: of a pin off its place, m.
+        Strain-free displacement: of a pin off its nominal position, m.
     """
 
     name: tuple[str, ...]
@@ -45,7 +45,7 @@ class Supports:
 
 
 def gather_supports(rotors: Sequence[Rotor], seated: frozenset[str]) -> Supports:
-    """Lay out the supports of all rotors; those `seated` have their springs elsewhere (`Seats`)."""
+    """Lay out the supports of all rotors; those `seated` have their springs in other arrays (`Seats`)."""
     on_ground: list[tuple[int, Bushing]] = [
         (i, bushing) for i, rotor in enumerate(rotors) for bushing in rotor.bushings
     ]

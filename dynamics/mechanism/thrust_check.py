@@ -28,7 +28,7 @@ def check_thrust(
     """Refuse a shaft that helical meshes push along its axis and that nothing holds there.
 
     Idlers, planets between sun and ring and double helical gears balance themselves. Three choices hold a
-    shaft rigidly: the effect ``axial`` "off", a drive that lets it stand, and no bearing on the shaft at all.
+    shaft rigidly: the effect ``axial`` "off", a drive at rest, and no bearing on the shaft at all.
 
     Parameters
     ----------

@@ -36,7 +36,7 @@ class TrainSpeeds:
             _less(basis, value / size, chosen) for basis, value in zip(self._open, values, strict=True)
         ]
 
-    def stands(self, shaft: int, carrier: int | None) -> bool:
+    def at_rest(self, shaft: int, carrier: int | None) -> bool:
         """Return whether the shaft can no longer turn against the carrier."""
         row: Row = {shaft: Fraction(1)}
         if carrier is not None:
@@ -49,10 +49,10 @@ class TrainSpeeds:
         for basis in self._open:
             c = Fraction(0) if carrier is None else basis[carrier]
             pairs.append((basis[a] - c, basis[b] - c))
-        turning = next((pair for pair in pairs if pair[0] != 0), None)
-        if turning is None:
+        rotating = next((pair for pair in pairs if pair[0] != 0), None)
+        if rotating is None:
             return None
-        ratio = turning[1] / turning[0]
+        ratio = rotating[1] / rotating[0]
         return ratio if all(second == ratio * first for first, second in pairs) else None
 
     def set_by_law(self, shaft: int) -> bool:

@@ -1,4 +1,4 @@
-"""All forces in one state and their derivatives: what statics, linearisation and shooting start from."""
+"""All forces in one state and their derivatives: what statics, linearization and shooting start from."""
 
 from __future__ import annotations
 
@@ -40,19 +40,19 @@ def force_balance(
     q: FloatArray,
     v: FloatArray,
     external: FloatArray,
-    turning: bool = True,
+    gyroscopic: bool = True,
 ) -> ForceBalance:
     """Return the balance of `external` (n,), supports and elements in the state `q`, `v` (n,) at `time`.
 
-    Without `turning` the derivatives leave out gyroscopic, Coriolis and centripetal terms, and what dampers
-    across frames have from the turning of these.
+    Without `gyroscopic` the derivatives leave out gyroscopic, Coriolis and centripetal terms, and the part of
+    dampers across frames from the rotation of these.
     """
     local = local_state(arrays, time, q, v)
     force = external - arrays.damping @ v - arrays.stiffness @ q - local.force @ arrays.direction
-    rows = np.repeat(arrays.elements.law == Law.TURNING, np.diff(arrays.elements.first))
-    kept = np.where(rows & (not turning), 0.0, 1.0)[:, None]
+    rows = np.repeat(arrays.elements.law == Law.ROTATING_FRAME, np.diff(arrays.elements.first))
+    kept = np.where(rows & (not gyroscopic), 0.0, 1.0)[:, None]
     tangent = kept * local.tangent
-    if not turning:
+    if not gyroscopic:
         tangent = tangent - swept_by_frames(arrays.elements, local, local.pace)
     return ForceBalance(
         force,
@@ -63,7 +63,7 @@ def force_balance(
 
 
 def swept_by_frames(elements: Elements, local: LocalState, pace: FloatArray) -> FloatArray:
-    """Return the part of the tangents (R, P) that dampers across frames have from the turning of these.
+    """Return the part of the tangents (R, P) that dampers across frames have from the rotation of these.
 
     The second frame turns at psi' against the first and carries b along, which takes psi' J R b from the rate
     of the strain. `pace` (m + f,) holds psi' per second behind that of the meshes.

@@ -6,7 +6,7 @@ import math
 
 from dynamics.arrays.arrays import LawArrays, Reference, SystemArrays
 from dynamics.forces.compiled import compiled, inner
-from dynamics.forces.element_laws import TURNING, Elements
+from dynamics.forces.element_laws import ROTATING_FRAME, Elements
 from dynamics.forces.local_state import LocalState
 from dynamics.forces.table_lookup import wrapped
 from dynamics.types import FloatArray, IntArray
@@ -83,13 +83,13 @@ def set_phases(reference: Reference, motion: FloatArray, position: FloatArray, p
 
 @inner
 def set_drift(elements: Elements, motion: FloatArray, local: LocalState) -> None:
-    """Write what the kinematic motion adds to the rates of local coordinates, and the speeds of turning."""
+    """Write what the kinematic motion adds to the rates of local coordinates, and the speeds of rotation."""
     for r in range(local.drift.size):
         local.drift[r] = 0.0
         for k in range(motion.shape[0]):
             local.drift[r] += elements.drift[r, k] * motion[k, SPEED]
     for e in range(elements.law.size):
-        if elements.law[e] != TURNING:
+        if elements.law[e] != ROTATING_FRAME:
             continue
         for j in range(2):
             local.speed[e, j] = 0.0

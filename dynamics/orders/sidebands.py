@@ -81,9 +81,9 @@ def sidebands(
         for order in range(1, orders + 1):
             for number in range(-count, count + 1):
                 line = (order * period + number) * turns
-                place = order + number / period
+                at = order + number / period
                 if line > 0:
-                    found.append(Sideband(source, order, number, place, float(lines[line])))
+                    found.append(Sideband(source, order, number, at, float(lines[line])))
     return tuple(found)
 
 

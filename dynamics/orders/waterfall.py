@@ -47,9 +47,9 @@ class Waterfall:
         InputError
             If there is no such line.
         """
-        place = line / self.line[1]
-        nearest = round(place)
-        if abs(place - nearest) > ON_LINE or not 0 <= nearest < self.line.size:
+        fraction = line / self.line[1]
+        nearest = round(fraction)
+        if abs(fraction - nearest) > ON_LINE or not 0 <= nearest < self.line.size:
             bound = f"a multiple of {self.line[1]:g} up to {self.line[-1]:g}"
             raise InputError("line", line, bound, "Longer blocks have more lines.")
         return np.asarray(self.amplitude[..., nearest])

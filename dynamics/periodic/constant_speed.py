@@ -14,7 +14,7 @@ from dynamics.types import FloatArray
 
 
 def at_constant_speed(system: System, period: CommonPeriod, speed: float, time: float) -> SystemArrays:
-    """Return the arrays with the drives at `speed` (rad/s, of the law that stands for all) for ever.
+    """Return the arrays with the drives at `speed` (rad/s, of the leading law) for ever.
 
     Load torques keep the values that they have at `time`.
 

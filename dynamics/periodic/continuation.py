@@ -33,7 +33,7 @@ class BranchStatus(IntEnum):
 
     @property
     def usable(self) -> bool:
-        """Whether the branch covers what was asked for."""
+        """Whether the branch covers what was requested."""
         return self is BranchStatus.COMPLETED
 
 
@@ -84,7 +84,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class _Point:
-    """A place z = (state / size, speed / scale) on the branch with its unit tangent."""
+    """A point z = (state / size, speed / scale) on the branch with its unit tangent."""
 
     z: FloatArray
     tangent: FloatArray
@@ -109,12 +109,12 @@ def follow_branch(
     ----------
     problem : PeriodicProblem
     first, last : float
-        rad/s, of the law that stands for all.
+        rad/s, of the leading law.
     largest_step : float
-        Between neighbouring motions: change of the speed over the larger of both speeds, or of the state over
+        Between neighboring motions: change of the speed over the larger of both speeds, or of the state over
         its size.
     guess : (2n,) array, optional
-        State in metres to find the first motion from.
+        State in meters to find the first motion from.
     points : int
         Most motions.
     progress : callable, optional
@@ -140,8 +140,7 @@ def follow_branch(
         return Branch(BranchStatus.NO_START, (start,), ())
     scale = max(abs(first), abs(last))
     towards = np.append(np.zeros(start.state.size), np.sign(last - first) * np.sign(scale))
-    place = _place(problem, scale, start, towards)
-    trail, found, step = [place], [], largest_step
+    trail, found, step = [_point_on_branch(problem, scale, start, towards)], [], largest_step
     low, high = sorted((first, last))
     status = BranchStatus.POINT_LIMIT
     while len(trail) < points:
@@ -164,7 +163,7 @@ def follow_branch(
     return Branch(status, tuple(point.orbit for point in trail), tuple(found))
 
 
-def _place(problem: PeriodicProblem, scale: float, orbit: Orbit, along: FloatArray) -> _Point:
+def _point_on_branch(problem: PeriodicProblem, scale: float, orbit: Orbit, along: FloatArray) -> _Point:
     """Return the point of `orbit` with its tangent turned to the side of `along` (2n + 1,)."""
     z = np.append(orbit.state / problem.size, orbit.speed / scale)
     jacobian = _jacobian(problem, scale, PeriodMap(problem, orbit.speed), orbit.state, orbit.monodromy)
@@ -195,7 +194,7 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
         monodromy = over_period.monodromy(y)
         if np.max(np.abs(left)) <= RESIDUAL_LIMIT * problem.size:
             orbit = make_orbit(over_period, OrbitStatus.CONVERGED, y, left, monodromy, iteration)
-            return _place(problem, scale, orbit, point.tangent)
+            return _point_on_branch(problem, scale, orbit, point.tangent)
         jacobian = _jacobian(problem, scale, over_period, y, monodromy)
         matrix = np.concatenate([jacobian, point.tangent[None, :]])
         right = np.append(left / problem.size, point.tangent @ (z - aim))
@@ -208,7 +207,7 @@ def _step(problem: PeriodicProblem, scale: float, point: _Point, step: float) ->
 def _passed(
     problem: PeriodicProblem, scale: float, before: _Point, behind: _Point, step: float, index: int
 ) -> list[Bifurcation]:
-    """Return what lies between two neighbouring points."""
+    """Return what lies between two neighboring points."""
     found = []
     if before.tangent[-1] * behind.tangent[-1] < 0.0:
         found.append(Bifurcation(Instability.FOLD, _fold(problem, scale, before, behind, step), index))
@@ -231,15 +230,15 @@ def _fold(problem: PeriodicProblem, scale: float, before: _Point, behind: _Point
     speeds = [before.orbit.speed, behind.orbit.speed]
     for _ in range(FOLD_ITERATIONS):
         weight = min(max(at_low / (at_low - at_high), FOLD_SHARE), 1.0 - FOLD_SHARE)
-        place = low + weight * (high - low)
-        middle = _step(problem, scale, before, place)
+        inside = low + weight * (high - low)
+        middle = _step(problem, scale, before, inside)
         if middle is None:
             break
         speeds.append(middle.orbit.speed)
         if abs(middle.tangent[-1]) < FOLD_LIMIT:
             break
         if middle.tangent[-1] * at_low > 0.0:
-            low, at_low = place, middle.tangent[-1]
+            low, at_low = inside, middle.tangent[-1]
         else:
-            high, at_high = place, middle.tangent[-1]
+            high, at_high = inside, middle.tangent[-1]
     return max(speeds) if before.tangent[-1] > 0.0 else min(speeds)

@@ -23,14 +23,14 @@ def march(
     implicit: bool,
     force_tolerance: float,
     time: FloatArray,
-    rung: IntArray,
+    level: IntArray,
     touching: BoolArray,
     keep: bool,
     path: FloatArray,
 ) -> bool:
-    """Step from the state in `work` over `time` (N + 1,) with the sizes `rung` (N,); leave the end in `work`.
+    """Step from the state in `work` over `time` (N + 1,) by `level` (N,); leave the end in `work`.
 
-    Size `rung` halved j times is entry (HALVINGS + 1) `rung` + j of the ladder. `touching` (R,) is scratch.
+    Step `level` halved j times is `step_sizes[(HALVINGS + 1) level + j]`. `touching` (R,) is scratch.
     With `keep`, q, q' and q'' at all times go into `path` (3, N + 1, n). Returns whether all stages were
     solved and the end is finite.
     """
@@ -41,15 +41,15 @@ def march(
         work.a[i] = work.stage_a[0, i]
     for r in range(touching.size):
         touching[r] = work.local.elastic[r] > 0.0
-    for step in range(rung.size):
+    for step in range(level.size):
         if keep:
             _keep(work, step, path)
         if not _whole_step(
-            system, work, implicit, force_tolerance, time[step], rung[step] * (HALVINGS + 1), touching
+            system, work, implicit, force_tolerance, time[step], level[step] * (HALVINGS + 1), touching
         ):
             return False
     if keep:
-        _keep(work, rung.size, path)
+        _keep(work, level.size, path)
     total = 0.0
     for i in range(work.q.size):
         total += abs(work.q[i]) + abs(work.v[i])
@@ -63,18 +63,18 @@ def _whole_step(
     implicit: bool,
     force_tolerance: float,
     start: float,
-    rung: int,
+    level: int,
     touching: BoolArray,
 ) -> bool:
-    """Advance by the step `rung` in one, or in halves of halves around a change of contact."""
+    """Advance by the step `level` in one, or in halves of halves around a change of contact."""
     parts, done, halved = 2**HALVINGS, 0, 0
     while done < parts:
-        work.time[0] = start + work.ladder[rung] * (done / parts)
+        work.time[0] = start + work.step_sizes[level] * (done / parts)
         solved = True
         if implicit:
-            solved = implicit_step(system, work, rung + halved, force_tolerance, False)
+            solved = implicit_step(system, work, level + halved, force_tolerance, False)
         else:
-            explicit_step(system, work, rung + halved, False)
+            explicit_step(system, work, level + halved, False)
         changed = not solved
         for r in range(touching.size):
             changed = changed or (work.local.elastic[r] > 0.0) != touching[r]

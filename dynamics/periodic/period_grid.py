@@ -26,13 +26,13 @@ class PeriodGrid:
         Ends of the steps, from 0 to 1.
     size : (U,) array
         Of the steps, and 0 after them.
-    rung : (N,) int array
+    level : (N,) int array
         Which size each step has.
     """
 
     phase: FloatArray
     size: FloatArray
-    rung: IntArray
+    level: IntArray
 
 
 def period_grid(system: System, period: CommonPeriod, largest: float) -> PeriodGrid:
@@ -57,16 +57,16 @@ def period_grid(system: System, period: CommonPeriod, largest: float) -> PeriodG
         for start, end, count in zip(knots[:-1], knots[1:], counts, strict=True)
     ]
     phase = np.append(np.concatenate(inner), 1.0)
-    key, rung = np.unique(np.rint(np.diff(phase) / SAME), return_inverse=True)
-    size = np.array([np.mean(np.diff(phase)[rung == k]) for k in range(key.size)])
-    return PeriodGrid(phase, np.append(size, 0.0), np.asarray(rung, dtype=np.int64))
+    key, level = np.unique(np.rint(np.diff(phase) / SAME), return_inverse=True)
+    size = np.array([np.mean(np.diff(phase)[level == k]) for k in range(key.size)])
+    return PeriodGrid(phase, np.append(size, 0.0), np.asarray(level, dtype=np.int64))
 
 
 def refined(grid: PeriodGrid) -> PeriodGrid:
     """Return the grid with every step halved."""
     middle = 0.5 * (grid.phase[1:] + grid.phase[:-1])
     phase = np.sort(np.concatenate([grid.phase, middle]))
-    return PeriodGrid(phase, 0.5 * grid.size, np.repeat(grid.rung, 2))
+    return PeriodGrid(phase, 0.5 * grid.size, np.repeat(grid.level, 2))
 
 
 def _knots(system: System, period: CommonPeriod) -> FloatArray:
@@ -74,13 +74,13 @@ def _knots(system: System, period: CommonPeriod) -> FloatArray:
     elements, reference = system.arrays.elements, system.arrays.reference
     table = elements.laws.flank.table
     found = [np.array([0.0, 1.0])]
-    for law, place, mesh in zip(elements.law, elements.place, elements.mesh, strict=True):
+    for law, entry, mesh in zip(elements.law, elements.entry, elements.mesh, strict=True):
         pitches = period.pitches[mesh] if law == Law.FLANK else 0
         if pitches == 0:
             continue
-        first, span = table.offset[place, 0], table.period[place]
+        first, span = table.offset[entry, 0], table.period[entry]
         last = int(np.searchsorted(table.knot[first:], span))
-        knot = table.knot[first : first + last] + table.shift[place] - reference.offset[mesh]
+        knot = table.knot[first : first + last] + table.shift[entry] - reference.offset[mesh]
         cycles = abs(pitches) // round(span)
         passed = (knot[:, None] + span * np.arange(cycles)) / pitches
         found.append(np.ravel(passed) % 1.0)

@@ -32,7 +32,7 @@ DIFFERENCE = 1e-6  # of the size of the state, for derivatives
 
 @dataclass(frozen=True)
 class PeriodicProblem:
-    """A system prepared for periodic steady states; states y are (2n,) in metres.
+    """A system prepared for periodic steady states; states y are (2n,) in meters.
 
     y = (q scale, q' rate_scale): displacements, and rates as the displacements that they become.
 
@@ -65,7 +65,7 @@ class PeriodicProblem:
 
     @cached_property
     def scale(self) -> FloatArray:
-        """Metres per unit of q and q', (2n,)."""
+        """Meters per unit of q and q', (2n,)."""
         return np.concatenate([self.system.arrays.scale, self.system.arrays.rate_scale])
 
 
@@ -133,7 +133,7 @@ class PeriodMap:
     ----------
     problem : PeriodicProblem
     speed : float
-        Of the law that stands for all, rad/s.
+        Of the leading law, rad/s.
     """
 
     problem: PeriodicProblem
@@ -158,9 +158,9 @@ class PeriodMap:
     @cached_property
     def _work(self) -> Workspace:
         sizes = self.problem.grid.size[:-1] * self.problem.period.duration(self.speed)
-        ladder = np.append(np.outer(sizes, 0.5 ** np.arange(HALVINGS + 1)).ravel(), 0.0)
+        step_sizes = np.append(np.outer(sizes, 0.5 ** np.arange(HALVINGS + 1)).ravel(), 0.0)
         n = self.arrays.mass.shape[0]
-        work = by_address(make_workspace(self.arrays, ladder, np.zeros(n), float(ladder[0])))
+        work = by_address(make_workspace(self.arrays, step_sizes, np.zeros(n), float(step_sizes[0])))
         implicit = self.problem.system.scene.integration.method == "implicit"
         prepare_steps(self.arrays, work, implicit, False)
         return work
@@ -209,7 +209,7 @@ class PeriodMap:
             problem.system.scene.integration.method == "implicit",
             problem.force_tolerance,
             self.times,
-            problem.grid.rung,
+            problem.grid.level,
             np.empty(work.force.size, dtype=np.bool_),
             path.size > 0,
             path,

@@ -41,11 +41,11 @@ class Orbit:
         Largest change of the state over the period, m.
     iterations : int
     speed : float
-        Of the law that stands for all, rad/s.
+        Of the leading law, rad/s.
     duration : float
         Of the period sought, s.
     state : (2n,) array
-        At t = 0, in metres, as `PeriodicProblem` scales them.
+        At t = 0, in meters, as `PeriodicProblem` scales them.
     monodromy : (2n, 2n) array
         Derivative of the state after a period in the state before it, in the same scale.
     multipliers : (2n,) complex array
@@ -83,9 +83,9 @@ def find_orbit(problem: PeriodicProblem, speed: float, guess: FloatArray | None 
     ----------
     problem : PeriodicProblem
     speed : float
-        rad/s, of the law that stands for all.
+        rad/s, of the leading law.
     guess : (2n,) array, optional
-        State at t = 0 in metres; the static equilibrium without one.
+        State at t = 0 in meters; the static equilibrium without one.
 
     Returns
     -------

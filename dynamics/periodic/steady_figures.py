@@ -73,8 +73,8 @@ def _figures(problem: PeriodicProblem, orbit: Orbit) -> tuple[FloatArray, FloatA
     found = motion(problem, orbit, FINE)
     error, force = found.dynamic_transmission_error, found.mesh_force
     coasting = np.zeros(force.shape[0])
-    for place, mesh in enumerate(problem.system.flanks.coast):
-        coasting[mesh] = np.mean(found.coast_force[place] > 0.0)
+    for row, mesh in enumerate(problem.system.flanks.coast):
+        coasting[mesh] = np.mean(found.coast_force[row] > 0.0)
     figures = (
         np.mean(error, axis=1),
         np.std(error, axis=1),

@@ -209,7 +209,7 @@ def _study(
             for mesh, count in zip(scene.meshes, problem.period.pitches, strict=True)
         },
         "freedoms": list(problem.system.freedoms.name),
-        "steps_per_period": int(problem.grid.rung.size) * problem.repeat,
+        "steps_per_period": int(problem.grid.level.size) * problem.repeat,
         "seconds": seconds,
         "effect_ledger": checked_ledger(problem.system, _largest(figures)),
         **problem.system.corrections,

@@ -17,7 +17,7 @@ SETTLING = 64  # periods; at a damping ratio of 0.01 in resonance the rest is be
 def settled(
     problem: PeriodicProblem, speed: float, state: FloatArray | None = None, periods: int = SETTLING
 ) -> FloatArray:
-    """Return the state (2n,) in metres that `periods` periods at `speed` make of `state` (at rest: None).
+    """Return the state (2n,) in meters that `periods` periods at `speed` make of `state` (at rest: None).
 
     A start for `find_orbit` on a motion that attracts, where Newton's method alone could end anywhere.
     """

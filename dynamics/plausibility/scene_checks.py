@@ -30,7 +30,7 @@ def scene_findings(scene: Scene) -> tuple[Finding, ...]:
     """
     mechanism = gather_mechanism(scene)
     return (
-        *judged("duration", "duration", scene.duration, "s", skip_zero=True),
+        *assessed("duration", "duration", scene.duration, "s", skip_zero=True),
         *_speeds(mechanism),
         *_bearings(scene),
         *_meshes(scene),
@@ -40,7 +40,7 @@ def scene_findings(scene: Scene) -> tuple[Finding, ...]:
     )
 
 
-def judged(
+def assessed(
     check: str,
     field: str,
     value: float,
@@ -73,7 +73,7 @@ def _speeds(mechanism: Mechanism) -> Iterator[Finding]:
         )
         field = f"{kind}[{index}]." + ("speed" if kind == "drives" else "initial_speed")
         reason = f"a gear turns at {fastest * lever:.3g} m/s"
-        for finding in judged("pitch_line_speed", field, fastest * lever, "rad/s", reason=reason):
+        for finding in assessed("pitch_line_speed", field, fastest * lever, "rad/s", reason=reason):
             yield replace(finding, value=fastest, high=finding.high / lever)
 
 
@@ -83,33 +83,33 @@ def _bearings(scene: Scene) -> Iterator[Finding]:
         *((f"bushings[{i}]", part) for i, part in enumerate(scene.bushings)),
         *((f"planet_bearings[{i}]", part) for i, part in enumerate(scene.planet_bearings)),
     ]
-    places = {part.name: place for place, part in parts}
-    for place, part in parts:
+    paths = {part.name: path for path, part in parts}
+    for path, part in parts:
         for name in ("radial_stiffness", "axial_stiffness"):
             value = float(getattr(part, name))
-            for finding in judged("support_stiffness", f"{place}.{name}", value, "N/m", skip_zero=True):
+            for finding in assessed("support_stiffness", f"{path}.{name}", value, "N/m", skip_zero=True):
                 yield replace(finding, low=ROLLING[0], high=ROLLING[1])
-        yield from judged("damping_ratio", f"{place}.damping_ratio", part.damping_ratio, "1")
+        yield from assessed("damping_ratio", f"{path}.damping_ratio", part.damping_ratio, "1")
     for contact in scene.rolling_contacts:
-        place = f"{places[contact.bushing]}.rolling_contact"
-        yield from judged("clearance", f"{place}.radial_clearance", contact.clearance, "m", skip_zero=True)
-        yield from judged("damping_ratio", f"{place}.damping_ratio", contact.damping_ratio, "1")
+        path = f"{paths[contact.bushing]}.rolling_contact"
+        yield from assessed("clearance", f"{path}.radial_clearance", contact.clearance, "m", skip_zero=True)
+        yield from assessed("damping_ratio", f"{path}.damping_ratio", contact.damping_ratio, "1")
 
 
 def _meshes(scene: Scene) -> Iterator[Finding]:
     """Check damping, backlash, friction and misalignment of every mesh."""
     for index, mesh in enumerate(scene.meshes):
-        place = f"meshes[{index}]"
-        yield from judged("damping_ratio", f"{place}.damping_ratio", mesh.damping_ratio, "1")
+        path = f"meshes[{index}]"
+        yield from assessed("damping_ratio", f"{path}.damping_ratio", mesh.damping_ratio, "1")
         if mesh.coast is not None:
-            yield from judged("backlash", f"{place}.coast_flank.backlash", mesh.coast.backlash, "m")
+            yield from assessed("backlash", f"{path}.coast_flank.backlash", mesh.coast.backlash, "m")
         if mesh.friction is not None:
-            yield from judged("friction", f"{place}.friction", mesh.friction, "1")
+            yield from assessed("friction", f"{path}.friction", mesh.friction, "1")
         face = scene.gear(mesh.driver).face_width
         skew, words = mesh.misalignment, f"a misalignment of {1e3 * abs(mesh.misalignment) / face:.2g} mrad"
         for check, scale in (("mesh_misalignment", 1.0), ("mesh_misalignment_over_face", face)):
-            for finding in judged(
-                check, f"{place}.misalignment", skew, "m", scale=scale, reason=words, skip_zero=True
+            for finding in assessed(
+                check, f"{path}.misalignment", skew, "m", scale=scale, reason=words, skip_zero=True
             ):
                 yield replace(finding, low=CHECKS["mesh_misalignment"].low or 0.0, high=0.002 * face)
 
@@ -123,39 +123,39 @@ def _bodies(mechanism: Mechanism) -> Iterator[Finding]:
     for index, rotor in enumerate(mechanism.rotors):
         if rotor.radial_stiffness or rotor.axial_stiffness:
             reason = "bearings carry a shaft and gears without mass"
-            yield from judged(
+            yield from assessed(
                 "mass", f"shafts[{index}].inertia.mass", rotor.inertia.mass, "kg", reason=reason
             )
 
 
-def _shaft(place: str, shaft: Shaft) -> Iterator[Finding]:
+def _shaft(path: str, shaft: Shaft) -> Iterator[Finding]:
     """Check a shaft's shape, material and inertia."""
     if shaft.sections:
         widest = max(section.outer_diameter for section in shaft.sections)
         reason = f"{shaft.length / widest:.3g} diameters long"
-        yield from judged(
-            "shaft_slenderness", f"{place}.length", shaft.length, "m", scale=widest, reason=reason
+        yield from assessed(
+            "shaft_slenderness", f"{path}.length", shaft.length, "m", scale=widest, reason=reason
         )
     for index, section in enumerate(shaft.sections):
-        where = f"{place}.sections[{index}]"
-        yield from judged("shaft_density", f"{where}.density", section.density, "kg/m^3")
-        yield from judged("shaft_modulus", f"{where}.youngs_modulus", section.youngs_modulus, "Pa")
-    yield from judged("material_damping", f"{place}.damping_ratio", shaft.damping_ratio, "1")
-    yield from _gyration("shaft_inertia", place, shaft.inertia, shaft.length)
+        where = f"{path}.sections[{index}]"
+        yield from assessed("shaft_density", f"{where}.density", section.density, "kg/m^3")
+        yield from assessed("shaft_modulus", f"{where}.youngs_modulus", section.youngs_modulus, "Pa")
+    yield from assessed("material_damping", f"{path}.damping_ratio", shaft.damping_ratio, "1")
+    yield from _gyration("shaft_inertia", path, shaft.inertia, shaft.length)
 
 
-def _gear(place: str, gear: GearBody) -> Iterator[Finding]:
+def _gear(path: str, gear: GearBody) -> Iterator[Finding]:
     """Check a gear's inertia by its size."""
-    yield from _gyration("gear_inertia", place, gear.inertia, gear.base_radius)
+    yield from _gyration("gear_inertia", path, gear.inertia, gear.base_radius)
 
 
-def _gyration(check: str, place: str, inertia: Inertia, size: float) -> Iterator[Finding]:
+def _gyration(check: str, path: str, inertia: Inertia, size: float) -> Iterator[Finding]:
     """Check the radius of gyration of a body that has mass and inertia, against a length of it (m)."""
     if inertia.mass <= 0.0 or inertia.polar <= 0.0:
         return
     radius, scale = math.sqrt(inertia.polar / inertia.mass), inertia.mass * size**2
     reason = f"a radius of gyration of {1e3 * radius:.3g} mm"
-    for finding in judged(check, f"{place}.inertia.polar", radius / size, "kg m^2", reason=reason):
+    for finding in assessed(check, f"{path}.inertia.polar", radius / size, "kg m^2", reason=reason):
         low, high = finding.low**2 * scale, finding.high**2 * scale
         yield replace(finding, value=inertia.polar, low=low, high=high)
 
@@ -201,8 +201,8 @@ def _loads(mechanism: Mechanism) -> Iterator[Finding]:
         module = driver.base_pitch / (math.pi * math.cos(math.radians(20.0)))
         intensity = float(force) / (min(driver.face_width, driven.face_width) * module)
         words = f'"{mesh.name}" carries {intensity / 1e6:.3g} N/mm^2 of load over face width and module'
-        light = () if mesh.coast is not None else judged("mesh_load", "", intensity, "Pa", skip_zero=True)
-        for finding in (*light, *judged("mesh_overload", "", intensity, "Pa")):
+        light = () if mesh.coast is not None else assessed("mesh_load", "", intensity, "Pa", skip_zero=True)
+        for finding in (*light, *assessed("mesh_overload", "", intensity, "Pa")):
             low, high = 20.0 * (CHECKS["mesh_load"].low or 0.0), 0.5 * (CHECKS["mesh_overload"].high or 0.0)
             part = abs(torque) / intensity
             yield replace(

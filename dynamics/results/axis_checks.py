@@ -10,11 +10,11 @@ from dynamics.assembly.assemble import System
 from dynamics.results.axis_series import EFFECTS, FIELDS, axis_rows
 from dynamics.types import Json
 
-WHAT = ("tilt", "centre distance")
+WHAT = ("tilt", "center distance")
 
 
 class AxisChecks:
-    """Gathers, block by block, how far misalignment and centre distance left the tables' axes."""
+    """Gathers, block by block, how far misalignment and center distance left the tables' axes."""
 
     def __init__(self, system: System) -> None:
         self._system, self._samples = system, 0

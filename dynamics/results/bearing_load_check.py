@@ -21,7 +21,7 @@ class BearingLoadChecks:
         off = scene.effects.get(BearingClearance().name) == "off"
         self._name = system.supports.name
         self._watched = [i for i, name in enumerate(self._name) if off or name not in laws]
-        self._given = [self._name[i] in laws for i in self._watched]
+        self._has_law = [self._name[i] in laws for i in self._watched]
         self._direction: FloatArray | None = None
         self._samples = 0
         self._unloaded = np.zeros(len(self._watched), dtype=np.int64)
@@ -53,7 +53,7 @@ class BearingLoadChecks:
         share = float(self._unloaded[row] / max(self._samples, 1))
         reason = "the bearing stayed loaded"
         if share > 0.0:
-            advice = "switch the effect on" if self._given[row] else "give the bearing its clearance"
+            advice = "switch the effect on" if self._has_law[row] else "give the bearing its clearance"
             reason = f"the load reversed in {100.0 * share:.3g} % of the run: {advice}"
         return {
             "effect": BearingClearance().name,

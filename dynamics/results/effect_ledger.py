@@ -1,4 +1,4 @@
-"""The effect ledger of a run in plain JSON: decisions, worth, price, and what the run said about them."""
+"""The effect ledger of a run in plain JSON: decisions, influence, price, and the checks of the run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def effect_ledger(
     system: System,
     checks: Sequence[Json],
     automatic: Mapping[str, str],
-    worths: Mapping[str, Json],
+    influences: Mapping[str, Json],
 ) -> Json:
     """Return entries, estimates, what the model leaves out, and the checks.
 
@@ -30,13 +30,13 @@ def effect_ledger(
     automatic : mapping of str to str
         Effects that were left to "auto" and are not as the scene calls for them, and why: for the tolerance,
         or because a run without them showed that they are needed.
-    worths : mapping of str to dict
+    influences : mapping of str to dict
         What leaving effects out in all their parts is estimated to change, with `words`.
     """
     deflection = mean_deflection(system)
     whole = system.ledger.to_json()
-    entries = [_entry(entry, deflection, checks, automatic, worths) for entry in whole["entries"]]
-    return {**whole, "entries": entries, "worths": dict(worths), "checks": list(checks)}
+    entries = [_entry(entry, deflection, checks, automatic, influences) for entry in whole["entries"]]
+    return {**whole, "entries": entries, "worths": dict(influences), "checks": list(checks)}
 
 
 def mean_deflection(system: System) -> float:
@@ -55,7 +55,7 @@ def _entry(
     deflection: float,
     checks: Sequence[Json],
     automatic: Mapping[str, str],
-    worths: Mapping[str, Json],
+    influences: Mapping[str, Json],
 ) -> Json:
     """One effect of one part."""
     name = entry["effect"]
@@ -65,8 +65,8 @@ def _entry(
         "checked": "; ".join(one["reason"] for one in own) or NOT_CHECKED,
         "holds": all(one["holds"] for one in own) if own else None,
     }
-    if entry["price"] and not entry["on"] and name in worths:
-        found["price"] = f"left out: {worths[name]['words']}"
+    if entry["price"] and not entry["on"] and name in influences:
+        found["price"] = f"left out: {influences[name]['words']}"
     if name in automatic and entry["possible"]:
         found |= {"choice": "auto", "reason": automatic[name], "price": ""}
     return {**entry, **found}

@@ -23,7 +23,7 @@ class EnergyAudit:
     bushings, meshes : float
         Dissipated, >= 0.
     axes : float
-        Work supplied by the change of the mesh tables with misalignment and centre distance, less what the
+        Work supplied by the change of the mesh tables with misalignment and center distance, less what the
         moments of forces off mid-face take of it: none where the load's centroid belongs to the same table.
     friction : float
         Dissipated by sliding flanks.
@@ -60,7 +60,7 @@ class EnergyAudit:
     def turnover(self) -> float:
         """What vibration turned over, J: all that was lost, supplied by the tables or gained in springs.
 
-        And what springs hold from the start: a run that loses next to nothing is judged by that. The power
+        And what springs hold from the start: a run that loses next to nothing is assessed by that. The power
         that drive and load exchange is thousands of times more, and would hide any error.
         """
         lost = self.bushings + self.meshes + abs(self.friction)

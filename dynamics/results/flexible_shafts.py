@@ -1,4 +1,4 @@
-"""What flexible shafts were modelled with: elements, modes, errors, in plain JSON."""
+"""What flexible shafts were modeled with: elements, modes, errors, in plain JSON."""
 
 from __future__ import annotations
 

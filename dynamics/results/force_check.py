@@ -1,7 +1,7 @@
 """Whether mesh forces stayed below the highest load of their tables.
 
 A table of several loads goes on straight with its last stiffness above the highest one. Up to `STRAIGHT_ON`
-times that load the result is told to be extrapolated. Beyond it is wrong: pairs of teeth that would share the
+times that load the result is reported as extrapolated. Beyond it is wrong: tooth pairs that would share the
 load, and corner contact that would set in, are not in the table. A table of two levels is a closed form and
 holds everywhere.
 """

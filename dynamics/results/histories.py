@@ -135,7 +135,7 @@ def _acceleration(system: System, laws: FloatArray, time: FloatArray, signals: S
 def _on_the_ground(
     system: System, laws: FloatArray, local: FloatArray, q: FloatArray, v: FloatArray, moved: IntArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Return forces and moments on the ground, (b, 3, T) each; none of them if not asked for.
+    """Return forces and moments on the ground, (b, 3, T) each; none of them if not requested.
 
     Moments are none at all where no bearing holds tilt.
     """
@@ -184,20 +184,20 @@ def _coupling_torque(system: System, q: FloatArray, v: FloatArray) -> FloatArray
 def _mesh_frequency(system: System, speed: FloatArray, v: FloatArray) -> FloatArray:
     """Return base pitches per second in the mean motion, (m, T)."""
     reference = system.arrays.reference
-    turning = speed.copy()
-    for law, place in enumerate(reference.freedom):
-        if place >= 0:
-            turning[law] += v[:, place]
+    rotating = speed.copy()
+    for law, freedom in enumerate(reference.freedom):
+        if freedom >= 0:
+            rotating[law] += v[:, freedom]
     rates = (reference.numerator / reference.denominator)[: len(system.scene.meshes)]
-    return np.asarray(np.abs(rates @ turning) / (2.0 * math.pi))
+    return np.asarray(np.abs(rates @ rotating) / (2.0 * math.pi))
 
 
 def _coast_force(system: System, force: FloatArray) -> FloatArray:
     """Force of the coast flanks, (m, T); (0, T) where no mesh has one."""
     meshes, coast = len(system.scene.meshes), system.flanks.coast
     found = np.zeros((meshes if coast else 0, force.shape[1]))
-    for place, mesh in enumerate(coast, start=meshes):
-        found[mesh] = force[system.arrays.elements.first[place]]
+    for element, mesh in enumerate(coast, start=meshes):
+        found[mesh] = force[system.arrays.elements.first[element]]
     return found
 
 
@@ -212,9 +212,9 @@ def _static(system: System, position: FloatArray) -> FloatArray:
 def _speed(system: System, laws: FloatArray, v: FloatArray) -> FloatArray:
     """Speed of every shaft about +z, (s, T)."""
     speed = system.kinematics.float_ratio @ laws
-    for column, place in enumerate(system.freedoms.place):
-        if place < 6 * len(system.rotors) and place % 6 == ROTATION:
-            speed[place // 6] += v[:, column]
+    for column, freedom in enumerate(system.freedoms.column):
+        if freedom < 6 * len(system.rotors) and freedom % 6 == ROTATION:
+            speed[freedom // 6] += v[:, column]
     return np.asarray(speed)
 
 

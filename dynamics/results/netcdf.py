@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 SCHEMA = "lineofaction dynamics run"
 SCHEMA_VERSION = 3
 DOCUMENTS = {"effect_ledger": "{}", "receipt": "{}", "case": "{}", "modes": "{}", "warnings": "[]"}
-"""JSON attributes, and what stands for one that an older file has not."""
+"""JSON attributes, and the default of those that older files lack."""
 
 
 def to_dataset(result: RunResult) -> xarray.Dataset:
@@ -50,7 +50,7 @@ def to_dataset(result: RunResult) -> xarray.Dataset:
 
 
 def write_netcdf(result: RunResult, path: Path) -> None:
-    """Write to a neighbour of `path`, then move it there in one step."""
+    """Write to a neighbor of `path`, then move it there in one step."""
     fields = dict(vars(result))
     with RunFile(path) as file:
         for first in range(0, result.time.size, CHUNK):

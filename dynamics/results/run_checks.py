@@ -1,4 +1,4 @@
-"""What a run tells about its own model, gathered from its series block by block."""
+"""Checks of a run on its own model, gathered from its series block by block."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dynamics.results.axis_checks import AxisChecks
 from dynamics.results.bearing_load_check import BearingLoadChecks
 from dynamics.results.contact_check import ContactChecks
 from dynamics.results.force_check import ForceChecks
-from dynamics.results.held_place_check import HeldPlaceChecks
+from dynamics.results.held_operating_point_check import HeldOperatingPointChecks
 from dynamics.types import Json
 
 
@@ -29,13 +29,13 @@ class RunChecks:
     """All checks of a run; `further` ones look at its series too."""
 
     def __init__(self, system: System, further: Sequence[SeriesCheck] = ()) -> None:
-        self._further, self._places = tuple(further), HeldPlaceChecks(system)
+        self._further, self._operating_points = tuple(further), HeldOperatingPointChecks(system)
         self._contact, self._axes = ContactChecks(system), AxisChecks(system)
         self._force, self._bearings = ForceChecks(system), BearingLoadChecks(system)
 
     def see(self, series: dict[str, Any], states: States) -> None:
         """Take a block of unfiltered series, and the states they are of."""
-        self._places.see(states.q)
+        self._operating_points.see(states.q)
         for check in self._further:
             check.see(series)
         names = ("position", "dynamic_transmission_error", "mesh_force", "least_mesh_force")
@@ -48,5 +48,5 @@ class RunChecks:
         """Return the entries of all checks."""
         contact, axes = self._contact.found(), self._axes.found()
         further = [entry for check in self._further for entry in check.found()]
-        rest = (*self._force.found(), *self._bearings.found(), *self._places.found(), *further)
+        rest = (*self._force.found(), *self._bearings.found(), *self._operating_points.found(), *further)
         return [*contact, *axes, *rest]

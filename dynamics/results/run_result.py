@@ -61,18 +61,18 @@ class RunResult:
         N m about +z, from the first shaft of each coupling on the second.
     bearing_force : (b, 3, T) array
         Force of the shaft on the ground in the fixed frame x, y, z, N; of a planet on its pin in the
-        carrier's turning frame; b = 0 if not asked for.
+        carrier's rotating frame; b = 0 if not requested.
     bearing_moment : (b, 3, T) array
-        Moment of the shaft on the ground about each bearing's centre, N m, in the same frames; the one about
-        the axis is 0, since the shaft turns. b = 0 if not asked for or if no bearing holds tilt.
+        Moment of the shaft on the ground about each bearing's center, N m, in the same frames; the one about
+        the axis is 0, since the shaft turns. b = 0 if not requested or if no bearing holds tilt.
     displacement, velocity : (n, T) arrays
-        Deviations from the kinematic motion, m and rad (and per s); n = 0 if not asked for.
+        Deviations from the kinematic motion, m and rad (and per s); n = 0 if not requested.
     nominal_force : (m,) array
         Transverse, N.
     status : RunStatus
     statistics : StepStatistics
     energy : EnergyAudit or None
-        None if not asked for.
+        None if not requested.
     effect_ledger, receipt, case : dict
         Plain JSON: effects on and off with reasons; times and error estimate; the scene as resolved, with
         every damping value used.
@@ -85,10 +85,10 @@ class RunResult:
     warnings : list of dict
         What is implausible about the scene; empty where nothing is.
     acceleration : (n, T) array
-        Second rate of the deviations, m/s2 and rad/s2; n = 0 if not asked for.
+        Second rate of the deviations, m/s2 and rad/s2; n = 0 if not requested.
     bearing_acceleration : (b, 3, T) array
         Of the shaft at each bearing (of a planet against its pin), m/s2, in the frame of `bearing_force`;
-        the turning of a carrier's frame adds no terms. b = 0 if not asked for.
+        the rotation of a carrier's frame adds no terms. b = 0 if not requested.
     """
 
     time: FloatArray

@@ -15,11 +15,11 @@ def check_bearing_laws(
     contacts: Sequence[RollingContact],
     curves: Sequence[SpringCurve],
     housed: frozenset[str],
-    turning: frozenset[str],
+    rotating: frozenset[str],
 ) -> None:
     """Every law has its own direction of a bearing that exists, on rigid ground or on a pin.
 
-    `housed` names the bushings in a housing, `turning` those of shafts described in a turning frame.
+    `housed` names the bushings in a housing, `rotating` those of shafts described in a rotating frame.
     """
     names = [bearing.name for bearing in bearings]
     laws: list[tuple[str, Sequence[RollingContact | SpringCurve]]] = [
@@ -36,6 +36,6 @@ def check_bearing_laws(
     distinct("rolling_contacts", [part.bushing for part in contacts])
     distinct("spring_curves", [f"{part.bushing}.{part.direction}" for part in curves])
     for index, curve in enumerate(curves):
-        if curve.bushing in turning and curve.direction != "z":
+        if curve.bushing in rotating and curve.direction != "z":
             bound = '"z" on a shaft described in a carrier\'s frame, which turns against the bushing'
             raise InputError(f"spring_curves[{index}].direction", curve.direction, bound)

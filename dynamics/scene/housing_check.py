@@ -18,13 +18,13 @@ IRRATIONAL = 1.0  # rad; what this turn leaves alone any turn does
 def check_housings(
     shafts: tuple[Shaft, ...], bushings: tuple[Bushing, ...], housings: tuple[Housing, ...]
 ) -> None:
-    """Each bushing sits in one housing at most; what a turning frame holds is alike in all directions."""
+    """Each bushing sits in one housing at most; what a rotating frame holds is alike in all directions."""
     by_name = {bushing.name: bushing for bushing in bushings}
     frames = {shaft.name: shaft.frame for shaft in shafts}
     taken: dict[str, str] = {}
     for index, housing in enumerate(housings):
-        for place, name in enumerate(housing.bushings):
-            field = f"housings[{index}].bushings[{place}]"
+        for position, name in enumerate(housing.bushings):
+            field = f"housings[{index}].bushings[{position}]"
             one_of(field, name, list(by_name))
             if name in taken:
                 raise InputError(field, name, f'in one housing only; "{taken[name]}" has it')
@@ -38,7 +38,7 @@ def check_housings(
 
 
 def _check_isotropic(field: str, bushing: Bushing) -> None:
-    """Refuse a bushing seen from a turning frame unless all directions across the axis are alike."""
+    """Refuse a bushing seen from a rotating frame unless all directions across the axis are alike."""
     for name, matrix in (("stiffness", bushing.seat_stiffness), ("damping", bushing.seat_damping)):
         if not alike_across(matrix):
             bound = "the same in all directions across the axis"

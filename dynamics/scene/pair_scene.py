@@ -22,7 +22,7 @@ def pair_scene(
     """Return the scene of a pair: a driven shaft, and one that a torque resists.
 
     The driver's shaft lies on the z axis from z = 0, the driven one beside it at x = `center_distance`. Both
-    are twice as long as their gear stands from their end. The mesh is named "mesh", the drive "drive", the
+    are twice as long as their gear is from their end. The mesh is named "mesh", the drive "drive", the
     load "load". Change what else differs with `dataclasses.replace`.
 
     Parameters

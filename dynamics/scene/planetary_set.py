@@ -33,11 +33,11 @@ class PlanetaryParts:
 
 @dataclass(frozen=True)
 class PlanetarySet:
-    """A sun, N planets on a carrier, and a ring gear; all described in the carrier's turning frame.
+    """A sun, N planets on a carrier, and a ring gear; all described in the carrier's rotating frame.
 
     Shafts and gears are called sun, ring, carrier, planet 1 ... planet N, meshes sun-planet 1 ...,
     ring-planet 1 ..., each behind ``name`` and a dot if that is not empty. Every gear sits in the middle of
-    its shaft, with its bearing at the same place. Drives, free rotations and loads are the scene's.
+    its shaft, with its bearing at the same position. Drives, free rotations and loads are the scene's.
 
     Attributes
     ----------
@@ -119,9 +119,9 @@ class PlanetarySet:
         one_of("driver", self.driver, ("sun", "ring"))
         one_of("sun_sense", self.sun_sense, ("+z", "-z"))
         for label in ("angles", "pin_errors"):
-            given = getattr(self, label)
-            if given is not None and len(given) != self.planets:
-                raise InputError(label, len(given), f"one for each of the {self.planets} planets")
+            values = getattr(self, label)
+            if values is not None and len(values) != self.planets:
+                raise InputError(label, len(values), f"one for each of the {self.planets} planets")
         self._check_assembly()
 
     def _check_assembly(self) -> None:
@@ -168,9 +168,9 @@ class PlanetarySet:
         ]
         stiffness = (self.sun_stiffness, self.ring_stiffness, self.carrier_stiffness)
         bushings = [
-            self._bushing(name, _in_full(given))
-            for name, given in zip(names, stiffness, strict=True)
-            if given is not None
+            self._bushing(name, _in_full(values))
+            for name, values in zip(names, stiffness, strict=True)
+            if values is not None
         ]
         pins = range(self.planets if self.planet_stiffness is not None else 0)
         return PlanetaryParts(

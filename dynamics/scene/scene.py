@@ -15,7 +15,7 @@ from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRot
 from dynamics.scene.bearing_check import check_bearing_laws
 from dynamics.scene.frame_check import check_couplings, check_frames
 from dynamics.scene.housing_check import check_housings
-from dynamics.scene.place_check import check_places
+from dynamics.scene.position_check import check_positions
 
 METHODS = ("implicit", "explicit")
 ON_VIOLATION = ("repeat", "fail", "report")
@@ -215,7 +215,7 @@ class Scene:
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
         for kind in ("gears", "bushings", "planet_bearings"):
-            check_places(self.shafts, kind, getattr(self, kind))
+            check_positions(self.shafts, kind, getattr(self, kind))
         for index, mesh in enumerate(self.meshes):
             one_of(f"meshes[{index}].driver", mesh.driver, gears)
             one_of(f"meshes[{index}].driven", mesh.driven, gears)
@@ -226,13 +226,13 @@ class Scene:
         check_frames(self.shafts, self.bushings, self.planet_bearings)
         check_couplings(self.shafts, self.couplings)
         check_housings(self.shafts, self.bushings, self.housings)
-        turning = {shaft.name for shaft in self.shafts if shaft.frame is not None}
+        rotating = {shaft.name for shaft in self.shafts if shaft.frame is not None}
         check_bearing_laws(
             (*self.bushings, *self.planet_bearings),
             self.rolling_contacts,
             self.spring_curves,
             frozenset(name for housing in self.housings for name in housing.bushings),
-            frozenset(bushing.name for bushing in self.bushings if bushing.shaft in turning),
+            frozenset(bushing.name for bushing in self.bushings if bushing.shaft in rotating),
         )
 
     def _check_references(self) -> None:
@@ -254,12 +254,12 @@ class Scene:
         return next(gear for gear in self.gears if gear.name == name)
 
     def frame_index(self, shaft: int) -> int | None:
-        """Return the place of the carrier in whose frame the shaft `shaft` is described, or None."""
+        """Return the index of the carrier in whose frame the shaft `shaft` is described, or None."""
         name = self.shafts[shaft].frame
         return None if name is None else self.shaft_index(name)
 
     def shaft_index(self, name: str) -> int:
-        """Return the place of the shaft called `name`."""
+        """Return the index of the shaft called `name`."""
         return _names(self.shafts).index(name)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from dynamics.assembly.assemble import System
 from dynamics.effects.gyroscopic import Gyroscopic
 from dynamics.errors import SolveError
+from dynamics.influence import Decided, Influence, estimate_influences
 from dynamics.integrators.march import Ending
 from dynamics.integrators.workspace import Count
 from dynamics.linearize import natural_modes
@@ -30,12 +31,11 @@ from dynamics.results.run_checks import RunChecks
 from dynamics.scene import Integration
 from dynamics.simulation.violations import FIRST, EarlierRun
 from dynamics.types import FloatArray, Json
-from dynamics.worth import Decided, Worth, estimate_worths
 
 ERROR_CHECK_FACTOR = 0.1
 IMPLICIT_STAGES_PER_STEP = 5
 LEAST_WORK = 500_000
-"""Steps times freedoms of a run whose ledger has estimates that no tolerance asked for."""
+"""Steps times freedoms of a run whose ledger has estimates that no tolerance requests."""
 WHIRL_SPEEDS = 33
 
 
@@ -51,7 +51,9 @@ def documents(
     """Return the fields of `RunResult` that are no series; `before` is the run that this one repeats."""
     automatic = {**decided.automatic, **before.reasons}
     began = clock.process_time()
-    worths = {name: worth.to_json() for name, worth in known_worths(decided, system, end).items()}
+    influences = {
+        name: influence.to_json() for name, influence in known_influences(decided, system, end).items()
+    }
     seconds = {**seconds, "worth_estimates": clock.process_time() - began + decided.seconds}
     audit = None
     if system.scene.outputs.energy_audit:
@@ -61,7 +63,7 @@ def documents(
         "status": end.status,
         "statistics": _statistics(system, end),
         "energy": audit,
-        "effect_ledger": effect_ledger(system, found, automatic, worths),
+        "effect_ledger": effect_ledger(system, found, automatic, influences),
         "receipt": {
             "seconds": seconds,
             "error": {**error, "sampling": end.figures.error(system)},
@@ -76,13 +78,13 @@ def documents(
     }
 
 
-def known_worths(decided: Decided, system: System, end: Ending) -> Mapping[str, Worth]:
-    """Return what effects are worth: as decided by, else estimated if the run was worth it."""
+def known_influences(decided: Decided, system: System, end: Ending) -> Mapping[str, Influence]:
+    """Return the influence of effects: as decided by, else estimated where the run is long enough."""
     scene = decided.scene
     work = int(end.count[Count.ACCEPTED]) * len(system.freedoms.name)
-    if decided.worths or scene.outputs.receipt != "full" or work < LEAST_WORK:
-        return decided.worths
-    return estimate_worths(scene)
+    if decided.influences or scene.outputs.receipt != "full" or work < LEAST_WORK:
+        return decided.influences
+    return estimate_influences(scene)
 
 
 def series_of(system: System, time: FloatArray, states: States) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -102,14 +104,14 @@ def _modes(system: System) -> Json:
         return {}
     found = natural_modes(linear)
     most = np.argmax(found.kinetic_energy, axis=1) if found.frequency.size else []
-    turning = any(part.speed.extreme != 0.0 for part in system.scene.references) and any(
+    rotating = any(part.speed.extreme != 0.0 for part in system.scene.references) and any(
         entry.effect == Gyroscopic().name and entry.on for entry in system.ledger.entries
     )
     return {
         "frequency": [float(value) for value in found.frequency],
         "damping_ratio": [float(value) for value in found.damping_ratio],
         "freedom": [found.freedom[index] for index in most],
-        **({"over_speed": _over_speed(system, linear)} if turning else {}),
+        **({"over_speed": _over_speed(system, linear)} if rotating else {}),
     }
 
 
@@ -141,8 +143,8 @@ def finer(integration: Integration) -> Integration:
     )
 
 
-def asked_error(integration: Integration) -> Json:
-    """Return the step error of the transmission error, m rms, that the step control was asked for."""
+def requested_error(integration: Integration) -> Json:
+    """Return the step error of the transmission error, m rms, that the step control must keep."""
     return {"time_step": {"rms": integration.tolerance, "unit": "m", "source": "tolerance of step control"}}
 
 

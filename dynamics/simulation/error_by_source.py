@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from dynamics.assembly.assemble import System
-from dynamics.assembly.thin_tables import with_thin_tables
-from dynamics.simulation.documents import ERROR_CHECK_FACTOR, asked_error, finer
+from dynamics.assembly.decimated_tables import with_decimated_tables
+from dynamics.simulation.documents import ERROR_CHECK_FACTOR, finer, requested_error
 from dynamics.simulation.error_windows import (
     Difference,
     StatesOf,
@@ -26,39 +26,39 @@ TABLE_REST = 1.0 / 3.0
 
 
 def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
-    """Return the estimates of a run, measured in windows of it; what was asked for where it is too short.
+    """Return the estimates of a run, measured in windows of it; the requested error where it is too short.
 
     Sources: time steps, table interpolation between positions, effects that are off.
     """
-    asked, integration = asked_error(system.scene.integration), system.scene.integration
+    requested, integration = requested_error(system.scene.integration), system.scene.integration
     left_out = left_out_effects(system)
     began = clock.process_time()
     full = system.scene.outputs.receipt == "full"
     looked = windows(system, states_of, samples) if full else []
     if not looked:
-        return {**asked, "left_out_effects": left_out}
+        return {**requested, "left_out_effects": left_out}
     steps = [run_again(window, window.system, finer(integration)) for window in looked]
-    tables = [run_again(window, with_thin_tables(window.system), integration) for window in looked]
+    tables = [run_again(window, with_decimated_tables(window.system), integration) for window in looked]
     seconds = clock.process_time() - began
     return {
         "time_step": _estimate(steps, TIME_STEP_REST, "runs of windows at a tenth of the tolerance")
-        or asked["time_step"],
+        or requested["time_step"],
         "table_interpolation": _estimate(tables, TABLE_REST, "runs of windows on every second position"),
         "left_out_effects": left_out,
-        "windows": _places(looked),
+        "windows": _pitches_of(looked),
         "cpu_seconds": seconds,
     }
 
 
 def left_out_effects(system: System) -> Json:
     """Return what effects that are off would move the flanks by at rest; bearing forces are not known."""
-    off = [entry for entry in system.ledger.entries if not entry.on and entry.worth > 0.0]
-    largest = max((entry.worth for entry in off), default=0.0)
+    off = [entry for entry in system.ledger.entries if not entry.on and entry.influence > 0.0]
+    largest = max((entry.influence for entry in off), default=0.0)
     return {
         "rms": largest,
         "unit": "m",
         "source": "largest static displacement along the line of action by one effect that is off",
-        "effects": {f"{entry.effect} of {entry.part}": entry.worth for entry in off},
+        "effects": {f"{entry.effect} of {entry.part}": entry.influence for entry in off},
     }
 
 
@@ -82,6 +82,6 @@ def _estimate(found: Sequence[Difference | None], rest: float, source: str) -> J
     }
 
 
-def _places(looked: Sequence[Window]) -> list[list[int]]:
+def _pitches_of(looked: Sequence[Window]) -> list[list[int]]:
     """First and last sample of each window."""
     return [[window.first, window.stop - 1] for window in looked]

@@ -1,4 +1,4 @@
-"""Stretches of a run that are integrated again: with finer steps, and on thinner tables."""
+"""Stretches of a run that are integrated again: with finer steps, and on decimated tables."""
 
 from __future__ import annotations
 

@@ -12,10 +12,12 @@ from bounds import warn_of
 from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.static_reference import with_static_reference
 from dynamics.errors import SolveError
+from dynamics.influence import Decided, decide_effects
+from dynamics.influence.neglected_check import NeglectedChecks
 from dynamics.integrators import Cancel, Progress, StaticSolution, Trajectory, integrate, static_equilibrium
 from dynamics.integrators import march as marching
+from dynamics.integrators.start_value import Trail
 from dynamics.integrators.state_sink import MemorySink, blocks
-from dynamics.integrators.taking_over import Trail
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results import RunResult
@@ -24,18 +26,16 @@ from dynamics.results.series import over_time
 from dynamics.results.verdict import ending
 from dynamics.scene import Scene
 from dynamics.simulation.documents import (
-    asked_error,
     documents,
     finer,
     measured_error,
+    requested_error,
     series_of,
     squared_difference,
 )
 from dynamics.simulation.error_by_source import error_by_source
 from dynamics.simulation.violations import FIRST, EarlierRun, needed_effects, taken_over
 from dynamics.types import Json, RunStatus
-from dynamics.worth import Decided, decide_effects
-from dynamics.worth.spared_check import SparedChecks
 
 
 def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | None = None) -> RunResult:
@@ -49,7 +49,7 @@ def simulate(scene: Scene, progress: Progress | None = None, cancel: Cancel | No
     progress : callable, optional
         Called with the fraction done (0..1) and what is being done; what it raises ends the run.
     cancel : callable, optional
-        Asked again and again whether to stop; e.g. ``threading.Event().is_set``.
+        Polled for whether to stop; e.g. ``threading.Event().is_set``.
 
     Returns
     -------
@@ -158,7 +158,7 @@ def _result(
 ) -> RunResult:
     """Put the result together."""
     began = clock.perf_counter()
-    checks = RunChecks(system, [SparedChecks(decided)])
+    checks = RunChecks(system, [NeglectedChecks(decided)])
     parts: list[dict[str, Any]] = []
     for first, stop in blocks(trajectory.samples):
         states = trajectory.states.rows(first, stop)
@@ -183,10 +183,10 @@ def _joined(parts: list[dict[str, Any]]) -> dict[str, Any]:
 def _error_estimate(
     system: System, start: StaticSolution, trajectory: Trajectory, progress: Progress | None
 ) -> Json:
-    """Errors by source; that of the steps from a finer run where it is asked for."""
+    """Errors by source; that of the steps from a finer run where it is requested."""
     integration = system.scene.integration
     if not trajectory.status.usable:
-        return asked_error(integration)
+        return requested_error(integration)
     error = error_by_source(system, trajectory.states.rows, trajectory.samples)
     if not integration.estimate_error:
         return error
@@ -196,7 +196,7 @@ def _error_estimate(
 
 
 def _no_trajectory(system: System, start: StaticSolution) -> Trajectory:
-    """Stand for a run that never started: its first sample is where the search for equilibrium ended."""
+    """Return the trajectory of a run that never started: the end of the search for equilibrium."""
     march = marching.start_march(system, start, system.scene.integration)
     sink = MemorySink(1, march.widths)
     marching.sample_rest(march, sink)

@@ -13,8 +13,8 @@ from dynamics.errors import ResultError
 from dynamics.integrators import Cancel, Progress, StaticSolution
 from dynamics.integrators.checkpoint import fingerprint, restore
 from dynamics.integrators.march import Ending, March, ending, march_on, start_march
+from dynamics.integrators.start_value import StartValue, Trail, start_from, widened
 from dynamics.integrators.state_spool import StateSpool
-from dynamics.integrators.taking_over import Taken, Trail, take_over, widened
 from dynamics.integrators.workspace import Count
 from dynamics.motion.sampled_states import Widths
 from dynamics.scene import Integration
@@ -24,7 +24,7 @@ from dynamics.types import Json, RunStatus
 
 @dataclass(frozen=True)
 class MadeRun:
-    """A run as made: its status, effect ledger and wall time (s), where it stood on its way, its records."""
+    """A run as made: its status, effect ledger and wall time (s), its saved states, its records."""
 
     status: RunStatus
     ledger: Json
@@ -34,12 +34,12 @@ class MadeRun:
 
 
 class Leg:
-    """One integration with its states on disk, taken up where its checkpoint stands."""
+    """One integration with its states on disk, resumed from its checkpoint."""
 
     def __init__(
         self,
         stack: ExitStack,
-        place: Path,
+        path: Path,
         system: System,
         start: StaticSolution,
         integration: Integration,
@@ -49,36 +49,36 @@ class Leg:
         self.march: March = start_march(system, start, integration)
         work, control, duration = self.march.work, self.march.control, system.scene.duration
         self._mark = fingerprint(
-            system.arrays, control, self.march.sampler, work.ladder, start.displacement, duration
+            system.arrays, control, self.march.sampler, work.step_sizes, start.displacement, duration
         )
-        self.spool = stack.enter_context(StateSpool(place, self.march.widths))
+        self.spool = stack.enter_context(StateSpool(path, self.march.widths))
         self._seconds = 0.0
         self._status: RunStatus | None = None
         self.since = 0.0
         found = self.spool.checkpoint() if resume else None
         taken = earlier and taken_over(earlier.ledger, earlier.trail, self.spool.states, system)
         if found is not None:
-            self._take_up(place, *found)
+            self._resume(path, *found)
         elif earlier and taken:
             self._go_on_for(earlier.widths, taken)
         else:
             self.spool.begin()
 
-    def _take_up(self, place: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
-        """Stand where the checkpoint was written."""
+    def _resume(self, path: Path, arrays: dict[str, Any], facts: dict[str, Any]) -> None:
+        """Resume from the checkpoint."""
         if str(facts.get("mark")) != self._mark:
-            raise ResultError(f"{place}: of another scene or version. Start the run anew.")
-        restore(self.march.state, arrays, place)
+            raise ResultError(f"{path}: of another scene or version. Start the run anew.")
+        restore(self.march.state, arrays, path)
         self.spool.resume(int(facts["samples"]))
         self._seconds, self.since = float(facts["seconds"]), float(facts["since"])
         status = RunStatus(int(facts["status"]))
         self._status = None if status is RunStatus.CANCELLED else status
 
-    def _go_on_for(self, widths: Widths, taken: Taken) -> None:
-        """Stand where an earlier run stood, whose samples the spool holds; kept at once: its own are gone."""
-        take_over(self.march, taken.at, taken.place)
+    def _go_on_for(self, widths: Widths, taken: StartValue) -> None:
+        """Start from an earlier run, whose samples the spool holds; save at once, as its own are gone."""
+        start_from(self.march, taken.at, taken.rows_of)
         samples = taken.at.samples
-        self.spool.rewrite(widths, samples, lambda states: widened(states, taken.place, self.march))
+        self.spool.rewrite(widths, samples, lambda states: widened(states, taken.rows_of, self.march))
         self.spool.resume(samples)
         self.since = taken.at.time
         self._save(RunStatus.CANCELLED)

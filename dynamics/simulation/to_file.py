@@ -16,10 +16,12 @@ from bounds import warn_of
 from dynamics.assembly.assemble import System, assemble
 from dynamics.assembly.static_reference import with_static_reference
 from dynamics.errors import ResultError, SolveError
+from dynamics.influence import Decided, decide_effects
+from dynamics.influence.neglected_check import NeglectedChecks
 from dynamics.integrators import Cancel, Progress, static_equilibrium
 from dynamics.integrators.march import Ending
+from dynamics.integrators.start_value import Trail
 from dynamics.integrators.state_sink import blocks
-from dynamics.integrators.taking_over import Trail
 from dynamics.motion.sampled_states import States
 from dynamics.plausibility import scene_findings
 from dynamics.results.netcdf import attributes
@@ -28,10 +30,10 @@ from dynamics.results.run_file import RunFile
 from dynamics.results.verdict import ending
 from dynamics.scene import Scene
 from dynamics.simulation.documents import (
-    asked_error,
     documents,
     finer,
     measured_error,
+    requested_error,
     series_of,
     squared_difference,
 )
@@ -40,8 +42,6 @@ from dynamics.simulation.in_memory import require_equilibrium
 from dynamics.simulation.leg import Leg, MadeRun
 from dynamics.simulation.violations import FIRST, EarlierRun, needed_effects
 from dynamics.types import Json, RunStatus
-from dynamics.worth import Decided, decide_effects
-from dynamics.worth.spared_check import SparedChecks
 
 CHECKPOINT_EVERY = 5.0  # s of wall time
 REPEATED = "repeated.json"
@@ -155,7 +155,7 @@ def _run_to_file(
         leg = Leg(stack, folder / "run", system, start, scene.integration, how.resume, earlier)
         before = replace(before, since=leg.since)
         end = leg.go(*going, trail)
-        error = asked_error(scene.integration)
+        error = requested_error(scene.integration)
         if end.status.usable:
             error = error_by_source(system, leg.spool.states, end.samples)
         if scene.integration.estimate_error and end.status.usable:
@@ -201,7 +201,7 @@ def _write(
 ) -> Json:
     """Make the series from the states, block by block, into the file; return the effect ledger."""
     began = clock.perf_counter()
-    checks = RunChecks(system, [SparedChecks(decided)])
+    checks = RunChecks(system, [NeglectedChecks(decided)])
     with RunFile(path) as file:
         for series, raw, states in _series(system, leg, end.samples):
             checks.see(raw, states)

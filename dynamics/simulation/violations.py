@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from dynamics.assembly.assemble import System
-from dynamics.integrators.taking_over import Taken, Trail, added_rows
+from dynamics.influence import Decided
+from dynamics.influence.neglected_check import ANY_PART
+from dynamics.integrators.start_value import StartValue, Trail, added_rows
 from dynamics.motion.sampled_states import States
 from dynamics.types import Json
-from dynamics.worth import Decided
-from dynamics.worth.spared_check import ANY_PART
 
 StatesOf = Callable[[int, int], States]
 
@@ -66,7 +66,7 @@ def needed_effects(ledger: Json) -> dict[str, str]:
     return {one["effect"]: f"{one['part']}: {one['reason']}".removeprefix(": ") for one in _wrong(ledger)}
 
 
-def taken_over(ledger: Json, trail: Trail, states: StatesOf, system: System) -> Taken | None:
+def taken_over(ledger: Json, trail: Trail, states: StatesOf, system: System) -> StartValue | None:
     """Return where `system`, with the effects that are needed, can go on; None: only from the start.
 
     An effect that carried no force until then leaves what came before as it is, bit by bit: coast flanks
@@ -76,8 +76,8 @@ def taken_over(ledger: Json, trail: Trail, states: StatesOf, system: System) -> 
     since = [float(one["since"]) for one in wrong if one.get("since") is not None]
     if not since or len(since) < len(wrong):
         return None
-    at, place = trail.before(min(since)), added_rows(trail.system, system)
-    return None if at is None or place is None else Taken(at, place, states)
+    at, rows = trail.before(min(since)), added_rows(trail.system, system)
+    return None if at is None or rows is None else StartValue(at, rows, states)
 
 
 def _wrong(ledger: Json) -> list[Json]:

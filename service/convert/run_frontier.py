@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from dynamics.accuracy import Frontier, frontier
 from dynamics.errors import InputError, SolveError
-from dynamics.ladder import Frontier, frontier
 from dynamics.scene import Scene
 from service.convert.errors import translated
 from service.problems import JobFailed
@@ -24,7 +24,7 @@ def run_frontier_of(
         Fewer than two rungs came to their end.
     """
     try:
-        return frontier(scene, rungs=rungs, progress=progress)
+        return frontier(scene, fidelities=rungs, progress=progress)
     except InputError as error:
         raise translated(error) or error from None
     except SolveError as error:

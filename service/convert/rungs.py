@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.ladder.registry import RUNGS as SCENE_RUNGS
+from dynamics.accuracy.registry import FIDELITIES as SCENE_RUNGS
 from fe_contact.analysis.ladder import RUNGS
 from service.problems import BadInput
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 
-from dynamics.ladder import Frontier as SceneFrontier
+from dynamics.accuracy import Frontier as SceneFrontier
 from fe_contact.analysis.frontier import Frontier
 from service.convert.frontier import frontier_of
 from service.convert.run_frontier import run_frontier_of

@@ -159,7 +159,7 @@ def scene_ablation_table(found: SceneAblation) -> Table:
         (
             one.name,
             "on" if one.on else "off",
-            number(1e6 * one.worth, 3),
+            number(1e6 * one.influence, 3),
             _signed(1e6 * _most(one.mean_change)),
             "" if one.estimate is None else _signed(1e6 * _most(one.estimate.mean)),
             _signed(1e6 * _most(one.peak_to_peak_change)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from dynamics.ladder import Frontier as SceneFrontier
+from dynamics.accuracy import Frontier as SceneFrontier
 from fe_contact.analysis import Frontier as CaseFrontier
 from service.report.figure import Figure, Table, number
 from service.report.page import Headline, Page, Section

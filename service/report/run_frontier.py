@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.ladder import Frontier, RungResult
+from dynamics.accuracy import FidelityResult, Frontier
 from service.report import palette
 from service.report.figure import Axis, Figure, Line, Note, Panel, Table, number
 from service.report.ladder_page import ladder_page
@@ -81,13 +81,13 @@ def _time_axis(found: Frontier) -> Axis:
     return Axis("CPU time of the run, s", "log", (0.5 * min(seconds), 4.0 * max(seconds)))
 
 
-def _note(found: Frontier, result: RungResult) -> str:
+def _note(found: Frontier, result: FidelityResult) -> str:
     """Name of a rung and its marks."""
     mark, name = _mark(found, result), result.name.replace("_", " ")
     return f"{name} ({mark})" if mark else name
 
 
-def _mark(found: Frontier, result: RungResult) -> str:
+def _mark(found: Frontier, result: FidelityResult) -> str:
     """Knee, chosen, reference."""
     marks = (("knee", found.knee), ("chosen", found.chosen), ("reference", found.results[-1].name))
     return ", ".join(mark for mark, name in marks if name == result.name)

@@ -7,8 +7,8 @@ import numpy as np
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import EffectAblation as SceneEffect
 from dynamics.ablation import RunFigures
-from dynamics.worth import Worth as SceneWorth
-from dynamics.worth.linear_figures import LinearFigures
+from dynamics.influence import Influence as SceneInfluence
+from dynamics.influence.linear_figures import LinearFigures
 from fe_contact.analysis.ablation import Ablation, EffectAblation, Figures
 from fe_contact.effects.worth import Influence
 from service.convert.units import UM
@@ -108,12 +108,12 @@ def _scene_effect(content: Json) -> SceneEffect:
     )
 
 
-def _scene_worth(told: Json, *, on: bool) -> SceneWorth:
+def _scene_worth(told: Json, *, on: bool) -> SceneInfluence:
     """Return an estimate."""
     mean, force = _lengths(told["mean_um"]), np.asarray(told["bearing_force_n"], dtype=float)
     unknown, apart = np.full_like(mean, np.nan), np.full_like(force, np.nan)
     freedoms, rows = told["freedoms"], told["rows"]
-    return SceneWorth(
+    return SceneInfluence(
         mean,
         _lengths(told["peak_to_peak_um"]),
         force,

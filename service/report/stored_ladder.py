@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.ladder import Frontier as SceneFrontier
-from dynamics.ladder import RungResult as SceneRung
-from dynamics.ladder.frontier import FIGURES
-from dynamics.ladder.vibration import Vibration
+from dynamics.accuracy import FidelityResult as SceneRung
+from dynamics.accuracy import Frontier as SceneFrontier
+from dynamics.accuracy.frontier import FIGURES
+from dynamics.accuracy.vibration import Vibration
 from fe_contact.analysis import Frontier
 from fe_contact.analysis.ladder.full_contact import FullContactLevel
 from fe_contact.analysis.rung_result import RungResult

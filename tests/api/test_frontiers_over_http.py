@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from study_service import CASE, Served, prepared, scene_by_hash, study_service, without
 
-from dynamics.ladder.registry import RUNGS as SCENE_RUNGS
+from dynamics.accuracy.registry import FIDELITIES as SCENE_RUNGS
 from fe_contact.analysis.ladder import RUNGS
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase

@@ -11,9 +11,9 @@ from geared_scenes import gear_pair_scene, spring_table, with_gear, with_mesh
 from dynamics.bodies import TimeLaw
 from dynamics.effects import EFFECTS, MESH_EFFECTS, ledger
 from dynamics.forces import CoastFlank
+from dynamics.influence import decide_effects, estimate_influences
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
-from dynamics.worth import decide_effects, estimate_worths
 
 RPM = np.pi / 30.0
 SERIES = ("dynamic_transmission_error", "mesh_force", "coast_force", "bearing_force", "drive_torque")
@@ -53,16 +53,16 @@ def test_a_run_with_an_effect_off_is_that_of_a_build_without_it(
     assert off.statistics == without.statistics
 
 
-def test_a_run_with_an_effect_left_off_for_a_tolerance_is_that_of_a_build_without_it(
+def test_a_run_with_an_effect_neglected_for_a_tolerance_is_that_of_a_build_without_it(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     whole = everything()
     scene = replace(whole, drives=(replace(whole.drives[0], speed=TimeLaw.constant(40.0 * RPM)),))
     decided = decide_effects(replace(scene, tolerance=0.05))
-    assert "gyroscopic" in estimate_worths(scene)
+    assert "gyroscopic" in estimate_influences(scene)
     off = simulate(replace(scene, tolerance=0.05))
     left = {entry["effect"] for entry in off.effect_ledger["entries"] if not entry["on"]}
-    assert set(decided.left_off) <= left
+    assert set(decided.neglected) <= left
     assert "gyroscopic" in left
     remaining = tuple(effect for effect in EFFECTS if effect.name not in left)
     monkeypatch.setattr(ledger, "EFFECTS", remaining)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.ladder.knee import knee_of
+from dynamics.accuracy.knee import knee_of
 from fe_contact.analysis.pareto import knee_of as knee_of_tables
 
 

@@ -25,13 +25,13 @@ def with_sections(scene, section=STEEL, shafts=("input", "output"), **changes):
 
 
 def flexible_pair(section=STEEL, gear=0.1, bearings=(0.0, 0.2), stiffness=1e8, **changes):
-    """The 20/20 pair with its gears at `gear` along flexible shafts and bearings at two places."""
+    """The 20/20 pair with its gears at `gear` along flexible shafts and bearings at two positions."""
     scene = with_sections(gear_pair_scene(**changes), section)
     gears = tuple(replace(part, position=gear) for part in scene.gears)
     bushings = tuple(
-        Bushing(f"{shaft}.{end}", shaft, place, stiffness, stiffness)
+        Bushing(f"{shaft}.{end}", shaft, position, stiffness, stiffness)
         for shaft in ("input", "output")
-        for end, place in zip(("left", "right"), bearings, strict=True)
+        for end, position in zip(("left", "right"), bearings, strict=True)
     )
     effects = {"flexible_shafts": "on", **scene.effects}
     return replace(scene, gears=gears, bushings=bushings, effects=effects)

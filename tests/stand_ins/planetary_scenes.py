@@ -57,7 +57,7 @@ def published_set(planets: int, **changes) -> PlanetarySet:
 def planetary_scene(
     gears: PlanetarySet, *, sun_torque=500.0, duration=0.02, ring_support=None, speed=100.0, **changes
 ) -> Scene:
-    """The sun driven by a torque and braked at the carrier, or (`drives` given) as asked; the ring held."""
+    """The sun driven by a torque and braked at the carrier, or (`drives` given) as stated; the ring held."""
     parts = gears.parts()
     ratio = 1.0 + gears.teeth[2] / gears.teeth[0]
     held = ImposedRotation("ring held", "ring", TimeLaw.constant(0.0), ring_support)

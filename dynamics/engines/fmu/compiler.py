@@ -23,7 +23,7 @@ class CompilerError(DynamicsError):
     """The C compiler refused the FMU's sources; its message is the text."""
 
 
-def binary_place() -> tuple[str, str] | None:
+def binary_folder() -> tuple[str, str] | None:
     """Return folder in ``binaries/`` and ending of this machine's binary; None where FMI 2.0 has none."""
     return _FOLDERS.get((platform.system(), platform.machine()))
 
@@ -36,15 +36,15 @@ def find_compiler() -> list[str]:
     InputError
         If there is none.
     """
-    given = shlex.split(os.environ.get("CC", ""))
-    for command in [given] if given else [[name] for name in COMPILERS]:
+    requested = shlex.split(os.environ.get("CC", ""))
+    for command in [requested] if requested else [[name] for name in COMPILERS]:
         if shutil.which(command[0]) is not None:
             return command
     advice = (
         "Install one (Debian: apt-get install gcc), name one in CC, or write the sources alone: "
         "export_fmu(..., binary=False)."
     )
-    raise InputError("CC", " ".join(given) or None, "a C compiler on the path", advice)
+    raise InputError("CC", " ".join(requested) or None, "a C compiler on the path", advice)
 
 
 def compile_library(folder: Path, sources: Sequence[str], library: str) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
 
-from dynamics.engines.fmu.compiler import binary_place, compile_library, find_compiler
+from dynamics.engines.fmu.compiler import binary_folder, compile_library, find_compiler
 from dynamics.engines.fmu.header import TABLE_FILE, header
 from dynamics.engines.fmu.model_description import model_description
 from dynamics.engines.fmu.table_resource import identity_of, table_content, table_file
@@ -70,12 +70,12 @@ def export_fmu(
 def _check_machine() -> None:
     """Refuse before the work is done."""
     find_compiler()
-    if binary_place() is None:
+    if binary_folder() is None:
         raise InputError("binary", True, "False on this machine", "FMI 2.0 names no folder for its binaries.")
 
 
 def _content(element: MeshElement, name: str) -> dict[str, bytes]:
-    """Return everything but the binary, by its place in the file."""
+    """Return everything but the binary, by its path in the file."""
     chosen, table = variables(element), table_content(element.table)
     own = {item.name: item.read_bytes() for item in files(__package__).joinpath("sources").iterdir()}
     compiled = sorted(file for file in own if file.endswith(".c"))
@@ -96,18 +96,18 @@ def _content(element: MeshElement, name: str) -> dict[str, bytes]:
 def _guid(content: Mapping[str, bytes]) -> str:
     """Return an identifier of everything in the file but itself."""
     digest = hashlib.sha256()
-    for place in sorted(content):
-        digest.update(place.encode() + b"\0" + hashlib.sha256(content[place]).digest())
+    for member in sorted(content):
+        digest.update(member.encode() + b"\0" + hashlib.sha256(content[member]).digest())
     found = digest.hexdigest()
     return "{" + "-".join((found[:8], found[8:12], found[12:16], found[16:20], found[20:32])) + "}"
 
 
 def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:
     """Compile the sources in a folder of their own."""
-    place = binary_place()
-    if place is None:
+    target = binary_folder()
+    if target is None:
         return {}
-    platform, ending = place
+    platform, ending = target
     with tempfile.TemporaryDirectory(prefix="loa-fmu-") as scratch:
         folder = Path(scratch)
         sources = {Path(file).name: text for file, text in content.items() if file.startswith("sources/")}
@@ -118,15 +118,15 @@ def _binary(content: Mapping[str, bytes], name: str) -> dict[str, bytes]:
 
 
 def _write(target: Path, content: Mapping[str, bytes]) -> None:
-    """Write the archive beside its place and move it there; no clock goes into it."""
+    """Write the archive beside its path and move it there; no clock goes into it."""
     with tempfile.NamedTemporaryFile(dir=target.parent, suffix=".fmu", delete=False) as scratch:
         temporary = Path(scratch.name)
     try:
         with zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-            for place in sorted(content):
-                entry = zipfile.ZipInfo(place, _EARLIEST)
+            for member in sorted(content):
+                entry = zipfile.ZipInfo(member, _EARLIEST)
                 entry.compress_type, entry.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
-                archive.writestr(entry, content[place])
+                archive.writestr(entry, content[member])
         temporary.chmod(0o666 & ~_umask())
         temporary.replace(target)
     finally:

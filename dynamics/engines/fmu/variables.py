@@ -14,7 +14,7 @@ REAL, INTEGER, BOOLEAN = "Real", "Integer", "Boolean"
 
 @dataclass(frozen=True)
 class Variable:
-    """A variable by its name in the model description; its value reference is its place among its kind.
+    """A variable by its name in the model description; its value reference is its index among its kind.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The study of worth estimates of dynamic effects counts what it says it counts."""
+"""The study of influence estimates of dynamic effects counts what it states."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from geared_scenes import gear_pair_scene
 
 from benchmarks import dynamic_worth_cases
-from benchmarks.dynamic_worth_estimates import STUDY, judge, markdown
+from benchmarks.dynamic_worth_estimates import STUDY, assess, markdown
 from benchmarks.judged_worth import JudgedWorth
 from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
@@ -35,7 +35,7 @@ def test_counts_and_tables_are_those_of_the_ablations() -> None:
 
 def test_an_ablation_is_judged_beside_its_estimate() -> None:
     made = ablate(gear_pair_scene(duration=0.06), only=["lateral"])
-    one = judge("pair", made.effects[0])
+    one = assess("pair", made.effects[0])
     whole = made.nominal
     assert one.measured[1] == made.effects[0].peak_to_peak_change[0] / whole.peak_to_peak[0]
     assert all(one.right)

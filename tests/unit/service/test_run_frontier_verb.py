@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from dynamics.ladder import Frontier, RungResult
-from dynamics.ladder.vibration import Vibration
+from dynamics.accuracy import FidelityResult, Frontier
+from dynamics.accuracy.vibration import Vibration
 from service.cli.commands import app
 from service.report.image import png
 from service.report.page import html
@@ -23,10 +23,10 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
 def found() -> Frontier:
     nothing = float("nan")
     rungs = (
-        RungResult("quasi_static", "quasi-static", "model", 0.1, 0.2, 1.0, 0.01),
-        RungResult("torsion", "torsion only", "model", 0.05, 0.05, nothing, 0.2),
-        RungResult("1_nm", "tolerance 1 nm", "steps", 1e-3, 1e-3, 2e-3, 0.5),
-        RungResult("0.1_nm", "tolerance 0.1 nm", "steps", 1e-4, 1e-4, 2e-4, 1.0),
+        FidelityResult("quasi_static", "quasi-static", "model", 0.1, 0.2, 1.0, 0.01),
+        FidelityResult("torsion", "torsion only", "model", 0.05, 0.05, nothing, 0.2),
+        FidelityResult("1_nm", "tolerance 1 nm", "steps", 1e-3, 1e-3, 2e-3, 0.5),
+        FidelityResult("0.1_nm", "tolerance 0.1 nm", "steps", 1e-4, 1e-4, 2e-4, 1.0),
     )
     whole = Vibration(np.ones((1, 1)), np.ones((1, 1, 5)), np.ones((1, 1, 5)))
     return Frontier(rungs, {"in_plane": "nothing more"}, 5, 6, whole, "1_nm", "1_nm")

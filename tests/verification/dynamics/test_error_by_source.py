@@ -91,7 +91,7 @@ def test_a_minimal_receipt_states_the_tolerance_and_changes_no_series():
     assert full.receipt["error"]["left_out_effects"] == lean.receipt["error"]["left_out_effects"]
 
 
-def test_effects_that_are_off_are_named_with_their_worth():
+def test_effects_that_are_off_are_named_with_their_influence():
     off = run_up(64, effects={"lateral": "off"}, outputs=Outputs(receipt="minimal"))
     found = simulate(replace(off, duration=0.01)).receipt["error"]["left_out_effects"]
     assert found["effects"]["lateral of input"] == found["effects"]["lateral of output"] > 1e-6

@@ -3,7 +3,7 @@ three-dimensional helical planetary gears, Journal of Sound and Vibration 325 (2
 
 With planets alike and equally spaced, central members alike in all directions and six freedoms per body,
 there are 12 single rotational-axial modes (all planets do the same), 12 pairs of translational-tilting modes,
-and 6 planet modes (central members stand) of N - 3 fold.
+and 6 planet modes (central members are at rest) of N - 3 fold.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ HELIX = math.radians(22.0)
 SMALL = 1e-6  # of a mode's largest displacement
 
 
-def helical_modes(planets, helix=HELIX, off_centre=4e-3):
-    """Frequencies, and shapes (modes, bodies, 6) in metres, planets in axes that point away from the sun.
+def helical_modes(planets, helix=HELIX, off_center=4e-3):
+    """Frequencies, and shapes (modes, bodies, 6) in meters, planets in axes that point away from the sun.
 
-    Pins hold planets `off_centre` from mid-face: else forces at mid-face leave the turning about an axis that
+    Pins are `off_center` from mid-face: else forces at mid-face leave the rotation about an axis that
     points away from the sun to each planet alone, and N of these modes are alike.
     """
     gears = published_set(
@@ -44,13 +44,13 @@ def helical_modes(planets, helix=HELIX, off_centre=4e-3):
     torsion = 1e9 * gears.base_radius[2] ** 2
     on = {"axial": "on", "tilt": "on", "lateral": "on"}
     scene = planetary_scene(gears, ring_support=torsion, effects=on)
-    pins = tuple(replace(pin, position=pin.position + off_centre) for pin in scene.planet_bearings)
+    pins = tuple(replace(pin, position=pin.position + off_center) for pin in scene.planet_bearings)
     system = assemble(replace(scene, planet_bearings=pins))
     modes = natural_modes(system)
     bodies = [*CENTRAL, *(f"planet {i + 1}" for i in range(planets))]
-    place = {name: index for index, name in enumerate(system.freedoms.name)}
-    order = [place[f"{body}.{kind}"] for body in bodies for kind in KINDS]
-    assert len(order) == len(place) == 6 * (planets + 3)
+    location = {name: index for index, name in enumerate(system.freedoms.name)}
+    order = [location[f"{body}.{kind}"] for body in bodies for kind in KINDS]
+    assert len(order) == len(location) == 6 * (planets + 3)
     shape = (modes.shape * system.arrays.scale)[:, order].reshape(-1, len(bodies), 6)
     for planet in range(planets):
         c, s = math.cos(2.0 * math.pi * planet / planets), math.sin(2.0 * math.pi * planet / planets)
@@ -106,7 +106,7 @@ def test_planets_move_by_weights_that_sum_to_zero_in_planet_modes():
 
 
 def test_without_a_helix_the_plane_model_of_lin_and_parker_is_left():
-    """Spur gears centred on their bearings: three freedoms per body move as in the plane."""
+    """Spur gears centered on their bearings: three freedoms per body move as in the plane."""
     frequency, shapes = helical_modes(3, 0.0, 0.0)
     plane = np.array([np.max(np.abs(shape[:, [2, 3, 4]])) < SMALL for shape in shapes])
     published = [1475.75, 1930.35, 2658.32, 7462.80, 11775.27]

@@ -22,14 +22,14 @@ FLOATING = BearingStiffness(1.0, 1e9)
 
 
 def helical(planets=3, helix=HELIX, **changes):
-    given = {
+    changed = {
         "sun_stiffness": HELD,
         "ring_stiffness": HELD,
         "carrier_stiffness": HELD,
         "planet_stiffness": PIN,
         "base_helix_angle": helix,
     }
-    return published_set(planets, **{**given, **changes})
+    return published_set(planets, **{**changed, **changes})
 
 
 def at_rest(gears, split=None, **changes):
@@ -73,10 +73,12 @@ def test_pins_carry_the_overturning_moment_of_both_thrusts(planets):
     """Thrusts of both meshes balance; their couple is 2 F tan(beta_b) r_w about the tangent of the pins."""
     gears = helical(planets)
     _, found, bearings = at_rest(gears)
-    np.testing.assert_allclose(found.mesh_force, FORCE / planets, rtol=1e-9)  # alike, and as large as asked
+    np.testing.assert_allclose(
+        found.mesh_force, FORCE / planets, rtol=1e-9
+    )  # alike, and as large as required
     thrust = FORCE / planets * math.tan(HELIX)
     radius = gears.base_radius[1] / math.cos(PRESSURE_ANGLE)
-    # right-hand sun, turning in +z: its thrust is along +z, that of planets at the sun along -z and at the
+    # right-hand sun, rotating in +z: its thrust is along +z, that of planets at the sun along -z and at the
     # ring along +z, further out: r x F = (away r) x (z thrust) points against z x (away)
     for planet in range(planets):
         _, across = directions(gears, planet)
@@ -113,7 +115,7 @@ def test_central_members_carry_the_sum_of_thrusts():
     assert np.max(np.abs(bearings["carrier bearing"])) < 1e-8 * thrust
 
 
-def test_all_reactions_balance_with_pins_off_their_places():
+def test_all_reactions_balance_with_displaced_pins():
     """Nothing but torques about z acts from outside: forces and moments on the ground sum to zero."""
     errors = ((15e-6, -20e-6), (0.0, 8e-6), (-5e-6, 0.0))
     gears = helical(3, pin_errors=errors, planet_stiffness=BearingStiffness(1e8, 1e7, 2e5))

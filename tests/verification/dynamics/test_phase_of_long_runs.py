@@ -7,7 +7,7 @@ were, so that errors may grow with the angle turned only, and that is exact for 
 from __future__ import annotations
 
 import pytest
-from turning_trains import accelerating, imposed, phase_error
+from rotating_trains import accelerating, imposed, phase_error
 
 STEPS = 200_000
 

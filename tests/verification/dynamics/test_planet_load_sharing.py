@@ -1,4 +1,4 @@
-"""Load sharing of planets with one pin off its place: static equilibrium against the closed form."""
+"""Load sharing of planets with one displaced pin: static equilibrium against the closed form."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def closed_form(planets, sun):
 
 @pytest.mark.parametrize("sun", ["fixed", "floating"])
 @pytest.mark.parametrize("planets", [3, 4, 5])
-def test_one_pin_off_its_place(planets, sun, record_figure):
+def test_one_displaced_pin(planets, sun, record_figure):
     found, at_the_ring = shares(planets, sun)
     expected = closed_form(planets, sun)
     if (planets, sun) in PUBLISHED:
@@ -64,7 +64,7 @@ def test_one_pin_off_its_place(planets, sun, record_figure):
     np.testing.assert_allclose(found, at_the_ring, rtol=1e-9)  # each planet passes on what it gets
 
 
-def test_a_floating_sun_centres_itself_between_three_planets():
+def test_a_floating_sun_centers_itself_between_three_planets():
     found, _ = shares(3, "floating")
     np.testing.assert_allclose(found, 1.0 / 3.0, atol=1e-6)
     assert abs(shares(3, "fixed")[0][0] - 1.0 / 3.0) > 0.05

@@ -95,7 +95,7 @@ def test_nothing_folds_and_no_peak_is_missed(scene, rpm, record_figure):
 
 
 def test_points_at_a_fixed_rate_fold_a_false_line_and_miss_the_peak():
-    """24 000 rpm of 20 teeth at 20 kHz: the second order, 16 kHz, stands at 4 kHz."""
+    """24 000 rpm of 20 teeth at 20 kHz: the second order, 16 kHz, appears at 4 kHz."""
     scene = of_length(spur, 24000.0)
     truth = simulate(scene)
     points = simulate(replace(scene, outputs=Outputs(20e3, anti_alias=False)))

@@ -18,7 +18,7 @@ from dynamics.scene import Integration, Scene
 from dynamics.simulation import simulate
 
 RADIUS = 0.002  # base radius per tooth, m
-CLOSENESS = 1.1  # centre distance over the sum of base radii
+CLOSENESS = 1.1  # center distance over the sum of base radii
 TABLE = square_wave_table()
 SPEED = TimeLaw.ramp(40.0, 80.0, 0.1)
 
@@ -35,7 +35,9 @@ def distance(a, b):
 def scene_of(shafts, gears, links, loads, **changes):
     """Shafts {name: (x, y)} on two bushings each; links are pairs of gears."""
     return Scene(
-        tuple(Shaft(name, 0.1, (*place, 0.0), Inertia(0.5, 1e-4, 1e-3)) for name, place in shafts.items()),
+        tuple(
+            Shaft(name, 0.1, (*location, 0.0), Inertia(0.5, 1e-4, 1e-3)) for name, location in shafts.items()
+        ),
         tuple(gears),
         tuple(GearMesh(f"{a}-{b}", a, b, TABLE) for a, b in links),
         (ImposedRotation("motor", next(iter(shafts)), SPEED),),
@@ -124,7 +126,7 @@ def test_the_drive_carries_the_load_through_the_ratio(name, ratio):
 
 
 def test_both_paths_of_a_power_split_carry_the_load_and_between_rigid_bearings_the_same():
-    """The bearings of the idlers give way differently on both sides of the line of centres."""
+    """The bearings of the idlers give way differently on both sides of the line of centers."""
     scene = replace(SCENES["power split"], drives=(ImposedRotation("motor", "a", TimeLaw.constant(60.0)),))
     forces = simulate(scene).mesh_force.mean(axis=1)
     load = 300.0 / (RADIUS * 45)

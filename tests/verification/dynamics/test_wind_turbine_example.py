@@ -1,6 +1,6 @@
 """The two-stage wind-turbine gearbox of the examples: ratios, torques, forces and moments by hand, energy.
 
-On stand-in tables: forces at rest follow from the balance of torques, whatever the tables.
+On substitute tables: forces at rest follow from the balance of torques, whatever the tables.
 """
 
 from __future__ import annotations
@@ -65,8 +65,8 @@ def test_ratios_and_phases_are_exact():
     (turn,) = frame_turns(system.scene, system.kinematics)
     assert turn[0] == 1  # the carrier's frame against the fixed one, per turn of the rotor
     reference = system.arrays.reference
-    place = len(names)
-    assert (reference.numerator[place, 0], reference.denominator[place, 0]) == (1, 1)
+    location = len(names)
+    assert (reference.numerator[location, 0], reference.denominator[location, 0]) == (1, 1)
     for index, name in enumerate(("sun mesh", "sun mesh 2", "sun mesh 3")):
         expected = (SUN * index / 3.0) % 1.0  # 21 teeth over three planets: all in phase
         assert system.scene.meshes[names.index(name)].position_offset % 1.0 == pytest.approx(
@@ -126,9 +126,9 @@ def test_forces_and_moments_on_the_ground_balance(rest):
     total, moment, largest = np.zeros(3), np.zeros(3), 0.0
     for rotor in system.rotors:
         for part in rotor.bushings:
-            place = np.add(rotor.shaft.origin, (0.0, 0.0, part.position))
+            location = np.add(rotor.shaft.origin, (0.0, 0.0, part.position))
             total += bearings[part.name]
-            moment += np.cross(place, bearings[part.name])
+            moment += np.cross(location, bearings[part.name])
             largest = max(largest, float(np.max(np.abs(bearings[part.name]))))
     seat = system.seats.name.index("ring in its housing")
     rows = slice(5 * seat, 5 * seat + 5)

@@ -1,4 +1,4 @@
-"""Effects of a scene switched over one by one: the changes are those of two runs."""
+"""Effects of a scene toggled one by one: the changes are those of two runs."""
 
 from __future__ import annotations
 

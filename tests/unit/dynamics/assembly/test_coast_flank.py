@@ -48,7 +48,7 @@ def involute(angle):
     return math.tan(angle) - angle
 
 
-def test_backlash_follows_the_centre_distance():
+def test_backlash_follows_the_center_distance():
     """Pulling the shafts apart by u opens the gap as the involutes do: 2 (r_b1 + r_b2) d(inv alpha_w)."""
     system = assemble(with_coast(gear_pair_scene()))
     x = system.freedoms.name.index("output.x")
@@ -75,10 +75,10 @@ def test_forces_on_the_two_bodies_cancel(row):
     np.testing.assert_allclose(moment, 0.0, atol=1e-15)
 
 
-def test_the_coast_flank_is_the_driving_one_turned_about_the_line_of_centres():
+def test_the_coast_flank_is_the_driving_one_turned_about_the_line_of_centers():
     gradient = [e.gradient.reshape(2, 6) for e in assemble(helical(with_coast(gear_pair_scene()))).elements]
     half_turn = np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
-    # the scene's centres lie at mid-face, so that the turn maps each on itself
+    # the scene's centers lie at mid-face, so that the turn maps each on itself
     np.testing.assert_allclose(gradient[1], gradient[0] * half_turn, atol=1e-15)
 
 

@@ -62,7 +62,7 @@ def test_the_drives_power_where_it_turns_the_shaft_closes_the_balance(rigid):
 
 
 def test_the_mass_of_each_shaft_moves_as_mesh_and_bearings_push():
-    """Momentum: m x'' of the centre of mass is the mesh force less what the bearings carry."""
+    """Momentum: m x'' of the center of mass is the mesh force less what the bearings carry."""
     outputs = Outputs(sample_rate=5e3, displacements=True, accelerations=True)
     run = simulate(run_up(outputs=outputs))
     system = assemble(run_up(outputs=outputs))
@@ -104,7 +104,7 @@ def test_a_mesh_reads_the_tilt_of_its_gears_and_not_that_of_their_shafts(helix):
 
 
 def test_a_run_with_all_effects_of_the_mesh_closes_its_balance_and_reads_the_local_tilt():
-    """Misalignment, centre distance, moving application point, friction and backlash on flexible shafts."""
+    """Misalignment, center distance, moving application point, friction and backlash on flexible shafts."""
     table = sliced_database((-60e-6, 0.0, 60e-6), (-1e-4, 0.0, 1e-4), positions=12).force_table()
     names = (
         "dynamic_misalignment",

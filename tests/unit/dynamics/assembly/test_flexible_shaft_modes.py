@@ -36,8 +36,8 @@ def dense(scene, mesh_stiffness, elements=40):
     for shaft in scene.shafts:
         gears = [gear for gear in scene.gears if gear.shaft == shaft.name]
         bushings = [bushing for bushing in scene.bushings if bushing.shaft == shaft.name]
-        places = [*(g.position for g in gears), *(b.position for b in bushings)]
-        beam = timoshenko_beam(shaft.sections, places, shaft.length / elements)
+        locations = [*(g.position for g in gears), *(b.position for b in bushings)]
+        beam = timoshenko_beam(shaft.sections, locations, shaft.length / elements)
         parts.append((beam, size))
         grounds.append((gears, bushings))
         size += beam.mass.shape[0]
@@ -89,11 +89,11 @@ def test_frequencies_are_those_of_an_independent_assembly(helix):
 
 
 def along_axis(scene, size):
-    """Places of the freedoms along the axis in `dense`, whose held rotation is taken out."""
+    """Indices of the freedoms along the axis in `dense`, whose held rotation is taken out."""
     beam = timoshenko_beam(scene.shafts[0].sections, [0.0, 0.09, 0.2], scene.shafts[0].length / 40)
     held = beam.freedoms(scene.drives[0].position)[5]
-    places = np.arange(2, size + 1, 6)
-    return np.where(places > held, places - 1, places)
+    locations = np.arange(2, size + 1, 6)
+    return np.where(locations > held, locations - 1, locations)
 
 
 def test_more_modes_bring_the_frequencies_down_to_those_of_the_whole_beam():
@@ -126,7 +126,7 @@ def test_stiffer_shafts_tend_to_the_rigid_scene_in_proportion():
     assert errors[0] < 5e-3
 
 
-def beam_scene(section, stiffness, disc=None, place=0.0, bearings=(0.0, 0.5), spin=300.0, **changes):
+def beam_scene(section, stiffness, disc=None, location=0.0, bearings=(0.0, 0.5), spin=300.0, **changes):
     """A shaft on two bearings, turned through a soft coupling, with a disc on it or none."""
     effects = {"flexible_shafts": "on", "gyroscopic": "on", "tilt": "on", "lateral": "on"}
     scene = gear_pair_scene(spring_table(4e8), speed=TimeLaw.constant(spin), effects=effects)
@@ -137,7 +137,7 @@ def beam_scene(section, stiffness, disc=None, place=0.0, bearings=(0.0, 0.5), sp
     joint = Coupling("joint", "input", "beam", 1e-3, position=0.4)
     gears = scene.gears
     if disc is not None:
-        gears = (*gears, replace(gears[0], name="disc", shaft="beam", position=place, inertia=disc))
+        gears = (*gears, replace(gears[0], name="disc", shaft="beam", position=location, inertia=disc))
     return replace(
         scene,
         shafts=(*scene.shafts, beam),
@@ -219,17 +219,19 @@ def test_time_integration_has_the_gyroscopic_terms_of_the_whirl_modes(torn):
         scene = replace(scene, drives=(), free_rotations=(FreeRotation("train", "input", spin),))
     system = assemble(scene)
     q = static_equilibrium(system).displacement
-    full, bare = (force_balance(system.arrays, 0.0, q, 0.0 * q, 0.0 * q, turning=on) for on in (True, False))
-    turning, _ = speed_terms(system, 0.0)
+    full, bare = (
+        force_balance(system.arrays, 0.0, q, 0.0 * q, 0.0 * q, gyroscopic=on) for on in (True, False)
+    )
+    gyroscopic, _ = speed_terms(system, 0.0)
     unit = np.sqrt(np.diag(system.arrays.mass))
-    missed, whole = ((full.damping - bare.damping - t) / np.outer(unit, unit) for t in (turning, 0.0))
+    missed, whole = ((full.damping - bare.damping - t) / np.outer(unit, unit) for t in (gyroscopic, 0.0))
     lowest = np.min(of_the_beam(system, natural_modes(system)))
     assert np.max(np.abs(missed)) < (1e-9 * np.max(np.abs(whole)) if torn else 2.5e-4 * lowest)
     assert np.max(np.abs(whole)) > 0.1 * lowest
 
 
-def test_an_imposed_rotation_is_that_of_a_stiff_spring_at_its_place():
-    """Torsion against the place of the drive, and free torsion held by a spring there, are one shaft."""
+def test_an_imposed_rotation_is_that_of_a_stiff_spring_at_its_position():
+    """Torsion against the position of the drive, and free torsion held by a spring there, are one shaft."""
     scene = flexible_pair(gear=0.06, table=spring_table(4e8), highest_frequency=1e4)
     rigid = natural_modes(assemble(scene)).frequency
     drive = replace(scene.drives[0], stiffness=1e10)

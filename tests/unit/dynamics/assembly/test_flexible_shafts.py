@@ -75,8 +75,8 @@ def test_shafts_wind_up_between_where_torque_enters_and_leaves():
     system = assemble(replace(scene, drives=(drive,), loads=(load,)))
     start, _ = rested(system)
 
-    def turned(shaft, place):
-        return section_motion(system, shaft, place, start.displacement)[5]
+    def turned(shaft, location):
+        return section_motion(system, shaft, location, start.displacement)[5]
 
     twisted = 100.0 * 0.14 / torsional_stiffness(STEEL)
     assert turned("input", 0.2) == pytest.approx(0.0, abs=1e-12 * twisted)
@@ -126,15 +126,15 @@ def test_torque_winds_a_shaft_up_between_its_two_gears_and_passes_its_coupling()
     system = assemble(scene)
     q = static_equilibrium(system).displacement
     assert [rotor.elastic is not None for rotor in system.rotors] == [True, True, True, False]
-    per_metre = 100.0 / torsional_stiffness(STEEL)
+    per_meter = 100.0 / torsional_stiffness(STEEL)
 
-    def turned(name, place):
-        return section_motion(system, name, place, q)[5]
+    def turned(name, location):
+        return section_motion(system, name, location, q)[5]
 
     before = turned("output", 0.06) - turned("output", 0.14)
-    assert before == pytest.approx(system.kinematics.sense[1] * 0.08 * per_metre, rel=1e-8, abs=0.0)
+    assert before == pytest.approx(system.kinematics.sense[1] * 0.08 * per_meter, rel=1e-8, abs=0.0)
     wound = turned("third", 0.14) - turned("third", 0.2)
-    assert abs(wound) == pytest.approx(0.06 * per_metre, rel=1e-8, abs=0.0)
+    assert abs(wound) == pytest.approx(0.06 * per_meter, rel=1e-8, abs=0.0)
     joint = turned("third", 0.2) - turned("machine", 0.0)
     assert abs(joint) == pytest.approx(100.0 / 1e4, rel=1e-8, abs=0.0)
     assert wound * joint > 0.0

@@ -29,12 +29,12 @@ def ring_scene(driver="pinion", helix=0.0, turn=0.0, sense=1, **changes):
         values = {"teeth": z, "base_radius": PER_TOOTH * z, "internal": ring, "base_helix_angle": helix}
         scene = with_gear(scene, index, **values)
     distance = PER_TOOTH * (RING - PINION) / math.cos(ALPHA)
-    place = (distance * math.cos(turn), distance * math.sin(turn), 0.0)
-    return replace(scene, shafts=(scene.shafts[0], replace(scene.shafts[1], origin=place)))
+    location = (distance * math.cos(turn), distance * math.sin(turn), 0.0)
+    return replace(scene, shafts=(scene.shafts[0], replace(scene.shafts[1], origin=location)))
 
 
 def wrenches(scene, sense):
-    """Force and moment about each gear's centre, on driver and driven gear, per unit force."""
+    """Force and moment about each gear's center, on driver and driven gear, per unit force."""
     line = line_of_action(scene, 0, sense)
     centers = [np.add(shaft.origin, (0.0, 0.0, 0.1)) for shaft in scene.shafts]
     return line, centers, -line.gradient(centers[0]), line.gradient(centers[1])
@@ -67,7 +67,7 @@ def test_forces_torques_and_power(driver, sense, helix, turn):
 @pytest.mark.parametrize("driver", ["pinion", "ring"])
 @pytest.mark.parametrize("sense", [1, -1])
 def test_virtual_work_of_a_planet_rolling_in_a_ring(driver, sense):
-    """The pinion carried around the ring's centre as it rolls: the transmission error does not change."""
+    """The pinion carried around the ring's center as it rolls: the transmission error does not change."""
     scene = ring_scene(driver, 0.0, 0.7)
     _, centers, on_driver, on_driven = wrenches(scene, sense)
     ring, pinion = (1, 0) if driver == "pinion" else (0, 1)
@@ -81,7 +81,7 @@ def test_virtual_work_of_a_planet_rolling_in_a_ring(driver, sense):
 
 @pytest.mark.parametrize("driver", ["pinion", "ring"])
 def test_flanks_push_apart_and_the_coast_flank_mirrors(driver):
-    """The pinion is pushed off the ring's teeth, towards the ring's centre, on both flanks."""
+    """The pinion is pushed off the ring's teeth, towards the ring's center, on both flanks."""
     scene = ring_scene(driver)
     _, centers, *driving = wrenches(scene, 1)
     _, _, *coasting = wrenches(scene, -1)

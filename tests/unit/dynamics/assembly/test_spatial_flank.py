@@ -49,7 +49,7 @@ def scene_on(table, on=EFFECTS, *, speed=900.0, duration=0.02, **changes):
 
 def state(system, rng):
     """A random state in contact, on both axes."""
-    n = system.freedoms.place.size
+    n = system.freedoms.column.size
     q = static_equilibrium(system).displacement + rng.normal(size=n) * 1e-6 / system.arrays.scale
     return q, rng.normal(size=n) * 1e-3 / system.arrays.scale
 
@@ -58,7 +58,7 @@ def state(system, rng):
 def test_the_stage_matrices_are_the_derivatives_of_the_forces(table, on):
     system = assemble(scene_on(table, on))
     arrays, rng = system.arrays, np.random.default_rng(2)
-    none = np.zeros(system.freedoms.place.size)
+    none = np.zeros(system.freedoms.column.size)
     for time in (0.0, 1e-4, 2e-3):
         q, v = state(system, rng)
         found = force_balance(arrays, time, q, v, none)
@@ -96,8 +96,8 @@ def test_the_load_moves_to_the_end_that_a_tilt_presses_together(table, body, sen
     advances = np.cross([0.0, 0.0, 1.0], line.force * [1.0, 1.0, 0.0])  # r x z along n is r (z x n)
     q = static_equilibrium(assemble(scene_on(table, (), speed=sense * 900.0))).displacement
     for kind in range(2):
-        place = system.freedoms.find(body, 3 + kind)
-        q[place] += (1.0 if body == 0 else -1.0) * 5e-4 * advances[kind]
+        location = system.freedoms.find(body, 3 + kind)
+        q[location] += (1.0 if body == 0 else -1.0) * 5e-4 * advances[kind]
     found = force_balance(system.arrays, 0.0, q, np.zeros(q.size), np.zeros(q.size)).local
     lever = -found.force[1] / found.force[0]
     assert -sense * lever > 0.05  # of the face, towards +z
@@ -106,7 +106,7 @@ def test_the_load_moves_to_the_end_that_a_tilt_presses_together(table, body, sen
     assert on_driver @ advances[:2] < 0.0
 
 
-def test_the_static_limit_is_the_database_at_the_place_of_the_bodies(table, database):
+def test_the_static_limit_is_the_database_at_the_operating_point_of_the_bodies(table, database):
     scene = with_mesh(scene_on(table), misalignment=5e-6, center_distance_change=2e-5)
     system = assemble(scene)
     found = static_equilibrium(system)
@@ -116,8 +116,8 @@ def test_the_static_limit_is_the_database_at_the_place_of_the_bodies(table, data
     assert abs(m - 5e-6) > 1e-6
     assert abs(a - 2e-5) > 1e-6
     assert d == pytest.approx(float(database.ste(0.0, found.mesh_force[0], m, a)), rel=1e-9)
-    elsewhere = float(database.ste(0.0, found.mesh_force[0], 0.0, 0.0))
-    assert abs(d / elsewhere - 1.0) > 2e-3
+    remote = float(database.ste(0.0, found.mesh_force[0], 0.0, 0.0))
+    assert abs(d / remote - 1.0) > 2e-3
     slow = simulate(replace(scene_on(table, speed=1.0, duration=0.5), outputs=scene.outputs))
     still = database.ste(slow.position[0], slow.mesh_force[0], slow.misalignment[0],
                          slow.center_distance_change[0])  # fmt: skip
@@ -125,7 +125,7 @@ def test_the_static_limit_is_the_database_at_the_place_of_the_bodies(table, data
 
 
 def test_a_table_that_does_not_depend_on_its_axes_runs_like_one_without_them():
-    """Three equal places: the spatial element gives what the plane one does, Newton with three rows too."""
+    """Three equal knots: the spatial element gives what the plane one does, Newton with three rows too."""
     flat = sliced_database((0.0,), (0.0,), positions=12)
     fields = {name: getattr(flat.force_table(), name) for name in
               ("deflection", "deflection_slope", "stiffness", "stiffness_slope")}  # fmt: skip
@@ -239,8 +239,8 @@ def test_auto_follows_the_table_and_the_freedoms(table):
     assert on(secant) == {**dict.fromkeys(EFFECTS, False), EFFECTS[2]: True}
     single = with_mesh(free, table=sliced_database((0.0,), positions=8).force_table())
     assert on(single) == dict.fromkeys(EFFECTS, False)
-    worth = {e.effect: e.worth for e in assemble(free).ledger.entries}
-    assert all(worth[name] > 1e-9 for name in EFFECTS)
+    influence = {e.effect: e.influence for e in assemble(free).ledger.entries}
+    assert all(influence[name] > 1e-9 for name in EFFECTS)
 
 
 def test_secant_and_coast_flank_act_at_the_centroid_too(table):
@@ -270,9 +270,9 @@ def test_levers_of_another_shape_are_refused_by_name(table):
             scene_on(replace(table, **{name: np.zeros((2, 2))}))
 
 
-def test_the_driver_off_the_common_middle_keeps_the_place_of_the_load(table):
+def test_the_driver_off_the_common_middle_keeps_the_position_of_the_load(table):
     """The centroid counts from the driver's mid-face, the moment from the middle of the common face."""
     scene = with_mesh(scene_on(table, EFFECTS[2:]), misalignment=30e-6)
     wide = with_gear(scene, 0, face_width=2 * FACE_WIDTH, position=0.06 + 2e-3)
-    centred, shifted = (simulate(s).load_centroid.mean() for s in (scene, wide))
-    assert shifted - centred == pytest.approx(2e-3, rel=0.05)
+    centered, shifted = (simulate(s).load_centroid.mean() for s in (scene, wide))
+    assert shifted - centered == pytest.approx(2e-3, rel=0.05)

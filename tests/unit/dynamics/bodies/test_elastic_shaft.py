@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from dynamics.bodies import BeamSection, Disc, Grip, Inertia, elastic_shaft, hollow_cylinder
+from dynamics.bodies import BeamSection, Disc, Inertia, PointOfApplication, elastic_shaft, hollow_cylinder
 
 SHAFT = (BeamSection(0.3, 0.04),)
 STEPPED = (BeamSection(0.1, 0.03), BeamSection(0.12, 0.05, 0.02), BeamSection(0.08, 0.025))
-ENDS = (Grip(0.0, True, True, True, True), Grip(0.3, True, True, True, True))
+ENDS = (PointOfApplication(0.0, True, True, True, True), PointOfApplication(0.3, True, True, True, True))
 DISC = Disc(0.13, Inertia(2.0, 4e-3, 2.5e-3))
 
 
@@ -32,7 +32,7 @@ def test_a_free_rod_twists_and_stretches_at_the_frequencies_of_the_closed_form(f
 def test_a_free_beam_bends_at_the_frequency_of_the_closed_form():
     """22.3733 sqrt(E I/(rho A))/L^2 of a slender one (Euler and Bernoulli)."""
     slender = BeamSection(1.0, 0.01)
-    ends = (Grip(0.0, True, True), Grip(1.0, True, True))
+    ends = (PointOfApplication(0.0, True, True), PointOfApplication(1.0, True, True))
     elastic = elastic_shaft((slender,), (), ends, 2e3, 0.0)
     speed = math.sqrt(slender.youngs_modulus * slender.second_moment / (slender.density * slender.area))
     assert 2.0 * math.pi * elastic.bending.frequency[0] == pytest.approx(22.37329 * speed, rel=1e-3)
@@ -40,7 +40,9 @@ def test_a_free_beam_bends_at_the_frequency_of_the_closed_form():
 
 @pytest.mark.parametrize("held", [None, 0.0, 0.3])
 def test_elastic_motion_has_no_momentum_but_that_of_a_held_rotation(held):
-    elastic = elastic_shaft(STEPPED, (DISC,), (*ENDS, Grip(0.13, True, True, True, True)), 10e3, 0.0, held)
+    elastic = elastic_shaft(
+        STEPPED, (DISC,), (*ENDS, PointOfApplication(0.13, True, True, True, True)), 10e3, 0.0, held
+    )
     count = elastic.position.size
     assert np.all(elastic.mass > 0.0)
     turn = elastic.torsion.shape.T @ elastic.polar @ np.ones(count)
@@ -56,8 +58,10 @@ def test_elastic_motion_has_no_momentum_but_that_of_a_held_rotation(held):
 
 
 def test_coordinates_share_no_energy():
-    """Modal masses and stiffnesses are all there is: shapes diagonalise the beam's matrices."""
-    elastic = elastic_shaft(STEPPED, (DISC,), (*ENDS, Grip(0.13, True, True, True, True)), 10e3, 0.0)
+    """Modal masses and stiffnesses are all there is: shapes diagonalize the beam's matrices."""
+    elastic = elastic_shaft(
+        STEPPED, (DISC,), (*ENDS, PointOfApplication(0.13, True, True, True, True)), 10e3, 0.0
+    )
     shape, polar = elastic.torsion.shape, elastic.polar
     mass = shape.T @ polar @ shape
     rounding = np.finfo(float).eps * np.linalg.cond(polar)  # of a Cholesky factor, relative

@@ -11,7 +11,7 @@ from scipy.linalg import eigh
 
 from dynamics.bodies import (
     BeamSection,
-    Grip,
+    PointOfApplication,
     Shaft,
     craig_bampton,
     elastic_shaft,
@@ -129,10 +129,10 @@ def test_the_mass_is_the_integral_over_its_shape_functions():
         return np.array([[1.0, s, s**2, s**3], [0.0, 1.0, 2.0 * s, 3.0 * s**2 + lag]])
 
     constants = np.linalg.inv(np.concatenate([shapes(0.0), shapes(length)]))
-    place, weight = np.polynomial.legendre.leggauss(5)
+    location, weight = np.polynomial.legendre.leggauss(5)
     per = np.diag([section.density * section.area, section.density * section.second_moment])
     mass = np.zeros((4, 4))
-    for s, w in zip(0.5 * length * (1.0 + place), 0.5 * length * weight, strict=True):
+    for s, w in zip(0.5 * length * (1.0 + location), 0.5 * length * weight, strict=True):
         n = shapes(s) @ constants
         mass += w * n.T @ per @ n
     plane = [0, 4, 6, 10]
@@ -180,8 +180,8 @@ def test_a_stiff_shaft_on_springs_is_the_rigid_one():
         beam.mass, beam.stiffness, np.concatenate([beam.freedoms(z) for z in (0.0, 0.3)]), 1.0
     )
     stiffness = reduced.stiffness.copy()
-    for place in (0, 1, 6, 7):
-        stiffness[place, place] += spring
+    for location in (0, 1, 6, 7):
+        stiffness[location, location] += spring
     plane = [0, 4, 6, 10]
     square = eigh(stiffness[np.ix_(plane, plane)], reduced.mass[np.ix_(plane, plane)], eigvals_only=True)[:2]
     expected = np.sort([2.0 * spring / body.mass, 2.0 * spring * 0.15**2 / body.transverse])
@@ -189,14 +189,14 @@ def test_a_stiff_shaft_on_springs_is_the_rigid_one():
 
 
 def test_a_bearing_at_the_end_of_added_lengths_is_at_the_end():
-    """Nine pieces of 0.6 m add to 5.3999999999999995 m; a micrometre further is off the beam."""
+    """Nine pieces of 0.6 m add to 5.3999999999999995 m; a micrometer further is off the beam."""
     pieces = [BeamSection(0.6, 0.4 + 0.01 * k) for k in range(9)]
     assert sum(piece.length for piece in pieces) < 5.4
     beam = timoshenko_beam(pieces, stations=[0.0, 5.4])
     assert beam.position.size == 10
     assert beam.freedoms(5.4).tolist() == list(range(54, 60))
     shaft = Shaft("shaft", 5.4, sections=tuple(pieces))
-    ends = tuple(Grip(place, True, True, True, True) for place in (0.0, 5.4))
+    ends = tuple(PointOfApplication(location, True, True, True, True) for location in (0.0, 5.4))
     elastic = elastic_shaft(shaft.sections, (), ends, 100.0, 0.0)
     np.testing.assert_array_equal(elastic.motion(5.4), elastic.motion(float(elastic.position[-1])))
     with pytest.raises(InputError, match=r"on the beam, from 0 m to 5\.4 m"):

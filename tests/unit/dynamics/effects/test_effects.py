@@ -20,7 +20,7 @@ def kinds(scene, shaft="output"):
     return [name.split(".")[1] for name in names if name.startswith(f"{shaft}.")]
 
 
-def test_a_centred_spur_pair_moves_across_and_turns():
+def test_a_centered_spur_pair_moves_across_and_turns():
     assert kinds(gear_pair_scene()) == ["x", "y", "rotation"]
     assert kinds(gear_pair_scene(), "input") == ["x", "y"]  # its rotation is imposed
 
@@ -31,10 +31,10 @@ def test_a_gear_off_the_middle_tilts_its_shaft_only():
     scene = with_gear(replace(scene, shafts=(scene.shafts[0], shaft)), 1, position=0.09)
     assert kinds(scene) == ["x", "y", "tilt_x", "tilt_y", "rotation"]
     assert kinds(scene, "input") == ["x", "y"]
-    massless = with_gear(scene, 1, inertia=Inertia())  # the centre of mass stays in the middle
+    massless = with_gear(scene, 1, inertia=Inertia())  # the center of mass stays in the middle
     entries = assemble(massless).ledger.entries
     reasons = {entry.part: (entry.on, entry.reason) for entry in entries if entry.effect == "tilt"}
-    assert reasons["output"] == (True, "a mesh is off the supports' centre")
+    assert reasons["output"] == (True, "a mesh is off the supports' center")
     assert not reasons["input"][0]
 
 
@@ -53,13 +53,13 @@ def test_without_bushings_a_shaft_only_turns():
 def test_forces_around_a_sun_cancel_and_push_a_planet_along():
     """Sun and ring push a planet the same way, 2 F cos(alpha_w); around the sun three forces cancel."""
     entries = assemble(driven_scene(published_set(3))).ledger.entries
-    worth = {entry.part: entry.worth for entry in entries if entry.effect == "lateral"}
+    influence = {entry.part: entry.influence for entry in entries if entry.effect == "lateral"}
     force = 3779.2895  # of every mesh
     for planet in ("planet 1", "planet 2", "planet 3"):
         exact = 2.0 * force * math.cos(PRESSURE_ANGLE) / BEARING_STIFFNESS
-        assert worth[planet] == pytest.approx(exact, rel=1e-6, abs=0.0)
+        assert influence[planet] == pytest.approx(exact, rel=1e-6, abs=0.0)
     for central in ("sun", "ring", "carrier"):
-        assert worth[central] < 1e-9 * force / BEARING_STIFFNESS
+        assert influence[central] < 1e-9 * force / BEARING_STIFFNESS
         assert next(e for e in entries if (e.effect, e.part) == ("lateral", central)).on
 
 
@@ -69,7 +69,7 @@ def test_choices_are_obeyed_and_their_price_is_stated():
     entry = next(e for e in off.ledger.entries if e.effect == "lateral")
     assert not entry.on
     assert entry.choice == "off"
-    assert entry.worth == pytest.approx(2660.44 / 2e8, rel=1e-4)  # static deflection it leaves out
+    assert entry.influence == pytest.approx(2660.44 / 2e8, rel=1e-4)  # static deflection it leaves out
     assert kinds(gear_pair_scene(effects={"tilt": "on", "axial": "on"})) == [
         "x",
         "y",

@@ -1,4 +1,4 @@
-"""The effect of flexible shafts: what calls for it, what it is worth, what cannot bend, refusals."""
+"""The effect of flexible shafts: what calls for it, its influence, what cannot bend, refusals."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_it_is_called_for_by_what_the_shaft_yields_at_the_mesh():
     rigid = assemble(replace(scene, effects={"flexible_shafts": "off"}))
     off = entry(rigid.scene)
     assert not off.on
-    assert off.worth == found.worth
+    assert off.influence == found.influence
     assert "switched off" in off.reason
     # the difference of both equilibria at the driver's mesh point, but for the mesh and the other shaft
     line, point = system.lines[0], 0.1
@@ -47,12 +47,12 @@ def test_it_is_called_for_by_what_the_shaft_yields_at_the_mesh():
     moved = section_motion(system, "input", point, start) - section_motion(rigid, "input", point, before)
     center = np.array([0.0, 0.0, point])
     wrench = np.concatenate([line.force, np.cross(line.point - center, line.force)])
-    assert abs(wrench @ moved) == pytest.approx(found.worth, rel=1e-6, abs=0.0)
+    assert abs(wrench @ moved) == pytest.approx(found.influence, rel=1e-6, abs=0.0)
     thick = with_sections(gear_pair_scene(), replace(STEEL, youngs_modulus=1e14))
     assert not entry(thick).on
 
 
-def test_its_worth_is_that_of_bending_where_torques_act_at_the_gears():
+def test_its_influence_is_that_of_bending_where_torques_act_at_the_gears():
     """F (L^3/(48 E I) + L/(4 kappa A G)) on both shafts, and the wind-up of the wheel's where they do not."""
     scene = flexible_pair()
     at_gears = replace(
@@ -63,8 +63,8 @@ def test_its_worth_is_that_of_bending_where_torques_act_at_the_gears():
     force = assemble(scene).flanks.nominal_force[0]
     flexibility = 0.2**3 / (48.0 * bending_stiffness(STEEL)) + 0.05 / shear_stiffness(STEEL)
     for shaft in ("input", "output"):
-        assert entry(at_gears, shaft).worth == pytest.approx(force * flexibility, rel=1e-9, abs=0.0)
-        assert entry(scene, shaft).worth > 1.01 * force * flexibility
+        assert entry(at_gears, shaft).influence == pytest.approx(force * flexibility, rel=1e-9, abs=0.0)
+        assert entry(scene, shaft).influence > 1.01 * force * flexibility
 
 
 def test_off_nothing_changes():

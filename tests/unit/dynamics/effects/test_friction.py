@@ -88,8 +88,8 @@ def test_friction_opposes_sliding_on_both_sides_of_the_pitch_point(rigid, speed)
         assert local.force[2] > 0.0
     assert elements.drift[1] == pytest.approx(0.0, abs=1e-15)  # rolling at the pitch point
     # the whole slides at the speed of both shafts, in the sense of the driver
-    turning = elements.drift[2, 0] * speed * RPM
-    assert turning == pytest.approx(2.0 * BASE_RADIUS * abs(speed) * RPM, rel=1e-12)
+    rotating = elements.drift[2, 0] * speed * RPM
+    assert rotating == pytest.approx(2.0 * BASE_RADIUS * abs(speed) * RPM, rel=1e-12)
 
 
 def test_no_net_force_and_moment(wide):
@@ -111,7 +111,7 @@ def test_the_stage_matrices_are_the_derivatives_of_the_forces(wide):
     system = assemble(with_mesh(scene, misalignment=4e-6))
     arrays, rng = system.arrays, np.random.default_rng(2)
     assert arrays.elements.first.tolist() == [0, 5]
-    none = np.zeros(system.freedoms.place.size)
+    none = np.zeros(system.freedoms.column.size)
     q = static_equilibrium(system).displacement + rng.normal(size=none.size) * 1e-6 / arrays.scale
     v = rng.normal(size=none.size) * 1e-3 / arrays.scale
     found = force_balance(arrays, 1e-4, q, v, none)
@@ -147,9 +147,9 @@ def test_both_integrators_agree(wide):
 def test_off_changes_no_bit(rigid):
     bare = replace(rigid, sliding_share=None, sliding_lever=None)
     plain = simulate(sliding_scene(bare, None))
-    ungiven = simulate(sliding_scene(rigid, None))
+    unspecified = simulate(sliding_scene(rigid, None))
     switched = simulate(replace(sliding_scene(rigid), effects={"friction": "off"}))
-    for other in (ungiven, switched):
+    for other in (unspecified, switched):
         for name in ("dynamic_transmission_error", "mesh_force", "drive_torque", "bearing_force"):
             np.testing.assert_array_equal(getattr(plain, name), getattr(other, name))
         assert plain.statistics == other.statistics
@@ -161,7 +161,7 @@ def test_it_is_on_only_where_it_can_be(rigid):
         return next(e for e in assemble(scene).ledger.entries if e.effect == "friction")
 
     assert entry(sliding_scene(rigid)).on
-    assert entry(sliding_scene(rigid)).worth > 0.0
+    assert entry(sliding_scene(rigid)).influence > 0.0
     assert not entry(sliding_scene(rigid, None)).on
     blind = entry(sliding_scene(replace(rigid, sliding_lever=None)))
     assert not blind.on

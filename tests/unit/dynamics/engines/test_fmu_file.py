@@ -16,7 +16,7 @@ from geared_scenes import BASE_RADIUS, gear_pair_scene, spring_table
 
 from dynamics.engines import MeshElement, mesh_element
 from dynamics.engines.fmu import export_fmu
-from dynamics.engines.fmu.compiler import CompilerError, binary_place, find_compiler
+from dynamics.engines.fmu.compiler import CompilerError, binary_folder, find_compiler
 from dynamics.errors import InputError
 
 fmpy = fmu_instance.fmpy
@@ -57,7 +57,7 @@ def test_it_can_be_rebuilt_from_its_own_sources(element, tmp_path):
     sources = tmp_path / "unpacked" / "sources"
     description = ElementTree.fromstring((tmp_path / "unpacked" / "modelDescription.xml").read_bytes())
     listed = [entry.attrib["name"] for entry in description.iter("File")]
-    folder, ending = binary_place()
+    folder, ending = binary_folder()
     strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-Wconversion", "-Wno-sign-conversion"]
     flags = ["-O2", "-fPIC", "-shared", "-ffp-contract=off", "-s", "-I."]
     command = [*find_compiler(), *strict, *flags, "-o", f"m{ending}", *listed, "-lm"]

@@ -36,7 +36,7 @@ def hunting_table(period: int):
 
 
 def table_with_axes():
-    """Misalignment and centre distance: softer and later contact away from zero."""
+    """Misalignment and center distance: softer and later contact away from zero."""
     one, m, d = square_wave_table(), np.array([-10e-6, 0.0, 30e-6]), np.array([-1e-4, 2e-4])
     scale = 1.0 + 2e4 * np.abs(m)[:, None] + 500.0 * d[None, :]
     later = 0.05 * np.abs(m)[:, None] + 0.001 * d[None, :]
@@ -78,14 +78,14 @@ def test_it_is_the_librarys_force(element, rng, tmp_path, table):
     assert {(0, 0, False), (1, 0, True), (1, 0, False), (1, 1, True)} <= seen  # (1, 0, False): no pull
 
 
-def test_axes_are_the_tables_and_their_ends_are_told(element, rng, tmp_path):
+def test_axes_are_the_tables_and_their_ends_are_reported(element, rng, tmp_path):
     table = table_with_axes()
     element = replace(element, table=table)
     with Instance(export_fmu(element, tmp_path / "m.fmu")) as unit:
         unit.start(dte_from_angles=False)
         assert unit.get("misalignment", "center_distance_change") == [0.0, -1e-4]  # nearest to zero
-        places = [*zip(rng.uniform(-10e-6, 30e-6, 60), rng.uniform(-1e-4, 2e-4, 60), strict=True)]
-        for m, d in [*places, (0.0, 2e-4), (30e-6, -1e-4), (-10e-6, 0.0)]:
+        locations = [*zip(rng.uniform(-10e-6, 30e-6, 60), rng.uniform(-1e-4, 2e-4, 60), strict=True)]
+        for m, d in [*locations, (0.0, 2e-4), (30e-6, -1e-4), (-10e-6, 0.0)]:
             y = rng.uniform(0.0, 40e-6)
             unit.set(driver_angle=0.2, displacement=y, misalignment=m, center_distance_change=d)
             expected = library(element, table_at(table, m, d), 20 * 0.2 / (2 * np.pi) + 0.3, y, 0.0)[0]
@@ -181,7 +181,7 @@ def test_the_torques_are_one_force_on_two_base_circles(element, rng, tmp_path):
 
 
 def test_the_coast_flank_reads_the_table_at_the_other_misalignment(element, tmp_path):
-    """Seen turned about the line of centres, the gap grows towards the other end."""
+    """Seen turned about the line of centers, the gap grows towards the other end."""
     table = table_with_axes()
     element = replace(element, table=table, coast=CoastFlank(20e-6, 0.47))
     with Instance(export_fmu(element, tmp_path / "m.fmu")) as unit:
@@ -257,14 +257,14 @@ def test_rattle_comes_back_from_its_recorded_motion(tmp_path):
     element = mesh_element(scene, scene.meshes[0].name)
     assert element.coast == CoastFlank(5e-6, 0.48)
     n = np.array(run.case["meshes"][0]["line_of_action"])[:2]
-    e = np.array([1.0, 0.0])  # from the driver's centre to the driven one's
+    e = np.array([1.0, 0.0])  # from the driver's center to the driven one's
     lines = {"displacement": n, "coast_displacement": 2.0 * (n @ e) * e - n}
-    place = {name: index for index, name in enumerate(run.freedom)}
+    location = {name: index for index, name in enumerate(run.freedom)}
     driver, driven = (shaft.name for shaft in scene.shafts)
 
     def along(line, series, k):
         return sum(
-            sign * (line @ [series[place[f"{shaft}.{axis}"], k] for axis in "xy"])
+            sign * (line @ [series[location[f"{shaft}.{axis}"], k] for axis in "xy"])
             for sign, shaft in ((1.0, driver), (-1.0, driven))
         )
 
@@ -272,7 +272,7 @@ def test_rattle_comes_back_from_its_recorded_motion(tmp_path):
     with Instance(export_fmu(element, tmp_path / "m.fmu")) as unit:
         unit.start()
         for k in range(run.time.size):
-            lag, lagging = (s[place[f"{driven}.rotation"], k] for s in (run.displacement, run.velocity))
+            lag, lagging = (s[location[f"{driven}.rotation"], k] for s in (run.displacement, run.velocity))
             angle = 2.0 * np.pi * run.position[0, k] / 20
             unit.set(
                 driver_angle=angle,

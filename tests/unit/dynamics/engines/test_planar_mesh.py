@@ -15,7 +15,7 @@ ANGLE = np.radians(20.0)
 
 @pytest.fixture(params=[1, -1], ids=["forwards", "backwards"])
 def mesh(request, element):
-    """The driver below at the origin, the driven gear on +x at the centre distance."""
+    """The driver below at the origin, the driven gear on +x at the center distance."""
     direction = (float(np.sin(ANGLE)), float(request.param * np.cos(ANGLE)))
     return PlanarMesh(element, direction, request.param)
 
@@ -59,7 +59,7 @@ def test_the_jacobian_is_that_of_the_force(mesh, rng):
     assert slope_of_position > 0.0
 
 
-def test_a_drive_takes_the_place_of_the_coordinate(mesh, rng):
+def test_a_drive_replaces_the_coordinate(mesh, rng):
     """The same angle and speed as a function of time."""
     free, _ = user_functions(mesh)
     for q, v in states(mesh, rng):

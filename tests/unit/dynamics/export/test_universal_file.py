@@ -1,4 +1,4 @@
-"""Universal files, read back by pyuff: units, places, directions, values."""
+"""Universal files, read back by pyuff: units, positions, directions, values."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def read(run, path, *arguments):
     return units, nodes, found
 
 
-def test_time_series_come_back_with_units_places_and_directions(run, tmp_path):
+def test_time_series_come_back_with_units_positions_and_directions(run, tmp_path):
     units, _, functions = read(run, tmp_path / "run.unv")
     assert (units["units_code"], units["length"], units["force"]) == (1, 1.0, 1.0)
     for bearing, name in enumerate(run.bearing):
@@ -58,17 +58,17 @@ def test_time_series_come_back_with_units_places_and_directions(run, tmp_path):
     np.testing.assert_allclose(functions[1001, 0, 9]["data"], run.mesh_force[0], rtol=1e-12)
 
 
-def test_nodes_stand_where_bearings_and_meshes_are(run, tmp_path):
+def test_nodes_are_at_bearings_and_meshes(run, tmp_path):
     _, nodes, _ = read(run, tmp_path / "run.unv")
     assert list(nodes["node_nums"]) == [1, 2, 3, 4, 1001]
-    places = np.stack([nodes["x"], nodes["y"], nodes["z"]], axis=1)
+    locations = np.stack([nodes["x"], nodes["y"], nodes["z"]], axis=1)
     bushings = run.case["bushings"]
     origin = {shaft["name"]: shaft["origin"] for shaft in run.case["shafts"]}
-    for place, bushing in zip(places[:4], bushings, strict=True):
+    for location, bushing in zip(locations[:4], bushings, strict=True):
         x, y, z = origin[bushing["shaft"]]
-        np.testing.assert_allclose(place, [x, y, z + bushing["position"]], atol=1e-12)
-    np.testing.assert_allclose(places[4], run.case["meshes"][0]["point_of_action"], atol=1e-12)
-    assert np.ptp(places[:4, 2]) > 0.1
+        np.testing.assert_allclose(location, [x, y, z + bushing["position"]], atol=1e-12)
+    np.testing.assert_allclose(locations[4], run.case["meshes"][0]["point_of_action"], atol=1e-12)
+    assert np.ptp(locations[:4, 2]) > 0.1
 
 
 def test_spectra_are_those_of_the_stretch(run, tmp_path):

@@ -29,7 +29,7 @@ class Whole(NamedTuple):
     count: int
     on: bool
     inside: Inside
-    place: np.ndarray
+    location: np.ndarray
     block: np.ndarray
 
 
@@ -40,42 +40,42 @@ def whole(on=True):
 
 
 @compiled
-def read(given: Whole, found: np.ndarray) -> None:
-    found[0], found[1], found[2] = given.rate, given.count, given.on
-    found[3], found[4] = given.inside.table[2, 3], given.inside.table[-1, 0]
-    found[5], found[6] = given.inside.yes[0], given.inside.yes[1]
-    found[7], found[8] = given.place[4], given.block[1, 2, 3]
-    found[9], found[10] = given.block.size, given.block.shape[1]
-    row = given.block[1]
-    found[11] = row[2, 0] + given.inside.table[1].sum()
-    column = given.inside.table[:, 1]
+def read(whole_tuple: Whole, found: np.ndarray) -> None:
+    found[0], found[1], found[2] = whole_tuple.rate, whole_tuple.count, whole_tuple.on
+    found[3], found[4] = whole_tuple.inside.table[2, 3], whole_tuple.inside.table[-1, 0]
+    found[5], found[6] = whole_tuple.inside.yes[0], whole_tuple.inside.yes[1]
+    found[7], found[8] = whole_tuple.location[4], whole_tuple.block[1, 2, 3]
+    found[9], found[10] = whole_tuple.block.size, whole_tuple.block.shape[1]
+    row = whole_tuple.block[1]
+    found[11] = row[2, 0] + whole_tuple.inside.table[1].sum()
+    column = whole_tuple.inside.table[:, 1]
     found[12] = column[2]
-    given.block[0, 0, 0] = 42.0
+    whole_tuple.block[0, 0, 0] = 42.0
 
 
 @routine
-def doubled(given: Whole, factor: float, count: int) -> tuple[float, float]:
-    return 2.0 * factor * given.rate, float(count)
+def doubled(whole_tuple: Whole, factor: float, count: int) -> tuple[float, float]:
+    return 2.0 * factor * whole_tuple.rate, float(count)
 
 
 @compiled
-def call(given: Whole, found: np.ndarray) -> None:
-    found[0], found[1] = doubled(given, 3, 4)
+def call(whole_tuple: Whole, found: np.ndarray) -> None:
+    found[0], found[1] = doubled(whole_tuple, 3, 4)
 
 
 @pytest.mark.parametrize("on", [True, False])
 def test_compiled_functions_read_the_same_and_write_into_the_same_arrays(on):
     value, found = whole(on), np.zeros((2, 13))
     read(value, found[0])
-    given = by_address(value)
-    read(given, found[1])
+    whole_tuple = by_address(value)
+    read(whole_tuple, found[1])
     np.testing.assert_array_equal(found[0], found[1])
     assert found[1, 0] == -2.5e-3
     assert found[1, 1:3].tolist() == [-7.0, float(on)]
     assert value.block[0, 0, 0] == 42.0
-    assert given.inside.table is value.inside.table
-    assert by_value(given) is value
-    assert by_address(given) is given
+    assert whole_tuple.inside.table is value.inside.table
+    assert by_value(whole_tuple) is value
+    assert by_address(whole_tuple) is whole_tuple
 
 
 def test_numbers_of_numpy_are_numbers():
@@ -88,9 +88,9 @@ def test_numbers_of_numpy_are_numbers():
 
 
 def test_an_address_does_not_outlive_its_process():
-    given = pickle.loads(pickle.dumps(by_address(whole())))
+    whole_tuple = pickle.loads(pickle.dumps(by_address(whole())))
     found = np.zeros(13)
-    read(given, found)
+    read(whole_tuple, found)
     assert found[3] == whole().inside.table[2, 3]
 
 
@@ -99,16 +99,16 @@ def test_layouts_that_compiled_functions_would_misread_are_refused():
     with pytest.raises(TypeError, match="C-contiguous"):
         by_address(whole()._replace(block=np.zeros((4, 3, 2)).T))
     with pytest.raises(TypeError, match="other arrays"):
-        by_address(whole()._replace(place=np.zeros(5)))
+        by_address(whole()._replace(location=np.zeros(5)))
 
 
 def test_a_routine_runs_once_it_is_prepared():
-    given, found = by_address(whole()), np.zeros(2)
+    whole_tuple, found = by_address(whole()), np.zeros(2)
     with pytest.raises(RuntimeError, match="prepared"):
-        call(given, found)
-    doubled.prepare(given)
-    call(given, found)
-    assert found.tolist() == [6.0 * given.rate, 4.0] == list(doubled(given, 3, 4))
+        call(whole_tuple, found)
+    doubled.prepare(whole_tuple)
+    call(whole_tuple, found)
+    assert found.tolist() == [6.0 * whole_tuple.rate, 4.0] == list(doubled(whole_tuple, 3, 4))
 
 
 def test_a_scene_prepares_the_laws_it_has_and_no_others(monkeypatch):

@@ -62,7 +62,7 @@ def test_a_motor_runs_a_fan_up_as_the_closed_form_says():
     result = simulate(replace(scene, duration=duration))
     expected = 80.0 * np.tanh(result.time * 60.0 / (80.0 * inertia))
     mean = 0.5 * (result.speed[0] - result.speed[1])  # the mesh winds up between equal inertias
-    # while it winds up the fan lags by 0.009 rad/s, which is worth 0.004 rad/s of the mean
+    # while it winds up the fan lags by 0.009 rad/s, which makes 0.004 rad/s of the mean
     np.testing.assert_allclose(mean, expected, atol=0.005)
     assert result.speed[0, -1] > 70.0
     assert result.energy.relative_to_throughput < 1e-6

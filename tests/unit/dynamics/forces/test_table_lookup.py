@@ -75,7 +75,7 @@ def reference_force(table, x, d):
     ids=["square", "uneven", "spring", "hunting"],
 )
 def test_it_equals_the_stated_rule(table):
-    packed = pack_tables([spring_table(1e6), table])  # second place: the offsets matter
+    packed = pack_tables([spring_table(1e6), table])  # second entry: the offsets matter
     top = 1.3 * table.deflection.max()
     for x, d in zip(rng.uniform(-9, 9, 400), rng.uniform(-0.1 * top, top, 400), strict=True):
         force, _, _ = table_force(packed, 1, x, d, int(rng.integers(-5, 60)))
@@ -107,7 +107,7 @@ def test_equal_pitches_written_out_give_the_forces_of_one(period):
         one = table_force(packed, 0, x, d, 0)
         for turns in (0, 1, period - 1):
             many = table_force(packed, 1, x + turns, d, 0)
-            # 1e-12 of the force, beside what the rounding of the position itself is worth
+            # 1e-12 of the force, beside the rounding of the position itself
             rounding = np.spacing(x + turns) * slope
             assert many[0] == pytest.approx(one[0], rel=1e-12, abs=2.0 * rounding)
 

@@ -36,7 +36,7 @@ def test_a_force_without_deflection_is_refused():
         secant_table(table_at(lifted, 0.0, 0.0), NOMINAL_FORCE)
 
 
-def test_tables_with_axes_are_used_at_one_place():
+def test_tables_with_axes_are_used_at_one_operating_point():
     def widened(values, gain):
         return np.concatenate([values, gain * values], axis=0)
 

@@ -25,12 +25,12 @@ def cost(scene, method="implicit"):
 
 
 def with_axes(table):
-    places = np.array([-1e-5, 0.0, 1e-5])
+    knots = np.array([-1e-5, 0.0, 1e-5])
     names = ("deflection", "deflection_slope", "stiffness", "stiffness_slope")
     shape = (3, 3, *table.deflection.shape[2:])
     fields = {name: np.broadcast_to(getattr(table, name), shape).copy() for name in names}
     levers = dict.fromkeys(("face_centroid", "sliding_share", "sliding_lever"), np.full(shape, 1e-3))
-    return PlainTable(table.position, table.level, places, places, **fields, **levers)
+    return PlainTable(table.position, table.level, knots, knots, **fields, **levers)
 
 
 @pytest.mark.parametrize("method", ["implicit", "explicit"])

@@ -98,7 +98,7 @@ def test_a_run_of_no_duration_is_the_equilibrium():
     assert result.mesh_force[0, 0] == pytest.approx(result.nominal_force[0], rel=1e-6)
 
 
-def test_outputs_not_asked_for_are_empty():
+def test_outputs_not_requested_are_empty():
     result = simulate(replace(SCENE, outputs=Outputs(bearing_forces=False, energy_audit=False)))
     samples = result.time.size
     assert result.bearing_force.shape == (0, 3, samples)
@@ -111,8 +111,8 @@ def test_outputs_not_asked_for_are_empty():
 
 def test_the_error_estimate_bounds_the_true_error():
     scene = gear_pair_scene(square_wave_table(), duration=0.05)
-    asked = replace(scene, integration=Integration(tolerance=1e-8, estimate_error=True))
-    result = simulate(asked)
+    changed = replace(scene, integration=Integration(tolerance=1e-8, estimate_error=True))
+    result = simulate(changed)
     fine = simulate(replace(scene, integration=Integration(tolerance=1e-13)))
     true = np.sqrt(np.mean((result.dynamic_transmission_error - fine.dynamic_transmission_error) ** 2))
     estimate = result.receipt["error"]["time_step"]["rms"]

@@ -25,8 +25,8 @@ def test_springs_in_series():
     assert found.status is StaticStatus.CONVERGED
     assert found.mesh_force[0] == pytest.approx(FORCE, rel=1e-9)
     assert system.arrays.direction[0] @ found.displacement == pytest.approx(FORCE / 4e8, rel=1e-9)
-    aside = np.hypot(*found.displacement[:2])
-    assert aside == pytest.approx(FORCE / 2e8, rel=1e-9)
+    offset = np.hypot(*found.displacement[:2])
+    assert offset == pytest.approx(FORCE / 2e8, rel=1e-9)
     turned = found.displacement[system.freedoms.name.index("output.rotation")] * BASE_RADIUS
     assert turned == pytest.approx(FORCE * (1 / 4e8 + 2 / 2e8), rel=1e-9)  # mesh and both shafts' bushings
 

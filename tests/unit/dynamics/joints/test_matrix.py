@@ -29,11 +29,11 @@ def damper_along_x(turned):
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize("place", [1, 2, 3, 4])
-def test_what_arithmetic_leaves_across_a_damper_is_no_negative_damping(place, sign):
+@pytest.mark.parametrize("location", [1, 2, 3, 4])
+def test_what_arithmetic_leaves_across_a_damper_is_no_negative_damping(location, sign):
     """Of a damper of 2 kN s/m along x products of turns leave some eps across: -2.7e-15 was refused."""
     damping = np.diag([2.0e3, 0.0, 0.0, 0.0, 0.0])
-    damping[place, place] = sign * 6.0 * EPS * 2.0e3
+    damping[location, location] = sign * 6.0 * EPS * 2.0e3
     assert bearing(damping=damping).seat_damping[0, 0] == 2.0e3
 
 

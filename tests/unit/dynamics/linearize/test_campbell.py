@@ -172,11 +172,11 @@ def test_a_damaged_file_is_refused(disc, tmp_path):
     path = tmp_path / "modes.nc"
     disc.to_netcdf(path)
     data = path.read_bytes()
-    place = data.find(b"critical_speed")
+    location = data.find(b"critical_speed")
     path.write_bytes(data[: len(data) // 2])
     with pytest.raises(ResultError, match="readable"):
         ModalAnalysis.from_netcdf(path)
-    assert place > 0
+    assert location > 0
     path.write_bytes(data.replace(b"lineofaction modal analysis", b"lineofaction modal analysiz"))
     with pytest.raises(ResultError, match="schema"):
         ModalAnalysis.from_netcdf(path)
@@ -227,7 +227,7 @@ def averaged_linear(system: System) -> LinearSystem:
 
 
 def test_modes_resolve_to_a_frequency_of_their_own():
-    """However finely the run is sampled, shafts have the coordinates that the frequency asks for."""
+    """However finely the run is sampled, shafts have the coordinates that the frequency needs."""
     scene = flexible_pair(speed=TimeLaw.constant(100.0))
     sizes = [
         modal_analysis(assemble(replace(scene, outputs=Outputs(rate))), [0.0, 100.0], orders=3).freedom

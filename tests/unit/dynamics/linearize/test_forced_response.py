@@ -10,7 +10,7 @@ from geared_scenes import BASE_RADIUS, RPM, gear_pair_scene, spring_table, with_
 from sliced_face import sliced_database
 
 from dynamics.assembly.assemble import assemble
-from dynamics.assembly.static_reference import places_at, with_static_reference
+from dynamics.assembly.static_reference import operating_points_at, with_static_reference
 from dynamics.bodies import TimeLaw
 from dynamics.errors import InputError
 from dynamics.integrators import static_equilibrium
@@ -101,7 +101,7 @@ def test_a_slow_response_is_what_the_static_equilibria_of_a_mesh_cycle_give(tabl
         size = np.max(np.abs(lines[h + 1]) * system.arrays.scale)
         apart = np.abs(lines[h + 1] - found.displacement[:, 0, h]) * system.arrays.scale
         assert np.max(apart) < 4e-4 * size
-    if on == EFFECTS:  # at the fixed place of the table the error is another by more than that
+    if on == EFFECTS:  # at the fixed operating point of the table the error is another by more than that
         fixed = harmonic_response(assemble(tilted(table, (), slow)), [slow * RPM], 2)
         change = found.static_transmission_error[0] / fixed.static_transmission_error[0] - 1.0
         assert abs(change[0]) > 1e-3
@@ -112,9 +112,9 @@ def test_the_static_reference_is_the_table_where_the_bodies_rest(table):
     scene = tilted(table, EFFECTS)
     run = simulate(replace(scene, outputs=Outputs(20e3, anti_alias=False)))
     system = assemble(scene)
-    (place,) = places_at(system, static_equilibrium(system).displacement)
-    assert abs(place[0]) > 5e-7 and abs(place[1]) > 1e-6
-    expected = database.ste(run.position[0, :50], float(run.nominal_force[0]), *place)
+    (location,) = operating_points_at(system, static_equilibrium(system).displacement)
+    assert abs(location[0]) > 5e-7 and abs(location[1]) > 1e-6
+    expected = database.ste(run.position[0, :50], float(run.nominal_force[0]), *location)
     np.testing.assert_allclose(run.static_transmission_error[0, :50], expected, rtol=1e-9)
     fixed = assemble(tilted(table, ()))
     assert with_static_reference(fixed, static_equilibrium(fixed).displacement) is fixed

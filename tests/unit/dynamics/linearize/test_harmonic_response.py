@@ -128,7 +128,7 @@ def test_the_response_is_linear_and_offsets_only_turn_its_phase():
 def test_planets_in_phase_turn_the_sun_and_planets_in_sequence_shake_it(teeth, in_phase):
     """With the tooth numbers divisible by the planets the net force on the sun's bearing vanishes.
 
-    Else its torque does: the mesh forces of a planet's neighbours follow a third of a pitch later.
+    Else its torque does: the mesh forces of a planet's neighbors follow a third of a pitch later.
     """
     table = spring_table(MESH_STIFFNESS, RIPPLE)
     gears = published_set(3, teeth=teeth, sun_table=table, ring_table=table)

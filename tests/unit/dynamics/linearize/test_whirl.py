@@ -1,4 +1,4 @@
-"""Whirl: closed forms of a disc on bearings, the same from a fixed and from a turning frame."""
+"""Whirl: closed forms of a disc on bearings, the same from a fixed and from a rotating frame."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ TILT_STIFFNESS = 2.0 * STIFFNESS * (LENGTH / 2.0) ** 2
 
 
 def disc_scene(frame):
-    """A disc on two bearings, turned through a soft coupling, in the fixed or its own turning frame."""
+    """A disc on two bearings, turned through a soft coupling, in the fixed or its own rotating frame."""
     scene = gear_pair_scene(
         spring_table(4e8), speed=TimeLaw.constant(SPIN), effects={"tilt": "on", "lateral": "on"}
     )
@@ -55,12 +55,12 @@ def test_a_tilting_disc_whirls_forward_and_backward_as_the_closed_form_says():
 
 
 @pytest.mark.parametrize("kinds", [("x", "y"), ("tilt_x", "tilt_y")])
-def test_a_turning_frame_shifts_frequencies_by_its_speed_and_nothing_else(kinds):
+def test_a_rotating_frame_shifts_frequencies_by_its_speed_and_nothing_else(kinds):
     fixed, decay = of_the_disc(None, kinds)
-    turning, decay_turning = of_the_disc("disc", kinds)
+    rotating, decay_rotating = of_the_disc("disc", kinds)
     backward, forward = np.sort(fixed)
-    np.testing.assert_allclose(np.sort(turning), np.sort([forward - SPIN, backward + SPIN]), rtol=1e-8)
-    np.testing.assert_allclose(np.sort(decay_turning), np.sort(decay), rtol=1e-6)
+    np.testing.assert_allclose(np.sort(rotating), np.sort([forward - SPIN, backward + SPIN]), rtol=1e-8)
+    np.testing.assert_allclose(np.sort(decay_rotating), np.sort(decay), rtol=1e-6)
 
 
 def test_at_standstill_they_are_the_natural_modes():
@@ -83,10 +83,10 @@ def test_speed_splits_the_double_modes_of_a_planetary_set():
     """Translational modes of equally spaced planets are double at rest; Coriolis terms split them."""
     scene = driven_scene(published_set(3), speed=TimeLaw.constant(2000.0))
     system = assemble(scene)
-    at_rest, turning = natural_modes(system).frequency, whirl_modes(system).frequency
+    at_rest, rotating = natural_modes(system).frequency, whirl_modes(system).frequency
     gaps = np.diff(at_rest)
     doubles = np.flatnonzero(gaps < 1e-6 * at_rest[1:])
     assert doubles.size == 6
     carrier = 2000.0 * 27 / 126 / (2.0 * math.pi)
-    lowest = np.sort(turning)[:2]
+    lowest = np.sort(rotating)[:2]
     assert lowest[1] - lowest[0] > 0.2 * carrier

@@ -39,7 +39,7 @@ def train(teeth, links, speed=100.0, **changes):
     )
 
 
-def test_an_idler_turns_back_and_keeps_the_ratio_of_its_neighbours():
+def test_an_idler_turns_back_and_keeps_the_ratio_of_its_neighbors():
     kinematics = solve_kinematics(train([17, 23, 41], [(0, 1), (1, 2)]))
     assert kinematics.ratio == ((1,), (Fraction(-17, 23),), (Fraction(17, 41),))
     assert kinematics.sense == (1, -1, 1)
@@ -57,7 +57,7 @@ def test_a_shaft_off_the_drive_is_refused():
 
 
 def test_a_loop_that_asks_for_two_speeds_is_refused():
-    with pytest.raises(InputError, match="as other meshes ask"):
+    with pytest.raises(InputError, match="as other meshes require"):
         solve_kinematics(train([17, 23, 41], [(0, 1), (1, 2), (0, 2)]))
 
 

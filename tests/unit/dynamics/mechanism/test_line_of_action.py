@@ -21,7 +21,7 @@ def helical(scene, angle):
 
 
 def moved(scene, x, y):
-    """The driven shaft elsewhere around the driver."""
+    """The driven shaft at another angle around the driver."""
     shafts = (scene.shafts[0], replace(scene.shafts[1], origin=(x, y, 0.0)))
     return replace(scene, shafts=shafts)
 
@@ -36,9 +36,9 @@ def test_action_is_reaction_in_force_and_moment(sense, helix, turn):
         replace(scene, drives=(replace(scene.drives[0], speed=TimeLaw.constant(sense * 90.0)),))
     )
     gradient = np.zeros((2, 6))
-    places = [int(place) for place in system.freedoms.place]
-    for column, place in enumerate(places):
-        gradient[place // 6, place % 6] = -system.arrays.direction[0, column]
+    locations = [int(location) for location in system.freedoms.column]
+    for column, location in enumerate(locations):
+        gradient[location // 6, location % 6] = -system.arrays.direction[0, column]
     gradient[0, 5] = -system.arrays.drive.direction[0, 0]
     centers = [np.add(shaft.origin, (0.0, 0.0, 0.1)) for shaft in system.scene.shafts]
     np.testing.assert_allclose(gradient[0, :3] + gradient[1, :3], 0.0, atol=1e-15)
@@ -51,14 +51,14 @@ def test_torques_are_force_times_base_radius_and_oppose_the_driver(sense):
     scene = gear_pair_scene(speed=TimeLaw.constant(sense * 90.0))
     system = assemble(scene)
     rotation = system.freedoms.name.index("output.rotation")
-    # generalised force = -gradient: on the driver against its motion, on the driven gear with its own
+    # generalized force = -gradient: on the driver against its motion, on the driven gear with its own
     assert -system.arrays.drive.direction[0, 0] == pytest.approx(-sense * BASE_RADIUS, rel=1e-12)
     assert -system.arrays.direction[0, rotation] == pytest.approx(-sense * BASE_RADIUS, rel=1e-12)
     assert system.kinematics.sense == (sense, -sense)
 
 
 def test_the_force_drives_and_separates():
-    """Driver at the origin turning in +z, driven gear on +x: pushed along +y, and away along +x."""
+    """Driver at the origin rotating in +z, driven gear on +x: pushed along +y, and away along +x."""
     line = line_of_action(gear_pair_scene(), 0, 1)
     alpha = math.radians(20.0)
     np.testing.assert_allclose(line.force, [math.sin(alpha), math.cos(alpha), 0.0], atol=1e-12)
@@ -68,7 +68,7 @@ def test_the_force_drives_and_separates():
 
 @pytest.mark.parametrize(("helix", "sense"), [(0.3, 1), (-0.3, 1), (0.3, -1)])
 def test_axial_thrust_follows_the_screw(helix, sense):
-    """A right-hand driver turning in +z is a screw in the other's nut: pushed along +z (right-hand rule)."""
+    """A right-hand driver rotating in +z is a screw in the other's nut: pushed along +z (right-hand rule)."""
     line = line_of_action(helical(gear_pair_scene(), helix), 0, sense)
     on_driver = -line.force[2]
     assert on_driver == pytest.approx(sense * math.tan(helix))
@@ -98,7 +98,7 @@ def test_gears_that_cannot_mesh_are_refused():
 
 @pytest.mark.parametrize("sense", [1, -1])
 @pytest.mark.parametrize("helix", [0.3, -0.2])
-def test_a_tilt_closes_the_gap_by_height_and_by_place_along_the_line_of_action(sense, helix):
+def test_a_tilt_closes_the_gap_by_height_and_by_position_along_the_line_of_action(sense, helix):
     """r (z + xi' xi): what tables know of it, r z, is the misalignment; along a contact line r z/cos^2."""
     scene = moved(helical(gear_pair_scene(), helix), 0.08 * math.cos(0.7), 0.08 * math.sin(0.7))
     drive = replace(scene.drives[0], speed=TimeLaw.constant(sense * 90.0))

@@ -28,7 +28,7 @@ def only_first(scene):
 
 
 @pytest.mark.parametrize(("driver", "sense"), [("sun", "+z"), ("sun", "-z"), ("ring", "+z")])
-def test_copies_have_the_phases_and_places_of_the_set(driver, sense):
+def test_copies_have_the_phases_and_positions_of_the_set(driver, sense):
     """A sun that turns backwards, and a ring that drives, meet the planets in the other order."""
     teeth = (28, 35, 98)  # a third of a pitch from planet to planet
     gears = published_set(3, teeth=teeth, driver=driver, sun_sense=sense, ring_phase=0.3)
@@ -37,8 +37,8 @@ def test_copies_have_the_phases_and_places_of_the_set(driver, sense):
     sun = replace(whole.drives[0], speed=replace(whole.drives[0].speed, value=(speed,)))
     whole = replace(whole, drives=(sun, whole.drives[1]), loads=())
     copied = with_planets(only_first(whole), "planet 1", 3)
-    places = {tuple(np.round(shaft.origin, 12)) for shaft in whole.shafts}
-    assert {tuple(np.round(shaft.origin, 12)) for shaft in copied.shafts} == places
+    locations = {tuple(np.round(shaft.origin, 12)) for shaft in whole.shafts}
+    assert {tuple(np.round(shaft.origin, 12)) for shaft in copied.shafts} == locations
     assert len(copied.meshes) == 6
     for mesh in whole.meshes:
         twin = next(m for m in copied.meshes if placed(copied, m) == placed(whole, mesh))
@@ -58,7 +58,7 @@ def test_planets_meet_one_after_the_other_as_tooth_numbers_say():
     """27 + 99 teeth, three planets: sun and ring in phase (both divisible by 3); 28 + 100, four: in phase."""
     positions = assemble(driven_scene(published_set(3))).arrays.reference.offset % 1.0
     np.testing.assert_allclose(np.minimum(positions, 1.0 - positions), 0.0, atol=1e-9)
-    gears = published_set(4, teeth=(30, 36, 102))  # 30 = 4 * 7 + 2: neighbours half a pitch apart
+    gears = published_set(4, teeth=(30, 36, 102))  # 30 = 4 * 7 + 2: neighbors half a pitch apart
     sun = assemble(driven_scene(gears)).arrays.reference.offset[::2] % 1.0
     np.testing.assert_allclose(sun, [0.0, 0.5, 0.0, 0.5], atol=1e-9)
 

@@ -14,7 +14,7 @@ from dynamics.errors import InputError
 from dynamics.mechanism.rotor import build_rotor
 
 
-def test_steiner_and_centre_of_mass():
+def test_steiner_and_center_of_mass():
     scene = with_gear(gear_pair_scene(), 0, position=0.15, inertia=Inertia(2.0, 0.01, 0.02))
     shaft = replace(scene.shafts[0], inertia=Inertia(6.0, 0.1, 0.3))
     rotor = build_rotor(replace(scene, shafts=(shaft, scene.shafts[1])), shaft)
@@ -23,7 +23,7 @@ def test_steiner_and_centre_of_mass():
     assert rotor.inertia.transverse == pytest.approx(0.32 + 6.0 * 2.0 / 8.0 * 0.05**2)
 
 
-def test_bushings_hold_the_shaft_as_springs_at_their_places():
+def test_bushings_hold_the_shaft_as_springs_at_their_positions():
     """Rigid translation and rotation about the middle of equal bushings: the textbook stiffnesses."""
     scene = gear_pair_scene(effects={"tilt": "on", "axial": "on"})
     system = assemble(scene)

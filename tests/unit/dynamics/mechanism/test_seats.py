@@ -150,11 +150,11 @@ def test_housings_condense_as_if_their_freedoms_were_there():
     factor = rng.normal(size=(12, 12))
     ground = 1e8 * (factor @ factor.T) / 12.0
     bearing = np.kron(np.eye(2), GENERAL)
-    place = [row for row in range(12) if row % 6 != 5]
+    location = [row for row in range(12) if row % 6 != 5]
     whole = ground.copy()
-    whole[np.ix_(place, place)] += bearing
+    whole[np.ix_(location, location)] += bearing
     to_shaft = np.zeros((12, 10))
-    to_shaft[place] = bearing
+    to_shaft[location] = bearing
     expected = bearing - to_shaft.T @ np.linalg.solve(whole, to_shaft)
     found, _, preload = condense_housing(
         Housing("case", ("a", "b"), rows(ground)), bearing, 0.0 * bearing, np.arange(10.0)
@@ -164,8 +164,8 @@ def test_housings_condense_as_if_their_freedoms_were_there():
     assert abs(found[0, 5]) > 1e-3 * found[0, 0]  # one bearing feels the other
     # the bearing's own preload moves the housing as a force there does
     moved = np.zeros(12)
-    moved[place] = np.arange(10.0)
-    answered = np.arange(10.0) - bearing @ np.linalg.solve(whole, moved)[place]
+    moved[location] = np.arange(10.0)
+    answered = np.arange(10.0) - bearing @ np.linalg.solve(whole, moved)[location]
     np.testing.assert_allclose(preload, answered, rtol=1e-7, atol=1e-9)
 
 
@@ -188,7 +188,7 @@ def test_condensed_damping_is_the_first_order_of_the_dynamic_stiffness():
     assert left_over(10.0) < 1e-6 * np.max(np.abs(k))
 
 
-def test_a_bearing_seen_from_a_turning_frame_whirls_as_in_the_fixed_one():
+def test_a_bearing_seen_from_a_rotating_frame_whirls_as_in_the_fixed_one():
     spin, disc = 300.0, Inertia(4.0, 0.02, 0.0104)
     matrix = np.diag([1e6, 1e6, 1e6, 2e4, 2e4])
     matrix[0, 4] = matrix[4, 0] = 5e4
@@ -216,10 +216,10 @@ def test_a_bearing_seen_from_a_turning_frame_whirls_as_in_the_fixed_one():
         return np.sort(omega), np.sort(ratio * omega / np.sqrt(1.0 - ratio**2))
 
     fixed, decay = frequencies(None)
-    turning, decay_turning = frequencies("disc")
-    np.testing.assert_allclose(decay_turning, decay, rtol=1e-5)
+    rotating, decay_rotating = frequencies("disc")
+    np.testing.assert_allclose(decay_rotating, decay, rtol=1e-5)
     shifted = np.abs(np.concatenate([fixed - spin, fixed + spin]))
-    assert all(np.min(np.abs(shifted - omega)) < 1e-6 * omega for omega in turning)
+    assert all(np.min(np.abs(shifted - omega)) < 1e-6 * omega for omega in rotating)
 
 
 @pytest.mark.parametrize("suffix", [".csv", ".npz"])

@@ -69,11 +69,11 @@ def test_the_order_track_is_the_cuts_of_the_waterfall():
 
 def test_resampling_converges_with_the_fourth_power_of_the_step():
     errors = []
-    for thin in (1, 2):
+    for every in (1, 2):
         run = run_up(lambda x, _: np.cos(2 * np.pi * x), start=TOP)
         for name in ("position", "mesh_frequency", "mesh_force"):
-            setattr(run, name, getattr(run, name)[:, ::thin])
-        run.time = run.time[::thin]
+            setattr(run, name, getattr(run, name)[:, ::every])
+        run.time = run.time[::every]
         grid, _, values = resample_to_position(run, run.mesh_force, 64)
         errors.append(np.abs(values[0] - np.cos(2 * np.pi * grid))[100:-100].max())
     assert errors[0] < 3.1e-5

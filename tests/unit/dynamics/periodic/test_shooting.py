@@ -102,16 +102,16 @@ def test_steps_end_on_knots_and_halve():
     grid = period_grid(system, common_period(system), 1.0 / 40.0)
     knots = np.concatenate([table.position, table.position + 1.0]) / 2.0
     np.testing.assert_allclose(np.min(np.abs(grid.phase[:, None] - knots), axis=0), 0.0, atol=1e-12)
-    np.testing.assert_allclose(np.diff(grid.phase), grid.size[grid.rung], atol=1e-11)
+    np.testing.assert_allclose(np.diff(grid.phase), grid.size[grid.level], atol=1e-11)
     assert np.max(grid.size) <= 1.0 / 40.0
     assert refined(grid).phase.size == 2 * grid.phase.size - 1
     np.testing.assert_allclose(
-        np.diff(refined(grid).phase), refined(grid).size[refined(grid).rung], atol=1e-11
+        np.diff(refined(grid).phase), refined(grid).size[refined(grid).level], atol=1e-11
     )
 
 
 def test_a_planetary_set_has_a_common_period():
-    """All six meshes stand as before when the ring's and the sun's pitch counts are whole."""
+    """All six meshes are in phase again when the ring's and the sun's pitch counts are whole."""
     table = spring_table(MESH_STIFFNESS, 1e-6)
     system = assemble(driven_scene(published_set(3, teeth=(28, 35, 98), sun_table=table, ring_table=table)))
     assert set(common_period(system).pitches) == {1}

@@ -97,7 +97,7 @@ def test_bearing_seats_move_with_their_shaft(moved):
             np.testing.assert_allclose(moved.bearing_acceleration[bearing, 0], row, rtol=1e-12)
 
 
-def test_accelerations_are_off_unless_asked_for_and_change_nothing(moved, tmp_path):
+def test_accelerations_are_off_unless_requested_and_change_nothing(moved, tmp_path):
     scene = replace(gear_pair_scene(duration=0.02), integration=Integration(tolerance=1e-11))
     plain = simulate(replace(scene, outputs=Outputs(400e3, displacements=True)))
     assert plain.acceleration.shape == (0, 8001)

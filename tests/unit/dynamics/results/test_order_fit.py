@@ -25,7 +25,7 @@ def test_wrapped_positions_run_on(period):
     np.testing.assert_allclose(np.diff(backwards), -np.diff(POSITION), atol=1e-12)
 
 
-def test_orders_with_fewer_than_four_samples_a_period_are_not_asked_for():
+def test_orders_with_fewer_than_four_samples_a_period_are_left_out():
     assert orders_seen(np.arange(50) / 8.1, 5) == 2
     assert orders_seen(np.arange(50) / 3.9, 5) == 0
     assert orders_seen(np.arange(50) / 100.0, 5) == 5

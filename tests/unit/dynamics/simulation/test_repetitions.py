@@ -14,13 +14,13 @@ from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
 from dynamics.errors import SolveError
 from dynamics.forces import CoastFlank, MeshTable
-from dynamics.integrators.taking_over import added_rows
+from dynamics.influence import decide_effects
+from dynamics.integrators.start_value import added_rows
 from dynamics.results import RunResult
 from dynamics.scene import Outputs, Scene
 from dynamics.simulation import simulate, simulate_to_file
 from dynamics.simulation.violations import needed_effects
 from dynamics.types import Json
-from dynamics.worth import decide_effects
 
 SERIES = ("dynamic_transmission_error", "mesh_force", "bearing_force", "drive_torque")
 
@@ -77,17 +77,17 @@ def test_a_run_without_coast_flanks_is_repeated_from_where_the_teeth_had_not_par
 def test_rows_are_matched_in_their_order() -> None:
     before = assemble(coasting())
     after = assemble(replace(coasting(), effects={"gyroscopic": "on", "backlash": "on"}))
-    place = added_rows(before, after)
-    assert place is not None
-    np.testing.assert_array_equal(after.arrays.direction[place], before.arrays.direction)
-    assert place.tolist() == [0, *range(2, after.arrays.direction.shape[0])]
+    rows = added_rows(before, after)
+    assert rows is not None
+    np.testing.assert_array_equal(after.arrays.direction[rows], before.arrays.direction)
+    assert rows.tolist() == [0, *range(2, after.arrays.direction.shape[0])]
     assert added_rows(after, before) is None
     assert added_rows(before, assemble(replace(coasting(), effects={"axial": "off"}))) is None
 
 
-def test_what_a_tolerance_left_off_is_on_after_flanks_parted() -> None:
+def test_what_a_tolerance_neglected_is_on_after_flanks_parted() -> None:
     scene = dropped(tolerance=0.5)
-    left = set(decide_effects(scene).left_off)
+    left = set(decide_effects(scene).neglected)
     assert "axial" in left
     repeated = simulate(scene)
     on = simulate(dropped(effects=dict.fromkeys(left, "on")))
@@ -107,8 +107,8 @@ def test_what_a_tolerance_left_off_is_on_after_flanks_parted() -> None:
 
 @pytest.fixture(scope="module")
 def table() -> MeshTable:
-    places = (-60e-6, -30e-6, -10e-6, 0.0, 10e-6, 30e-6, 60e-6)
-    return sliced_database(places, (-1e-4, 0.0, 1e-4), positions=12).force_table()
+    knots = (-60e-6, -30e-6, -10e-6, 0.0, 10e-6, 30e-6, 60e-6)
+    return sliced_database(knots, (-1e-4, 0.0, 1e-4), positions=12).force_table()
 
 
 def test_tilt_that_a_table_does_not_follow_is_noticed(table: MeshTable) -> None:

@@ -40,9 +40,9 @@ def test_a_step_that_misses_the_motion_is_no_result(tmp_path):
     with pytest.raises(SolveError, match="work is balanced"):
         simulate_to_file(blind, file)
     assert check(RunResult.from_netcdf(file).effect_ledger, "work is balanced")["valid"] is False
-    told = check(simulate(replace(blind, on_violation="report")).effect_ledger, "work is balanced")
-    assert told["holds"] is False
-    assert told["unaccounted"] == pytest.approx(caught.value.partial.energy.relative, rel=1e-12)
+    reported = check(simulate(replace(blind, on_violation="report")).effect_ledger, "work is balanced")
+    assert reported["holds"] is False
+    assert reported["unaccounted"] == pytest.approx(caught.value.partial.energy.relative, rel=1e-12)
     sound = simulate(gear_pair_scene(duration=0.02, on_violation="fail"))
     assert check(sound.effect_ledger, "work is balanced")["holds"]
     assert sound.energy.relative < 1e-3
@@ -89,9 +89,9 @@ def test_loads_beyond_the_table_end_every_study(study):
     far = loaded(1.3)
     with pytest.raises(SolveError, match=r"1.064e\+04 N; above it .* 1\.2 times\. .* it ends at 399\.9 N m"):
         make(far)
-    told = check(make(replace(far, on_violation="report")), "force inside")
-    assert told["valid"] is False
-    assert told["largest"] == pytest.approx(1.3 * 10640.0, rel=0.1)
+    reported = check(make(replace(far, on_violation="report")), "force inside")
+    assert reported["valid"] is False
+    assert reported["largest"] == pytest.approx(1.3 * 10640.0, rel=0.1)
 
 
 def test_a_coast_flank_is_held_to_the_loads_of_its_table():

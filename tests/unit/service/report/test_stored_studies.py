@@ -11,9 +11,9 @@ import pytest
 from geared_scenes import gear_pair_scene
 
 from dynamics.ablation import ablate as ablate_scene
-from dynamics.ladder import Frontier as SceneFrontier
-from dynamics.ladder import RungResult as SceneRung
-from dynamics.ladder.vibration import Vibration
+from dynamics.accuracy import FidelityResult as SceneRung
+from dynamics.accuracy import Frontier as SceneFrontier
+from dynamics.accuracy.vibration import Vibration
 from fe_contact.analysis import ablate
 from fe_contact.geometry import FlankModification, Gear, GearPair
 from fe_contact.microgeometry import (

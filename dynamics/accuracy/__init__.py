@@ -1,0 +1,8 @@
+"""What accuracy costs in time on a scene: models and settings from quasi-static to the finest steps."""
+
+from __future__ import annotations
+
+from dynamics.accuracy.frontier import FidelityResult, Frontier, frontier
+from dynamics.accuracy.registry import FIDELITIES
+
+__all__ = ["FIDELITIES", "FidelityResult", "Frontier", "frontier"]

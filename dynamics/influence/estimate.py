@@ -1,0 +1,165 @@
+"""The change by leaving an effect out, by linear theory: an ablation before integration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from dynamics.assembly.assemble import System, assemble
+from dynamics.effects import EFFECTS, MESH_EFFECTS
+from dynamics.errors import InputError, SolveError
+from dynamics.influence.linear_figures import LinearFigures, linear_figures
+from dynamics.influence.operating_conditions import operating_conditions
+from dynamics.linearize.speeds import leading_law
+from dynamics.scene import Scene
+from dynamics.types import FloatArray, Json
+
+ROUNDING = 1e-8
+"""Relative change below which an estimate says nothing."""
+
+
+@dataclass(frozen=True)
+class Influence:
+    """What leaving one effect out, in all parts of a scene, is estimated to change; m meshes, b bearings.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : (m,) arrays
+        Change of the dynamic transmission error, m.
+    bearing_force : (b,) array
+        Change of the mesh orders 1 to 5 of each bearing's force together, N.
+    relative_mean, relative_peak_to_peak : float
+        The largest of them over the value with the effect.
+    relative_bearing_force : float
+        The largest over the largest of all bearings.
+    freedoms, rows : int
+        That it adds: freedoms, and local coordinates of force elements.
+    on : bool
+        Whether the scene has it on anywhere.
+    expected : LinearFigures
+        Of the scene with the effect.
+    """
+
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    bearing_force: FloatArray
+    relative_mean: float
+    relative_peak_to_peak: float
+    relative_bearing_force: float
+    freedoms: int
+    rows: int
+    on: bool
+    expected: LinearFigures
+
+    @property
+    def largest(self) -> float:
+        """The largest relative change of all."""
+        return max(self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
+
+    @property
+    def words(self) -> str:
+        """The relative changes, in words."""
+        parts = (self.relative_mean, self.relative_peak_to_peak, self.relative_bearing_force)
+        mean, ripple, force = (f"{100 * part:.2g} %" if part > ROUNDING else "nothing" for part in parts)
+        return (
+            f"{mean} of the mean, {ripple} of the peak-to-peak transmission error, {force} of bearing forces"
+        )
+
+    def to_json(self) -> Json:
+        """Return plain JSON."""
+        return {
+            "words": self.words,
+            "mean_m": self.mean.tolist(),
+            "peak_to_peak_m": self.peak_to_peak.tolist(),
+            "bearing_force_n": self.bearing_force.tolist(),
+            "relative_mean": self.relative_mean,
+            "relative_peak_to_peak": self.relative_peak_to_peak,
+            "relative_bearing_force": self.relative_bearing_force,
+            "freedoms": self.freedoms,
+            "rows": self.rows,
+        }
+
+
+def estimate_influences(scene: Scene, settled: float = 0.0) -> dict[str, Influence]:
+    """Estimate the influence of each effect: toggle it in linear theory, all others as they are.
+
+    Parameters
+    ----------
+    scene : Scene
+    settled : float
+        Part of the run from which on it is looked at, 0..1.
+
+    Returns
+    -------
+    dict of str to Influence
+        Without an effect that has no part in the scene, or without which there is no system that can be
+        linearized; empty where linear theory says nothing: torques alone move a train, nothing turns, the
+        drives' speeds are in no proportion of small integers.
+
+    Notes
+    -----
+    The response is that of `parametric_response`: flanks that part, impacts and transients are left out.
+    """
+    system = assemble(scene)
+    try:
+        conditions = operating_conditions(scene, leading_law(system), settled)
+        whole = linear_figures(system, conditions)
+    except (InputError, SolveError):
+        return {}
+    found = {}
+    for name, on in switchable(system).items():
+        try:
+            other = assemble(replace(scene, effects={**scene.effects, name: "off" if on else "on"}))
+            figures = linear_figures(other, conditions)
+        except (InputError, SolveError):
+            continue
+        found[name] = influence_of(system, on, *((whole, figures) if on else (figures, whole)))
+    return found
+
+
+def switchable(system: System) -> dict[str, bool]:
+    """Return the effects that a part of a system can have and would feel, and whether any has them on."""
+    found: dict[str, bool] = {}
+    for name in [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]:
+        able = [one for one in system.ledger.entries if one.effect == name and one.possible]
+        if any(one.on or one.influence > 0.0 for one in able):
+            found[name] = any(one.on for one in able)
+    return found
+
+
+def influence_of(system: System, on: bool, whole: LinearFigures, without: LinearFigures) -> Influence:
+    """Return what a system loses without an effect: `whole` are the figures with it.
+
+    Flanks that linear theory pulls apart by more than the backlash would go on that far without a coast
+    flank.
+    """
+    mean, ripple = without.mean - whole.mean, without.peak_to_peak - whole.peak_to_peak
+    force = without.bearing_force - whole.bearing_force
+    if whole.coasting and not without.coasting:
+        ripple = np.maximum(ripple, _through(system, whole.parted))
+    return Influence(
+        mean,
+        ripple,
+        force,
+        _largest(mean, whole.mean),
+        _largest(ripple, whole.peak_to_peak),
+        _largest(force, np.max(whole.bearing_force, initial=0.0)),
+        whole.freedoms - without.freedoms,
+        whole.rows - without.rows,
+        on,
+        whole,
+    )
+
+
+def _through(system: System, parted: FloatArray) -> FloatArray:
+    """How far flanks would go beyond the backlash (m,), m; nowhere where none is given."""
+    room = [np.inf if mesh.coast is None else mesh.coast.backlash for mesh in system.scene.meshes]
+    return np.asarray(np.maximum(parted - np.array(room), 0.0))
+
+
+def _largest(change: FloatArray, value: FloatArray | float) -> float:
+    """Return the largest relative change; of nothing, nothing."""
+    size = np.broadcast_to(np.abs(np.asarray(value, dtype=float)), change.shape)
+    part = np.divide(np.abs(change), size, out=np.zeros(change.shape), where=size > 0.0)
+    return float(np.max(part, initial=0.0))

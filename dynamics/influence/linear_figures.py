@@ -1,0 +1,114 @@
+"""Figures of a run by linear theory: mean and peak-to-peak transmission error, orders of bearing forces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.assembly.assemble import System
+from dynamics.effects.backlash import Backlash
+from dynamics.effects.gyroscopic import Gyroscopic
+from dynamics.influence.operating_conditions import OperatingCondition
+from dynamics.linearize.harmonic_response import HarmonicResponse, extremes
+from dynamics.linearize.modes import natural_modes
+from dynamics.linearize.parametric_response import parametric_response
+from dynamics.linearize.speeds import mesh_frequencies
+from dynamics.linearize.steady_vibration import Excited, excited
+from dynamics.types import FloatArray
+
+ORDERS = 24
+"""Mesh orders that make the peak-to-peak value."""
+COMPARED = 5
+"""Mesh orders of bearing forces that are compared."""
+MODES, MET = 4, 3
+"""Modes and mesh orders whose meeting is looked at on a run-up."""
+POSITIONS = 128
+"""Per base pitch at which tables are read."""
+
+
+@dataclass(frozen=True)
+class LinearFigures:
+    """What a run is expected to show; m meshes, b bearings.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : (m,) arrays
+        Dynamic transmission error, m: over all speeds and loads together.
+    bearing_force : (b,) array
+        Root of the sum of squares of the largest amplitudes of mesh orders 1 to 5 and of all directions, N.
+    parted : (m,) array
+        How far a linear mesh would pull where flanks part, m; 0 where all stay pressed.
+    freedoms, rows : int
+        Size of the system: freedoms, and local coordinates of its force elements.
+    coasting : bool
+        Whether a mesh has its coast flank.
+    """
+
+    mean: FloatArray
+    peak_to_peak: FloatArray
+    bearing_force: FloatArray
+    parted: FloatArray
+    freedoms: int
+    rows: int
+    coasting: bool
+
+
+def linear_figures(system: System, conditions: Sequence[OperatingCondition]) -> LinearFigures:
+    """Return the figures of `system` over the operating conditions of its run.
+
+    Raises
+    ------
+    InputError
+        If the meshes have no common period.
+    SolveError
+        If there is no static equilibrium.
+    """
+    on = {entry.effect for entry in system.ledger.entries if entry.on}
+    meshes, bearings = len(system.scene.meshes), len(system.supports.name)
+    mean, low, high = np.zeros(meshes), np.full(meshes, np.inf), np.full(meshes, -np.inf)
+    amplitude, parted = np.zeros((bearings, 3, COMPARED)), np.zeros(meshes)
+    for some in conditions:
+        at = excited(system, some.time, ORDERS, POSITIONS)
+        condition = some.passing(resonances(at)) if some.speed.size > 1 else some
+        answer = parametric_response(at, condition.speed, condition.rate, ORDERS, Gyroscopic().name in on)
+        found, static = answer.harmonics, [float(np.mean(cycle.static_error)) for cycle in at.cycles]
+        rest = np.array(static)[:, None] + answer.mean_shift
+        least, most = extremes(found.dynamic_transmission_error, found.order)
+        low = np.minimum(low, np.min(rest + least, axis=1))
+        high = np.maximum(high, np.max(rest + most, axis=1))
+        mean += rest @ condition.weight
+        amplitude = np.maximum(amplitude, bearing_orders(found))
+        pull = np.maximum(-np.min(found.least_mesh_force, axis=1), 0.0)
+        parted = np.maximum(parted, pull / np.maximum(found.mean_stiffness, 1e-300))
+    size = system.arrays.mass.shape[0], system.arrays.direction.shape[0]
+    force = np.sqrt(np.sum(amplitude**2, axis=(1, 2)))
+    return LinearFigures(mean, high - low, force, parted, *size, Backlash().name in on)
+
+
+def resonances(at: Excited) -> FloatArray:
+    """Return the speeds of the leading law at which low mesh orders meet the modes that meshes move most.
+
+    These are the modes of the largest (gradient^2/(stiffness 2 damping ratio)) along any line of action.
+    """
+    modes = natural_modes(at.linear)
+    along = modes.shape @ at.system.arrays.direction[at.system.driving_rows].T
+    stiffness = (2.0 * np.pi * modes.frequency) ** 2
+    height = np.max(along**2, axis=1) * np.where(stiffness > 0.0, 1.0, 0.0)
+    height = height / np.maximum(2.0 * modes.damping_ratio * stiffness, 1e-300)
+    reported = modes.frequency[np.argsort(-height)[:MODES]]
+    per_speed = np.unique(mesh_frequencies(at.system, np.ones(1)).ravel())
+    per_speed = per_speed[per_speed > 0.0]
+    order = np.arange(1, MET + 1)
+    return np.unique(reported[:, None, None] / (order[:, None] * per_speed))
+
+
+def bearing_orders(found: HarmonicResponse) -> FloatArray:
+    """Return the largest amplitude over the speeds of mesh orders 1 to 5 of every bearing, (b, 3, 5) N."""
+    largest = np.zeros((found.bearing_force.shape[0], 3, COMPARED))
+    for k in range(COMPARED):
+        at = np.flatnonzero(np.abs(found.order - (k + 1)) < 1e-9)
+        if at.size:
+            largest[..., k] = np.max(np.abs(found.bearing_force[:, :3, :, at[0]]), axis=2)
+    return largest

@@ -1,0 +1,215 @@
+"""The start value of a march: the state of another one with fewer force elements."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from dynamics.assembly.assemble import System
+from dynamics.integrators.march import March
+from dynamics.integrators.sample_ring import SampleRing
+from dynamics.integrators.state_sink import StateSink, blocks
+from dynamics.integrators.workspace import Count
+from dynamics.motion.observation import local_state
+from dynamics.motion.sampled_states import States
+from dynamics.types import FloatArray, IntArray
+
+STATE = (
+    *("time", "time_rest", "error", "q", "v", "v_rest", "a", "moved"),
+    *("power", "work", "highest", "fallen", "counts"),
+)
+"""What a workspace carries from step to step beside what is per row of the force elements."""
+MOTION = ("position", "pace", "speed")
+MOST_SAVED = 128
+"""In memory at once: when there are more, every second one is forgotten."""
+
+
+@dataclass(frozen=True)
+class SavedState:
+    """State of a march between two steps.
+
+    Attributes
+    ----------
+    state : dict of str to array
+        Fields `STATE` of its workspace.
+    motion : dict of str to array
+        `position`, `pace` and `speed` at the last step's end.
+    force, coordinate, rate : (R,) arrays
+        Local forces, coordinates and rates there.
+    point : (L, C) array
+        Of its ring.
+    figures : tuple of arrays
+        Running figures of its ring: the two last values, peaks and squares (..., P), sums (C,).
+    """
+
+    state: dict[str, FloatArray]
+    motion: dict[str, FloatArray]
+    force: FloatArray
+    coordinate: FloatArray
+    rate: FloatArray
+    point: FloatArray
+    figures: tuple[FloatArray, ...]
+
+    @property
+    def time(self) -> float:
+        """Of the last step's end, s."""
+        return float(self.state["time"][0])
+
+    @property
+    def samples(self) -> int:
+        """Output samples so far."""
+        return int(self.state["counts"][Count.OUTPUT])
+
+
+def saved_state(march: March) -> SavedState:
+    """Return a copy of the state of `march`."""
+    work, ring = march.state
+    state = {name: np.array(getattr(work, name)) for name in STATE}
+    motion = {name: np.array(getattr(work.before, name)) for name in MOTION}
+    rows = (work.force, work.before.coordinate, work.before.rate)
+    figures = tuple(part.copy() for part in _figures(ring))
+    force, coordinate, rate = (np.array(part) for part in rows)
+    return SavedState(state, motion, force, coordinate, rate, ring.point.copy(), figures)
+
+
+def _figures(ring: SampleRing) -> tuple[FloatArray, ...]:
+    """Return what a ring adds up."""
+    return (ring.peaks.last, ring.peaks.largest, ring.peaks.square, ring.removed, ring.folded)
+
+
+class Trail:
+    """The saved states of a march of `system` after its blocks."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        self._saved: list[SavedState] = []
+
+    def watch(self, march: March) -> Callable[[], None]:
+        """Return a function that saves the state of `march`."""
+
+        def remember() -> None:
+            if len(self._saved) == MOST_SAVED:
+                del self._saved[::2]
+            self._saved.append(saved_state(march))
+
+        return remember
+
+    def before(self, time: float) -> SavedState | None:
+        """Return the last saved state before `time` (s), if there is one."""
+        return next((one for one in reversed(self._saved) if one.time < time), None)
+
+
+@dataclass(frozen=True)
+class StartValue:
+    """Start value of a march that continues another one.
+
+    Attributes
+    ----------
+    at : SavedState
+    rows_of : (R,) int array
+        See `added_rows`.
+    states : callable
+        Gives the other march's output samples from one to before another.
+    """
+
+    at: SavedState
+    rows_of: IntArray
+    states: Callable[[int, int], States]
+
+    def into(self, march: March, sink: StateSink) -> None:
+        """Start `march` there; `sink` gets the samples before it."""
+        start_from(march, self.at, self.rows_of)
+        for first, stop in blocks(self.at.samples):
+            room = sink.room(first, stop - first)
+            for target, values in zip(
+                room, widened(self.states(first, stop), self.rows_of, march), strict=True
+            ):
+                target[...] = values
+            sink.keep(first, stop - first)
+
+
+def widened(states: States, rows_of: IntArray, march: March) -> States:
+    """Return the samples of a march of fewer force elements as those of `march`.
+
+    Their rows have the indices `rows_of` (R,); elements beside them carried no force.
+    """
+    rows = march.ring.local.force.size
+    to = _channels(march, rows_of)
+    filtered = np.zeros((states.q.shape[0], march.ring.point.shape[1]))
+    filtered[:, to] = states.filtered
+    least, largest = (np.zeros((states.q.shape[0], rows)) for _ in range(2))
+    least[:, rows_of], largest[:, rows_of] = states.least, states.largest
+    return States(states.q, states.v, states.moved, filtered, least, largest)
+
+
+def _channels(march: March, rows_of: IntArray) -> IntArray:
+    """Return the channels of `march` that those of a march with rows `rows_of` (R,) are."""
+    rows, n = march.ring.local.force.size, march.work.q.size
+    meshes = march.sampler.nominal_force.size
+    state, static = np.arange(rows, rows + 2 * n), np.arange(meshes) + 2 * (rows + n)
+    return np.concatenate([rows_of, state, rows + 2 * n + rows_of, static])
+
+
+def added_rows(before: System, after: System) -> IntArray | None:
+    """Return the index (R,) of each row of `before` among those of `after`; None if one is missing there.
+
+    Rows match if they are of one law and direction, in one order.
+    """
+    if before.freedoms.name != after.freedoms.name or before.sampling != after.sampling:
+        return None
+    rows_of, start = [], 0
+    there = _rows(after)
+    for row in _rows(before):
+        found = next((k for k in range(start, len(there)) if there[k] == row), None)
+        if found is None:
+            return None
+        rows_of.append(found)
+        start = found + 1
+    return np.array(rows_of, dtype=np.int64)
+
+
+def _rows(system: System) -> list[tuple[int, bytes]]:
+    """Law and direction of every row."""
+    elements = system.arrays.elements
+    law = np.repeat(elements.law, np.diff(elements.first))
+    return [(int(kind), row.tobytes()) for kind, row in zip(law, system.arrays.direction, strict=True)]
+
+
+def start_from(march: March, at: SavedState, rows_of: IntArray) -> None:
+    """Start `march` from the state of another one of the same freedoms: `rows_of` (R,) are its rows.
+
+    Elements that it has beside those of the other one carry no force there.
+    """
+    work, arrays = march.work, march.system.arrays
+    for name, values in at.state.items():
+        getattr(work, name)[...] = values
+    here = local_state(arrays, at.time, work.q, work.v, work.moved)
+    before = work.before
+    for name, values in at.motion.items():
+        getattr(before, name)[...] = values
+    for target, values, known in (
+        (work.force, np.zeros(work.force.size), at.force),
+        (before.coordinate, here.coordinate, at.coordinate),
+        (before.rate, here.rate, at.rate),
+    ):
+        target[...] = values
+        target[rows_of] = known
+    _fill_ring(march, at, rows_of, here.coordinate)
+
+
+def _fill_ring(march: March, at: SavedState, rows_of: IntArray, coordinate: FloatArray) -> None:
+    """Fill the ring; rows beside those of the other march rest at the `coordinate` (R,)."""
+    ring, rows, to = march.ring, march.ring.local.force.size, _channels(march, rows_of)
+    added = np.setdiff1d(np.arange(rows), rows_of)
+    ring.point[...] = 0.0
+    ring.point[:, rows + 2 * march.work.q.size + added] = coordinate[added]
+    ring.point[:, to] = at.point
+    supports = np.arange(rows, ring.peaks.largest.size)
+    signals = np.concatenate([rows_of, supports])
+    for target, known, columns in zip(
+        _figures(ring), at.figures, (signals, signals, signals, to, to), strict=True
+    ):
+        target[...] = 0.0
+        target[..., columns] = known

@@ -1,0 +1,127 @@
+"""Estimated influence of effects, and the decision by a tolerance."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from flexible_scenes import flexible_pair
+from geared_scenes import RPM, gear_pair_scene, spring_table, with_gear
+
+from dynamics.ablation import ablate
+from dynamics.bodies import BeamSection, TimeLaw
+from dynamics.errors import InputError
+from dynamics.influence import decide_effects, estimate_influences
+from dynamics.influence.operating_conditions import operating_conditions
+from dynamics.joints import FreeRotation
+from dynamics.scene import Outputs, Scene
+from dynamics.simulation import simulate
+
+QUICK = Outputs(energy_audit=False, receipt="minimal")
+SERIES = ("dynamic_transmission_error", "mesh_force", "bearing_force", "drive_torque")
+
+
+def helical(**changes: object) -> Scene:
+    """A slightly helical pair at speed, axially soft: axial motion has little influence, tilt much."""
+    scene = gear_pair_scene(
+        duration=0.1, outputs=QUICK, on_violation="report", speed=TimeLaw.constant(2000.0 * RPM), **changes
+    )
+    scene = with_gear(with_gear(scene, 0, base_helix_angle=0.02), 1, base_helix_angle=-0.02)
+    return replace(scene, bushings=tuple(replace(part, axial_stiffness=1e8) for part in scene.bushings))
+
+
+def test_estimates_are_right_within_a_factor_of_two() -> None:
+    scene = helical()
+    made = ablate(scene, only=["lateral", "axial", "tilt"])
+    seen = 0
+    for entry in made.effects:
+        assert entry.estimate is not None
+        for estimated, measured, size in (
+            (entry.estimate.mean, entry.mean_change, entry.with_effect.mean),
+            (entry.estimate.peak_to_peak, entry.peak_to_peak_change, entry.with_effect.peak_to_peak),
+        ):
+            if max(abs(estimated[0]), abs(measured[0])) > 0.01 * size[0]:
+                assert 0.5 < estimated[0] / measured[0] < 2.0, entry.name
+                seen += 1
+    assert seen >= 1
+    lateral = next(one for one in made.effects if one.name == "lateral")
+    assert lateral.estimate is not None
+    assert (lateral.estimate.freedoms, lateral.estimate.on) == (4, True)
+    json.dumps(made.to_json(), allow_nan=False)
+
+
+def test_a_tolerance_leaves_off_what_cannot_be_seen_and_says_so() -> None:
+    scene = helical()
+    influences = estimate_influences(scene)
+    assert 1e-6 < influences["axial"].largest < 0.01 < influences["lateral"].largest
+    loose = min(0.5, 11.0 * influences["axial"].largest)
+    decided = decide_effects(replace(scene, tolerance=loose))
+    assert decided.scene.effects.get("axial") == "off"
+    assert decided.scene.effects.get("lateral", "auto") == "auto"
+    tight = decide_effects(replace(scene, tolerance=9.0 * influences["axial"].largest))
+    assert "axial" not in tight.automatic
+    run, off = simulate(replace(scene, tolerance=loose)), simulate(replace(scene, effects={"axial": "off"}))
+    for name in SERIES:
+        np.testing.assert_array_equal(getattr(run, name), getattr(off, name))
+    entries = [one for one in run.effect_ledger["entries"] if one["effect"] == "axial"]
+    for entry in entries:
+        assert (entry["on"], entry["choice"], entry["called_for"], entry["price"]) == (
+            False,
+            "auto",
+            True,
+            "",
+        )
+        assert entry["reason"].startswith(f"neglected for the tolerance of {loose:g}: influence ")
+    assert run.effect_ledger["worths"]["axial"]["relative_mean"] == influences["axial"].relative_mean
+    assert run.case["tolerance"] == loose
+
+
+def test_without_a_tolerance_the_scene_decides_and_an_explicit_choice_is_obeyed() -> None:
+    scene = helical()
+    assert decide_effects(scene).scene is scene
+    changed = replace(scene, tolerance=0.5, effects={"axial": "on"})
+    assert decide_effects(changed).scene.effects["axial"] == "on"
+    price = simulate(replace(scene, tolerance=0.001, effects={"tilt": "off"})).effect_ledger
+    entry = next(one for one in price["entries"] if one["effect"] == "tilt")
+    assert entry["price"] == f"left out: {price['worths']['tilt']['words']}"
+    for wrong in (0.0, 0.6, -1.0):
+        with pytest.raises(InputError, match="tolerance"):
+            replace(scene, tolerance=wrong)
+
+
+def test_a_tolerance_switches_on_what_the_scene_does_not_call_for_but_can_be_seen() -> None:
+    thick = BeamSection(0.2, 0.12)
+    stiff = flexible_pair(
+        thick, gear=0.02, speed=TimeLaw.constant(2000.0 * RPM), duration=0.02, outputs=QUICK
+    )
+    stiff = replace(stiff, effects={})
+    (plain, tight) = (simulate(replace(stiff, tolerance=tol)) for tol in (None, 1e-4))
+    for run, on in ((plain, False), (tight, True)):
+        entries = [one for one in run.effect_ledger["entries"] if one["effect"] == "flexible_shafts"]
+        assert {one["on"] for one in entries} == {on}
+    assert entries[0]["reason"].startswith("on for the tolerance of 0.0001: influence")
+
+
+def test_moments_are_those_of_the_run() -> None:
+    up = gear_pair_scene(speed=TimeLaw((0.0, 1.0), (0.0, 100.0)), duration=1.0)
+    (condition,) = operating_conditions(up, 0, 0.5)
+    assert 50.0 < condition.speed[0] < condition.speed[-1] < 100.0
+    np.testing.assert_allclose(condition.rate, 100.0, rtol=1e-9)
+    assert np.sum(condition.weight) == pytest.approx(1.0, rel=1e-12)
+    seen = condition.passing(np.array([10.0, 70.0]))
+    assert seen.speed.size == condition.speed.size + 1
+    assert 70.0 in seen.speed
+    assert seen.weight[seen.speed == 70.0] == 0.0
+    falling = replace(up.loads[0], torque=TimeLaw((0.0, 1.0), (100.0, 20.0)))
+    parts = operating_conditions(replace(up, loads=(falling,)), 0)
+    assert len(parts) == 6
+    assert [part.time for part in parts] == sorted(part.time for part in parts)
+
+
+def test_where_linear_theory_says_nothing_there_is_no_estimate() -> None:
+    scene = gear_pair_scene(spring_table(4e8), duration=0.01)
+    free = replace(scene, drives=(), loads=(), free_rotations=(FreeRotation("free", "input", 10.0),))
+    assert estimate_influences(free) == {}
+    assert decide_effects(replace(free, tolerance=0.1)).automatic == {}
