@@ -18,6 +18,7 @@ RUN pip install -c requirements.lock setuptools \
     && pip install --no-compile -c requirements.lock -r wanted
 
 COPY README.md LICENSE ./
+COPY host host
 COPY bounds bounds
 COPY fe_contact fe_contact
 COPY dynamics dynamics

@@ -9,7 +9,6 @@ lines of JSON on DESCRIPTOR. Standard error is the log.
 
 from __future__ import annotations
 
-import fcntl
 import importlib
 import json
 import logging
@@ -24,6 +23,7 @@ import warnings
 from pathlib import Path
 from typing import Any, TextIO
 
+from host import kill_own_group, lock, lower_priority
 from service.jobs.disk import no_space
 from service.jobs.memory import hold_to, machine_memory_mb, out_of_memory
 from service.jobs.order import USABLE, Product, WorkOrder
@@ -43,7 +43,7 @@ def main() -> None:
     order = WorkOrder.from_line(_first_line())
     threading.Thread(target=_watch_parent, args=(order.lease_s,), daemon=True).start()
     _alone_in(order.workspace)
-    os.nice(_NICENESS)
+    lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
     with os.fdopen(int(sys.argv[1]), "w", buffering=1) as channel:
@@ -67,13 +67,12 @@ def _watch_parent(lease_s: float | None) -> None:
     patience = None if lease_s is None else USABLE * lease_s
     while select.select([0], [], [], patience)[0] and os.read(0, 4096):
         pass
-    os.killpg(os.getpgrp(), signal.SIGKILL)
+    kill_own_group()
 
 
 def _alone_in(workspace: Path) -> None:
     """Wait until an earlier worker in the workspace, killed a moment ago, is gone."""
-    descriptor = os.open(workspace, os.O_RDONLY | os.O_CLOEXEC)  # open, and so locked, until we end
-    fcntl.flock(descriptor, fcntl.LOCK_EX)
+    lock(os.open(workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
 
 
 class _Telling(logging.Handler):
