@@ -1,8 +1,8 @@
-"""What the host offers that systems answer differently.
+"""What the host offers: what systems answer differently, and what is installed.
 
 Costs of processes, locks on files, limits, priorities and groups of processes. What a system does not offer
-raises `Unavailable`. The only package that imports `resource` and `fcntl`. It depends on psutil on Windows,
-on nothing elsewhere.
+raises `Unavailable`, what is not installed `MissingExtra`. The only package that imports `resource` and
+`fcntl`. It depends on psutil on Windows, on nothing elsewhere.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import sys
 from importlib.util import find_spec
 
 from host.ending import Ended, ending_signal
+from host.extras import MissingExtra, missing_extra, require
 from host.limits import limit_file_size, limit_memory
 from host.proc import memory_figure, processes_in
 from host.sessions import (
@@ -48,6 +49,7 @@ else:
 
 __all__ = [
     "Ended",
+    "MissingExtra",
     "Unavailable",
     "children_cpu_seconds",
     "children_peak_memory",
@@ -64,10 +66,12 @@ __all__ = [
     "lock",
     "lower_priority",
     "memory_figure",
+    "missing_extra",
     "never_wait_at",
     "peak_memory",
     "physical_memory",
     "processes_in",
     "reap",
+    "require",
     "require_sessions",
 ]
