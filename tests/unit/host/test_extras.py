@@ -46,8 +46,8 @@ from fe_contact import Gear, SteDatabase
 from service.client import LineOfActionClient
 Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 for name in ("fe_contact.analysis", "fe_contact.contact", "fe_contact.compliance", "fe_contact.mesh",
-             "fe_contact.full_contact", "fe_contact.microgeometry", "dynamics.simulate", "dynamics.linearize",
-             "dynamics.forces", "service.report"):
+             "fe_contact.full_contact", "fe_contact.microgeometry", "dynamics.simulation",
+             "dynamics.linearize", "dynamics.forces", "service.report"):
     try:
         importlib.import_module(name)
         print(name, "is imported")
