@@ -12,12 +12,11 @@ ENV PATH=/opt/lineofaction/bin:$PATH
 WORKDIR /source
 
 # The requirements change seldom: they make a layer of their own.
-COPY requirements.lock pyproject.toml ./
-RUN pip install -c requirements.lock setuptools \
-    && python -c "import tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; e = p['optional-dependencies']; print(*p['dependencies'], *e['postgres'], *e['s3'], sep='\n')" > wanted \
-    && pip install --no-compile -c requirements.lock -r wanted
+COPY requirements.lock ./
+RUN pip install --no-compile --require-hashes -r requirements.lock
 
-COPY README.md LICENSE ./
+COPY pyproject.toml README.md LICENSE ./
+COPY host host
 COPY bounds bounds
 COPY fe_contact fe_contact
 COPY dynamics dynamics

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import resource
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,6 +9,7 @@ from dataclasses import dataclass
 
 from fe_contact.types import Json
 from fe_contact.workers.spent import Spent
+from host import children_cpu_seconds, children_peak_memory, peak_memory
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ class StageClock:
             "stages": by_stage,
             "cpu_seconds": sum(stage.cpu_seconds for stage in self.stages),
             "wall_seconds": sum(stage.wall_seconds for stage in self.stages),
-            "peak_memory_bytes": _peak_memory(),
+            "peak_memory_bytes": max(peak_memory(), children_peak_memory()),
         }
 
     def _book(self, name: str, begun: tuple[float, float]) -> None:
@@ -77,13 +77,5 @@ class StageClock:
 
     def _reading(self) -> tuple[float, float]:
         """CPU seconds of this process, its finished children and others' tasks, and wall seconds."""
-        usage = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
-        own = sum(u.ru_utime + u.ru_stime for u in usage)
+        own = time.process_time() + children_cpu_seconds()
         return own + self._elsewhere.cpu_seconds, time.perf_counter()
-
-
-def _peak_memory() -> int:
-    """Largest resident memory of this process or one of its children, bytes (Linux reports KiB)."""
-    return 1024 * max(
-        resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
-    )

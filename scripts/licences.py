@@ -1,4 +1,4 @@
-"""Write docs/licences.md: the dependencies of the lock file with the licences of what is installed."""
+"""Write docs/licences.md: the dependencies of the lock files with the licences of what is installed."""
 
 from __future__ import annotations
 
@@ -12,19 +12,20 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "licences.md"
 _HEAD = """# Dependencies and their licences
 
-Every package of `requirements.lock` with the licence that its own metadata state, and what asks for it: the
-service itself, an extra, or the tests alone. Written by `scripts/licences.py`. lineofaction is licensed
-GPL-3.0-or-later, because gmsh is GPL-2.0-or-later. MKL, which comes with the extra `fast` alone, is
-proprietary (Intel Simplified Software License): it is never in the image, and who passes on a program with
-both has to see that he may. The image also holds packages of its Debian base, under their own licences.
+Every package of `requirements-dev.lock` with the licence that its own metadata state, and what asks for it:
+the service itself, an extra, or the tests alone. Written by `scripts/licences.py`. lineofaction is licensed
+GPL-3.0-or-later, because gmsh is GPL-2.0-or-later. The extras `exudyn` (BSD-3-Clause) and `fast` are not
+locked. MKL, which comes with `fast` alone, is proprietary (Intel Simplified Software License): it is never in
+the image, and who passes on a program with both has to see that he may. The image also holds packages of its
+Debian base, under their own licences.
 
 | package | version | licence | asked for by |
 |---|---|---|---|
 """
 _LINE = re.compile(r"(?P<name>[A-Za-z0-9._-]+)==(?P<version>[^ ;]+)")
-_STATED_ELSEWHERE = {  # in files of the packages, not in their metadata
+_STATED_ELSEWHERE = {  # in files of the packages, not in metadata that are at hand
+    "colorama": "BSD-3-Clause",  # on Windows alone
     "axe-playwright-python": "MIT (axe-core in it: MPL-2.0)",
-    "exudyn": "BSD-3-Clause",
     "fmpy": "BSD-2-Clause",
     "matplotlib": "PSF-based (matplotlib)",
 }
@@ -33,7 +34,7 @@ _STATED_ELSEWHERE = {  # in files of the packages, not in their metadata
 def locked() -> dict[str, list[str]]:
     """Return the versions of every locked package; some have one for each version of Python."""
     found: dict[str, list[str]] = {}
-    for line in (ROOT / "requirements.lock").read_text("utf-8").splitlines():
+    for line in (ROOT / "requirements-dev.lock").read_text("utf-8").splitlines():
         if match := _LINE.match(line):
             found.setdefault(match["name"], []).append(match["version"])
     return found
@@ -60,13 +61,14 @@ def askers() -> dict[str, str]:
     """Return for every package the first of: service, an extra, tests."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
     extras = project["optional-dependencies"]
-    groups = {"service": project["dependencies"]}
-    groups |= {f"extra `{name}`": wanted for name, wanted in extras.items() if name != "dev"}
+    groups = {"service": [*project["dependencies"], *extras["analysis"], *extras["service"]]}
+    groups |= {f"extra `{name}`": wanted for name, wanted in extras.items() if name not in ("all", "dev")}
     groups["tests"] = extras["dev"]
     found: dict[str, str] = {}
     for group, wanted in groups.items():
         for requirement in wanted:
-            _follow(requirement, group, found)
+            if not requirement.startswith("lineofaction["):  # another group
+                _follow(requirement, group, found)
     return found
 
 

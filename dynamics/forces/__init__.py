@@ -1,5 +1,6 @@
 """Forces between bodies and on them: gear mesh, torques by time and by speed, nonlinear bearings."""
 
+import host.analysis  # noqa: F401 (says what to install)
 from dynamics.forces.coast_flank import CoastFlank
 from dynamics.forces.gear_mesh import GearMesh
 from dynamics.forces.load_torque import LoadTorque

@@ -7,7 +7,6 @@ ended.
 
 from __future__ import annotations
 
-import fcntl
 import os
 from collections.abc import Callable
 from pathlib import Path
@@ -21,6 +20,7 @@ from dynamics.integrators.checkpoint import Arrays, read_checkpoint, write_check
 from dynamics.integrators.state_sink import blocks
 from dynamics.motion.sampled_states import States, Widths
 from dynamics.types import FloatArray
+from host import lock
 
 
 class StateSpool:
@@ -36,7 +36,7 @@ class StateSpool:
         states.touch()
         self._file: BinaryIO = states.open("r+b")
         try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock(self._file.fileno())
         except BlockingIOError:
             self._file.close()
             raise InputError("output", str(path), "free: another process runs this") from None

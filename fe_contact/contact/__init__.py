@@ -1,5 +1,6 @@
 """Loaded contact: which teeth touch, what each carries, how far the driven gear lags."""
 
+import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.contact.added_compliance import with_compliances
 from fe_contact.contact.adjoint import Adjoint, adjoint, force_changes
 from fe_contact.contact.assembly import contact_problem

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import signal
 import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
 from fe_contact.types import Status
+from host import ending_signal
 
 PROGRAM = "ccx"
 WALL_OVER_CPU = 20.0
@@ -89,7 +89,7 @@ def run_calculix(program: str, deck: str, folder: Path, cpu_limit: float) -> Run
 def _ended(child: subprocess.CompletedProcess[str], folder: Path, cpu_limit: float) -> Run:
     """Say how a child ended."""
     iterations = len(re.findall(r"^ iteration \d+", child.stdout, re.MULTILINE))
-    if child.returncode == -signal.SIGXCPU:
+    if ending_signal(child.returncode) == "SIGXCPU":
         return Run(Status.NOT_COMPUTED, f"no result within {cpu_limit:.0f} CPU s", iterations, "")
     if child.returncode != 0 or "Job finished" not in child.stdout:
         return Run(Status.ITERATION_LIMIT, _complaint(child), iterations, "")

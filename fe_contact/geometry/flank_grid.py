@@ -8,7 +8,6 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numba import njit
 
 from bounds import SiNote
 from fe_contact.checks import increasing, within
@@ -71,8 +70,11 @@ class FlankGrid:
 
     def material_removed(self, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """Material removed in m at roll lengths and face positions in m, arrays of equal shape."""
+        import host.analysis  # noqa: F401, PLC0415 (says what to install)
+        from fe_contact.geometry.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
+
         flat = (np.ascontiguousarray(place, dtype=float).ravel() for place in (roll_length, face_position))
-        removed = _interpolated(np.array(self.roll_length), np.array(self.face_position), self._nodes, *flat)
+        removed = bicubic(np.array(self.roll_length), np.array(self.face_position), self._nodes, *flat)
         return np.asarray(removed.reshape(roll_length.shape))
 
     @cached_property
@@ -110,38 +112,3 @@ def _slope(values: FloatArray, axis: tuple[float, ...], direction: int) -> Float
     """Slope at the nodes of the parabola through three neighbours; of the straight line where two are all."""
     order: Literal[1, 2] = 2 if len(axis) > 2 else 1
     return np.asarray(np.gradient(values, np.array(axis), axis=direction, edge_order=order))
-
-
-@njit(cache=True)
-def _hermite(axis: FloatArray, at: float, weight: FloatArray) -> int:
-    """Fill the weights of value and slope at either end of the cell that holds `at`; return the cell."""
-    x = min(max(at, axis[0]), axis[-1])
-    cell = min(max(np.searchsorted(axis, x) - 1, 0), axis.size - 2)
-    step = axis[cell + 1] - axis[cell]
-    t = (x - axis[cell]) / step
-    weight[0] = (1.0 + 2.0 * t) * (1.0 - t) ** 2
-    weight[1] = t * t * (3.0 - 2.0 * t)
-    weight[2] = step * t * (1.0 - t) ** 2
-    weight[3] = step * t * t * (t - 1.0)
-    return int(cell)
-
-
-@njit(cache=True)
-def _interpolated(
-    roll_axis: FloatArray, face_axis: FloatArray, nodes: FloatArray, roll: FloatArray, face: FloatArray
-) -> FloatArray:
-    """Bicubic Hermite interpolation at points (k,)."""
-    found = np.zeros(roll.size)
-    across, along = np.zeros(4), np.zeros(4)
-    for k in range(roll.size):
-        i = _hermite(roll_axis, roll[k], across)
-        j = _hermite(face_axis, face[k], along)
-        for a in range(2):
-            for b in range(2):
-                found[k] += (
-                    across[a] * along[b] * nodes[0, i + a, j + b]
-                    + across[2 + a] * along[b] * nodes[1, i + a, j + b]
-                    + across[a] * along[2 + b] * nodes[2, i + a, j + b]
-                    + across[2 + a] * along[2 + b] * nodes[3, i + a, j + b]
-                )
-    return found

@@ -1,5 +1,6 @@
 """Meshes on exact tooth profiles, made by gmsh in a child process, checked for quality."""
 
+import host.analysis  # noqa: F401 (says what to install)
 from fe_contact.mesh.bore_support import BoreSupport, ClampedBore, PlaneStrain, SeatedBore, bore_support
 from fe_contact.mesh.gear_mesh import FlankNodes, GearMesh
 from fe_contact.mesh.meshing import mesh_gear

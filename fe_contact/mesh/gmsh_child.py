@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -13,6 +12,7 @@ from typing import Any
 
 from fe_contact.errors import MeshError
 from fe_contact.types import Json
+from host import ending_signal
 
 _NO_MEMORY = ("MemoryError", "bad_alloc")
 """How Python and C++ say that an allocation failed."""
@@ -84,7 +84,7 @@ def _cause(returncode: int) -> str:
     """Say how a child ended."""
     if returncode >= 0:
         return f"ended with exit code {returncode}"
-    return f"killed by {signal.Signals(-returncode).name}"
+    return f"killed by {ending_signal(returncode)}"
 
 
 def _last_line(text: str) -> str:

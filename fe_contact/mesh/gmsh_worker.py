@@ -26,6 +26,8 @@ import signal
 import sys
 from typing import Any
 
+from host import end_after
+
 RESET_BY_GMSH = ("SIGTERM", "SIGHUP", "SIGPIPE", "SIGINT")
 
 
@@ -164,7 +166,7 @@ def main() -> None:
     answer_to = os.dup(1)
     os.dup2(2, 1)  # whatever gmsh prints must not mix with the answer
     request = json.load(sys.stdin)
-    signal.alarm(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
+    end_after(int(request["seconds"]) + 1)  # ends this process even when its parent is gone
     try:
         gmsh = start_gmsh()
         answer: dict[str, Any] = {

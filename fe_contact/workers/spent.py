@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import resource
-import sys
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from fe_contact.workers.packed import Packed
+from host import children_cpu_seconds, peak_memory
 
 R = TypeVar("R")
-
-_UNIT = 1 if sys.platform == "darwin" else 1024
-"""Bytes in which the system reports resident memory."""
 
 
 @dataclass
@@ -66,13 +63,11 @@ def do_task(function: Callable[[Any, Any], R], packed: Packed, item: Any) -> Don
     """Do one task, on a worker."""
     begun = _cpu_seconds()
     result = function(packed.unpacked(), item)
-    peak = _UNIT * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return Done(result, _cpu_seconds() - begun, peak)
+    return Done(result, _cpu_seconds() - begun, peak_memory())
 
 
 def _cpu_seconds() -> float:
     """CPU seconds of who works here, and of finished children."""
     alone = threading.current_thread() is threading.main_thread()
-    own = resource.RUSAGE_SELF if alone else getattr(resource, "RUSAGE_THREAD", resource.RUSAGE_SELF)
-    usage = (resource.getrusage(who) for who in (own, resource.RUSAGE_CHILDREN))
-    return sum(each.ru_utime + each.ru_stime for each in usage)
+    own = time.process_time() if alone else time.thread_time()
+    return own + children_cpu_seconds()

@@ -15,6 +15,7 @@ from dynamics.errors import DynamicsError
 from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError
+from host import Unavailable, missing_extra
 from service.convert.units import factor, unit_in_words, unit_of
 from service.convert.vocabulary import boundary_name, case_field, scene_field
 from service.problems import BadInput, Fault, JobFailed, ServiceError
@@ -75,8 +76,10 @@ def translated(error: Exception) -> ServiceError | None:
         return BadInput([_fault(error, CaseReader(error.field))])
     if isinstance(error, DynamicsInputError):
         return BadInput([_fault(error, SceneReader(error.field))])
-    if isinstance(error, FeContactError | DynamicsError):
+    if isinstance(error, FeContactError | DynamicsError | Unavailable):
         return JobFailed(str(error))
+    if isinstance(error, ModuleNotFoundError) and (missing := missing_extra(error)):
+        return JobFailed(str(missing))
     return None
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 import signal
 import time
 import warnings
@@ -12,6 +11,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 
 from bounds import PlausibilityWarning
+from host import kill_group, lead_session
 from service.hardcases.scene import HardScene, Outcome
 
 _START_LIMIT = 120.0  # seconds for a new process to import what it needs
@@ -66,7 +66,7 @@ class _Worker:
         """End the process and all that it started."""
         self.alive = False
         try:
-            os.killpg(self._process.pid or 0, signal.SIGKILL)
+            kill_group(self._process.pid or 0)
         except (ProcessLookupError, PermissionError):
             self._process.kill()
         self._process.join()
@@ -75,7 +75,7 @@ class _Worker:
 
 def _serve(pipe: Connection) -> None:
     """Run the scenes that come, until the pipe closes."""
-    os.setsid()  # so that a mesher it started ends with it
+    lead_session()  # so that a mesher it started ends with it
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     warnings.simplefilter("error")  # a warning is a fault here, unless it says that the input is odd
     warnings.simplefilter("ignore", PlausibilityWarning)

@@ -9,7 +9,6 @@ outcome are lines of JSON on DESCRIPTOR. Standard error is the log.
 
 from __future__ import annotations
 
-import fcntl
 import importlib
 import json
 import logging
@@ -24,6 +23,7 @@ import warnings
 from pathlib import Path
 from typing import Any, TextIO
 
+from host import kill_own_group, lock, lower_priority
 from service.jobs.disk import no_space
 from service.jobs.memory import hold_to, machine_memory_mb, out_of_memory
 from service.jobs.order import Product, WorkOrder
@@ -44,7 +44,7 @@ def main() -> None:
     order = WorkOrder.from_line(line)
     threading.Thread(target=_watch_parent, args=(order.lease_until, renewals), daemon=True).start()
     _alone_in(order.workspace)
-    os.nice(_NICENESS)
+    lower_priority(_NICENESS)
     if order.memory_limit_mb is not None:
         hold_to(order.memory_limit_mb)
     with os.fdopen(int(sys.argv[1]), "w", buffering=1) as channel:
@@ -71,14 +71,13 @@ def _watch_parent(until: float | None, rest: bytes) -> None:
         until = float(renewed[-1]) if renewed else until
         left = None if until is None else max(until - time.monotonic(), 0.0)
         if not select.select([0], [], [], left)[0] or not (piece := os.read(0, 4096)):
-            os.killpg(os.getpgrp(), signal.SIGKILL)
+            kill_own_group()
         rest += piece
 
 
 def _alone_in(workspace: Path) -> None:
     """Wait until an earlier worker in the workspace, killed a moment ago, is gone."""
-    descriptor = os.open(workspace, os.O_RDONLY | os.O_CLOEXEC)  # open, and so locked, until we end
-    fcntl.flock(descriptor, fcntl.LOCK_EX)
+    lock(os.open(workspace, os.O_RDONLY), wait=True)  # open, and so locked, until we end
 
 
 class _Telling(logging.Handler):

@@ -18,6 +18,7 @@ import traceback
 import warnings
 from typing import BinaryIO
 
+from host import kill_own_group, lower_priority
 from service.jobs.live_order import AnswerHead, LiveOrder, LiveWork
 from service.jobs.memory import hold_to
 from service.problems import ServiceError
@@ -32,7 +33,7 @@ def main() -> None:
         "ignore", message="implausible"
     )  # answers say it in the caller's fields and units
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # a Ctrl-C in the terminal is the service's to handle
-    os.nice(_NICENESS)
+    lower_priority(_NICENESS)
     orders: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(orders,), daemon=True).start()
     hold_to(int(sys.argv[2]))
@@ -46,7 +47,7 @@ def _listen(orders: queue.SimpleQueue[bytes]) -> None:
     with os.fdopen(0, "rb") as stream:
         for line in stream:
             orders.put(line)
-    os.killpg(os.getpgrp(), signal.SIGKILL)
+    kill_own_group()
 
 
 def _answer(order: LiveOrder, channel: BinaryIO) -> bool:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import contextlib
 import os
 import select
-import signal
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+from host import kill_group
 from service.jobs.live_order import AnswerHead, LiveOrder
 from service.jobs.worker import child_environment
 
@@ -100,7 +100,7 @@ class LiveWorker:
         """Kill the process and what it started; whoever asks it is told that it is gone. Any thread may."""
         if self._process.returncode is None:
             with contextlib.suppress(ProcessLookupError):
-                os.killpg(self.pid, signal.SIGKILL)
+                kill_group(self.pid)
 
     def close(self) -> None:
         """Kill, reap, close the pipes; by the thread that asks. Idempotent."""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from sqlalchemy import Engine
 
+from host import require_sessions
 from service.jobs.claims import Claims
 from service.jobs.elsewhere import WorkElsewhere
 from service.jobs.housekeeper import Housekeeper
@@ -51,7 +52,11 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
         program's.
     DatabaseUnavailable, StoreUnavailable
         One does not answer; `DatabaseDamaged`: it has to be mended.
+    Unavailable
+        It works, and the system has no sessions of processes.
     """
+    if works:
+        require_sessions()
     engine = open_database(settings.database_address or settings.data_directory / DATABASE_FILE)
     try:
         Schema(engine).check()

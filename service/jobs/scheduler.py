@@ -12,6 +12,7 @@ import uuid
 
 import structlog
 
+from host import never_wait_at
 from service.jobs.attempt import Attempt, begun
 from service.jobs.claims import Claim, Claims
 from service.jobs.housekeeper import Housekeeper
@@ -64,7 +65,7 @@ class Scheduler:
         self._selector = selectors.DefaultSelector()
         self._wake_out, self._wake_in = os.pipe()
         for end in (self._wake_out, self._wake_in):
-            os.set_blocking(end, False)
+            never_wait_at(end)
         self._selector.register(self._wake_out, selectors.EVENT_READ)
         self._stopping.clear()
         self._leases.start()

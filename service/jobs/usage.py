@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
-_KB_PER_MB = 1024.0
+from host import memory_figure
+
+BYTES_PER_MB = float(1 << 20)
 
 
 @dataclass(frozen=True)
@@ -36,10 +37,7 @@ class Usage:
         }
 
 
-def own_peak_mb(status: Path = Path("/proc/self/status")) -> float | None:
+def own_peak_mb() -> float | None:
     """Return the most resident memory this process has had, MB; None where the system does not tell."""
-    try:
-        line = next(line for line in status.read_text().splitlines() if line.startswith("VmHWM:"))
-    except (OSError, StopIteration):
-        return None
-    return int(line.split()[1]) / _KB_PER_MB
+    peak = memory_figure("VmHWM")
+    return None if peak is None else peak / BYTES_PER_MB

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import os
-import signal
 import subprocess
 import sys
 import threading
@@ -15,8 +14,9 @@ from typing import Any
 
 import structlog
 
+from host import ending_signal, has_exited, kill_group, never_wait_at, reap
 from service.jobs.order import Outcome, Product, WorkOrder
-from service.jobs.usage import Usage
+from service.jobs.usage import BYTES_PER_MB, Usage
 
 logger = structlog.get_logger(__name__)
 
@@ -24,7 +24,7 @@ _ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 )
 _LEAVING_S = 2.0
-_OF_LITTLE_MEMORY = (signal.SIGKILL, signal.SIGABRT)  # by the system, and by libraries that cannot go on
+_OF_LITTLE_MEMORY = ("SIGKILL", "SIGABRT")  # by the system, and by libraries that cannot go on
 _ROOT = str(Path(__file__).resolve().parents[2])
 
 
@@ -45,7 +45,7 @@ class Worker:
         self._rest = b""
         self._giving = threading.Lock()
         self.channel, theirs = os.pipe()
-        os.set_blocking(self.channel, False)
+        never_wait_at(self.channel)
         try:
             with log.open("wb") as stream:
                 self._process = subprocess.Popen(
@@ -72,7 +72,7 @@ class Worker:
         with contextlib.suppress(BrokenPipeError):
             stream.write(order.line())
             stream.flush()
-        os.set_blocking(stream.fileno(), False)
+        never_wait_at(stream.fileno())
 
     @property
     def pid(self) -> int:
@@ -132,7 +132,7 @@ class Worker:
         Until it is reaped its process id, which is also its group's, cannot be given to another.
         """
         deadline = time.monotonic() + patience_s
-        while os.waitid(os.P_PID, self.pid, os.WEXITED | os.WNOWAIT | os.WNOHANG) is None:
+        while not has_exited(self.pid):
             if time.monotonic() > deadline:
                 return False
             time.sleep(0.005)
@@ -142,7 +142,7 @@ class Worker:
         """Send the group (gmsh's process included) SIGKILL."""
         if self._process.returncode is None:
             with contextlib.suppress(ProcessLookupError):
-                os.killpg(self.pid, signal.SIGKILL)
+                kill_group(self.pid)
 
     def kill(self, patience_s: float | None = None) -> None:
         """Kill the group, reap the child, close the pipes. Idempotent.
@@ -163,16 +163,15 @@ class Worker:
 
     def _reap(self) -> None:
         """Wait for the child's end, and note what it took."""
-        _, status, spent = os.wait4(self.pid, 0)
-        self._process.returncode = os.waitstatus_to_exitcode(status)
-        peak_mb = spent.ru_maxrss / 1024.0 if self._peak_mb is None else self._peak_mb
-        self.usage = Usage(self.age, spent.ru_utime + spent.ru_stime, peak_mb)
+        ended = reap(self.pid)
+        self._process.returncode = ended.code
+        peak_mb = ended.peak_memory / BYTES_PER_MB if self._peak_mb is None else self._peak_mb
+        self.usage = Usage(self.age, ended.cpu_seconds, peak_mb)
 
 
 def _cause(code: int) -> str:
     """Why a worker ended without an outcome."""
-    if code < 0:
-        name = signal.Signals(-code).name
-        hint = " (it may have run out of memory)" if -code in _OF_LITTLE_MEMORY else ""
+    if name := ending_signal(code):
+        hint = " (it may have run out of memory)" if name in _OF_LITTLE_MEMORY else ""
         return f"The worker was ended by {name}{hint}."
     return f"The worker ended early with exit code {code}."

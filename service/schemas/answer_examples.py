@@ -97,7 +97,7 @@ ANSWERS: dict[str, Any] = {
     "/v1/": {
         "title": "lineofaction",
         "description": "STE databases of gear pairs.",
-        "version": "0.1.0",
+        "version": "0.2.0",
         "links": [_LINK],
     },
     "/v1/conformance": {"conformsTo": ["http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/core"]},

@@ -110,7 +110,7 @@ def _make_private(file: Path) -> None:
     """Make an empty file of its owner's alone, unless there is one; SQLite gives its log the same rights."""
     file.parent.mkdir(parents=True, exist_ok=True)
     with contextlib.suppress(OSError):  # SQLite tells why it cannot be opened
-        os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_CLOEXEC, 0o600))
+        os.close(os.open(file, os.O_WRONLY | os.O_CREAT, 0o600))
 
 
 RESTORE = (

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import uuid
 from pathlib import Path
 
+from host import lock
 from service.directories import private
 from service.problems import BadInput
 
@@ -33,16 +33,14 @@ class DirectoryLock:
             return
         try:
             private(self._directory)
-            descriptor = os.open(
-                self._directory / "service.lock", os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600
-            )
+            descriptor = os.open(self._directory / "service.lock", os.O_RDWR | os.O_CREAT, 0o600)
         except OSError as error:
             suggestion = f"{error.strerror}. Choose another with --data-directory."
             raise BadInput.of(
                 "data_directory", str(self._directory), "a directory we may write to", suggestion
             ) from None
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            lock(descriptor)
         except BlockingIOError:
             os.close(descriptor)
             raise BadInput.of(

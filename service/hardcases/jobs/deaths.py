@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import os
-import signal
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 
 import numpy as np
 
 from fe_contact.analysis import analyze
 from fe_contact.types import FloatArray
+from host import halt
+from host import kill as end
 from service.convert.case import analysis_arguments, gear_pair
 from service.hardcases.jobs.aftermath import MEDIUM, aftermath, largest_difference
 from service.hardcases.jobs.job_service import Disturb, JobService
@@ -28,7 +28,7 @@ def kill_meshers(times: int, killed: list[int]) -> Disturb:
 
     def kill(service: JobService, _job: Job) -> None:
         if len(killed) < times:
-            killed.extend(_sent(signal.SIGKILL, service.processes(MESHER_COMMAND)))
+            killed.extend(_reached(end, service.processes(MESHER_COMMAND)))
 
     return kill
 
@@ -40,18 +40,18 @@ def kill_workers(times: int, killed: list[int]) -> Disturb:
     """
 
     def kill(service: JobService, _job: Job) -> None:
-        if len(killed) < times and _sent(signal.SIGSTOP, service.processes(MESHER_COMMAND)):
-            killed.extend(_sent(signal.SIGKILL, service.processes(WORKER_COMMAND)))
+        if len(killed) < times and _reached(halt, service.processes(MESHER_COMMAND)):
+            killed.extend(_reached(end, service.processes(WORKER_COMMAND)))
 
     return kill
 
 
-def _sent(number: signal.Signals, processes: Sequence[int]) -> list[int]:
-    """Send a signal to processes; return those that were there to get it."""
+def _reached(act: Callable[[int], None], processes: Sequence[int]) -> list[int]:
+    """Act on processes; return those that were there."""
     reached = []
     for pid in processes:
         with suppress(ProcessLookupError):
-            os.kill(pid, number)
+            act(pid)
             reached.append(pid)
     return reached
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import signal
 import tempfile
 import time
 from collections.abc import Callable, Iterator
@@ -16,6 +14,7 @@ from structlog.testing import capture_logs
 
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
+from host import kill, processes_in
 from service.hardcases.scene import TIME_LIMIT
 from service.jobs.catalogue import ANALYZE, default_registry
 from service.jobs.elsewhere import WorkElsewhere
@@ -89,20 +88,14 @@ class JobService:
         """Kill what should have ended before, so that a scene that fails leaves nothing either."""
         for pid in self.processes():
             with suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGKILL)
+                kill(pid)
 
     def processes(self, name: str = "") -> list[int]:
         """Return the processes at work for the service, or those of them whose command has `name`.
 
         Each worker, and what it starts, stands in a directory of its own below that of the service.
         """
-        found = []
-        for entry in Path("/proc").iterdir():
-            with suppress(OSError):  # it has ended, or is another user's
-                place = (entry / "cwd").readlink() if entry.name.isdigit() else Path()
-                if place.is_relative_to(self.directory) and name.encode() in (entry / "cmdline").read_bytes():
-                    found.append(int(entry.name))
-        return [pid for pid in found if pid != os.getpid()]
+        return processes_in(self.directory, name)
 
 
 @contextmanager

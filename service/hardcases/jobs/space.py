@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import resource
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
@@ -11,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from host import limit_file_size, memory_figure
 from service.hardcases.jobs.aftermath import MEDIUM, aftermath, largest_difference, undisturbed
 from service.hardcases.jobs.deaths import MESHER_COMMAND, WORKER_COMMAND, of_python
 from service.hardcases.jobs.job_service import Disturb, JobService
@@ -18,6 +18,7 @@ from service.hardcases.jobs.limits import AFTER, MEMORY_MB
 from service.hardcases.scene import HardScene, Measured
 from service.jobs.job import Job
 
+_MB = 1 << 20
 _DEVOURER = """
 held = []
 while True:
@@ -32,7 +33,7 @@ def no_room(held: list[int]) -> Disturb:
     def fill(service: JobService, _job: Job) -> None:
         for pid in service.processes(WORKER_COMMAND) if not held else ():
             with suppress(ProcessLookupError):
-                resource.prlimit(pid, resource.RLIMIT_FSIZE, (0, 0))
+                limit_file_size(pid, 0)
                 held.append(pid)
 
     return fill
@@ -75,7 +76,7 @@ def greedy_mesher() -> Sequence[Measured]:
 
         def look(service: JobService, _job: Job) -> None:
             for pid in service.processes(MESHER_COMMAND):
-                most[0] = max(most[0], _private_mb(pid))
+                most[0] = max(most[0], (memory_figure("VmData", pid) or 0) / _MB)
 
         def settle(_seconds: float) -> dict[str, float]:
             return {"memory_limit_mb": MEMORY_MB}
@@ -93,15 +94,6 @@ def greedy_mesher() -> Sequence[Measured]:
         Measured("names the mesher's memory and what to try", float(said), least=1.0),
         *found.figures,
     )
-
-
-def _private_mb(pid: int) -> float:
-    """Return the private memory of a process, MB; 0 once it has ended."""
-    with suppress(OSError):
-        for line in Path(f"/proc/{pid}/status").read_text().splitlines():
-            if line.startswith("VmData:"):
-                return float(line.split()[1]) / 1024.0
-    return 0.0
 
 
 DISK_FULL = HardScene(

@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 DATA = PROJECT["tool"]["setuptools"]["package-data"]
-PACKAGES = ("bounds", "fe_contact", "dynamics", "service")
+PACKAGES = ("host", "bounds", "fe_contact", "dynamics", "service")
 MADE = {".py", ".pyc", ".nbi", ".nbc"}
 
 

@@ -1,0 +1,77 @@
+"""What the host offers: what systems answer differently, and what is installed.
+
+Costs of processes, locks on files, limits, priorities and groups of processes. What a system does not offer
+raises `Unavailable`, what is not installed `MissingExtra`. The only package that imports `resource` and
+`fcntl`. It depends on psutil on Windows, on nothing elsewhere.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+
+from host.ending import Ended, ending_signal
+from host.extras import MissingExtra, missing_extra, require
+from host.limits import limit_file_size, limit_memory
+from host.proc import memory_figure, processes_in
+from host.sessions import (
+    halt,
+    has_exited,
+    kill,
+    kill_group,
+    kill_own_group,
+    lead_session,
+    lower_priority,
+    never_wait_at,
+    reap,
+    require_sessions,
+)
+from host.unavailable import Unavailable
+
+if sys.platform == "win32" or find_spec("fcntl") is None or find_spec("resource") is None:
+    from host.windows import (
+        children_cpu_seconds,
+        children_peak_memory,
+        end_after,
+        lock,
+        peak_memory,
+        physical_memory,
+    )
+else:
+    from host.posix import (
+        children_cpu_seconds,
+        children_peak_memory,
+        end_after,
+        lock,
+        peak_memory,
+        physical_memory,
+    )
+
+__all__ = [
+    "Ended",
+    "MissingExtra",
+    "Unavailable",
+    "children_cpu_seconds",
+    "children_peak_memory",
+    "end_after",
+    "ending_signal",
+    "halt",
+    "has_exited",
+    "kill",
+    "kill_group",
+    "kill_own_group",
+    "lead_session",
+    "limit_file_size",
+    "limit_memory",
+    "lock",
+    "lower_priority",
+    "memory_figure",
+    "missing_extra",
+    "never_wait_at",
+    "peak_memory",
+    "physical_memory",
+    "processes_in",
+    "reap",
+    "require",
+    "require_sessions",
+]

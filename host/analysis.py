@@ -1,0 +1,5 @@
+"""Imported by packages that compute: raises `MissingExtra` where the extra `analysis` is not installed."""
+
+from host.extras import require
+
+require("analysis")

@@ -1,0 +1,43 @@
+"""Extras of the installation: what it needs that a base install does not bring."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+
+MODULES = {
+    "analysis": ("gmsh", "matplotlib", "meshio", "numba", "plotly", "pymetis", "skfem"),
+    "service": (
+        "alembic",
+        "cbor2",
+        "fastapi",
+        "httptools",
+        "prometheus_client",
+        "pydantic_settings",
+        "sqlalchemy",
+        "structlog",
+        "uvicorn",
+    ),
+}
+"""Modules that come with each extra, as pyproject.toml has them by the names of their packages."""
+
+
+class MissingExtra(ModuleNotFoundError):
+    """A module of an extra is asked for that is not installed."""
+
+    def __init__(self, module: str, extra: str) -> None:
+        advice = f"pip install 'lineofaction[{extra}]'"
+        super().__init__(f"{module} is not installed. It comes with the extra {extra}: {advice}", name=module)
+        self.extra = extra
+
+
+def require(extra: str) -> None:
+    """Raise `MissingExtra` unless all modules of an extra can be found; none is loaded."""
+    for module in MODULES[extra]:
+        if find_spec(module) is None:
+            raise MissingExtra(module, extra)
+
+
+def missing_extra(error: ModuleNotFoundError) -> MissingExtra | None:
+    """Return what is missing by the name of the extra that brings it, None for another module."""
+    module = (error.name or "").partition(".")[0]
+    return next((MissingExtra(module, extra) for extra, names in MODULES.items() if module in names), None)

@@ -1,0 +1,50 @@
+"""Linux and macOS."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+import resource
+import signal
+import sys
+
+from host.ending import RESIDENT_UNIT
+
+assert sys.platform != "win32"
+
+
+def children_cpu_seconds() -> float:
+    """Return the CPU seconds of finished children."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
+def peak_memory() -> int:
+    """Return the most resident memory this process has had, bytes."""
+    return RESIDENT_UNIT * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+def children_peak_memory() -> int:
+    """Return the most resident memory one of the finished children has had, bytes."""
+    return RESIDENT_UNIT * resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+
+
+def physical_memory() -> int:
+    """Return the memory of the machine, bytes."""
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+
+
+def lock(file: int, *, wait: bool = False) -> None:
+    """Lock an open file or folder until its descriptor is closed; the system closes that of a dead process.
+
+    Raises
+    ------
+    BlockingIOError
+        Another process has the lock, and we do not `wait`.
+    """
+    fcntl.flock(file, fcntl.LOCK_EX if wait else fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def end_after(seconds: int) -> None:
+    """End this process after so many seconds, whatever it does then."""
+    signal.alarm(seconds)

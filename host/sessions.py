@@ -1,0 +1,87 @@
+"""Sessions of processes, their ends and priorities: POSIX alone, elsewhere each raises `Unavailable`."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+
+from host.ending import RESIDENT_UNIT, Ended
+from host.unavailable import Unavailable
+
+
+def require_sessions() -> None:
+    """Raise `Unavailable` where processes have no sessions of their own."""
+    if sys.platform == "win32":
+        raise Unavailable("Sessions of processes, in which the service's workers run,")
+
+
+def lead_session() -> None:
+    """Make this process the leader of a new session and group."""
+    if sys.platform == "win32":
+        raise Unavailable("Sessions of processes")
+    os.setsid()
+
+
+def kill_group(leader: int) -> None:
+    """End a group of processes at once. ProcessLookupError: there is none."""
+    if sys.platform == "win32":
+        raise Unavailable("Groups of processes")
+    os.killpg(leader, signal.SIGKILL)
+
+
+def kill_own_group() -> None:
+    """End this process and its group at once."""
+    if sys.platform == "win32":
+        raise Unavailable("Groups of processes")
+    os.killpg(os.getpgrp(), signal.SIGKILL)
+
+
+def kill(pid: int) -> None:
+    """End a process at once. ProcessLookupError: there is none."""
+    if sys.platform == "win32":
+        raise Unavailable("Signals to processes")
+    os.kill(pid, signal.SIGKILL)
+
+
+def halt(pid: int) -> None:
+    """Stop a process where it is. ProcessLookupError: there is none."""
+    if sys.platform == "win32":
+        raise Unavailable("Signals to processes")
+    os.kill(pid, signal.SIGSTOP)
+
+
+def lower_priority(niceness: int) -> None:
+    """Let other processes go before this one."""
+    if sys.platform == "win32":
+        raise Unavailable("Niceness values")
+    os.nice(niceness)
+
+
+def never_wait_at(pipe: int) -> None:
+    """Let reads and writes at the end of a pipe raise BlockingIOError in place of waiting."""
+    if sys.platform == "win32":
+        raise Unavailable("Pipes that do not wait")
+    os.set_blocking(pipe, False)
+
+
+def has_exited(child: int) -> bool:
+    """Whether a child has ended. It is not reaped, so that no other process gets its id."""
+    if sys.platform == "win32":
+        raise Unavailable("Children that wait to be reaped")
+    if hasattr(os, "waitid"):
+        return os.waitid(os.P_PID, child, os.WEXITED | os.WNOWAIT | os.WNOHANG) is not None
+    shown = subprocess.run(  # macOS before Python 3.13
+        ["ps", "-o", "stat=", "-p", str(child)], capture_output=True, text=True, check=False
+    )
+    return shown.stdout.strip()[:1] in {"Z", ""}
+
+
+def reap(child: int) -> Ended:
+    """Wait for the end of a child."""
+    if sys.platform == "win32":
+        raise Unavailable("Children that wait to be reaped")
+    _, status, usage = os.wait4(child, 0)
+    cpu_seconds, code = usage.ru_utime + usage.ru_stime, os.waitstatus_to_exitcode(status)
+    return Ended(code, cpu_seconds, RESIDENT_UNIT * usage.ru_maxrss)

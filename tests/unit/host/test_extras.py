@@ -1,0 +1,75 @@
+"""Extras: what a base install does without, and what it is told."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from small_table import small_table
+
+from host.extras import MODULES, MissingExtra, missing_extra, require
+
+ROOT = Path(__file__).parents[3]
+EXTRAS = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["optional-dependencies"]
+IMPORTED_AS = {"scikit-fem": "skfem"}
+ANALYSIS_ADVICE = "It comes with the extra analysis: pip install 'lineofaction[analysis]'"
+
+
+@pytest.mark.parametrize("extra", MODULES)
+def test_modules_of_an_extra_are_those_that_it_requires_everywhere(extra: str) -> None:
+    everywhere = [line for line in EXTRAS[extra] if ";" not in line and not line.startswith("lineofaction")]
+    names = [re.split(r"[^\w-]", line)[0] for line in everywhere]
+    assert {IMPORTED_AS.get(name, name.replace("-", "_")) for name in names} == set(MODULES[extra])
+
+
+def test_a_missing_module_is_named_with_its_extra(monkeypatch: pytest.MonkeyPatch) -> None:
+    require("analysis")
+    monkeypatch.setitem(sys.modules, "skfem", None)
+    with pytest.raises(MissingExtra, match=re.escape(f"skfem is not installed. {ANALYSIS_ADVICE}")):
+        require("analysis")
+    assert missing_extra(ModuleNotFoundError(name="numba.core")) is not None
+    assert missing_extra(ModuleNotFoundError(name="something")) is None
+
+
+def test_the_base_reads_tables_and_says_what_computing_needs(tmp_path: Path) -> None:
+    hidden = sorted(
+        {name for names in MODULES.values() for name in names} | {"llvmlite", "starlette", "uvloop"}
+    )
+    code = f"""
+import importlib, sys
+sys.modules.update(dict.fromkeys({hidden!r}))  # importing one of these fails now
+from fe_contact import Gear, SteDatabase
+from service.client import LineOfActionClient
+Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+for name in ("fe_contact.analysis", "fe_contact.contact", "fe_contact.compliance", "fe_contact.mesh",
+             "fe_contact.full_contact", "fe_contact.microgeometry", "dynamics.simulation",
+             "dynamics.linearize", "dynamics.forces", "service.report"):
+    try:
+        importlib.import_module(name)
+        print(name, "is imported")
+    except ImportError as error:
+        print(error)
+from service.cli import main
+sys.argv = ["loa", *sys.argv[1:]]
+main()
+"""
+
+    def base(*arguments: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-c", code, *arguments]
+        return subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT, timeout=120)
+
+    table = small_table()
+    table.to_netcdf(tmp_path / "table.nc")
+    read = base("ste", str(tmp_path / "table.nc"), "--torque", str(table.torque[-1]))
+    assert read.returncode == 0 and read.stderr == ""
+    told, *_ = lines = read.stdout.splitlines()
+    assert told == f"gmsh is not installed. {ANALYSIS_ADVICE}" and lines[:10] == [told] * 10
+    refused = base("analyze", "examples/palermo_spur_20_20.toml", "-o", str(tmp_path / "ste.nc"))
+    assert (refused.returncode, refused.stderr) == (1, f"error: {told}\n")
+    refused = base("serve", "--data-directory", str(tmp_path / "data"))
+    assert refused.returncode == 1
+    assert re.fullmatch(r"error: \w+ is not installed\. .*'lineofaction\[service\]'\n", refused.stderr)

@@ -1,0 +1,104 @@
+"""Costs, locks, limits and ends of processes, by laws that hold on every POSIX system."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import host
+
+PYTHON = (sys.executable, "-I", "-S", "-c")
+
+
+def test_the_peak_follows_what_is_held_in_bytes() -> None:
+    """1 GiB that is written shows as that, in bytes: not as KiB, nor a thousandfold."""
+    code = "import host as s; x = b'x' * 2**30; print(s.peak_memory())"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert 2**30 < int(done.stdout) < 1.5 * 2**30
+    assert host.peak_memory() < host.physical_memory()
+
+
+def test_children_count_once_they_have_ended() -> None:
+    before = host.children_cpu_seconds()
+    code = "import time\nwhile time.process_time() < 0.2: pass"
+    subprocess.run([*PYTHON, code], check=True)
+    assert 0.2 <= host.children_cpu_seconds() - before < 1.0
+    assert host.children_peak_memory() > 2**20
+
+
+def test_a_lock_lasts_until_its_file_is_closed(tmp_path: Path) -> None:
+    first, second = (os.open(tmp_path / "lock", os.O_RDWR | os.O_CREAT) for _ in range(2))
+    host.lock(first)
+    with pytest.raises(BlockingIOError):
+        host.lock(second)
+    os.close(first)
+    host.lock(second, wait=True)
+    os.close(second)
+
+
+@pytest.mark.parametrize("waitid", [True, False])
+def test_an_ended_child_is_seen_before_it_is_reaped(waitid: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also as macOS sees it before Python 3.13."""
+    if not waitid:
+        monkeypatch.delattr("os.waitid")
+    child = subprocess.Popen([*PYTHON, "input()"], stdin=subprocess.PIPE)
+    assert child.stdin is not None
+    assert not host.has_exited(child.pid)
+    child.stdin.close()
+    latest = time.monotonic() + 10.0
+    while not host.has_exited(child.pid) and time.monotonic() < latest:
+        time.sleep(0.01)
+    assert host.has_exited(child.pid)
+    ended = host.reap(child.pid)
+    child.returncode = ended.code
+    assert ended.code == 1 and ended.cpu_seconds > 0.0 and ended.peak_memory > 2**20
+
+
+def test_a_group_ends_with_all_its_processes() -> None:
+    code = "import os, subprocess; print(subprocess.Popen(['sleep', '60']).pid, flush=True); input()"
+    leader = subprocess.Popen(
+        [*PYTHON, code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True
+    )
+    assert leader.stdout is not None and leader.stdin is not None
+    grandchild = int(leader.stdout.readline())
+    host.kill_group(leader.pid)
+    assert host.ending_signal(leader.wait(10)) == "SIGKILL"
+    latest = time.monotonic() + 10.0
+    while _runs(grandchild) and time.monotonic() < latest:
+        time.sleep(0.01)
+    assert not _runs(grandchild)
+    leader.stdin.close()
+    leader.stdout.close()
+
+
+def _runs(pid: int) -> bool:
+    """Whether a process is there and no zombie."""
+    shown = subprocess.run(["ps", "-o", "stat=", "-p", str(pid)], capture_output=True, text=True, check=False)
+    return shown.stdout.strip()[:1] not in {"", "Z"}
+
+
+def test_a_process_ends_after_its_time_and_one_of_windows_too() -> None:
+    for module in ("host", "host.windows"):
+        code = f"import time; from {module} import end_after; end_after(1); time.sleep(20)"
+        begun = time.monotonic()
+        done = subprocess.run([sys.executable, "-c", code], check=False, timeout=15)
+        assert done.returncode != 0 and 0.9 < time.monotonic() - begun < 10.0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="Linux alone limits other processes and has /proc")
+def test_limits_and_processes_of_linux(tmp_path: Path) -> None:
+    code = "input(); open('file', 'w').write('x')"
+    with subprocess.Popen(
+        [*PYTHON, code], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL, cwd=tmp_path
+    ) as child:
+        assert host.processes_in(tmp_path, "input()") == [child.pid]
+        assert host.processes_in(tmp_path, "another command") == []
+        assert (host.memory_figure("VmHWM", child.pid) or 0) > 2**20
+        host.limit_file_size(child.pid, 0)
+    assert child.returncode != 0
+    assert host.memory_figure("VmHWM", child.pid) is None
