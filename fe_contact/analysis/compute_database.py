@@ -16,7 +16,7 @@ from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked, Request
-from fe_contact.analysis.solved_table import Progress, SolvedTable, laid_out, solve_table
+from fe_contact.analysis.solved_table import Progress, SolvedTable, condensed_bodies, solve_table
 from fe_contact.analysis.tolerance_receipt import tolerance_receipt
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
@@ -99,8 +99,9 @@ def compute_pass(
         contact = contact_receipt(run.solved, run.support, condition=full, known=run.condition)
     judged = unjudged_table(run.table, run.places, run.plan)
     if full:
-        coarse = laid_out(run.checked, run.plan, clock, report, cache, coarse=True, workers=workers)
+        bodies = condensed_bodies(run.checked, run.plan, clock, report, cache, coarse=True, workers=workers)
         with clock.stage("error estimate"):
+            coarse = run.places.on_bodies(bodies)
             judged = judged_table(run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan)
     elsewhere = workers.spent.since(before)
     if not repeated and not elsewhere.tasks:

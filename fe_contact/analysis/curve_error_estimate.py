@@ -8,7 +8,7 @@ peak-to-peak and harmonics. Between the nodes of an axis the changes at held-out
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -62,23 +62,20 @@ def curve_errors(
     """
     made, sample, pair = plan.discretisation, nested.sample, places.nominal.pair
     helical = isinstance(made, FaceDiscretisation) and pair.base_helix_angle != 0.0
-
-    def changes(these: FloatArray, those: FloatArray, part: FloatArray | float) -> FloatArray:
-        """Parts of the changes of every curve, (22, F, M, D)."""
-        one, other = (values.reshape(sample.knots.size, -1) for values in (these, those))
-        change = part * quantity_changes(sample.knots, one, other, places.period)
-        change = _shared(change) if helical else change
-        return sample.spread(change.reshape(QUANTITIES, *these.shape[1:]))
-
-    own = changes(nested.table, np.zeros_like(nested.table), 1.0)
-    free_ends = changes(nested.table, nested.plane, CORRECTION_ERROR)
-    if missing := left_out(pair, made):
-        free_ends = LEFT_OUT * missing * of_bending(pair, own)
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
+    own, by_mesh, by_slices, free_ends = _changes(
+        sample,
+        (nested.table, nested.plane, nested.table, nested.table),
+        (np.zeros_like(nested.table), nested.coarse, many_slices, nested.plane),
+        np.stack(np.broadcast_arrays(1.0, _left_by_mesh(plan, helical), 1.0, CORRECTION_ERROR)),
+        helical,
+    )
+    if missing := left_out(pair, made):
+        free_ends = LEFT_OUT * missing * of_bending(pair, own)
     by_source = {
-        "discretisation": changes(nested.plane, nested.coarse, _left_by_mesh(plan, helical)),
-        "slices": changes(nested.table, many_slices, 1.0),
+        "discretisation": by_mesh,
+        "slices": by_slices,
         "contact_solver": _by_solver(places, solutions, sample),
         "finite_width": free_ends,
         "position": np.broadcast_to(
@@ -87,6 +84,21 @@ def curve_errors(
         "model": model_errors(pair, plan.load, own),
     }
     return np.stack([by_source[name] for name in AT_NODES])
+
+
+def _changes(
+    sample: TableSample,
+    these: Sequence[FloatArray],
+    those: Sequence[FloatArray],
+    parts: FloatArray,
+    helical: bool,
+) -> FloatArray:
+    """Return parts (k, 22) of the changes of k sets of curves (T R, f, m, d), (k, 22, F, M, D) in m."""
+    one, other = np.stack(these, axis=1), np.stack(those, axis=1)
+    rows = sample.knots.size
+    change = quantity_changes(sample.knots, one.reshape(rows, -1), other.reshape(rows, -1), sample.period)
+    change = parts.T[:, :, None, None, None] * change.reshape(QUANTITIES, *one.shape[1:])
+    return sample.spread(np.moveaxis(_shared(change) if helical else change, 1, 0))
 
 
 def _by_solver(places: Places, solutions: list[ContactSolution], sample: TableSample) -> FloatArray:
@@ -101,17 +113,17 @@ def _by_solver(places: Places, solutions: list[ContactSolution], sample: TableSa
 
 
 def _left_by_mesh(plan: Plan, helical: bool) -> FloatArray:
-    """Error left over the change to the coarse mesh, (22, 1)."""
+    """Error left over the change to the coarse mesh, (22,)."""
     made = plan.discretisation
     kind = ("helical" if helical else "spur") if isinstance(made, FaceDiscretisation) else "plane"
     mean, ripple, harmonics = LEFT_BY_MESH[kind]["draft" if plan.level == "draft" else "standard"]
-    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])[:, None]
+    part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])
     return part * made.remaining if helical else part
 
 
 def _shared(change: FloatArray) -> FloatArray:
-    """Let every harmonic change (22, C) by its share of peak-to-peak at least."""
-    number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1)[:, None]
+    """Let every harmonic change (22, ...) by its share of peak-to-peak at least."""
+    number = np.arange(1, QUANTITIES - FIRST_HARMONIC + 1).reshape(-1, *[1] * (change.ndim - 1))
     least = HARMONIC_SHARE * change[PEAK_TO_PEAK] / np.sqrt(number)
     return np.concatenate([change[:FIRST_HARMONIC], np.maximum(change[FIRST_HARMONIC:], least)])
 

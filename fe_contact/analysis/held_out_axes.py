@@ -128,12 +128,13 @@ class _Judged:
 
     def force(self) -> AxisError:
         """Judge the loads."""
-        force, m, d = self.table.force, self._nearest("misalignment"), self._nearest("center_distance_change")
+        force = self.table.force
+        (m,), (d,) = self._nearest("misalignment"), self._nearest("center_distance_change")
+        place = self.places.places[self._place(int(np.searchsorted(self.table.misalignment, m)), d)]
         probes = LOAD_PROBES if force.size <= WIDE_INTERVALS + 1 else MIDDLE
         loads = force[:-1, None] ** (1.0 - probes) * force[1:, None] ** probes
-        (place,) = self._held_out(m, d)
         self._keep_rows(place)
-        curves = self._curves(place, self.rows, loads.ravel(), m[0], d[0])
+        curves = self._curves(place, self.rows, loads.ravel(), m, d)
         error = _worst(curves).reshape(loads.shape).max(axis=1)
         change = self._changes(curves).reshape(-1, *loads.shape).max(axis=2)
         return AxisError(np.sqrt(force[1:] * force[:-1]), error[:, None], change[..., None])
@@ -168,15 +169,23 @@ class _Judged:
         solution = place.solve(position, load, start=self._start(rows, load, *alignment))[1]
         return self._tabulated(position, load, *alignment), solution.deflection
 
-    def _start(self, rows: IntArray, load: FloatArray, *alignment: float) -> Start:
-        """Start from the nearest place, at the loads below."""
-        axes = self.table.misalignment, self.table.center_distance_change
-        m, d = (int(np.argmin(np.abs(nodes - x))) for nodes, x in zip(axes, alignment, strict=True))
-        problem, solution = self.solved[m * axes[1].size + d]
-        force = self.table.force
-        below = np.maximum(np.searchsorted(force, load, side="right") - 1, 0)
-        ratio = (load / force[below])[:, None]
-        return Start(problem.candidates, ratio * solution.force[np.ix_(rows, below)])
+    def _start(self, rows: IntArray, load: FloatArray, misalignment: float, change: float) -> Start:
+        """Start between the solutions at the nodes around the points: of loads, and of misalignments."""
+        below, above, share = _around(self.table.force, load)
+        low, high, part = _around(self.table.misalignment, np.array([misalignment]))
+        first, second = (self.solved[self._place(int(m[0]), change)] for m in (low, high))
+
+        def between(force: FloatArray) -> FloatArray:
+            lower, upper = (force[np.ix_(rows, loads)] for loads in (below, above))
+            return np.asarray(lower + share[:, None] * (upper - lower))
+
+        lower, upper = (between(solution.force) for _, solution in (first, second))
+        return Start(first[0].candidates, lower + part * (upper - lower))
+
+    def _place(self, m: int, change: float) -> int:
+        """Return which place of the table has misalignment `m`, the nearest in centre distance."""
+        nodes = self.table.center_distance_change
+        return m * nodes.size + int(np.argmin(np.abs(nodes - change)))
 
     def _tabulated(self, position: FloatArray, load: FloatArray, *alignment: float) -> FloatArray:
         """Interpolant (positions, L), m."""
@@ -199,6 +208,14 @@ class _Judged:
         """Lay out held-out places like those of the table."""
         here = replace(self.scene, misalignment=misalignment, center_distance_change=change)
         return table_places(here, self.choices, self.places.nominal).places
+
+
+def _around(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:
+    """Return the nodes below and above points of an axis, and the part of the way that each point is on."""
+    above = np.clip(np.searchsorted(nodes, at), min(1, nodes.size - 1), nodes.size - 1)
+    below = np.maximum(above - 1, 0)
+    step = nodes[above] - nodes[below]
+    return below, above, (at - nodes[below]) / np.where(step > 0.0, step, 1.0)
 
 
 def _worst(found: Curves) -> FloatArray:

@@ -164,6 +164,8 @@ def _cycle_cost(request: Request, model: ContactModel) -> CycleCost:
 def _refuse_distances(request: Request) -> None:
     """Refuse a change of the centre distance at which the gears do not mesh, by its place in the list."""
     for i, change in enumerate(request.center_distance_change):
+        if change == 0.0:  # where the pair stands already
+            continue
         try:
             request.pair.at_center_distance(request.pair.center_distance + float(change))
         except InputError as error:

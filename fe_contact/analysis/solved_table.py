@@ -102,7 +102,8 @@ def solve_table(
         wanted = request.pair, plan, checked.model, request.alignments
         prediction = predict_run(*wanted, cache, with_errors=full)
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
-    places = laid_out(checked, plan, clock, report, cache, known=known, workers=workers)
+    nominal = condensed_bodies(checked, plan, clock, report, cache, known=known, workers=workers)
+    places = table_places(request.scene, request.choices, nominal, workers)
     with clock.stage("contact"):
         nodes = table_nodes(places, plan)
         report("contact", 0.3)
@@ -113,7 +114,7 @@ def solve_table(
     return SolvedTable(decided, prediction, places, nodes, solved, support, table, condition)
 
 
-def laid_out(
+def condensed_bodies(
     checked: Checked,
     plan: Plan,
     clock: StageClock,
@@ -123,15 +124,15 @@ def laid_out(
     coarse: bool = False,
     known: PairContact | None = None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> Places:
-    """Compute or fetch the compliances of both gears, and lay out the table over them."""
+) -> PairContact:
+    """Compute or fetch the compliances of both gears, fine or coarse, as a stage of the run."""
     request, stage = checked.request, "error estimate" if coarse else "compliance"
     report(stage, 0.0)
     with clock.stage(stage):
         changes = request.center_distance_change
         nominal = known or _condensed(request.pair, plan, cache, coarse, changes, workers)
     report(stage, 1.0)
-    return table_places(request.scene, request.choices, nominal, workers)
+    return nominal
 
 
 def _condensed(

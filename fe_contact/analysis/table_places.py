@@ -84,6 +84,11 @@ class Places:
         """The same places without the correction for the finite width."""
         return self._with_contacts(lambda contact: contact.in_plane_strain)
 
+    def on_bodies(self, nominal: PairContact) -> Places:
+        """Return the same places over other compliances of the gears, those of `nominal`."""
+        places = self._with_contacts(lambda contact: replace(nominal, pair=contact.pair, _problems={}))
+        return replace(places, nominal=nominal)
+
     def in_slices(self, count: int) -> Places:
         """Return the same places in other slices."""
         return self._with_contacts(lambda contact: contact.in_slices(count))

@@ -83,7 +83,9 @@ def contact_candidates(
     meets = np.isfinite(touch.gap).any(axis=0).reshape(index.size, -1).any(axis=1)
     index, keep = index[meets], np.repeat(meets, slices.point_center.size)
     touch, part = touch.columns(keep), part[:, keep]
-    middle, _ = _touching(pair, model, position, index, slices.center, 0.0)
+    middle = touch  # of the one point of each slice
+    if slices.points > 1:
+        middle, _ = _touching(pair, model, position, index, slices.center, 0.0)
     return Candidates(
         position=position,
         pair=np.repeat(index, slices.point_center.size),

@@ -49,8 +49,11 @@ def quantity_changes(
     good = np.isfinite(one) if at is not None else np.isfinite(one) & np.isfinite(other)
     beside = np.isfinite(other) if at is not None else good
     if good.all() and beside.all():
-        found = _changes(_quantities(position, one, period), _quantities(knots, other, period))
-        return found if at is not None else _with_bend(found, one - other)
+        if at is not None:
+            return _changes(_quantities(position, one, period), _quantities(knots, other, period))
+        ripple, lines = _quantities(position, np.concatenate([one, other], axis=1), period)
+        parts = zip(np.split(ripple, 2), np.split(lines, 2, axis=1), strict=True)
+        return _with_bend(_changes(*parts), one - other)
     found = np.full((QUANTITIES, one.shape[1]), np.nan)
     for c in range(one.shape[1]):
         rows, others = good[:, c], beside[:, c]

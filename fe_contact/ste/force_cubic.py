@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +21,19 @@ class ForceCubic:
     stiffness_ends: FloatArray
     stiffness_slopes: FloatArray
 
-    @property
+    @cached_property
     def width(self) -> FloatArray:
         """Deflection from the lower to the upper end."""
         return np.asarray(self.deflection_ends[:, 1] - self.deflection_ends[:, 0])
 
+    @cached_property
+    def tangent_ends(self) -> FloatArray:
+        """Derivatives of the force in the fraction of the width at both ends, (2, Q)."""
+        return np.asarray(self.width * self.stiffness_ends.T)
+
     def cubic(self, t: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Force and its derivative in t at fraction t of the width."""
-        (low, high), (k0, k1) = self.force_ends.T, self.width * self.stiffness_ends.T
+        (low, high), (k0, k1) = self.force_ends.T, self.tangent_ends
         s = 1.0 - t
         force = low + (high - low) * t * t * (3.0 - 2.0 * t) + t * s * (s * k0 - t * k1)
         return force, 6.0 * t * s * (high - low) + s * (1.0 - 3.0 * t) * k0 + t * (3.0 * t - 2.0) * k1

@@ -12,8 +12,8 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import check_request
 from fe_contact.analysis.model_choice import decide
-from fe_contact.analysis.solved_table import laid_out
-from fe_contact.analysis.table_places import Place
+from fe_contact.analysis.solved_table import condensed_bodies
+from fe_contact.analysis.table_places import Place, table_places
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, solve_contact
 from fe_contact.stage_clock import StageClock
 
@@ -63,8 +63,8 @@ def contact_of(
         level=level,
         effects={"corner_contact": "on" if corner else "off"},
     )
-    made = laid_out(checked, decide(checked).plan, StageClock(), lambda *_: None, cache)
-    return made.places[0]
+    bodies = condensed_bodies(checked, decide(checked).plan, StageClock(), lambda *_: None, cache)
+    return table_places(checked.request.scene, checked.request.choices, bodies).places[0]
 
 
 def deflection(place: Place, slices: int) -> np.ndarray:

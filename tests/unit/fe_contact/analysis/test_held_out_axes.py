@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis.held_out_axes import held_out_axes
+from fe_contact.analysis.held_out_axes import _around, held_out_axes
 from fe_contact.effects import ContactScene
 from fe_contact.types import Status
 
@@ -108,6 +108,14 @@ def test_misalignment_in_three_dimensions(made):
     assert error[0, 0] == pytest.approx(np.abs(found).max(), rel=1e-9)
     assert error[0, 0] > 1e-6
     assert stated(three, "misalignment")[1].max() < 0.5 * error[0, 0]
+
+
+def test_points_stand_between_the_nodes_beside_them():
+    nodes, at = np.array([1.0, 2.0, 5.0]), np.array([1.0, 1.25, 2.0, 4.0, 5.0])
+    below, above, part = _around(nodes, at)
+    assert np.all(above == below + 1)
+    assert nodes[below] + part * (nodes[above] - nodes[below]) == pytest.approx(at, rel=1e-15)
+    assert [found.tolist() for found in _around(nodes[:1], nodes[:1])] == [[0], [0], [0.0]]
 
 
 def test_a_table_that_cannot_be_interpolated_has_no_estimate(coarse):

@@ -1,0 +1,50 @@
+"""Places of a table over other bodies: what is known of the places stays."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fe_contact import Gear, GearPair
+from fe_contact.analysis.pair_contact import PairContact
+from fe_contact.analysis.request_check import check_request
+from fe_contact.analysis.table_places import Places, table_places
+from fe_contact.planning import make_plan
+
+MISALIGNMENTS, CHANGES = (-2e-5, 0.0, 2e-5), (0.0, 1e-4)
+
+
+@pytest.fixture(scope="module")
+def laid_out() -> tuple[Places, Places, PairContact]:
+    """Places over the bodies of a draft, those laid out afresh over a standard mesh, and that mesh's pair."""
+    gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
+    axes = {"misalignments": MISALIGNMENTS, "center_distance_changes": CHANGES}
+    checked = check_request(GearPair(gear, gear, 80e-3), torques=[100.0], **axes)
+    request = checked.request
+    plans = [
+        make_plan(request.pair, request.load, request.accuracy, checked.model, level)
+        for level in ("draft", "standard")
+    ]
+    draft, standard = (PairContact(request.pair, plan) for plan in plans)
+    first, second = (table_places(request.scene, request.choices, each) for each in (draft, standard))
+    return first, second, standard
+
+
+def test_other_bodies_are_laid_out_as_afresh(laid_out):
+    first, afresh, bodies = laid_out
+    found = first.on_bodies(bodies)
+    assert found.shape == afresh.shape == (3, 2)
+    assert found.nominal is bodies
+    for place, other in zip(found.places, afresh.places, strict=True):
+        assert place.model == other.model
+        assert place.contact.pair == other.contact.pair
+        assert place.contact.plan is bodies.plan
+
+
+def test_places_of_one_centre_distance_share_their_compliance_on_other_bodies(laid_out):
+    first, _, bodies = laid_out
+    found = first.on_bodies(bodies)
+    contacts = np.array([id(place.contact) for place in found.places]).reshape(found.shape)
+    assert np.all(contacts == contacts[0])
+    assert contacts[0, 0] != contacts[0, 1]
+    assert all(place.contact._problems is not bodies._problems for place in found.places)
