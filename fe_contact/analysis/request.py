@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 
 from bounds import Finding
 from fe_contact.contact import ContactModel
@@ -64,7 +65,7 @@ class Request:
         """Torques on the driving gear in N m."""
         return self.pair.torque(self.load)
 
-    @property
+    @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """What is implausible about it."""
         axes = self.misalignment, self.center_distance_change

@@ -65,6 +65,16 @@ def test_the_source_that_dominates_is_refined(helical):
     assert positions.steps == ("positions 0.5 -> 0.12 % of the ripple",)
 
 
+def test_what_is_small_is_refined_where_nothing_larger_can_be(helical):
+    """The finest mesh takes 0.98 of the tolerance, positions what is beyond it; alone they would be left."""
+    finest = ran(pair(0.3), "fine", 31)
+    made = refined(finest, discretisation=0.98, position=0.25)
+    assert [step.split()[0] for step in made.steps] == ["positions"]
+    assert made.expected < 1.0
+    larger = refined(helical, discretisation=1.5, position=0.25)
+    assert larger.steps == ("mesh standard -> fine",)
+
+
 def test_the_next_pass_has_what_was_refined_and_keeps_the_rest(helical):
     plan = helical.plan
     mesh, slices, positions = (
