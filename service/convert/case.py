@@ -26,7 +26,6 @@ from fe_contact.geometry import (
 from fe_contact.geometry.modification import AMOUNTS
 from fe_contact.material import Material
 from service.convert.errors import translated
-from service.convert.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, NM, UM
 from service.problems import BadInput
 from service.schemas import (
     AccuracyInput,
@@ -37,6 +36,7 @@ from service.schemas import (
     ToothingInput,
     WheelInput,
 )
+from service.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, NM, UM
 
 Json = dict[str, Any]
 
