@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -19,10 +18,8 @@ from fe_contact.flank.tip_edge import (
     check_rounding,
     rounding_start,
 )
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.flank.tooth import Tooth
 
 
 def _edge(description: str, example: float) -> Declared:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,10 +10,8 @@ from bounds import Direction
 from fe_contact.flank.fields import Shape, amount, length, shape
 from fe_contact.flank.part import FlankPart
 from fe_contact.flank.relief import check_length, course
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.flank.tooth import Tooth
 
 _FACE = Direction.FACE
 

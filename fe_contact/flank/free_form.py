@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 from bounds import Declared, Direction, Kind, Quantity, Text, declared
 from fe_contact.errors import InputError
 from fe_contact.flank.part import FlankPart, involute
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
     from fe_contact.flank.flank_grid import FlankGrid
-    from fe_contact.flank.tooth import Tooth
 
 _SURFACE = Declared(
     Kind.SURFACE,

@@ -15,20 +15,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Direction, Kind, attributes, declarations
-from fe_contact.flank.crowning import HelixCrowning, ProfileCrowning
 from fe_contact.flank.cut_tip import CutTip
 from fe_contact.flank.end_relief import EndRelief
 from fe_contact.flank.free_form import FreeForm
 from fe_contact.flank.part import FlankPart, ReliefStart, involute
-from fe_contact.flank.slope import HelixSlope, ProfileSlope
+from fe_contact.flank.polynomial import FlankTwist, HelixCrowning, HelixSlope, ProfileCrowning, ProfileSlope
 from fe_contact.flank.tip_relief import RootRelief, TipRelief
-from fe_contact.flank.twist import FlankTwist
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-    from fe_contact.flank.tooth import Tooth
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,17 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import or_
-from typing import TYPE_CHECKING
-
-import numpy as np
 
 from bounds import Direction, Kind, SiNote, above, declarations
 from fe_contact.checks import declared_fields
 from fe_contact.errors import InputError
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.flank.tooth import Tooth
 
 _ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
 
@@ -92,14 +87,3 @@ def involute(gear: Tooth) -> tuple[float, float]:
     """Least and largest roll length of the involute, m."""
     ends = gear.form_roll_length, gear.tip_roll_length
     return min(ends), max(ends)
-
-
-def across_profile(gear: Tooth, roll: FloatArray) -> FloatArray:
-    """Place on the involute: -1 at the form point, +1 at the tip, linear over the roll length."""
-    form, tip = gear.form_roll_length, gear.tip_roll_length
-    return np.asarray((2.0 * roll - form - tip) / (tip - form))
-
-
-def across_face(gear: Tooth, face: FloatArray) -> FloatArray:
-    """Place on the face: -1 and +1 at its ends."""
-    return np.asarray(2.0 * face / gear.face_width)

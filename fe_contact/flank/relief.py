@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,10 +10,8 @@ from bounds import SiNote
 from fe_contact.checks import within
 from fe_contact.flank.fields import Shape
 from fe_contact.flank.part import ReliefStart
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.flank.tooth import Tooth
 
 
 def course(shape: Shape, fraction: FloatArray) -> FloatArray:

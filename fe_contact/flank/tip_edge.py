@@ -9,16 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bounds import SiNote, Text, Words
 from fe_contact.checks import within
 from fe_contact.flank.involute import involute_normal, involute_point
-
-if TYPE_CHECKING:
-    from fe_contact.flank.tooth import Tooth
+from fe_contact.flank.tooth import Tooth
 
 FLATTEST, STEEPEST = math.radians(5.0), math.radians(85.0)
 """Angles between flank and chamfer, rad; a flatter one is a relief."""

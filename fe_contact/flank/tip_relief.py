@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from bounds import Direction
 from fe_contact.flank.fields import Shape, amount, length, shape
 from fe_contact.flank.part import FlankPart, ReliefStart
 from fe_contact.flank.relief import ProfileRelief, check_length
+from fe_contact.flank.tooth import Tooth
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.flank.tooth import Tooth
 
 _PROFILE = Direction.PROFILE
 
