@@ -6,8 +6,21 @@ alone.
 
 from __future__ import annotations
 
-from bounds.bound import Bound, Choice, above, at_least, at_most, below, between, exactly, integers, one_of
-from bounds.checks import LIMIT_SLACK, Checks
+from bounds.bound import (
+    LIMIT_SLACK,
+    Bound,
+    Choice,
+    above,
+    at_least,
+    at_most,
+    below,
+    between,
+    exactly,
+    integers,
+    one_of,
+)
+from bounds.checks import Checks
+from bounds.declared import DEPTHS, Declared, Direction, Kind, attributes, declarations, declared
 from bounds.plausibility import Check, Finding, PlausibilityWarning, finding_of, warn_of
 from bounds.reader import Reader
 from bounds.refused import RefusedValue
@@ -15,12 +28,16 @@ from bounds.text import Quantity, SiNote, Text, Words
 from bounds.unit import Unit
 
 __all__ = [
+    "DEPTHS",
     "LIMIT_SLACK",
     "Bound",
     "Check",
     "Checks",
     "Choice",
+    "Declared",
+    "Direction",
     "Finding",
+    "Kind",
     "PlausibilityWarning",
     "Quantity",
     "Reader",
@@ -32,8 +49,11 @@ __all__ = [
     "above",
     "at_least",
     "at_most",
+    "attributes",
     "below",
     "between",
+    "declarations",
+    "declared",
     "exactly",
     "finding_of",
     "integers",

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from bounds.reader import Reader
 from bounds.text import NOTHING, Text, Words
 
+LIMIT_SLACK = 1e-12
+"""Relative rounding of a computed limit, which its printed form does not show."""
+
 
 @dataclass(frozen=True)
 class Bound:
@@ -41,6 +44,14 @@ class Bound:
     low_name: str = ""
     high_name: str = ""
     note: Text = NOTHING
+
+    def holds(self, value: float) -> bool:
+        """Whether a finite number is accepted; an end that belongs to the range is so but for rounding."""
+        low, high = self.low, self.high
+        above = low is None or (value > low if self.low_open else value >= low - LIMIT_SLACK * abs(low))
+        return above and (
+            high is None or (value < high if self.high_open else value <= high + LIMIT_SLACK * abs(high))
+        )
 
     def worded(self, reader: Reader) -> str:
         """Return the bound, to be read after "must be"."""

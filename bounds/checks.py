@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bounds.bound import above, at_least, between, integers, one_of
+from bounds.bound import Bound, Choice, above, at_least, between, integers, one_of
+from bounds.declared import declarations
 from bounds.refused import RefusedValue
-from bounds.text import Words
-
-LIMIT_SLACK = 1e-12
-"""Relative rounding of a computed limit, which its printed form does not show."""
+from bounds.text import SiNote, Words
 
 FloatArray = NDArray[np.float64]
 
@@ -43,26 +42,24 @@ class Checks:
             raise self.refused(field, value, "a finite number", suggestion)
         return float(value)
 
+    def in_bound(self, field: str, value: float, bound: Bound, suggestion: Words = "") -> float:
+        """Return `value` as a float if it is a finite number that meets `bound`."""
+        number = self.finite(field, value, suggestion)
+        if not bound.holds(number):
+            raise self.refused(field, value, bound, suggestion)
+        return number
+
     def within(self, field: str, value: float, low: float, high: float, suggestion: Words = "") -> float:
         """Return `value` if low <= value <= high, but for rounding."""
-        number = self.finite(field, value, suggestion)
-        if not low - LIMIT_SLACK * abs(low) <= number <= high + LIMIT_SLACK * abs(high):
-            raise self.refused(field, value, between(low, high), suggestion)
-        return number
+        return self.in_bound(field, value, between(low, high), suggestion)
 
     def positive(self, field: str, value: float, suggestion: Words = "") -> float:
         """Return `value` if it is finite and above zero."""
-        number = self.finite(field, value, suggestion)
-        if number <= 0.0:
-            raise self.refused(field, value, above(0.0), suggestion)
-        return number
+        return self.in_bound(field, value, above(0.0), suggestion)
 
     def not_negative(self, field: str, value: float, suggestion: Words = "") -> float:
         """Return `value` if it is finite and zero or above."""
-        number = self.finite(field, value, suggestion)
-        if number < 0.0:
-            raise self.refused(field, value, at_least(0.0), suggestion)
-        return number
+        return self.in_bound(field, value, at_least(0.0), suggestion)
 
     def integer(self, field: str, value: int, low: int, high: int, suggestion: Words = "") -> int:
         """Return `value` if it is an integer from `low` to `high`."""
@@ -75,6 +72,15 @@ class Checks:
         if value not in names:
             raise self.refused(field, value, one_of(names), suggestion)
         return value
+
+    def declared_fields(self, thing: Any) -> None:
+        """Check the declared fields of a dataclass, whatever the others are."""
+        for field, what in declarations(type(thing)).items():
+            value, advice = getattr(thing, field), SiNote(f"In {what.unit}, for example {what.example}.")
+            if isinstance(what.bound, Choice):
+                self.one_of(field, value, what.bound.names)
+            elif isinstance(what.bound, Bound):
+                self.in_bound(field, value, what.bound, advice if what.unit else "")
 
     def increasing(
         self, field: str, values: Sequence[float] | FloatArray, suggestion: Words = ""

@@ -12,3 +12,4 @@ positive = _CHECKS.positive
 within = _CHECKS.within
 integer = _CHECKS.integer
 increasing = _CHECKS.increasing
+declared_fields = _CHECKS.declared_fields

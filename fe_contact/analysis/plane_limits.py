@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from bounds import DEPTHS
 from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene
 from fe_contact.errors import InputError
+from fe_contact.flank.modification import fields_of
 from fe_contact.geometry import CLAMPED, FlankModification
 
 
@@ -44,7 +46,7 @@ def _refuse_face_effects(scene: ContactScene) -> None:
 def _refuse_varying_flanks(field: str, along_face: FlankModification, advice: str) -> None:
     """Refuse what a flank has along the face, by the amount that varies."""
     bound = "constant along the face for a plane model"
-    for name in ("helix_crowning", "helix_slope", "end_relief", "flank_twist"):
+    for name in fields_of(*DEPTHS):
         if amount := getattr(along_face, name):
             raise InputError(f"{field}.{name}", amount, f"0: {bound}", advice)
     if along_face.flank_grid is not None:

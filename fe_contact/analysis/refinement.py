@@ -24,7 +24,7 @@ AIM = 0.9
 DOUBT = 2.0
 """Factor within which predictions are right: no pass begins where even the finest is too far off by it."""
 SMALL = 0.3
-"""Part of the tolerance, a tenth of what may be used, that is refined only where nothing larger can be."""
+"""Part of the tolerance, a tenth of what may be used, that is refined only where it decides."""
 MESH_STEP = {"plane": {"draft": 0.45, "standard": 0.2}, "face": {"draft": 0.4, "standard": 0.45}}
 """Error of the next level over that of a level, from the pairs of docs/accuracy.md, "Constants"."""
 CLOSER = 0.25
@@ -190,7 +190,8 @@ def _refined(resolution: _Resolution) -> _Resolution:
     """Refine what dominates until the tolerance is predicted to be kept, or nothing is left to refine."""
     while resolution.used > AIM:
         order = np.argsort(-resolution.sources, kind="stable")
-        order = order[(resolution.sources[order] > SMALL) | (resolution.used > 1.0)]
+        decides = (resolution.used > 1.0) & (resolution.used**2 - resolution.sources**2 <= 1.0)
+        order = order[(resolution.sources > SMALL)[order] | decides[order]]
         finer = next((step for source in order if (step := resolution.step(int(source)))), None)
         if finer is None:
             break

@@ -1,15 +1,15 @@
 """Involute gear geometry: one gear, its exact tooth profile, and the pair (ISO 21771-1 vocabulary)."""
 
+from fe_contact.flank.flank_grid import FlankGrid
+from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat, Key, seat_compliance
 from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap, edge_gap
-from fe_contact.geometry.flank_grid import FlankGrid
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_blank import GearBlank
 from fe_contact.geometry.gear_pair import GearPair
 from fe_contact.geometry.internal_gear_pair import InternalGearPair
 from fe_contact.geometry.iso6336_stiffness import Iso6336Stiffness, blank_factor, iso6336_stiffness
-from fe_contact.geometry.modification import FlankModification
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.pitch_deviation import PitchDeviation

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from bounds import between
 from fe_contact.errors import InputError
-from fe_contact.geometry.involute import involute_normal, involute_point
+from fe_contact.flank.involute import involute_normal, involute_point
 from fe_contact.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:

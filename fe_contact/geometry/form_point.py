@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from fe_contact.geometry.involute import involute_function, roll_length_at_radius
+from fe_contact.flank.involute import involute_function, roll_length_at_radius
 from fe_contact.geometry.trochoid import Trochoid
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NoReturn
 from bounds import LIMIT_SLACK, Quantity, SiNote, Text, Words, at_least, at_most, below, exactly
 from fe_contact.checks import finite, positive
 from fe_contact.errors import InfeasibleGeometry
+from fe_contact.flank.modification import UNMODIFIED
 from fe_contact.geometry.backlash import (
     base_radius_sum,
     shift_sum,
@@ -16,7 +17,6 @@ from fe_contact.geometry.backlash import (
     tight_shift_sum,
 )
 from fe_contact.geometry.fillet_interference import fillet_penetration
-from fe_contact.geometry.modification import UNMODIFIED
 from fe_contact.geometry.printed_data import backlash_rounding
 
 if TYPE_CHECKING:

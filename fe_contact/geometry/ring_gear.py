@@ -9,11 +9,11 @@ from typing import ClassVar
 
 from bounds import SiNote
 from fe_contact.checks import integer, positive, within
+from fe_contact.flank.involute import inverse_involute, involute_function
+from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.cutter_trochoid import CutterTrochoid
 from fe_contact.geometry.form_point import FormPoint
-from fe_contact.geometry.involute import inverse_involute, involute_function
-from fe_contact.geometry.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.pinion_cutter import PinionCutter
 from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation
 from fe_contact.geometry.ring_gear_feasibility import refuse_infeasible_ring, refuse_shift_sum_of_cutter

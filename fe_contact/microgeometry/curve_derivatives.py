@@ -18,8 +18,8 @@ from fe_contact.contact import CarryingStrips, ContactSolution, adjoint
 from fe_contact.effects.misalignment import Misalignment, MisalignmentGap
 from fe_contact.effects.modification_gap import ModificationGap
 from fe_contact.errors import InputError, SolveError
+from fe_contact.flank.modification import UNMODIFIED
 from fe_contact.geometry import ParallelAxes
-from fe_contact.geometry.modification import UNMODIFIED
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.variables import (
     ACROSS_FACE,

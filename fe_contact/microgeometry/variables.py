@@ -6,33 +6,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
-from bounds import SiNote, Text, above, at_least
+from bounds import Direction, Kind, SiNote, Text, above, at_least
 from fe_contact.checks import finite
 from fe_contact.effects.lead_modification import LeadModification
 from fe_contact.effects.profile_modification import ProfileModification
 from fe_contact.errors import InputError
+from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import Json
 
 GEARS = ("pinion", "wheel")
-SLOPES = ("profile_slope", "helix_slope", "flank_twist")
-"""Quantities with a sign; all others are material removed."""
-ACROSS_FACE = ("helix_crowning", "helix_slope", "end_relief", "end_relief_length", "flank_twist")
-LENGTHS = ("tip_relief_length", "root_relief_length", "end_relief_length")
-QUANTITIES = (
-    "tip_relief",
-    "tip_relief_length",
-    "root_relief",
-    "root_relief_length",
-    "profile_crowning",
-    "profile_slope",
-    "helix_crowning",
-    "helix_slope",
-    "end_relief",
-    "end_relief_length",
-    "flank_twist",
-)
+QUANTITIES = fields_of(Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
 """Fields of `FlankModification` that can be varied."""
+SLOPES, LENGTHS = fields_of(Kind.SLOPE), fields_of(Kind.LENGTH)
+"""Quantities with a sign, and those that are no material removed."""
+ACROSS_FACE = tuple(name for name in QUANTITIES if Direction.FACE in FLANK_FIELDS[name].along)
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from bounds import Finding
+from bounds import DEPTHS, Direction, Finding, Kind
+from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes, Shaft
-from fe_contact.geometry.modification import AMOUNTS
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import Material
 from fe_contact.plausibility.check import CHECKS
@@ -101,7 +101,7 @@ def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
         for finding in judged("bore", f"{name}.bore_diameter", bore, "m", scale=root, reason=reason):
             yield replace(finding, high=root)
     shape = gear.modification
-    amounts = {field: float(getattr(shape, field)) for field in AMOUNTS}
+    amounts = {field: float(getattr(shape, field)) for field in fields_of(*DEPTHS)}
     amounts["thickness_allowance"] = gear.thickness_allowance
     amounts["pitch_deviation"] = max((abs(value) for value in gear.pitch_deviation.cumulative), default=0.0)
     if shape.flank_grid is not None:
@@ -109,10 +109,10 @@ def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
         amounts["flank_grid.removed"] = removed
     for field, amount in amounts.items():
         yield from _amount(f"{name}.{field}", amount, module)
-    for field in ("tip_relief", "root_relief"):
-        if getattr(shape, field):
-            length = float(getattr(shape, f"{field}_length"))
-            yield from judged("relief_length", f"{name}.{field}_length", length, "m", scale=module)
+    for field in fields_of(Kind.LENGTH):
+        if getattr(shape, field.removesuffix("_length")) and FLANK_FIELDS[field].along is Direction.PROFILE:
+            length = float(getattr(shape, field))
+            yield from judged("relief_length", f"{name}.{field}", length, "m", scale=module)
 
 
 def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:

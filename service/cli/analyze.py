@@ -18,10 +18,10 @@ from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
 from service.convert.plausibility import phrased_database
 from service.convert.task_workers import Hands, working_hands
-from service.convert.units import UM
 from service.directories import cache_home
 from service.problems import JobFailed
 from service.schemas import Case
+from service.units import UM
 
 _SHOWN_HARMONICS = 3
 

@@ -19,7 +19,6 @@ from service.convert.modal import modes_json, modes_of
 from service.convert.response import response_json, response_of
 from service.convert.stamp import stamp
 from service.convert.steady import steady_json, steady_of
-from service.convert.units import RPM
 from service.problems import BadInput, JobFailed
 from service.report.figure import Figure
 from service.report.image import png
@@ -31,6 +30,7 @@ from service.report.write import write_page
 from service.schemas import validated
 from service.schemas.dynamic_studies import ModesInput, ResponseInput, SteadyInput
 from service.schemas.model import BoundaryModel
+from service.units import RPM
 
 Json = dict[str, Any]
 ENDINGS = (".nc", ".json", ".png", ".html")

@@ -14,11 +14,11 @@ from service.cli.ste import positions
 from service.convert.case import boundary_errors
 from service.convert.checks import check_case
 from service.convert.flanks import point_arguments
-from service.convert.units import UM
 from service.directories import cache_home
 from service.problems import BadInput
 from service.schemas import validated
 from service.schemas.flank import FlankPoint
+from service.units import UM
 
 _MOST_POSITIONS = 256
 

@@ -13,8 +13,8 @@ from dynamics.forces import CoastFlank
 from fe_contact.ste import SteDatabase
 from service.cli.output import check_writable, console, print_json
 from service.cli.ste import open_ste
-from service.convert.units import UM
 from service.problems import BadInput
+from service.units import UM
 
 _INPUTS_INSTEAD = {
     "misalignment_um": "the unit's input misalignment",

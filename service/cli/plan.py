@@ -10,8 +10,8 @@ from service.cli.effects import ledger_lines
 from service.cli.judged_case import judged_case
 from service.cli.output import console, print_json, table
 from service.convert.plan import plan_of
-from service.convert.units import UM
 from service.directories import cache_home
+from service.units import UM
 
 
 def run_plan(file: Path, time_budget_s: float | None, *, as_json: bool) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 from fe_contact.ste import SteDatabase
 from service.convert.drafts import draft_line
-from service.convert.units import MM, NM, UM
+from service.units import MM, NM, UM
 
 Json = dict[str, Any]
 _AXES = {

@@ -15,9 +15,9 @@ from fe_contact.analysis.ablation import Ablation, ablate
 from fe_contact.effects import EFFECTS
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.convert.runs import staged
-from service.convert.units import UM
 from service.problems import BadInput
 from service.schemas import Case
+from service.units import UM
 
 Json = dict[str, Any]
 Report = Callable[[str, float], None]

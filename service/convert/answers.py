@@ -10,8 +10,8 @@ import numpy as np
 from fe_contact.ste import Curve, SteDatabase
 from fe_contact.types import Estimate
 from service.convert.case import boundary_errors
-from service.convert.units import MM, UM
 from service.problems import JobFailed
+from service.units import MM, UM
 
 Json = dict[str, Any]
 

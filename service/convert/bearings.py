@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dynamics.forces import RollingContact, SpringCurve
 from dynamics.joints import Bushing, PlanetBearing
 from service.convert.errors import named
-from service.convert.units import MM, MRAD, UM
 from service.schemas.scene import SceneInput
 from service.schemas.scene_bodies import BearingInput, BushingInput, PlanetBearingInput
+from service.units import MM, MRAD, UM
 
 
 def bushing_of(index: int, given: BushingInput) -> Bushing:

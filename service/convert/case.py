@@ -23,10 +23,9 @@ from fe_contact.geometry import (
     RingGear,
     Shaft,
 )
-from fe_contact.geometry.modification import AMOUNTS
 from fe_contact.material import Material
+from service.convert.declared import in_si
 from service.convert.errors import translated
-from service.convert.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, NM, UM
 from service.problems import BadInput
 from service.schemas import (
     AccuracyInput,
@@ -37,10 +36,10 @@ from service.schemas import (
     ToothingInput,
     WheelInput,
 )
+from service.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, NM, UM
 
 Json = dict[str, Any]
 
-_RELIEFS = ("tip_relief", "root_relief", "end_relief")
 _COEFFICIENTS = (
     "profile_shift_coefficient",
     "addendum_coefficient",
@@ -185,13 +184,7 @@ def _shaft(name: str, gear: ToothingInput) -> Shaft | None:
 
 def _modification(given: ToothingInput) -> FlankModification:
     """Return the flank modification of a gear."""
-    facts: Json = {name: getattr(given, f"{name}_um") * UM for name in AMOUNTS}
-    for name in _RELIEFS:
-        facts[f"{name}_length"] = getattr(given, f"{name}_length_mm") * MM
-        facts[f"{name}_shape"] = getattr(given, f"{name}_shape")
-    facts["tip_rounding"], facts["tip_chamfer"] = given.tip_rounding_mm * MM, given.tip_chamfer_mm * MM
-    facts["tip_chamfer_angle"] = given.tip_chamfer_angle_deg * DEGREE
-    return FlankModification(**facts, flank_grid=_flank_grid(given))
+    return FlankModification(**in_si(FlankModification, given), flank_grid=_flank_grid(given))
 
 
 def _flank_grid(given: ToothingInput) -> FlankGrid | None:

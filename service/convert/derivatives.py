@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from fe_contact.microgeometry import CurveDerivatives, FlankDerivatives
-from service.convert.units import MM, UM, factor
 from service.convert.vocabulary import boundary_name
+from service.units import MM, UM, factor
 
 Json = dict[str, Any]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate
-from service.convert.units import UM
+from service.units import UM
 
 
 def draft_line(table: SteDatabase, refining: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from fe_contact.effects.worth.influence import TRIFLE
-from service.convert.units import UM, boundary_text
+from service.units import UM, boundary_text
 
 Entry = Mapping[str, Any]
 

@@ -16,12 +16,12 @@ from dynamics.errors import InputError as DynamicsInputError
 from fe_contact.errors import FeContactError, InfeasibleGeometry
 from fe_contact.errors import InputError as ContactInputError
 from host import Unavailable, missing_extra
-from service.convert.units import factor, unit_in_words, unit_of
 from service.convert.vocabulary import boundary_name, case_field, scene_field
 from service.problems import BadInput, Fault, JobFailed, ServiceError
 from service.schemas import Case
 from service.schemas.faults import field_advice
 from service.schemas.scene import SceneInput
+from service.units import factor, unit_in_words, unit_of
 
 
 @dataclass(frozen=True)

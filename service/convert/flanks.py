@@ -8,9 +8,9 @@ from typing import Any
 
 from fe_contact.analysis import LoadDistribution, flank_results
 from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
-from service.convert.units import MM, UM
 from service.schemas import Case, ErrorsInput, LoadInput
 from service.schemas.flank import FlankPoint
+from service.units import MM, UM
 
 Json = dict[str, Any]
 _PASSED_ON = ("tolerance", "time_budget", "level", "model", "effects", "on_violation")

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fe_contact.types import FloatArray
-from service.convert.units import N_PER_UM, factor
 from service.problems import BadInput, JobFailed
 from service.schemas.query import LIMITS, MOST_POINTS, QueryInput
+from service.units import N_PER_UM, factor
 
 if TYPE_CHECKING:
     from fe_contact.ste.compiled_force import CompiledForce

@@ -15,11 +15,11 @@ from fe_contact.ste import SteDatabase
 from service.convert.answers import curve_json
 from service.convert.case import boundary_errors, gear_pair
 from service.convert.derivatives import derivatives_json
-from service.convert.units import MM, UM
 from service.problems import BadInput, Fault, NotAnalysed, NotFound
 from service.schemas import Case
 from service.schemas.live import LiveInput
 from service.schemas.reading import validated
+from service.units import MM, UM
 
 Json = dict[str, Any]
 

@@ -11,8 +11,8 @@ from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
-from service.convert.units import RPM
 from service.schemas.dynamic_studies import ModesInput
+from service.units import RPM
 
 Json = dict[str, Any]
 Progress = Callable[[str, float], None]

@@ -28,7 +28,6 @@ from fe_contact.microgeometry.request import OptimisationRequest
 from fe_contact.workers import InProcess, Workers
 from service.convert.ablation import in_um
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
-from service.convert.units import UM, factor
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
 from service.schemas.optimisation import (
@@ -38,6 +37,7 @@ from service.schemas.optimisation import (
     ScatterInput,
     SearchInput,
 )
+from service.units import UM, factor
 
 Json = dict[str, Any]
 Report = Callable[[str, float], None]

@@ -11,8 +11,8 @@ from fe_contact.analysis.deformed_pair import mesh_angles
 from fe_contact.geometry import ParallelAxes, Toothing, tooth_profile
 from fe_contact.types import FloatArray
 from service.convert.case import boundary_errors, gear_pair
-from service.convert.units import DEGREE, MM
 from service.schemas import Case
+from service.units import DEGREE, MM
 
 Json = dict[str, Any]
 

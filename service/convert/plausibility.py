@@ -18,10 +18,10 @@ from fe_contact.plausibility import pair_findings
 from fe_contact.ste import SteDatabase
 from service.convert.case import analysis_arguments, gear_pair
 from service.convert.errors import named
-from service.convert.units import DEGREE, GPA, MM, UM, factor, unit_name
 from service.convert.vocabulary import case_field, scene_field
 from service.schemas import Case
 from service.schemas.scene import SceneInput
+from service.units import DEGREE, GPA, MM, UM, factor, unit_name
 
 Json = dict[str, Any]
 MPA = 1e6

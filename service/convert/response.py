@@ -11,8 +11,8 @@ from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ForcedResponse, Peak, forced_response, peaks
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
-from service.convert.units import N_PER_UM, RPM, UM
 from service.schemas.dynamic_studies import ResponseInput
+from service.units import N_PER_UM, RPM, UM
 
 Json = dict[str, Any]
 Progress = Callable[[str, float], None]

@@ -10,8 +10,8 @@ from typing import Any
 from fe_contact.analysis import RootStress, RootStressHistory, root_stress
 from fe_contact.analysis.root_stress_history import ROOTS, RootPeak
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
-from service.convert.units import MM, UM
 from service.schemas import Case
+from service.units import MM, UM
 
 Json = dict[str, Any]
 GEARS = ("pinion", "wheel")

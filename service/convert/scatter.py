@@ -13,10 +13,10 @@ from fe_contact.microgeometry.tolerance_study import check_scatter
 from fe_contact.workers import Workers
 from service.convert.ablation import in_um
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
-from service.convert.units import UM
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
 from service.schemas.sampling import SamplingInput
+from service.units import UM
 
 Json = dict[str, Any]
 _ACCURACY = ("tolerance", "level", "time_budget", "model", "effects")

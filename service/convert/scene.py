@@ -29,7 +29,6 @@ from service.convert.case import boundary_errors
 from service.convert.errors import named
 from service.convert.shafts import has_bent_shafts, shaft_of
 from service.convert.topology import Teeth, check_center_distances, teeth_of
-from service.convert.units import DEGREE, MM, NM, RPM, UM
 from service.schemas.scene import CoastFlankInput, MeshInput, SceneInput
 from service.schemas.scene_bodies import (
     CouplingInput,
@@ -38,6 +37,7 @@ from service.schemas.scene_bodies import (
     InertiaInput,
 )
 from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorqueInput, SpeedTorqueInput
+from service.units import DEGREE, MM, NM, RPM, UM
 
 _SMALLEST_STEP_S = 1e-12
 ANY_STIFFNESS = 1e8  # N/m; checks that need no table do not read it

@@ -12,8 +12,8 @@ from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sens
 from fe_contact.geometry import ParallelAxes
 from fe_contact.workers import InProcess, Workers
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
-from service.convert.units import MM, UM
 from service.schemas import Case
+from service.units import MM, UM
 
 Json = dict[str, Any]
 _PASSED_ON = ("tolerance", "time_budget", "level", "model", "positions", "effects")

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dynamics.bodies import BeamSection, Inertia, Shaft
 from fe_contact.ste import SteDatabase
 from service.convert.errors import named
-from service.convert.units import MM
 from service.schemas.scene_bodies import InertiaInput
 from service.schemas.scene_shafts import SectionInput, ShaftInput
+from service.units import MM
 
 GPA = 1e9
 

@@ -12,8 +12,8 @@ from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
 from dynamics.periodic.steady_states import BRANCH, CURVES, UP
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
-from service.convert.units import RPM, UM
 from service.schemas.dynamic_studies import SteadyInput
+from service.units import RPM, UM
 
 Json = dict[str, Any]
 Progress = Callable[[str, float], None]

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from dynamics.mechanism.base_pitches import PRINTED
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
-from service.convert.units import MM
 from service.problems import BadInput
 from service.schemas.scene import SceneInput
+from service.units import MM
 
 _SAME = 1e-6  # relative; lengths that are typed with a few digits agree to this
 

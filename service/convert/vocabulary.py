@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from fe_contact.flank.modification import FlankModification
+from service.schemas.declared import figures
+
 # Fields of a case, by the library's name (see fe_contact.geometry and fe_contact.planning).
 _CASE = {
     "normal_module": "pair.normal_module_mm",
@@ -23,7 +26,7 @@ _CASE = {
     "on_violation": "accuracy.on_violation",
 }
 
-_LAST = {
+_LAST = {figure.name: figure.field for figure in figures(FlankModification)} | {
     # gear
     "face_width": "face_width_mm",
     "bore_diameter": "bore_diameter_mm",
@@ -31,18 +34,6 @@ _LAST = {
     "tip_diameter": "tip_diameter_mm",
     "thickness_allowance": "thickness_allowance_um",
     "pitch_deviation": "pitch_deviation_um",
-    "tip_relief": "tip_relief_um",
-    "tip_relief_length": "tip_relief_length_mm",
-    "root_relief": "root_relief_um",
-    "root_relief_length": "root_relief_length_mm",
-    "tip_rounding": "tip_rounding_mm",
-    "tip_chamfer": "tip_chamfer_mm",
-    "tip_chamfer_angle": "tip_chamfer_angle_deg",
-    "profile_crowning": "profile_crowning_um",
-    "profile_slope": "profile_slope_um",
-    "helix_crowning": "helix_crowning_um",
-    "helix_slope": "helix_slope_um",
-    "flank_twist": "flank_twist_um",
     "rim_thickness": "rim_thickness_mm",
     "web_thickness": "web_thickness_mm",
     "hub_diameter": "hub_diameter_mm",
@@ -55,8 +46,6 @@ _LAST = {
     "roll_length": "roll_length_mm",
     "face_position": "face_position_mm",
     "removed": "removed_um",
-    "end_relief": "end_relief_um",
-    "end_relief_length": "end_relief_length_mm",
     "youngs_modulus": "youngs_modulus_gpa",
     "diameter": "diameter_mm",
     "reference_diameter": "reference_diameter_mm",

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from service.convert.units import UM, factor
 from service.convert.vocabulary import boundary_name
 from service.report import palette
 from service.report.figure import (
@@ -23,6 +22,7 @@ from service.report.figure import (
 )
 from service.report.page import Headline, Page, Section
 from service.report.stored_optimisation import ShownDesign, ShownOptimisation
+from service.units import UM, factor
 
 MOST_CURVES = 8
 _POSITION = "position, base pitches"

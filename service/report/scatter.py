@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from fe_contact.microgeometry import ToleranceStudy
-from service.convert.units import UM
 from service.convert.vocabulary import boundary_name
 from service.report import palette
 from service.report.figure import Axis, Figure, Line, Panel, Table, number, thousands
 from service.report.page import Headline, Page, Section
+from service.units import UM
 
 _STEPS = 400
 

@@ -11,9 +11,9 @@ from dynamics.influence import Influence as SceneInfluence
 from dynamics.influence.linear_figures import LinearFigures
 from fe_contact.analysis.ablation import Ablation, EffectAblation, Figures
 from fe_contact.effects.worth import Influence
-from service.convert.units import UM
 from service.report.figure import FloatArray
 from service.report.stored_ladder import Json
+from service.units import UM
 
 
 def stored_ablation(content: Json) -> Ablation | SceneAblation:

@@ -11,9 +11,9 @@ import numpy as np
 from fe_contact.microgeometry import DesignVariable, Ended, HarrisMap, ScatterNodes, SearchRun, StepAside
 from fe_contact.microgeometry.design_problem import Judged
 from fe_contact.types import Estimate
-from service.convert.units import UM, factor
 from service.report.figure import FloatArray
 from service.report.stored_ladder import Json
+from service.units import UM, factor
 
 
 class ShownDesign(Protocol):

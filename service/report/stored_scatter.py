@@ -8,9 +8,9 @@ import numpy as np
 
 from fe_contact.microgeometry import ToleranceStudy
 from fe_contact.microgeometry.spread import Quantile
-from service.convert.units import UM
 from service.report.figure import FloatArray
 from service.report.stored_ladder import Json
+from service.units import UM
 
 
 def stored_scatter(content: Json) -> ToleranceStudy:

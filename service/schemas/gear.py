@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 from pydantic import Field, Strict, model_validator
 
+from fe_contact.flank.modification import FlankModification
+from service.schemas.declared import figures, with_fields
 from service.schemas.gear_body import BoreSeatInput, GearBlankInput, GearShaftInput, MaterialInput
 from service.schemas.model import BoundaryModel, refuse
 
-Relief = Annotated[float, Field(ge=0.0, le=1000.0)]
-Length = Annotated[float, Field(ge=0.0, le=10_000.0)]
-Shape = Literal["linear", "parabolic"]
 GridAxis = Annotated[
     tuple[Annotated[float, Field(ge=-10_000.0, le=10_000.0)], ...],
     Strict(False),
@@ -22,9 +21,6 @@ GridRow = Annotated[
     Strict(False),
     Field(min_length=2, max_length=500),
 ]
-
-
-EdgeLength = Annotated[float, Field(ge=0.0, le=100.0)]
 PitchDeviations = Annotated[
     tuple[Annotated[float, Field(ge=-1000.0, le=1000.0)], ...], Strict(False), Field(max_length=1000)
 ]
@@ -47,6 +43,7 @@ class FlankGridInput(BoundaryModel):
     )
 
 
+@with_fields({figure.field: figure.as_field() for figure in figures(FlankModification)})
 class ToothingInput(BoundaryModel):
     """What all gears have. Modifications: > 0 is material removed, normal to the involute, transverse."""
 
@@ -90,62 +87,6 @@ class ToothingInput(BoundaryModel):
         description="Normal tooth thickness removed at the reference circle in um (backlash)",
         examples=[50.0],
     )
-    tip_relief_um: Relief = Field(
-        default=0.0, description="Tip relief in um at the tip diameter", examples=[20.0]
-    )
-    tip_relief_length_mm: Length = Field(
-        default=0.0, description="Length of the tip relief in mm along the radius", examples=[1.5]
-    )
-    tip_relief_shape: Shape = Field(
-        default="linear", description="Tip relief over its length", examples=["linear"]
-    )
-    root_relief_um: Relief = Field(
-        default=0.0, description="Root relief in um at the start of the involute", examples=[10.0]
-    )
-    root_relief_length_mm: Length = Field(
-        default=0.0, description="Length of the root relief in mm along the radius", examples=[1.0]
-    )
-    root_relief_shape: Shape = Field(
-        default="linear", description="Root relief over its length", examples=["linear"]
-    )
-    profile_crowning_um: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=1000.0,
-        description="Profile crowning in um at both ends of the profile",
-        examples=[5.0],
-    )
-    profile_slope_um: float = Field(
-        default=0.0, ge=-1000.0, le=1000.0, description="Profile slope in um from root to tip", examples=[5.0]
-    )
-    helix_crowning_um: float = Field(
-        default=0.0,
-        ge=0.0,
-        le=1000.0,
-        description="Lead crowning in um at both ends of the face",
-        examples=[5.0],
-    )
-    helix_slope_um: float = Field(
-        default=0.0,
-        ge=-1000.0,
-        le=1000.0,
-        description="Helix slope in um over the face width",
-        examples=[5.0],
-    )
-    end_relief_um: Relief = Field(default=0.0, description="End relief in um at both faces", examples=[10.0])
-    end_relief_length_mm: Length = Field(
-        default=0.0, description="Length of the end relief in mm along the face", examples=[2.0]
-    )
-    end_relief_shape: Shape = Field(
-        default="linear", description="End relief over its length", examples=["linear"]
-    )
-    flank_twist_um: float = Field(
-        default=0.0,
-        ge=-1000.0,
-        le=1000.0,
-        description="Twist in um at the corners of the flank; > 0 removes at the tip where z is positive",
-        examples=[5.0],
-    )
     flank_grid: FlankGridInput | None = Field(
         default=None,
         description="Free-form flank, removed besides the amounts above",
@@ -156,24 +97,6 @@ class ToothingInput(BoundaryModel):
                 "removed_um": [[0.0, 0.0], [5.0, 7.0]],
             }
         ],
-    )
-    tip_rounding_mm: EdgeLength = Field(
-        default=0.0,
-        description="Radius in mm of the rounded tip edge in the transverse plane, tangent to flank and tip "
-        "circle; 0 is a sharp edge",
-        examples=[0.3],
-    )
-    tip_chamfer_mm: EdgeLength = Field(
-        default=0.0,
-        description="Radial height h_K in mm of the tip chamfer: d_Fa = d_a - 2 h_K",
-        examples=[0.4],
-    )
-    tip_chamfer_angle_deg: float = Field(
-        default=30.0,
-        ge=5.0,
-        le=85.0,
-        description="Angle in deg between flank and tip chamfer in the transverse plane",
-        examples=[30.0],
     )
     pitch_deviation_um: PitchDeviations = Field(
         default=(),
@@ -209,23 +132,6 @@ class ToothingInput(BoundaryModel):
         if count not in (0, self.teeth):
             bound = f"a list of {self.teeth} values, one per tooth"
             refuse("pitch_deviation_um", f"{count} values", bound, "In the order in which the teeth mesh.")
-        return self
-
-    @model_validator(mode="after")
-    def _relief_has_length(self) -> Self:
-        """Refuse a relief over no length: it would be a step."""
-        for name in ("tip_relief", "root_relief", "end_relief"):
-            length = f"{name}_length_mm"
-            if getattr(self, f"{name}_um") > 0.0 and getattr(self, length) == 0.0:
-                refuse(length, 0.0, f"above 0 when {name}_um is given", f"Give {length}, for example 1.5.")
-        return self
-
-    @model_validator(mode="after")
-    def _one_tip_edge(self) -> Self:
-        """Refuse a tip that is rounded and chamfered."""
-        if self.tip_rounding_mm > 0.0 and self.tip_chamfer_mm > 0.0:
-            advice = "The tip has a rounding or a chamfer: give one of them."
-            refuse("tip_chamfer_mm", self.tip_chamfer_mm, "0 where tip_rounding_mm is given", advice)
         return self
 
 

@@ -6,17 +6,11 @@ from typing import Annotated, Any, Literal, Optional
 
 from pydantic import Field, Strict, create_model
 
+from fe_contact.flank.modification import FlankModification
 from service.schemas.case import Case
+from service.schemas.declared import figures
 from service.schemas.gear import ToothingInput
 from service.schemas.model import BoundaryModel
-
-FLANK_FIELDS = tuple(
-    name
-    for name in ToothingInput.model_fields
-    if name.startswith(("tip_relief", "root_relief", "end_relief", "profile_crowning", "profile_slope"))
-    or name.startswith(("helix_", "flank_twist", "tip_rounding", "tip_chamfer"))
-)
-"""Modifications of a gear that a live question may change: amounts, lengths, shapes and tip edges."""
 
 
 def _left_out(name: str) -> Any:
@@ -31,7 +25,7 @@ FlankChange = create_model(
     "FlankChange",
     __base__=BoundaryModel,
     __doc__="Flank modifications of one gear; > 0 is material removed.",
-    **{name: _left_out(name) for name in FLANK_FIELDS},
+    **{figure.field: _left_out(figure.field) for figure in figures(FlankModification)},
 )
 
 Torque = Annotated[float, Field(ge=1e-9, le=1e9)]

@@ -3,47 +3,43 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Optional, Self
 
 from pydantic import Field, Strict, model_validator
 
+from bounds import DEPTHS, Kind
+from fe_contact.flank.modification import FlankModification
+from service.schemas.declared import Figure, figures, with_fields
 from service.schemas.model import BoundaryModel, refuse
 
-Removed = Annotated[float, Field(ge=0.0, le=1000.0)]
-Signed = Annotated[float, Field(ge=-1000.0, le=1000.0)]
-Millimetres = Annotated[float, Field(gt=0.0, le=10_000.0)]
-Amounts = Annotated[tuple[Removed, Removed], Strict(False)]
-Slopes = Annotated[tuple[Signed, Signed], Strict(False)]
-Lengths = Annotated[tuple[Millimetres, Millimetres], Strict(False)]
 Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
 Torque = Annotated[float, Field(gt=0.0, le=1e9)]
 Torques = Annotated[tuple[Torque, ...], Strict(False), Field(min_length=1, max_length=64)]
 
 
-def _bounds(what: str) -> Any:
-    """Return the field of an amount: lowest and highest value."""
-    return Field(default=None, description=f"Bounds of the {what} in um", examples=[[0.0, 30.0]])
+def _ends(figure: Figure) -> tuple[Any, Any]:
+    """Return the field of a figure's lowest and highest value; no length may vanish."""
+    number: Any = figure.accepted
+    if figure.what.kind is Kind.LENGTH:
+        number = Annotated[float, Field(gt=0.0, le=figure.limits["le"])]
+    pair: Any = Annotated[tuple[number, number], Strict(False)]
+    text = figure.with_unit(f"Bounds of the {figure.words}")
+    example = [[0.0 if figure.what.kind in DEPTHS else 0.5, figure.own(2.0 * figure.what.example)]]
+    return Optional[pair], Field(default=None, description=text, examples=example)  # noqa: UP045
 
 
-def _lengths(what: str) -> Any:
-    """Return the field of a length: lowest and highest value."""
-    return Field(default=None, description=f"Bounds of the length of the {what} in mm", examples=[[0.5, 3.0]])
+def _deviation(figure: Figure) -> tuple[Any, Any]:
+    """Return the field of a figure's standard deviation."""
+    text = figure.with_unit(f"Standard deviation of the {figure.words}")
+    return Optional[Deviation], Field(default=None, description=text, examples=[3.0])  # noqa: UP045
 
 
+_FREE = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+
+
+@with_fields({figure.field: _ends(figure) for figure in _FREE})
 class GearVariablesInput(BoundaryModel):
     """Figures of one gear's modifications that are free, each between two bounds; all others stay."""
-
-    tip_relief_um: Amounts | None = _bounds("tip relief")
-    tip_relief_length_mm: Lengths | None = _lengths("tip relief")
-    root_relief_um: Amounts | None = _bounds("root relief")
-    root_relief_length_mm: Lengths | None = _lengths("root relief")
-    profile_crowning_um: Amounts | None = _bounds("profile crowning")
-    profile_slope_um: Slopes | None = _bounds("profile slope")
-    helix_crowning_um: Amounts | None = _bounds("helix crowning")
-    helix_slope_um: Slopes | None = _bounds("helix slope")
-    end_relief_um: Amounts | None = _bounds("end relief")
-    end_relief_length_mm: Lengths | None = _lengths("end relief")
-    flank_twist_um: Slopes | None = _bounds("flank twist")
 
     @model_validator(mode="after")
     def _rising(self) -> Self:
@@ -62,25 +58,9 @@ class VariablesInput(BoundaryModel):
     wheel: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driven gear")
 
 
-def _deviation(what: str, unit: str) -> Any:
-    """Return the field of a standard deviation."""
-    return Field(default=None, description=f"Standard deviation of the {what} in {unit}", examples=[3.0])
-
-
+@with_fields({figure.field: _deviation(figure) for figure in _FREE})
 class GearScatterInput(BoundaryModel):
     """Standard deviations of one gear's modifications as manufactured; what is left out does not scatter."""
-
-    tip_relief_um: Deviation | None = _deviation("tip relief", "um")
-    tip_relief_length_mm: Deviation | None = _deviation("length of the tip relief", "mm")
-    root_relief_um: Deviation | None = _deviation("root relief", "um")
-    root_relief_length_mm: Deviation | None = _deviation("length of the root relief", "mm")
-    profile_crowning_um: Deviation | None = _deviation("profile crowning", "um")
-    profile_slope_um: Deviation | None = _deviation("profile slope", "um")
-    helix_crowning_um: Deviation | None = _deviation("helix crowning", "um")
-    helix_slope_um: Deviation | None = _deviation("helix slope", "um")
-    end_relief_um: Deviation | None = _deviation("end relief", "um")
-    end_relief_length_mm: Deviation | None = _deviation("length of the end relief", "mm")
-    flank_twist_um: Deviation | None = _deviation("flank twist", "um")
 
 
 class ScatterInput(BoundaryModel):

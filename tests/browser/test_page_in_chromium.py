@@ -23,6 +23,10 @@ from page_visit import (
 from playwright.sync_api import Browser, Page, expect
 from running_service import until
 
+from bounds import DEPTHS, Direction, Kind
+from fe_contact.flank.modification import FlankModification
+from service.schemas.declared import figures
+
 FIGURES = (
     "ste",
     "ripple",
@@ -100,6 +104,30 @@ def test_flanks_go_from_the_sliders_into_the_case(visit: Visit) -> None:
 def test_in_the_plane_nothing_across_the_face_is_offered(visit: Visit) -> None:
     assert visit.page.locator("#live-misalignment_um").is_disabled()
     assert visit.page.locator("#live-pinion-helix_crowning_um").is_disabled()
+
+
+def test_every_depth_of_either_flank_has_a_slider_and_acts_along_what_it_is_declared_to(visit: Visit) -> None:
+    page = visit.page
+    depths = figures(FlankModification, *DEPTHS)
+    sliders = page.locator("#sliders input[type=range]")
+    assert sliders.count() == 2 + 2 * len(depths)
+    for depth in depths:
+        for gear in ("pinion", "wheel"):
+            slider = page.locator(f"#live-{gear}-{depth.field}")
+            assert slider.is_disabled() == (Direction.FACE in depth.what.along), depth.field
+            signed = float(slider.get_attribute("min") or "nan") < 0.0
+            assert signed == (depth.what.kind is Kind.SLOPE), depth.field
+
+
+def test_a_folded_slider_redraws_the_curve_and_takes_the_length_that_its_relief_needs(visit: Visit) -> None:
+    page = visit.page
+    before, count = peak_to_peak(page), answers(page)
+    page.locator("#sliders summary").press("Enter")
+    page.locator("#live-pinion-root_relief_um").press("End")
+    until(lambda: answers(page) > count)
+    expect(page.locator("#live-figures dd").first).not_to_have_text(before)
+    page.get_by_role("button", name="Take these flanks").press("Enter")
+    assert float(page.locator("#f-pair-pinion-root_relief_length_mm").input_value()) > 0.0
 
 
 def test_a_fault_is_said_at_its_field_and_the_list_leads_there(

@@ -12,8 +12,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from fe_contact.errors import InfeasibleGeometry
+from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import Gear, InternalGearPair, RingGear, tooth_profile
-from fe_contact.geometry.involute import involute_function
 from fe_contact.types import FloatArray
 
 RACKS = st.fixed_dictionaries(

@@ -10,9 +10,9 @@ from printed_pairs import Row, printed_case, printed_pairs
 
 from fe_contact.analysis import analyze
 from fe_contact.errors import InfeasibleGeometry
+from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.geometry.backlash import base_circle_backlash
-from fe_contact.geometry.involute import involute_function
 from fe_contact.geometry.printed_data import (
     CENTER_DISTANCE,
     HELIX_ANGLE,

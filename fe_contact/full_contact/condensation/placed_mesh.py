@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.flank.involute import involute_normal
 from fe_contact.full_contact.condensation.boundary import GearBoundary, gear_boundary
 from fe_contact.full_contact.condensation.resolution import Resolution
 from fe_contact.full_contact.condensation.sites import ContactSite
 from fe_contact.geometry import ParallelAxes, Toothing
-from fe_contact.geometry.involute import involute_normal
 from fe_contact.mesh.gear_mesh import real_teeth
 from fe_contact.mesh.quadratic import QuadraticMesh, quadratic_mesh, region, rotated
 from fe_contact.mesh.quality import QualityLimits, refuse_poor_elements

@@ -1,9 +1,7 @@
 // @ts-check
 /** What two designs differ in, and which flank modifications one has, in the words of the form. */
 
-import { at, same } from "./schema.js";
-
-const FLANK = /(relief|crowning|slope|twist|flank_grid|pitch_deviation)/;
+import { at, ofFlank, same } from "./schema.js";
 
 /** @typedef {import("./field.js").Field} Field */
 /** @typedef {{field: Field, words: string, before: string, now: string}} Difference */
@@ -31,7 +29,7 @@ export function differences(fields, before, now) {
  */
 export function flankWords(fields, content) {
   const modified = [...fields].filter((field) => (
-    field.path[0] === "pair" && FLANK.test(field.name) && !same(valueIn(field, content), field.schema.default ?? null)));
+    field.path[0] === "pair" && ofFlank(field.path.slice(2).join("."), field.schema) && !same(valueIn(field, content), field.schema.default ?? null)));
   const { pinion, wheel } = content.pair;
   const parts = modified.map((field) => `${field.words} ${field.wordsFor(at(content, field.path))}`);
   return [`${pinion.teeth}/${wheel.teeth}`, ...parts].join(", ");

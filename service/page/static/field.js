@@ -48,7 +48,7 @@ export class Field {
 
   get hint() {
     const full = SYMBOLS.reduce((found, [from, to]) => found.replace(from, to), this.schema.description || "");
-    const text = full.replace(/ in (mm|µm|degrees|N m|GPa)\b/, "");
+    const text = full.replace(/,? in (mm|µm|deg|degrees|N m|GPa)\b/, "");
     return text.toLowerCase() === this.label.toLowerCase() ? "" : text;
   }
 

@@ -2,17 +2,18 @@
 
 import { byId, folded, make } from "./elements.js";
 import { Field, unitOf, wordsOf } from "./field.js";
-import { at, leaves, put, resolved } from "./schema.js";
+import { at, leaves, ofFlank, put, resolved } from "./schema.js";
 
 /** Rows of the table of gears that are always shown; the others open when asked for. */
 const MAIN = new Set([
   "teeth", "face_width_mm", "bore_diameter_mm", "rim_diameter_mm", "profile_shift_coefficient", "tip_relief_um",
   "tip_relief_length_mm", "helix_crowning_um", "internal",
 ]);
+const TEETH = /^(addendum|dedendum|root_radius|tip_diameter|thickness|cutter)/;
 const GROUPS = {
-  "More of the teeth": /^(addendum|dedendum|root_radius|tip_diameter|thickness|cutter)/,
-  "More flank modifications": /^(tip_relief_shape|tip_rounding|tip_chamfer|root_relief|profile_|helix_slope|end_relief|flank_|pitch_)/,
-  "Body, seat, shaft and material": /./,
+  "More of the teeth": (name) => TEETH.test(name),
+  "More flank modifications": ofFlank,
+  "Body, seat, shaft and material": () => true,
 };
 
 const TYPING = 1500; // milliseconds after which a field that has the focus says what is wrong with it
@@ -84,8 +85,9 @@ export class CaseForm {
     const order = [...MAIN].filter((name) => names.includes(name));
     const left = new Set(names.filter((name) => !MAIN.has(name)));
     const main = this.gearTable("Main data of both gears", order, gears);
-    const groups = Object.entries(GROUPS).map(([title, pattern]) => {
-      const mine = [...left].filter((name) => pattern.test(name));
+    const leaf = (name) => gears[0].get(name) ?? gears[1].get(name);
+    const groups = Object.entries(GROUPS).map(([title, belongs]) => {
+      const mine = [...left].filter((name) => belongs(name, leaf(name).schema));
       mine.forEach((name) => left.delete(name));
       return folded(title, this.gearTable(title, mine, gears));
     });

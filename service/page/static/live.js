@@ -56,10 +56,10 @@ export class Live {
   }
 
   controls() {
-    this.sliders = new Sliders(this.known, () => this.ask());
+    this.sliders = new Sliders(this.known, [...this.design.fields], () => this.ask());
     const note = this.known.plane ? make(
       "div", {},
-      make("p", { class: "hint" }, "Computed in the plane: crowning and misalignment act across the face and need three dimensions."),
+      make("p", { class: "hint" }, "Computed in the plane: misalignment, crowning and all else that acts across the face need three dimensions."),
       make("button", { type: "button", onclick: () => this.actions.inThreeDimensions() }, "Analyse in three dimensions"),
     ) : null;
     const button = (text, action, id) => make("button", { type: "button", id, onclick: action }, text);

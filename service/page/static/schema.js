@@ -38,6 +38,11 @@ export function kindOf(schema) {
   return "json";
 }
 
+/** Whether a field of a gear is of its flanks: a figure declared to act along them, or one of their two tables. */
+export function ofFlank(name, schema) {
+  return Boolean(schema["x-along"]) || /^(flank_grid|pitch_deviation)/.test(name);
+}
+
 export function at(content, path) {
   return path.reduce((inner, name) => (inner === null || inner === undefined ? undefined : inner[name]), content);
 }

@@ -1,45 +1,58 @@
-/** The sliders of the live flanks: torque, tip relief, crowning, misalignment, each with its exact number. */
+/** The sliders of the live flanks: torque, misalignment and every depth of the flanks, each with its exact number. */
 
-import { make } from "./elements.js";
+import { folded, make } from "./elements.js";
 
-const RELIEF_LENGTH = 0.5; // normal modules, where the case has no relief to take it from
-const ACROSS = ["helix_crowning_um", "misalignment_um"];
+const MAIN = ["pinion.tip_relief_um", "wheel.tip_relief_um", "pinion.helix_crowning_um"]; // the others are folded away
+const DEPTHS = ["amount", "slope"]; // kinds of figures that have a slider
+const ACROSS = 30; // most of a depth across the face, µm
+const RELIEF_LENGTH = { profile: 0.5, face: 0.1 }; // normal modules, face widths; where the case has no relief to take it from
 
 const rounded = (value, step) => Math.round(value / step) * step;
 
+/** The slider of a depth of one flank, as its field declares it. */
+function depth(field, content) {
+  const [, gear, name] = field.path;
+  const value = content.pair[gear][name];
+  const across = field.schema["x-along"].includes("face");
+  const most = Math.max(across ? ACROSS : Math.max(20, rounded(12 * content.pair.normal_module_mm, 5)), Math.abs(value));
+  const low = field.schema["x-kind"] === "slope" ? -most : 0;
+  return { key: `${gear}.${name}`, label: `${field.label}, ${gear}`, unit: "µm", low, high: most, value, across };
+}
+
 /** What the sliders change: name of the value, label, unit, range by case. */
-function knobs(known) {
-  const relief = Math.max(20, rounded(12 * known.case.pair.normal_module_mm, 5));
-  const gear = (name) => known.case.pair[name];
+function knobs(known, fields) {
+  const flanks = fields.filter(({ schema }) => DEPTHS.includes(schema["x-kind"]));
   return [
     { key: "torque_n_m", label: "Torque on the pinion", unit: "N m", low: 0, high: 2 * known.highest, value: known.torque },
-    { key: "pinion.tip_relief_um", label: "Tip relief, pinion", unit: "µm", low: 0, high: relief, value: gear("pinion").tip_relief_um },
-    { key: "wheel.tip_relief_um", label: "Tip relief, wheel", unit: "µm", low: 0, high: relief, value: gear("wheel").tip_relief_um },
-    { key: "pinion.helix_crowning_um", label: "Crowning, pinion", unit: "µm", low: 0, high: 30, value: gear("pinion").helix_crowning_um },
-    { key: "misalignment_um", label: "Misalignment", unit: "µm", low: -50, high: 50, value: 0 },
+    { key: "misalignment_um", label: "Misalignment", unit: "µm", low: -50, high: 50, value: 0, across: true },
+    ...flanks.map((field) => depth(field, known.case)),
   ];
 }
 
 export class Sliders {
   /**
    * @param {object} known the analysed pair
+   * @param {import("./field.js").Field[]} fields of a case
    * @param {() => void} changed called after every move
    */
-  constructor(known, changed) {
+  constructor(known, fields, changed) {
     this.known = known;
     this.changed = changed;
-    this.controls = knobs(known).map((knob) => this.control(knob));
+    this.controls = knobs(known, fields).map((knob) => this.control(knob));
   }
 
   get blocks() {
-    return this.controls.map(({ block }) => block);
+    const block = (key) => this.controls.find(({ knob }) => knob.key === key).block;
+    const main = ["torque_n_m", ...MAIN, "misalignment_um"];
+    const rest = this.controls.filter(({ knob }) => !main.includes(knob.key));
+    return [...main.map(block), folded("More flank modifications", ...rest.map((control) => control.block))];
   }
 
   control(knob) {
     const id = `live-${knob.key.replace(".", "-")}`;
     const step = knob.high > 500 ? 5 : knob.high > 100 ? 1 : knob.high > 20 ? 0.5 : knob.high / 100;
     const low = knob.key === "torque_n_m" ? step : knob.low;
-    const disabled = this.known.plane && ACROSS.some((name) => knob.key.endsWith(name));
+    const disabled = this.known.plane && knob.across;
     const facts = { min: low, max: knob.high, step, disabled };
     const range = make("input", { ...facts, type: "range", id });
     const exact = make("input", { ...facts, id: `${id}-exact`, type: "number", step: "any", "aria-label": `${knob.label}, ${knob.unit}, as a number` });
@@ -89,8 +102,9 @@ export class Sliders {
       if (!name || this.value(knob.key) === knob.value) continue;
       changes[gear][name] = this.value(knob.key);
       const { pair } = this.known.case;
-      if (name === "tip_relief_um" && !pair[gear].tip_relief_length_mm) {
-        changes[gear].tip_relief_length_mm = RELIEF_LENGTH * pair.normal_module_mm;
+      const length = name.replace("_um", "_length_mm");
+      if (pair[gear][length] === 0) {
+        changes[gear][length] = knob.across ? RELIEF_LENGTH.face * pair[gear].face_width_mm : RELIEF_LENGTH.profile * pair.normal_module_mm;
       }
     }
     return changes;

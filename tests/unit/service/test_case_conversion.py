@@ -32,11 +32,11 @@ from fe_contact.errors import InputError, MeshError
 from service.convert.case import analysis_arguments, case_json, gear_pair
 from service.convert.checks import check_case
 from service.convert.errors import translated
-from service.convert.units import factor
 from service.jobs.key import content_key
 from service.problems import BadInput, JobFailed
 from service.schemas import Case, read_model, validated
 from service.schemas.request_examples import CASE
+from service.units import factor
 
 ROOT = Path(__file__).parents[3]
 

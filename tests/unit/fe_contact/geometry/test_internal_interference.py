@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.errors import InfeasibleGeometry
+from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import Gear, internal_gear_pair
 from fe_contact.geometry.internal_gear_pair import InternalGearPair
 from fe_contact.geometry.internal_interference import (
@@ -19,7 +20,6 @@ from fe_contact.geometry.internal_interference import (
     tip_interference,
     trochoidal_interference,
 )
-from fe_contact.geometry.involute import involute_function
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.trimming import radial_clearance

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fe_contact.geometry.involute import (
+from fe_contact.flank.involute import (
     inverse_involute,
     involute_function,
     involute_normal,

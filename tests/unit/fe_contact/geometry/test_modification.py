@@ -2,12 +2,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 import pytest
 
+from bounds import DEPTHS, Direction, Kind
 from fe_contact.errors import InputError
+from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import FlankModification, Gear
 
 
@@ -132,6 +135,39 @@ def test_beyond_the_involute_the_end_value_holds(make_gear: Callable[..., Gear])
     curved = FlankModification(profile_crowning=6e-6, profile_slope=2e-6)
     removed = curved.material_removed(gear, [0.0, 2.0 * gear.tip_roll_length])
     assert removed == pytest.approx([5e-6, 7e-6])
+
+
+def alone(name: str) -> FlankModification:
+    """Return the modification of one depth as its declaration has it, over its length if it needs one."""
+    length = f"{name}_length"
+    names = [name, length] if length in FLANK_FIELDS else [name]
+    return FlankModification(**{each: FLANK_FIELDS[each].example for each in names})
+
+
+@pytest.mark.parametrize("name", fields_of(*DEPTHS, Kind.EDGE))
+def test_a_figure_acts_along_what_it_is_declared_to(make_gear: Callable[..., Gear], name: str) -> None:
+    gear, modification, along = make_gear(), alone(name), FLANK_FIELDS[name].along
+    roll, face = over_profile(gear)[:, None], np.linspace(-12.5e-3, 12.5e-3, 5)
+    removed = modification.material_removed(gear, roll, face)
+    assert bool(np.ptp(removed, axis=0).max() > 0.0) == (Direction.PROFILE in along)
+    assert bool(np.ptp(removed, axis=1).max() > 0.0) == (Direction.FACE in along)
+    assert modification.varies is along
+    assert modification.along_face.neutral == (Direction.FACE not in along)
+    assert modification.along_profile.neutral == (Direction.FACE in along)
+
+
+def test_the_whole_is_the_sum_of_its_parts_and_begins_where_they_do(make_gear: Callable[..., Gear]) -> None:
+    gear = make_gear()
+    parts = [alone(name) for name in (*fields_of(*DEPTHS), "tip_rounding")]
+    plain = FlankModification()
+    facts = [(f.name, getattr(part, f.name)) for part in parts for f in fields(part)]
+    whole = FlankModification(**{name: value for name, value in facts if value != getattr(plain, name)})
+    roll, face = over_profile(gear, 41)[:, None], np.linspace(-12.5e-3, 12.5e-3, 5)
+    apart = sum(part.material_removed(gear, roll, face) for part in parts)
+    assert whole.material_removed(gear, roll, face) == pytest.approx(apart, rel=1e-12, abs=1e-20)
+    assert set(whole.relief_starts(gear)) == {start for part in parts for start in part.relief_starts(gear)}
+    (edge,) = [start for start in whole.relief_starts(gear) if start.ends_flank]
+    assert whole.tip_form_roll_length(gear) == edge.roll_length < gear.tip_roll_length
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from fe_contact.errors import InputError
-from fe_contact.geometry.involute import involute_point
+from fe_contact.flank.involute import involute_point
 from fe_contact.geometry.ring_gear import RingGear
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 from fe_contact.types import FloatArray

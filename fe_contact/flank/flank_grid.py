@@ -71,7 +71,7 @@ class FlankGrid:
     def material_removed(self, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
         """Material removed in m at roll lengths and face positions in m, arrays of equal shape."""
         import host.analysis  # noqa: F401, PLC0415 (says what to install)
-        from fe_contact.geometry.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
+        from fe_contact.flank.bicubic import bicubic  # noqa: PLC0415 (loads the compiler)
 
         flat = (np.ascontiguousarray(place, dtype=float).ravel() for place in (roll_length, face_position))
         removed = bicubic(np.array(self.roll_length), np.array(self.face_position), self._nodes, *flat)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from bounds import Unit
+from bounds import DEPTHS, Declared, Unit
 
 MM = 1e-3
 UM = 1e-6
@@ -28,7 +28,15 @@ BY_SUFFIX: dict[str, Unit] = {
     "_rpm": Unit("rpm", RPM, "rad/s"),
 }
 
+_OF_SI = {"m": "_mm", "rad": "_deg", "Pa": "_gpa", "N/m": "_n_per_um", "N/m^3": "_n_per_mm3"}
+"""The unit of a declared field; depths are in um."""
+
 _IN_WORDS = ("_n_per_mm3", "_gpa", "_deg", "_rpm")
+
+
+def suffix_of(what: Declared) -> str:
+    """Return how the boundary's name of a declared field ends."""
+    return "_um" if what.kind in DEPTHS else _OF_SI.get(what.unit, "")
 
 
 def unit_of(name: str) -> Unit | None:

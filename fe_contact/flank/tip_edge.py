@@ -9,16 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bounds import SiNote, Text, Words
 from fe_contact.checks import within
-from fe_contact.geometry.involute import involute_normal, involute_point
-
-if TYPE_CHECKING:
-    from fe_contact.geometry.toothing import Toothing
+from fe_contact.flank.involute import involute_normal, involute_point
+from fe_contact.flank.tooth import Tooth
 
 FLATTEST, STEEPEST = math.radians(5.0), math.radians(85.0)
 """Angles between flank and chamfer, rad; a flatter one is a relief."""
@@ -29,7 +26,7 @@ _ANGLE = Text.of("The chamfer must run on towards the tip circle. ", SiNote("In 
 _CHAMFER = "It must leave an involute and some of the tip; at a smaller angle it takes less of the tip."
 
 
-def rounding_start(gear: Toothing, radius: float) -> float:
+def rounding_start(gear: Tooth, radius: float) -> float:
     """Roll length in m of the tip form point of a rounding that touches involute and tip circle.
 
     Its centre lies on the normal of the tip form point, `radius` inside the tooth, and as far from the tip
@@ -41,13 +38,13 @@ def rounding_start(gear: Toothing, radius: float) -> float:
     return math.sqrt(centre**2 - gear.base_radius**2) + gear.sign * radius
 
 
-def chamfer_start(gear: Toothing, height: float) -> float:
+def chamfer_start(gear: Tooth, height: float) -> float:
     """Roll length in m of the tip form point of a chamfer that starts `height` from the tip circle."""
     radius = gear.tip_radius - gear.sign * height
     return math.nan if radius < gear.base_radius else gear.roll_length(radius)
 
 
-def check_rounding(gear: Toothing, radius: float) -> None:
+def check_rounding(gear: Tooth, radius: float) -> None:
     """Raise `InputError` if a rounding does not fit between form circle and tip, or into half the tip."""
 
     def fits(trial: float) -> bool:
@@ -57,7 +54,7 @@ def check_rounding(gear: Toothing, radius: float) -> None:
     _check("modification.tip_rounding", radius, 0.0, fits, _ROUNDING)
 
 
-def check_chamfer(gear: Toothing, height: float, angle: float) -> None:
+def check_chamfer(gear: Tooth, height: float, angle: float) -> None:
     """Raise `InputError` if a chamfer does not fit between form circle and tip, or into half the tip."""
 
     def fits(trial: float) -> bool:
@@ -82,19 +79,19 @@ def _check(field: str, value: float, least: float, fits: Callable[[float], bool]
     within(field, value, least, low, advice)
 
 
-def _above_form_point(gear: Toothing, roll: float) -> bool:
+def _above_form_point(gear: Tooth, roll: float) -> bool:
     """Whether a tip form point leaves a usable flank."""
     return gear.sign * (roll - gear.form_roll_length) > 0.0
 
 
-def _rounding_angle(gear: Toothing, roll: float, radius: float) -> float:
+def _rounding_angle(gear: Tooth, roll: float, radius: float) -> float:
     """Angle in rad from the tooth's centre line to where the rounding meets the tip circle."""
     centre = roll - gear.sign * radius
     rolled = roll / gear.base_radius - math.atan2(centre, gear.base_radius)
     return gear.base_thickness_half_angle - gear.sign * rolled
 
 
-def _chamfer_reaches(gear: Toothing, roll: float, angle: float) -> bool:
+def _chamfer_reaches(gear: Tooth, roll: float, angle: float) -> bool:
     """Whether a chamfer meets the tip circle on its own side of the tooth."""
     at = gear.sign * np.array([roll])
     point = involute_point(gear.base_radius, gear.base_thickness_half_angle, at)[0]

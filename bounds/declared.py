@@ -1,0 +1,93 @@
+"""Fields of a dataclass that say what they are: their unit, what they accept, and what they mean."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field, fields
+from enum import Flag, StrEnum, auto
+from functools import cache
+from types import MappingProxyType
+from typing import Any, cast
+
+from bounds.bound import Bound, Choice
+
+
+class Kind(StrEnum):
+    """What a field measures."""
+
+    AMOUNT = auto()
+    """A small depth without a sign."""
+    SLOPE = auto()
+    """A small depth with a sign."""
+    LENGTH = auto()
+    """An extent; ``x_length`` is that over which the amount ``x`` acts, which does not act without it."""
+    EDGE = auto()
+    """The size of an edge, that ends a flank."""
+    ANGLE = auto()
+    SHAPE = auto()
+    """A law by its name."""
+    SURFACE = auto()
+    """A table of its own."""
+
+
+DEPTHS = (Kind.AMOUNT, Kind.SLOPE)
+
+
+class Direction(Flag):
+    """Along what of a flank a figure acts."""
+
+    NONE = 0
+    PROFILE = auto()
+    FACE = auto()
+
+
+@dataclass(frozen=True)
+class Declared:
+    """What a field of a dataclass is.
+
+    Attributes
+    ----------
+    kind : Kind
+    unit : str
+        Symbol of its SI unit; empty for none.
+    bound : Bound, Choice or None
+        What is accepted whatever the other fields are; None is left to the value itself.
+    description : str
+        What it is. Its unit is added, before the first semicolon, by who writes it out.
+    example : object
+        A usual value, in SI.
+    along : Direction
+        Directions along which it acts.
+    """
+
+    kind: Kind
+    unit: str
+    bound: Bound | Choice | None
+    description: str
+    example: Any = None
+    along: Direction = Direction.NONE
+
+
+def declared(default: Any, what: Declared) -> Any:
+    """Return the field of a dataclass with its default and its declaration."""
+    return field(default=default, metadata={Declared: what})
+
+
+def attributes(kind: type[Any]) -> str:
+    """Return the section of a docstring that says what the declared fields of a dataclass are."""
+    entries = (
+        f"{name} : {what.unit or 'name'}\n    {what.description}" for name, what in declarations(kind).items()
+    )
+    return "\n".join(("Attributes", "----------", *entries))
+
+
+def declarations(kind: type[Any]) -> Mapping[str, Declared]:
+    """Return the declared fields of a dataclass by name, in its order."""
+    return _declarations(cast("Hashable", kind))
+
+
+@cache
+def _declarations(kind: Any) -> Mapping[str, Declared]:
+    """Look through a dataclass once."""
+    found = {entry.name: entry.metadata[Declared] for entry in fields(kind) if Declared in entry.metadata}
+    return MappingProxyType(found)

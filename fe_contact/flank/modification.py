@@ -1,0 +1,161 @@
+"""Flank modifications (ISO 21771-1, clause 7; ISO 1328-1 for the slopes) of one gear, all together.
+
+All amounts are material removed, in m, normal to the involute in the transverse plane (along the line of
+action).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from functools import cached_property, reduce
+from operator import or_
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bounds import Direction, Kind, attributes, declarations
+from fe_contact.flank.cut_tip import CutTip
+from fe_contact.flank.end_relief import EndRelief
+from fe_contact.flank.free_form import FreeForm
+from fe_contact.flank.part import FlankPart, ReliefStart, involute
+from fe_contact.flank.polynomial import FlankTwist, HelixCrowning, HelixSlope, ProfileCrowning, ProfileSlope
+from fe_contact.flank.tip_relief import RootRelief, TipRelief
+from fe_contact.flank.tooth import Tooth
+from fe_contact.types import FloatArray
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlankModification(  # the last comes first: dataclasses take the fields of their bases from the end
+    FreeForm,
+    FlankTwist,
+    EndRelief,
+    HelixSlope,
+    HelixCrowning,
+    CutTip,
+    RootRelief,
+    TipRelief,
+    ProfileSlope,
+    ProfileCrowning,
+):
+    """Intended departures of one gear's flanks from the involute helicoid: the sum of all its bases.
+
+    Every base declares its fields, in m and rad, with their bounds; all are 0 by default and then neutral.
+    """
+
+    def __post_init__(self) -> None:
+        _ = self.parts  # each checks its own fields
+
+    @cached_property
+    def parts(self) -> tuple[FlankPart, ...]:
+        """The modifications one by one."""
+        return tuple(kind(**_own_fields(self, kind)) for kind in reversed(FlankModification.__bases__))
+
+    @cached_property
+    def varies(self) -> Direction:
+        """Directions along which the flank differs from the involute helicoid."""
+        return reduce(or_, (part.varies for part in self.parts), Direction.NONE)
+
+    @property
+    def neutral(self) -> bool:
+        """Whether nothing is removed anywhere."""
+        return not self.varies
+
+    @property
+    def varies_along_profile(self) -> bool:
+        """Whether the modification depends on the roll length, at any place of the face."""
+        return Direction.PROFILE in self.varies
+
+    @property
+    def varies_along_face(self) -> bool:
+        """Whether the modification depends on the face position, at any roll length."""
+        return Direction.FACE in self.varies
+
+    @property
+    def along_profile(self) -> FlankModification:
+        """The part that is the same all over the face."""
+        return _together(part for part in self.parts if Direction.FACE not in part.varies)
+
+    @property
+    def along_face(self) -> FlankModification:
+        """The part that differs over the face; twisted or free, it varies along the profile too."""
+        return _together(part for part in self.parts if Direction.FACE in part.varies)
+
+    def check_fits(self, gear: Tooth) -> None:
+        """Raise `InputError` if a part does not fit the gear.
+
+        As a relief longer than the involute or half the face, a grid beside it, an edge that leaves no tip.
+        """
+        for part in self.parts:
+            part.check_fits(gear)
+
+    def tip_form_roll_length(self, gear: Tooth) -> float:
+        """Roll length in m at which the usable flank of `gear` ends and its tip's edge begins."""
+        ends = (start.roll_length for start in self.relief_starts(gear) if start.ends_flank)
+        return next(ends, gear.tip_roll_length)
+
+    def material_removed(
+        self, gear: Tooth, roll_length: ArrayLike, face_position: ArrayLike = 0.0
+    ) -> FloatArray:
+        """Material removed normal to the involute, in the transverse plane.
+
+        Parameters
+        ----------
+        gear : Gear or RingGear
+            The gear the modification belongs to.
+        roll_length : array_like
+            Roll lengths in m; outside the involute its end value is taken.
+        face_position : array_like, optional
+            Distance from mid-face in m, broadcast against `roll_length`.
+
+        Returns
+        -------
+        array
+            m, >= 0 except where a slope or twist adds material; exactly zero for a neutral modification.
+        """
+        roll, face = np.broadcast_arrays(np.asarray(roll_length, float), np.asarray(face_position, float))
+        return self.removed(gear, np.clip(roll, *involute(gear)), face)
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """Sum over the parts in m: those of the profile, those of the face, and those of both."""
+        removed = np.zeros(roll_length.shape)
+        acting = [part for part in self.parts if part.varies]
+        for direction in (Direction.PROFILE, Direction.FACE):
+            removed += sum(
+                part.removed(gear, roll_length, face_position) for part in acting if part.along is direction
+            )
+        for part in acting:
+            if part.along not in (Direction.PROFILE, Direction.FACE):
+                removed += part.removed(gear, roll_length, face_position)
+        return removed
+
+    def relief_starts(self, gear: Tooth) -> tuple[ReliefStart, ...]:
+        """Return where reliefs, and the tip's edge if it is not sharp, begin along the profile."""
+        return tuple(start for part in self.parts if part.varies for start in part.relief_starts(gear))
+
+
+FLANK_FIELDS = declarations(FlankModification)
+"""What every figure of a flank is, by its name."""
+
+
+def fields_of(*kinds: Kind) -> tuple[str, ...]:
+    """Return the fields of a modification that are of one of these kinds."""
+    return tuple(name for name, what in FLANK_FIELDS.items() if what.kind in kinds)
+
+
+def _own_fields(modification: FlankPart, kind: type[Any]) -> dict[str, Any]:
+    """Return the fields of one of the parts, by name."""
+    return {entry.name: getattr(modification, entry.name) for entry in fields(kind)}
+
+
+def _together(parts: Iterable[FlankPart]) -> FlankModification:
+    """Return the modification of these parts alone."""
+    own = (_own_fields(part, type(part)) for part in parts)
+    return FlankModification(**{name: value for facts in own for name, value in facts.items()})
+
+
+UNMODIFIED = FlankModification()
+FlankModification.__doc__ = f"{FlankModification.__doc__}\n{attributes(FlankModification)}\n"

@@ -1,0 +1,89 @@
+"""One flank modification, and what all have in common."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, reduce
+from operator import or_
+
+from bounds import Direction, Kind, SiNote, above, declarations
+from fe_contact.checks import declared_fields
+from fe_contact.errors import InputError
+from fe_contact.flank.tooth import Tooth
+from fe_contact.types import FloatArray
+
+_ACTING = (Kind.AMOUNT, Kind.SLOPE, Kind.EDGE)
+
+
+@dataclass(frozen=True)
+class ReliefStart:
+    """Where a relief or the tip's edge begins along the profile; a distance d inside to jump d + bend d^2/2.
+
+    Attributes
+    ----------
+    roll_length : float
+        m.
+    towards_tip : bool
+        Whether it runs to the tip; else to the root.
+    jump, bend : float
+        Slope and curvature with which it begins, over the arc length of the flank; 1 and 1/m.
+    ends_flank : bool
+        Whether it is the edge of a rounded or chamfered tip, where the usable flank ends.
+    """
+
+    roll_length: float
+    towards_tip: bool
+    jump: float
+    bend: float
+    ends_flank: bool = False
+
+
+@dataclass(frozen=True)
+class FlankPart:
+    """One departure of a gear's flanks from the involute helicoid.
+
+    A modification is a dataclass of declared fields (`fe_contact.flank.fields`) that says what it
+    removes. All of it is neutral while its amounts, slopes and edges are zero.
+
+    Raises
+    ------
+    InputError
+        A value out of its bound, or an amount ``x`` without the ``x_length`` over which it acts.
+    """
+
+    def __post_init__(self) -> None:
+        declared_fields(self)
+        for field, what in declarations(type(self)).items():
+            amount = field.removesuffix("_length")
+            if what.kind is Kind.LENGTH and getattr(self, amount) and not getattr(self, field):
+                bound = above(0.0, note=f" where {amount.replace('_', ' ')} acts over it")
+                raise InputError(field, getattr(self, field), bound, SiNote("In m: 1.5 mm is 0.0015."))
+
+    @cached_property
+    def along(self) -> Direction:
+        """Directions along which it can act."""
+        return reduce(or_, (what.along for what in declarations(type(self)).values()), Direction.NONE)
+
+    @cached_property
+    def varies(self) -> Direction:
+        """Directions along which it does act; none if nothing is removed anywhere."""
+        facts = declarations(type(self)).items()
+        acting = (what.along for field, what in facts if what.kind in _ACTING and getattr(self, field))
+        return reduce(or_, acting, Direction.NONE)
+
+    def check_fits(self, gear: Tooth) -> None:
+        """Raise `InputError` if the gear has no room for it."""
+
+    def removed(self, gear: Tooth, roll_length: FloatArray, face_position: FloatArray) -> FloatArray:
+        """Material removed in m at roll lengths inside the involute and at face positions, both in m."""
+        raise NotImplementedError
+
+    def relief_starts(self, gear: Tooth) -> tuple[ReliefStart, ...]:
+        """Return where it begins along the profile, if it does so within the flank."""
+        return ()
+
+
+def involute(gear: Tooth) -> tuple[float, float]:
+    """Least and largest roll length of the involute, m."""
+    ends = gear.form_roll_length, gear.tip_roll_length
+    return min(ends), max(ends)

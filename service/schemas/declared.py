@@ -1,0 +1,113 @@
+"""Boundary fields made from the fields that a library declares: the unit in the name, bounds in it, words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import Field, create_model
+
+from bounds import Bound, Choice, Declared, Direction, Kind, Unit, declarations
+from service.schemas.model import BoundaryModel
+from service.units import BY_SUFFIX, suffix_of
+
+Fields = Mapping[str, tuple[Any, Any]]
+Model = TypeVar("Model", bound=BoundaryModel)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A declared number or name as the boundary has it.
+
+    Attributes
+    ----------
+    name : str
+        The field of the library.
+    what : Declared
+    default : object
+        In SI.
+    """
+
+    name: str
+    what: Declared
+    default: Any
+
+    @property
+    def field(self) -> str:
+        """The field of the boundary: the name with its unit."""
+        return f"{self.name}{suffix_of(self.what)}"
+
+    @property
+    def unit(self) -> Unit:
+        """The unit of the boundary."""
+        return BY_SUFFIX.get(suffix_of(self.what), Unit())
+
+    @property
+    def words(self) -> str:
+        """The name in words."""
+        return self.name.replace("_", " ")
+
+    @property
+    def limits(self) -> dict[str, Any]:
+        """The ends of what is accepted by pydantic's names; none for a choice of names."""
+        bound = self.what.bound
+        if not isinstance(bound, Bound):
+            return {}
+        low = {"gt" if bound.low_open else "ge": bound.low}
+        ends = low | {"lt" if bound.high_open else "le": bound.high}
+        return {name: self.own(float(end)) for name, end in ends.items() if end is not None}
+
+    @property
+    def accepted(self) -> Any:
+        """The type with its bounds."""
+        if isinstance(self.what.bound, Choice):
+            return Literal[self.what.bound.names]
+        return Annotated[float, Field(**self.limits)]
+
+    def own(self, value: Any) -> Any:
+        """Return a value in SI in the unit of the boundary, without the noise of the conversion."""
+        return float(f"{value / self.unit.factor:.12g}") if isinstance(value, float) else value
+
+    def with_unit(self, text: str) -> str:
+        """Return words with the unit before the first semicolon."""
+        head, semicolon, rest = text.partition(";")
+        return f"{head}, in {self.unit.name}{semicolon}{rest}" if self.unit.name else text
+
+    def as_field(self) -> tuple[Any, Any]:
+        """Return type and field of a model that has it with its default."""
+        extra: Any = {"x-kind": self.what.kind.value, "x-along": _names(self.what.along)}
+        field = Field(
+            default=self.own(self.default),
+            description=self.with_unit(self.what.description),
+            examples=[self.own(self.what.example)],
+            json_schema_extra=extra,
+        )
+        return self.accepted, field
+
+
+def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
+    """Return the declared numbers and names of a dataclass, those of some kinds if any are given."""
+    defaults = {entry.name: entry.default for entry in fields(kind)}
+    return tuple(
+        Figure(name, what, defaults[name])
+        for name, what in declarations(kind).items()
+        if what.bound is not None and (not kinds or what.kind in kinds)
+    )
+
+
+def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:
+    """Return a decorator that adds fields, as (type, field) by name, to a model."""
+
+    def added(model: type[Model]) -> type[Model]:
+        facts: Any = dict(further)
+        return create_model(
+            model.__name__, __base__=model, __module__=model.__module__, __doc__=model.__doc__, **facts
+        )
+
+    return added
+
+
+def _names(along: Direction) -> list[str]:
+    """Return the names of directions."""
+    return [direction.name.lower() for direction in along if direction.name]

@@ -1,0 +1,79 @@
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+
+from bounds import (
+    Bound,
+    Checks,
+    Declared,
+    Kind,
+    RefusedValue,
+    above,
+    attributes,
+    between,
+    declarations,
+    declared,
+    one_of,
+)
+
+CHECKS = Checks(RefusedValue)
+WIDTH = Declared(Kind.LENGTH, "m", between(0.0, 2.0), "Width of the strip", 0.5)
+LAW = Declared(Kind.SHAPE, "", one_of(("flat", "round")), "Course across it", "flat")
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Has two declared fields and another."""
+
+    width: float = declared(1.0, WIDTH)
+    name: str = "strip"
+    law: str = declared("flat", LAW)
+
+
+def test_the_declared_fields_come_in_the_order_of_the_dataclass_with_their_defaults() -> None:
+    assert dict(declarations(Strip)) == {"width": WIDTH, "law": LAW}
+    assert list(declarations(Strip)) == ["width", "law"]
+    assert Strip() == Strip(1.0, "strip", "flat")
+
+
+@pytest.mark.parametrize(
+    ("fields", "refused", "bound"),
+    [
+        ({"width": -1e-9}, "width", "from 0 to 2"),
+        ({"width": math.nan}, "width", "a finite number"),
+        ({"width": "2"}, "width", "a finite number"),
+        ({"law": "oval"}, "law", 'one of "flat", "round"'),
+    ],
+)
+def test_a_value_out_of_its_declared_bound_is_refused(
+    fields: dict[str, Any], refused: str, bound: str
+) -> None:
+    with pytest.raises(RefusedValue) as caught:
+        CHECKS.declared_fields(Strip(**fields))
+    assert (caught.value.field, str(caught.value.bound)) == (refused, bound)
+
+
+def test_the_ends_of_a_declared_bound_are_accepted() -> None:
+    for width in (0.0, 2.0):
+        CHECKS.declared_fields(Strip(width, law="round"))
+
+
+@pytest.mark.parametrize(
+    ("bound", "inside", "beyond"),
+    [
+        (between(0.1, 0.3), (0.1, 0.1 + 0.2), (0.0999999, 0.3000001)),
+        (above(0.0), (5e-324, 1e300), (0.0, -1.0)),
+        (Bound(low=0.0, high=1.0, high_open=True), (0.0, 0.5), (1.0,)),
+    ],
+)
+def test_a_bound_holds_its_ends_unless_they_are_open(bound: Bound, inside: Any, beyond: Any) -> None:
+    assert all(bound.holds(value) for value in inside)
+    assert not any(bound.holds(value) for value in beyond)
+
+
+def test_a_docstring_can_say_what_the_fields_are() -> None:
+    assert attributes(Strip).splitlines()[2:4] == ["width : m", "    Width of the strip"]
