@@ -17,6 +17,7 @@ from benchmarks import (
     finite_width,
     full_contact_cost,
     full_contact_coverage,
+    full_contact_over_face,
     full_contact_picture,
     live_coverage,
     long_phase,
@@ -46,6 +47,7 @@ SUBJECTS = (
     static_table,
     full_contact_cost,
     full_contact_coverage,
+    full_contact_over_face,
     finite_width,
     run_up,
     long_phase,
@@ -92,6 +94,8 @@ def main(arguments: Sequence[str]) -> int:
         if "full_contact_coverage" in record:
             full_contact_coverage.publish(full_contact_coverage.assessed(), machine)
             full_contact_picture.draw()
+        if "full_contact_over_face" in record:
+            full_contact_over_face.publish()
         if "live_coverage" in record:
             live_coverage.publish(live_coverage.assessed(), machine)
         if "tolerance_kept" in record:

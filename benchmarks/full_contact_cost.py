@@ -54,7 +54,7 @@ def _calculix(pair: GearPair, peer: MeasuredFullContact, solves: int, here: floa
         points = [solve_position(program, pair, force, n / POSITIONS, CPU_LIMIT) for n in range(POSITIONS)]
     each = clock.seconds["CalculiX"] / POSITIONS
     mean = sum(point.transmission_error for point in points) / POSITIONS
-    apart = abs(float(peer.table.transmission_error[:, -1].mean()) / mean - 1.0)
+    apart = abs(float(peer.tables[0].transmission_error[:, -1].mean()) / mean - 1.0)
     return [
         Figure(SUBJECT, f"CalculiX, a position at {max(TORQUES):.4g} N m", each, "CPU s"),
         Figure(SUBJECT, "here over CalculiX", 100.0 * here / (each * solves), "%", TARGET),

@@ -120,8 +120,9 @@ center_distance_changes, effects, progress
     rungs : sequence of str, optional
         Names of rungs to run; default all.
     full_contact : int, optional
-        Positions, 1 to 64, at which full finite-element contact is run beside the ladder: of solid spur and
-        internal pairs in plane strain, under all loads, about 2.5 CPU s each.
+        Positions, 1 to 64, at which full finite-element contact is run beside the ladder, under all loads: of
+        solid spur and internal pairs in plane strain, about 2.5 CPU s each; of external spur pairs in three
+        dimensions where `model` is "3d" or flanks vary or are inclined across the face, 70 CPU s each.
 
     Raises
     ------

@@ -6,8 +6,9 @@ They share geometry and mesher with the rest of the project, and nothing of its 
 from fe_contact.full_contact.calculix import Run, find_calculix, run_calculix, version_of
 from fe_contact.full_contact.condensation import FullContactTable, Resolution, solve_full_contact
 from fe_contact.full_contact.loaded_position import solve_position
+from fe_contact.full_contact.over_face import solve_full_contact_over_face
 from fe_contact.full_contact.point import FullContactPoint
-from fe_contact.full_contact.validity import refusal
+from fe_contact.full_contact.validity import refusal, refusal_over_face
 
 __all__ = [
     "FullContactPoint",
@@ -16,8 +17,10 @@ __all__ = [
     "Run",
     "find_calculix",
     "refusal",
+    "refusal_over_face",
     "run_calculix",
     "solve_full_contact",
+    "solve_full_contact_over_face",
     "solve_position",
     "version_of",
 ]

@@ -1,4 +1,4 @@
-"""Pairs that the full contact in plane strain is set up for."""
+"""Pairs that the full contact is set up for, in the plane and over the face."""
 
 from __future__ import annotations
 
@@ -6,9 +6,30 @@ from fe_contact.geometry import CLAMPED, ParallelAxes, Toothing
 
 
 def refusal(pair: ParallelAxes) -> str | None:
-    """Say why a pair is not one of two clamped, solid spur gears; None if it is."""
+    """Say why a pair is not one of two clamped, solid spur gears alike all along the face; None if it is."""
+    if (reason := _of_pair(pair)) is not None:
+        return reason
+    if any(gear.modification.varies_along_face for gear in (pair.pinion, pair.wheel)):
+        return "flanks that vary across the face"
+    return None
+
+
+def refusal_over_face(pair: ParallelAxes) -> str | None:
+    """Say why a pair is not one of two clamped, solid external spur gears of equal faces; None if it is."""
+    if (reason := _of_pair(pair)) is not None:
+        return reason
+    if pair.internal:
+        return "ring gear: over the face it is set up for external pairs"
+    widths = (pair.pinion.face_width, pair.wheel.face_width)
+    if max(widths) - pair.face_width > 1e-9 * pair.face_width:
+        return "unlike or offset faces: both are meshed in the same layers"
+    return None
+
+
+def _of_pair(pair: ParallelAxes) -> str | None:
+    """Say what of a pair no extruded plane mesh holds."""
     if pair.pinion.helix_angle != 0.0:
-        return "helical: plane strain holds spur pairs only"
+        return "helical: its meshes are plane ones, which hold spur pairs only"
     if pair.shafts != (None, None):
         return "shafts: the bores are held rigidly"
     for gear in (pair.pinion, pair.wheel):
@@ -25,8 +46,6 @@ def _of_gear(gear: Toothing) -> str | None:
         return "seat of the bore: it is rigid"
     if gear.pitch_deviation.cumulative:
         return "pitch deviations: all teeth are alike"
-    if gear.modification.varies_along_face:
-        return "flanks that vary across the face"
     if gear.tip_form_roll_length != gear.tip_roll_length:
         return "rounded or chamfered tips: those of its meshes are sharp"
     return None

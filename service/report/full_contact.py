@@ -6,7 +6,7 @@ import numpy as np
 
 from fe_contact.analysis.frontier import Frontier
 from fe_contact.analysis.ladder.full_contact import ORIGIN
-from fe_contact.analysis.measured_full_contact import PROGRAM, MeasuredFullContact
+from fe_contact.analysis.measured_full_contact import PLANE, PROGRAM, MeasuredFullContact
 from service.report import palette
 from service.report.figure import Line, Note, number
 
@@ -70,6 +70,11 @@ def _own(measured: MeasuredFullContact) -> str:
     return f" Its own meshes differ by at most {number(100.0 * measured.own_error, 2)} %."
 
 
+def _left_out(measured: MeasuredFullContact) -> str:
+    """Say what its errors hold besides those of the solution."""
+    return ", and hold what plane strain leaves out" if measured.solved_in == PLANE else ""
+
+
 def caption(found: Frontier) -> str:
     """Say where the points come from, and what was measured of them."""
     times = f"Peer: {ORIGIN}; times for the same {found.solves} positions x loads."
@@ -84,9 +89,9 @@ def caption(found: Frontier) -> str:
         else ""
     )
     return (
-        f"{known}On this case {PROGRAM} solved {measured.positions} positions under all loads in plane "
-        f"strain ({measured.unknowns // 1000} k unknowns, {number(measured.cpu_seconds, 3)} CPU s): its "
-        f"errors are those at these positions, the worst of all loads, and hold what plane strain leaves "
-        f"out; its time is extrapolated, the mean of a position and load times {found.solves}."
+        f"{known}On this case {PROGRAM} solved {measured.positions} positions under all loads in "
+        f"{measured.solved_in} ({measured.unknowns // 1000} k unknowns, {number(measured.cpu_seconds, 3)} "
+        f"CPU s): its errors are those at these positions, the worst of all loads{_left_out(measured)}; its "
+        f"time is extrapolated, the mean of a position and load times {found.solves}."
         f"{_own(measured)}{beside}"
     )

@@ -27,7 +27,7 @@ class FrontierInput(CaseOrScene):
         ge=1,
         le=MOST_FULL_CONTACT,
         description="Positions of a case at which full finite-element contact is run beside the ladder, "
-        "about 3 CPU s each",
+        "about 3 CPU s each in plane strain, 70 or more over the face",
         examples=[4],
     )
 

@@ -15,6 +15,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse.linalg import SuperLU, splu
 
 from fe_contact.errors import SolveError
+from fe_contact.full_contact.condensation.dissection import dissected, mesh_graph
 from fe_contact.full_contact.condensation.placed_mesh import PlacedBody
 from fe_contact.full_contact.condensation.stiffness import plane_strain_stiffness
 from fe_contact.material import Material
@@ -70,7 +71,8 @@ def condensed_body(body: PlacedBody, material: Material) -> CondensedBody:
     nodes = np.unique(np.concatenate([strip.nodes for strip in body.strips.values()]))
     columns = {ahead: np.searchsorted(nodes, strip.nodes) for ahead, strip in body.strips.items()}
     inner = np.setdiff1d(np.arange(len(body.points)), np.concatenate([nodes, body.held]))
-    order = np.concatenate([freedoms(inner[_dissected(matrix, inner)]), freedoms(nodes)])
+    inner = dissected(mesh_graph(body.triangles, len(body.points)), inner)
+    order = np.concatenate([freedoms(inner), freedoms(nodes)])
     permuted = sp.csc_array(matrix[order][:, order])
     try:
         factor = splu(permuted, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -90,17 +92,6 @@ def condensed_body(body: PlacedBody, material: Material) -> CondensedBody:
 def freedoms(nodes: IntArray) -> IntArray:
     """Return the two freedoms of each node, node by node."""
     return np.asarray((2 * nodes[:, None] + np.arange(2)).ravel())
-
-
-def _dissected(matrix: sp.csc_array, nodes: IntArray) -> IntArray:
-    """Return METIS' fill-reducing order of nodes, from their graph."""
-    import pymetis  # noqa: PLC0415 - only the factorisation needs it
-
-    graph = sp.csr_array(sp.csr_array(matrix[::2, ::2])[nodes][:, nodes])
-    graph.setdiag(0.0)
-    graph.eliminate_zeros()
-    order, _ = pymetis.nested_dissection(pymetis.CSRAdjacency(graph.indptr, graph.indices))
-    return np.asarray(order, dtype=np.int64)
 
 
 def _trailing_product(factor: SuperLU, count: int) -> FloatArray:

@@ -1,4 +1,4 @@
-"""All weak gaps of a placed pair, on undeformed bodies or on deformed ones, as one contact system."""
+"""All weak gaps of a pair in plane strain, undeformed or deformed, as one contact system."""
 
 from __future__ import annotations
 
@@ -9,44 +9,20 @@ import numpy as np
 
 from fe_contact.full_contact.condensation.active_set import ContactSystem
 from fe_contact.full_contact.condensation.condensed_body import CondensedBody, freedoms
+from fe_contact.full_contact.condensation.equilibrium import bore_checks
 from fe_contact.full_contact.condensation.flank_curve import FlankCurve
+from fe_contact.full_contact.condensation.linearized_contact import (
+    LEAST_FACING,
+    Configuration,
+    LinearizedContact,
+    Solution,
+    rotation,
+    turned_back,
+)
 from fe_contact.full_contact.condensation.sites import ContactSite
 from fe_contact.full_contact.condensation.weak_gap import WeakGap, weak_gap
 from fe_contact.geometry import ParallelAxes, tooth_profile
-from fe_contact.types import BoolArray, FloatArray, IntArray
-
-LEAST_FACING = 0.01
-"""Hats of which less than this part of their length faces the mate carry no pressure."""
-
-
-@dataclass(frozen=True)
-class Configuration:
-    """Lag of the driven gear in m, and displacements of the strips' nodes (2 k,) of both, m."""
-
-    lag: float
-    displacements: tuple[FloatArray, FloatArray]
-
-
-@dataclass(frozen=True)
-class LinearizedContact:
-    """Contact with the geometry and the forces of one configuration; h hats.
-
-    Attributes
-    ----------
-    system : ContactSystem
-    forces, moved : ((2 k_1, h), (2 k_2, h)) arrays
-        Forces on the strips' nodes of both gears by unit pressures, m, and their displacements, m/Pa.
-    site : (h,) int array
-        Which site a hat belongs to.
-    at_end : (h,) bool array
-        Hats at an end of their strip that is no tip edge: pressure there is cut off.
-    """
-
-    system: ContactSystem
-    forces: tuple[FloatArray, FloatArray]
-    moved: tuple[FloatArray, FloatArray]
-    site: IntArray
-    at_end: BoolArray
+from fe_contact.types import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -75,9 +51,18 @@ class PairGeometry:
         """Counter-clockwise angle of gear 2 by the lag, rad/m."""
         return -self.pair.wheel.sign / self.pair.wheel.base_radius
 
+    @property
+    def thickness(self) -> float:
+        """Face width that the plane stands for, m."""
+        return self.pair.face_width
+
+    def checks(self, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
+        """Return breach of the laws and ratio of the torques, as `bore_checks`."""
+        return bore_checks(self.bodies, solutions)
+
     def linearized(self, at: Configuration) -> LinearizedContact:
         """Return the contact with the geometry and the forces of a configuration."""
-        turn, center = _rotation(self.lag_rate * at.lag), self.bodies[1].body.center
+        turn, center = rotation(self.lag_rate * at.lag), self.bodies[1].body.center
         rigid = (self.bodies[0].points, (self.bodies[1].points - center) @ turn.T + center)
         first, second = (u.reshape(-1, 2) for u in at.displacements)
         places = (rigid[0] + first, rigid[1] + second @ turn.T)
@@ -97,7 +82,7 @@ class PairGeometry:
         """Join the pairs, without hats that hardly face their mate."""
         facing = [_full_weights(self, site) * LEAST_FACING for site in self.sites]
         kept = np.concatenate([gap.weight > least for gap, least in zip(gaps, facing, strict=True)])
-        first, second = self._forces(gaps, 0)[:, kept], _turned_back(self._forces(gaps, 1)[:, kept], turn)
+        first, second = self._forces(gaps, 0)[:, kept], turned_back(self._forces(gaps, 1)[:, kept], turn)
         moved = self.bodies[0].compliance @ first, self.bodies[1].compliance @ second
         compliance = first.T @ moved[0] + second.T @ moved[1]
         closing = np.concatenate([gap.closing for gap in gaps])[kept]
@@ -114,7 +99,7 @@ class PairGeometry:
         )
         site = np.repeat(np.arange(len(gaps)), [len(gap.gap) for gap in gaps])[kept]
         at_end = np.concatenate([_at_end(self, site) for site in self.sites])[kept]
-        return LinearizedContact(system, (first, second), moved, site, at_end)
+        return LinearizedContact(system, (first, second), moved, site, site, at_end)
 
     def _forces(self, gaps: Sequence[WeakGap], number: int) -> FloatArray:
         """Return the nodal forces (2 k, h) of all pairs on one gear."""
@@ -125,17 +110,6 @@ class PairGeometry:
             block[freedoms(body.columns[site.ahead])] = gap.forces[number]
             blocks.append(block)
         return np.concatenate(blocks, axis=1)
-
-
-def _rotation(angle: float) -> FloatArray:
-    """Return the matrix that turns vectors counter-clockwise."""
-    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-
-
-def _turned_back(forces: FloatArray, turn: FloatArray) -> FloatArray:
-    """Turn forces (2 k, h) on gear 2 back into the frame of its mesh."""
-    vectors = forces.reshape(-1, 2, forces.shape[1])
-    return np.asarray(np.einsum("yx,nyh->nxh", turn, vectors).reshape(forces.shape))
 
 
 def _full_weights(geometry: PairGeometry, site: ContactSite) -> FloatArray:

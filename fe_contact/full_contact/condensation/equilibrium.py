@@ -7,23 +7,22 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_contact.full_contact.condensation.condensed_body import CondensedBody
-from fe_contact.full_contact.condensation.contact_geometry import LinearizedContact, PairGeometry
+from fe_contact.full_contact.condensation.linearized_contact import Solution
 from fe_contact.types import FloatArray
 
-Solution = tuple[LinearizedContact, FloatArray, float]
-"""A contact, its pressures, and the torque on gear 1 per unit face width that they were to balance, N."""
+Bodies = tuple[CondensedBody, CondensedBody]
 
 
-def bore_checks(geometry: PairGeometry, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
+def bore_checks(bodies: Bodies, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
     """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1.
 
     The moment of the reactions at gear 1's bore is the torque, at gear 2's bore that of the contact forces;
     the work u f of both gears is p C p. Nothing condensed enters the reactions: all nodes are solved for.
     """
-    reactions, work = zip(*(_of_body(geometry, number, solutions) for number in range(2)), strict=True)
+    reactions, work = zip(*(_of_body(bodies, number, solutions) for number in range(2)), strict=True)
     found = []
     for i, (contact, pressure, torque) in enumerate(solutions):
-        driven = _moment(geometry.bodies[1], contact.forces[1] @ pressure)
+        driven = _moment(bodies[1], contact.forces[1] @ pressure)
         balance = max(abs(float(reactions[0][i]) / torque + 1.0), abs(float(reactions[1][i]) / driven + 1.0))
         elastic = float(pressure @ contact.system.compliance @ pressure)
         energy = abs(float(work[0][i] + work[1][i]) / elastic - 1.0)
@@ -31,11 +30,9 @@ def bore_checks(geometry: PairGeometry, solutions: Sequence[Solution]) -> list[t
     return found
 
 
-def _of_body(
-    geometry: PairGeometry, number: int, solutions: Sequence[Solution]
-) -> tuple[FloatArray, FloatArray]:
+def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tuple[FloatArray, FloatArray]:
     """Return the moments of the bore's reactions about the centre, and the work of the forces, (T,)."""
-    body = geometry.bodies[number]
+    body = bodies[number]
     forces = np.zeros((body.stiffness.shape[0], len(solutions)))
     for i, (contact, pressure, _) in enumerate(solutions):
         forces[body.freedoms, i] = contact.forces[number] @ pressure

@@ -8,18 +8,21 @@ from fe_contact.geometry import Toothing, tooth_profile
 from fe_contact.types import FloatArray
 
 
-def material_removed(gear: Toothing, s: FloatArray) -> FloatArray:
-    """Return what is removed along the normal at flank coordinates, m; it fades out over the fillet."""
+def material_removed(gear: Toothing, s: FloatArray, face: float = 0.0) -> FloatArray:
+    """Return what is removed along the normal at flank coordinates, m; it fades out over the fillet.
+
+    `face` is the face position from mid-face, m.
+    """
     profile = tooth_profile(gear)
     roll = profile.roll_length(np.clip(s, profile.s_form, profile.s_tip))
-    return removed_at_roll(gear, roll) * np.clip((s - profile.s_root) / profile.fillet_length, 0.0, 1.0)
+    return removed_at_roll(gear, roll, face) * np.clip((s - profile.s_root) / profile.fillet_length, 0.0, 1.0)
 
 
-def removed_at_roll(gear: Toothing, roll: FloatArray) -> FloatArray:
+def removed_at_roll(gear: Toothing, roll: FloatArray, face: float = 0.0) -> FloatArray:
     """Return what is removed at roll lengths, m; beyond the ends of the involute as much as there."""
     ends = gear.form_roll_length, gear.tip_roll_length
     within = np.clip(roll, min(ends), max(ends))
-    return np.asarray(gear.modification.material_removed(gear, within, 0.0), dtype=float)
+    return np.asarray(gear.modification.material_removed(gear, within, face), dtype=float)
 
 
 def modified_flank(gear: Toothing, s: FloatArray) -> FloatArray:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from fe_contact.checks import within
+from fe_contact.checks import integer, within
 
 GROWTH = 1.08
 """Growth of the elements per unit distance, over the elements per half-width: 0.18 at six."""
@@ -24,14 +24,18 @@ class Resolution:
         Quadratic elements in a Hertz half-width, 1.5 to 16.
     corner : float
         How many times finer the elements at a tip edge are.
+    layers : int
+        Layers over half the face, 1 to 24; the plane has none.
     """
 
     per_half_width: float = USUAL
     corner: float = 8.0
+    layers: int = 6
 
     def __post_init__(self) -> None:
         within("per_half_width", self.per_half_width, 1.5, 16.0, "6 is usual.")
         within("corner", self.corner, 1.0, 32.0, "8 is usual.")
+        integer("layers", self.layers, 1, 24)
 
     @property
     def growth(self) -> float:
@@ -53,4 +57,4 @@ class Resolution:
 
     def coarser(self, factor: float = 1.5) -> Resolution:
         """Return the same with elements larger by `factor`."""
-        return Resolution(self.per_half_width / factor, self.corner)
+        return Resolution(self.per_half_width / factor, self.corner, max(1, round(self.layers / factor)))

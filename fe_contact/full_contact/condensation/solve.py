@@ -9,10 +9,10 @@ import numpy as np
 
 from fe_contact.checks import finite, positive
 from fe_contact.errors import InputError
+from fe_contact.full_contact.condensation.contact_model import ContactModel, PlaneStrain
 from fe_contact.full_contact.condensation.resolution import Resolution
-from fe_contact.full_contact.condensation.solved_position import SolvedPosition, solve_position
+from fe_contact.full_contact.condensation.solved_position import Loads, SolvedPosition, solve_position
 from fe_contact.full_contact.condensation.table import FullContactTable
-from fe_contact.full_contact.point import FullContactPoint
 from fe_contact.full_contact.validity import refusal
 from fe_contact.geometry import ParallelAxes
 from fe_contact.stage_clock import StageClock
@@ -62,8 +62,24 @@ def solve_full_contact(
     """
     if (reason := refusal(pair)) is not None:
         raise InputError("pair", "this pair", f"one that full contact in the plane holds; {reason}")
+    meshes = resolutions(resolution or Resolution(), estimate_error=estimate_error)
+    (table,) = contact_tables(PlaneStrain(), pair, torques, positions, meshes, report)
+    return table
+
+
+def contact_tables(
+    model: ContactModel,
+    pair: ParallelAxes,
+    torques: Sequence[float],
+    positions: Sequence[float],
+    meshes: Sequence[Resolution],
+    report: Report | None,
+) -> tuple[FullContactTable, ...]:
+    """Solve all positions on each mesh; return a table for each contact of the model.
+
+    The first mesh is that of the result; its difference from a second one is stated as error.
+    """
     _check(torques, positions)
-    chosen = resolution or Resolution()
     solved: list[SolvedPosition] = []
     seconds = []
     for count, position in enumerate(positions):
@@ -71,18 +87,24 @@ def solve_full_contact(
             report(count / len(positions))
         clock = StageClock()
         with clock.stage("position"):
-            found = solve_position(pair, torques, position, chosen)
-            if estimate_error:
-                found = _with_error(found, solve_position(pair, torques, position, chosen.coarser(COARSER)))
-        solved.append(found)
+            found = [solve_position(model, pair, torques, position, mesh) for mesh in meshes]
+        solved.append(_with_error(found[0], found[1]) if len(found) > 1 else found[0])
         seconds.append(clock.seconds["position"])
-    return FullContactTable(
-        position=np.array(positions, dtype=float),
-        torque=np.array(torques, dtype=float),
-        points=tuple(position.points for position in solved),
-        unknowns=np.array([position.unknowns for position in solved], dtype=np.int64),
-        cpu_seconds=np.array(seconds),
+    return tuple(
+        FullContactTable(
+            position=np.array(positions, dtype=float),
+            torque=np.array(torques, dtype=float),
+            points=tuple(position.contacts[number] for position in solved),
+            unknowns=np.array([position.unknowns for position in solved], dtype=np.int64),
+            cpu_seconds=np.array(seconds) / model.count,
+        )
+        for number in range(model.count)
     )
+
+
+def resolutions(resolution: Resolution, *, estimate_error: bool) -> tuple[Resolution, ...]:
+    """Return the meshes to solve on: the coarser one too where the error is asked for."""
+    return (resolution, resolution.coarser(COARSER)) if estimate_error else (resolution,)
 
 
 def _check(torques: Sequence[float], positions: Sequence[float]) -> None:
@@ -98,8 +120,15 @@ def _check(torques: Sequence[float], positions: Sequence[float]) -> None:
 
 def _with_error(fine: SolvedPosition, coarse: SolvedPosition) -> SolvedPosition:
     """State the difference of two meshes of the same position as the error of the finer one."""
-    points: list[FullContactPoint] = []
-    for own, other in zip(fine.points, coarse.points, strict=True):
-        error = abs(own.transmission_error - other.transmission_error)
-        points.append(replace(own, error_estimate=error) if own.status.usable else own)
-    return replace(fine, points=tuple(points))
+    contacts = zip(fine.contacts, coarse.contacts, strict=True)
+    return replace(fine, contacts=tuple(_apart(own, other) for own, other in contacts))
+
+
+def _apart(fine: Loads, coarse: Loads) -> Loads:
+    """State the differences of one contact."""
+    return tuple(
+        replace(own, error_estimate=abs(own.transmission_error - other.transmission_error))
+        if own.status.usable
+        else own
+        for own, other in zip(fine, coarse, strict=True)
+    )

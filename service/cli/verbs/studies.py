@@ -42,7 +42,8 @@ def frontier(
     full_contact: Annotated[
         int | None,
         typer.Option(
-            help="Positions of a spur pair to run by full finite-element contact: about 3 CPU s each."
+            help="Positions of a spur pair to run by full finite-element contact: about 3 CPU s each in "
+            "plane strain, 70 or more where the case needs the face."
         ),
     ] = None,
     json: AsJson = False,

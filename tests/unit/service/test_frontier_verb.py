@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from fe_contact.analysis.frontier import Frontier
 from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, MEASURED_GEAR, known_full_contact
-from fe_contact.analysis.measured_full_contact import MeasuredFullContact
+from fe_contact.analysis.measured_full_contact import PLANE, MeasuredFullContact
 from fe_contact.analysis.rung_result import RungResult
 from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
@@ -86,7 +86,7 @@ def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) 
         0.0 * one, 100.0 * one, ((points[0],), (points[1],)), np.array([90_000]), 60.0 * one
     )
     table = dataclasses.replace(table, position=np.array([0.0, 0.5]))
-    live = MeasuredFullContact(table, 50.0, mean_error=0.03, plane_strain_mean=0.002)
+    live = MeasuredFullContact((table,), (0.0,), PLANE, 50.0, mean_error=0.03, plane_strain_mean=0.002)
     figure = frontier_figure(dataclasses.replace(found, full_contact=live))
     mean, swing = figure.content
     drawn = {line.name: line for line in mean.lines}["full contact, run on this case"]
@@ -95,6 +95,7 @@ def test_full_contact_of_the_case_stands_beside_the_known_cost(found: Frontier) 
     assert "full contact" not in [note.text for note in swing.notes]  # one position has no peak-to-peak
     assert "2 positions under all loads" in figure.caption and "differs from it by 0.20 %" in figure.caption
     assert "differ by at most 0.10 %" in figure.caption
+    assert "what plane strain leaves out" in figure.caption
     assert figure.table is not None
     assert figure.table.rows[-1][-1] == "1 of 2 positions x loads solved"
 

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from fe_contact import Gear, GearPair
+from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import measured_full_contact as measuring
 from fe_contact.analysis.frontier import frontier
 from fe_contact.analysis.ladder import THIN_SLICES
-from fe_contact.analysis.measured_full_contact import full_contact_refusal, measure_full_contact
+from fe_contact.analysis.measured_full_contact import full_contact_refusal, measure_full_contact, over_face
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_request
 from fe_contact.errors import InputError, SolveError
@@ -72,7 +72,7 @@ def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(
     asked = stand_in(table, monkeypatch, [FAILED])
     found = measure_full_contact(checked, 5, lambda *_: None).compared(table, table)
     assert asked == [pytest.approx(PAIR.torque(FORCES))]  # all loads at once
-    assert [row[0].status.usable for row in found.table.points] == [True, True, True, False, True]
+    assert [row[0].status.usable for row in found.tables[0].points] == [True, True, True, False, True]
     assert found.mean_error == pytest.approx(SOFTER - 1.0, rel=1e-9)
     assert found.peak_to_peak_error == pytest.approx(SOFTER - 1.0, rel=1e-9)
     assert found.plane_strain_mean == pytest.approx(1.0 - 1.0 / SOFTER, rel=1e-9)
@@ -106,13 +106,51 @@ def test_one_position_has_no_peak_to_peak(
 
 def test_what_it_cannot_hold_is_said() -> None:
     assert full_contact_refusal(check_request(PAIR, normal_forces=[9.0])) is None
-    skewed = check_request(PAIR, normal_forces=[9.0], misalignments=[0.0, 1e-5])
-    assert "misalignment" in str(full_contact_refusal(skewed))
+    wider = dataclasses.replace(GEAR, face_width=9e-3)
+    beside = check_request(GearPair(GEAR, wider, 40e-3), normal_forces=[9.0], misalignments=[0.0, 1e-5])
+    assert "unlike or offset faces" in str(full_contact_refusal(beside))
     apart = check_request(PAIR, normal_forces=[9.0], center_distance_changes=[0.0, 1e-5])
     assert "centre distance" in str(full_contact_refusal(apart))
     helical = [dataclasses.replace(GEAR, helix_angle=angle) for angle in (0.2, -0.2)]
     tilted = GearPair(*helical, center_distance=2.0 * helical[0].reference_radius)
     assert "helical" in str(full_contact_refusal(check_request(tilted, normal_forces=[9.0])))
+
+
+def test_what_needs_the_face_is_solved_over_it(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A model in three dimensions, misalignment, or a flank that varies across the face; else the plane."""
+    crowned = dataclasses.replace(GEAR, modification=FlankModification(helix_crowning=5e-6))
+    aligned = {"normal_forces": FORCES, "positions": 32}
+    needing = [
+        check_request(PAIR, **aligned, model="3d"),
+        check_request(PAIR, **aligned, misalignments=[0.0, 1e-5]),
+        check_request(dataclasses.replace(PAIR, wheel=crowned), **aligned),
+    ]
+    assert not over_face(check_request(PAIR, **aligned))
+    for checked in needing:
+        assert over_face(checked)
+        assert full_contact_refusal(checked) is None
+    asked = fake_over_face(table, monkeypatch)
+    found = measure_full_contact(needing[1], 2, lambda *_: None)
+    assert asked == [(0.0, 1e-5)]
+    assert found.solved_in == "three dimensions"
+    assert len(found.points) == 2 * 2 * len(FORCES)
+    facts = found.to_json(64)
+    assert facts["misalignments_m"] == [0.0, 1e-5]
+    assert facts["positions_solved"] == 2
+    assert facts["cpu_seconds_predicted"] > 100.0
+
+
+def fake_over_face(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, ...]]:
+    """Stand in for the solver by that of the plane; returns the misalignments asked for."""
+    stand_in(table, monkeypatch, [])
+    asked: list[tuple[float, ...]] = []
+
+    def solved(pair, torques, positions, misalignments, **_):  # type: ignore[no-untyped-def]
+        asked.append(misalignments)
+        return (measuring.solve_full_contact(pair, torques, positions),) * len(misalignments)
+
+    monkeypatch.setattr(measuring, "solve_full_contact_over_face", solved)
+    return asked
 
 
 def test_a_ladder_goes_on_without_it(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,56 +6,23 @@ from functools import cache
 
 import numpy as np
 import pytest
+from contact_blocks import DEPTH, WIDTH, block
 
 from fe_contact.full_contact.condensation.active_set import ContactSystem, solve_active_set
 from fe_contact.full_contact.condensation.condensed_body import CondensedBody, condensed_body
 from fe_contact.full_contact.condensation.flank_curve import FlankCurve
-from fe_contact.full_contact.condensation.placed_mesh import PlacedBody, Strip
 from fe_contact.full_contact.condensation.weak_gap import WeakGap, weak_gap
 from fe_contact.material import Material
-from fe_contact.types import FloatArray, IntArray
 
-WIDTH, DEPTH, FORCE = 3e-3, 2e-3, 4e5  # m, m, N/m
+FORCE = 4e5  # N/m
 # without lateral contraction a block clamped at its back is strained evenly
 SOFT, STIFF = Material(70e9, 0.0), Material(210e9, 0.0)
 
 
-def grid(depths: FloatArray, heights: FloatArray) -> tuple[FloatArray, IntArray]:
-    """Six-node triangles on a rectangle, two to a cell."""
-    columns, rows = 2 * len(depths) - 1, 2 * len(heights) - 1
-    x, y = (
-        np.interp(np.arange(n) / 2.0, np.arange(len(v)), v) for n, v in ((columns, depths), (rows, heights))
-    )
-    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    triangles = []
-    for i in range(0, rows - 1, 2):
-        for j in range(0, columns - 1, 2):
-            n = [[(i + a) * columns + j + b for b in range(3)] for a in range(3)]
-            triangles.append([n[0][0], n[0][2], n[2][2], n[0][1], n[1][2], n[1][1]])
-            triangles.append([n[0][0], n[2][2], n[2][0], n[1][1], n[2][1], n[1][0]])
-    return points, np.array(triangles)
-
-
 @cache
 def blocks() -> tuple[CondensedBody, CondensedBody]:
-    """Left of x = 0 and right of it, with 5 and 7 elements of uneven length along the contact."""
-    uneven = np.array([0.0, 0.13, 0.4, 0.55, 0.87, 1.0]) * WIDTH
-    finer = np.array([0.0, 0.08, 0.3, 0.41, 0.6, 0.77, 0.9, 1.0]) * WIDTH
-    made = []
-    for number, (depths, heights, material) in enumerate(
-        (
-            (np.array([-1.0, -0.45, 0.0]) * DEPTH, uneven, SOFT),
-            (np.array([0.0, 0.3, 0.7, 1.0]) * DEPTH, finer, STIFF),
-        )
-    ):
-        points, triangles = grid(depths, heights)
-        face = np.flatnonzero(points[:, 0] == 0.0)
-        back = np.flatnonzero(points[:, 0] == (-DEPTH, DEPTH)[number])
-        along = face[np.argsort(points[face, 1])][:: (1, -1)[number]]  # counter-clockwise about the body
-        strip = Strip(along, np.abs(points[along, 1]))
-        body = PlacedBody(points, triangles, back, np.zeros(2), {0: strip})
-        made.append(condensed_body(body, material))
-    return made[0], made[1]
+    """Left of x = 0 and right of it."""
+    return condensed_body(block(0), SOFT), condensed_body(block(1), STIFF)
 
 
 def pressed(slave: int) -> tuple[WeakGap, ContactSystem]:

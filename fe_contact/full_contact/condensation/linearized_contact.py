@@ -1,0 +1,95 @@
+"""Contact with the geometry and the forces of one configuration, and what gives it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from fe_contact.full_contact.condensation.active_set import ContactSystem
+from fe_contact.full_contact.condensation.sites import ContactSite
+from fe_contact.geometry import ParallelAxes
+from fe_contact.types import BoolArray, FloatArray, IntArray
+
+LEAST_FACING = 0.01
+"""Hats of which less than this part of their length faces the mate carry no pressure."""
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """Lag of the driven gear in m, and displacements (u_1,), (u_2,) of the strips of both gears, m."""
+
+    lag: float
+    displacements: tuple[FloatArray, FloatArray]
+
+
+@dataclass(frozen=True)
+class LinearizedContact:
+    """Contact with the geometry and the forces of one configuration; h hats.
+
+    Attributes
+    ----------
+    system : ContactSystem
+    forces, moved : ((u_1, h), (u_2, h)) arrays
+        Forces on the strips of both gears by unit pressures, and what displacements follow.
+    site : (h,) int array
+        Which site a hat belongs to.
+    line : (h,) int array
+        Hats of one number stand along one profile.
+    at_end : (h,) bool array
+        Hats at an end of their strip that is no tip edge: pressure there is cut off.
+    """
+
+    system: ContactSystem
+    forces: tuple[FloatArray, FloatArray]
+    moved: tuple[FloatArray, FloatArray]
+    site: IntArray
+    line: IntArray
+    at_end: BoolArray
+
+
+class Solution(NamedTuple):
+    """A contact, its pressures, and the torque on gear 1 over the thickness that they were to balance."""
+
+    contact: LinearizedContact
+    pressure: FloatArray
+    torque: float
+
+
+class ContactGeometry(Protocol):
+    """Two condensed bodies that may touch at sites."""
+
+    @property
+    def pair(self) -> ParallelAxes:
+        """The pair."""
+
+    @property
+    def sites(self) -> tuple[ContactSite, ...]:
+        """Pairs of teeth that may touch."""
+
+    @property
+    def thickness(self) -> float:
+        """Face width over which its forces are counted, m; 1 where they are counted over all of it."""
+
+    @property
+    def undeformed(self) -> Configuration:
+        """Rigid gears in the conjugate position."""
+
+    def linearized(self, at: Configuration) -> LinearizedContact:
+        """Return the contact with the geometry and the forces of a configuration."""
+
+    def checks(self, solutions: Sequence[Solution]) -> list[tuple[float, float]]:
+        """Return the largest relative breach of the laws, and the torque of gear 2 over that of gear 1."""
+
+
+def rotation(angle: float) -> FloatArray:
+    """Return the matrix that turns vectors counter-clockwise."""
+    return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def turned_back(forces: FloatArray, turn: FloatArray) -> FloatArray:
+    """Turn forces (2 k, h) on gear 2 back into the frame of its mesh."""
+    vectors = forces.reshape(-1, 2, forces.shape[1])
+    return np.asarray(np.einsum("yx,nyh->nxh", turn, vectors).reshape(forces.shape))
