@@ -15,12 +15,12 @@ from fe_contact.analysis.influences import estimated_influences
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked, check_request
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.worth import Influence
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import planned, predict_run
+from fe_contact.progress import Progress, silent
 from fe_contact.types import FloatArray, Json
 
 HARMONICS = 5
@@ -222,7 +222,7 @@ effects, progress, cache
         receipt="minimal",
         on_violation="report",
     )
-    return ablate_checked(checked, _selected(only), progress or _silent, cache)
+    return ablate_checked(checked, _selected(only), progress or silent, cache)
 
 
 def ablate_checked(
@@ -277,7 +277,7 @@ def _switched(
 def _figures(checked: Checked, cache: Path | None) -> Figures:
     """Compute the table of a request, without its errors, and read its curves."""
     request = checked.request
-    table = compute_database(checked, request.to_json(), _silent, cache)
+    table = compute_database(checked, request.to_json(), silent, cache)
     table.require_complete()
     skew = checked.request.whole_scene.largest_misalignment
     curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
@@ -290,7 +290,3 @@ def _figures(checked: Checked, cache: Path | None) -> Figures:
         float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
         predicted.cpu_seconds,
     )
-
-
-def _silent(stage: str, fraction: float) -> None:
-    """Report no progress."""

@@ -10,9 +10,9 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import compute_database, solved_findings
 from fe_contact.analysis.kept_tolerance import OnDraft, kept_tolerance
 from fe_contact.analysis.request_check import check_request
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.plausibility import unexpected
+from fe_contact.progress import Progress, silent
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 from fe_contact.workers import InProcess, Workers
@@ -125,17 +125,13 @@ def analyze(
         on_violation=on_violation,
     )
     phrased = case or checked.request.to_json()
-    request, report = checked.request, progress or _silent
+    request, report = checked.request, progress or silent
     if request.accuracy.refines:
         database = kept_tolerance(checked, phrased, report, cache, on_draft or _unread, workers)
     else:
         database = compute_database(checked, phrased, report, cache, workers=workers)
     warn_of(unexpected(request.findings, solved_findings(request, database)))
     return database
-
-
-def _silent(stage: str, fraction: float) -> None:
-    """Report no progress."""
 
 
 def _unread(table: SteDatabase, refining: str) -> None:

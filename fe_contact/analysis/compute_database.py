@@ -16,11 +16,12 @@ from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.judged_table import judged_table, unjudged_table
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked, Request
-from fe_contact.analysis.solved_table import Progress, SolvedTable, condensed_bodies, solve_table
+from fe_contact.analysis.solved_table import SolvedTable, condensed_bodies, solve_table
 from fe_contact.analysis.tolerance_receipt import tolerance_receipt
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
 from fe_contact.plausibility import merged, table_findings
+from fe_contact.progress import Progress
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash

@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.checks import integer
 from fe_contact.compliance.deformation_2d import deformed_sections
 from fe_contact.compliance.deformation_3d import deformed_solids
@@ -22,6 +21,7 @@ from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.mesh.export import write_cells
 from fe_contact.planning import FaceDiscretisation
+from fe_contact.progress import Progress, silent
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 
@@ -135,7 +135,7 @@ def deformed_pairs(
         effects=effects,
     )
     integer("beside", beside, 0, 100)
-    report = progress or _silent
+    report = progress or silent
     solved = solve_place(checked, checked_positions(at), StageClock(), report, cache)
     gears = deformed_gears(solved, beside)
     report("deformation", 1.0)
@@ -221,7 +221,3 @@ def _write(path: Path, gear: DeformedGear, in_mesh: FloatArray) -> None:
         },
         {"tooth": gear.tooth, **gear.quality},
     )
-
-
-def _silent(_stage: str, _fraction: float) -> None:
-    """Report no progress."""

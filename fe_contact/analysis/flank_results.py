@@ -17,9 +17,9 @@ from fe_contact.analysis.load_distribution import LoadDistribution, load_distrib
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.solved_place import checked_positions, settled_place
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.plausibility import flank_findings, merged, unexpected
+from fe_contact.progress import Progress, silent
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata
 from fe_contact.ste.content_hash import content_hash
@@ -87,7 +87,7 @@ def flank_results(
         on_violation=on_violation,
     )
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
-    checked, found = _solved(checked, position, progress or _silent, cache)
+    checked, found = _solved(checked, position, progress or silent, cache)
     found = replace(found, metadata=_metadata(checked, found, case))
     warn_of(unexpected(checked.request.findings, _findings(found)))
     return found
@@ -136,7 +136,3 @@ def _metadata(checked: Checked, found: LoadDistribution, case: Json | None) -> M
         software_versions=software_versions(),
         warnings=[finding.to_json() for finding in merged(checked.request.findings, _findings(found))],
     )
-
-
-def _silent(_stage: str, _fraction: float) -> None:
-    """Report no progress."""

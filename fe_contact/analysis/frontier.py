@@ -21,11 +21,11 @@ from fe_contact.analysis.pareto import knee_of
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.rung_result import RungResult, rung_results
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.warm_up import warm_up
 from fe_contact.checks import integer
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
+from fe_contact.progress import Progress, silent
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 
@@ -149,7 +149,7 @@ center_distance_changes, effects, progress
     asked = selected(rungs)
     left_out = {rung.name: reason for rung in asked if (reason := rung.refusal(checked)) is not None}
     valid = [rung for rung in asked if rung.name not in left_out]
-    return _climbed(checked, valid, left_out, full_contact, progress or _silent)
+    return _climbed(checked, valid, left_out, full_contact, progress or silent)
 
 
 def selected(names: Sequence[str] | None) -> tuple[Rung, ...]:
@@ -180,7 +180,7 @@ def _climbed(
     for count, rung in enumerate(rungs):
         progress("ladder", count / len(rungs))
         try:
-            table = rung.run(checked, _silent, None)
+            table = rung.run(checked, silent, None)
             table.require_complete()
             tables[rung.name] = table
         except (MeshError, SolveError) as error:
@@ -233,7 +233,3 @@ def chosen_rung(checked: Checked) -> str | None:
     if model.finite_width:
         return "corrected" if level == "standard" else f"corrected_{level}"
     return None if checked.request.accuracy.model == "plane_stress" else "plane_strain"
-
-
-def _silent(stage: str, fraction: float) -> None:
-    """Report no progress."""

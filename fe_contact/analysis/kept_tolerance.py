@@ -12,9 +12,9 @@ from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.passes import Pass, of_all_passes
 from fe_contact.analysis.refinement import Refinement, next_pass
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.tolerance_receipt import error_shares
 from fe_contact.errors import FeContactError
+from fe_contact.progress import Progress
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json

@@ -15,7 +15,6 @@ from fe_contact.analysis.flank_results import POSITIONS
 from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
 from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, settled_place
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.contact.patch import Patches
@@ -23,6 +22,7 @@ from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.geometry.root_tangent import critical_section
 from fe_contact.planning import FaceRootMeshes, PlaneRootMeshes, root_meshes
 from fe_contact.plausibility import root_findings, unexpected
+from fe_contact.progress import Progress, silent
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import BoolArray, FloatArray, IntArray, Json
 
@@ -112,7 +112,7 @@ def root_stress(
         effects=effects,
         on_violation=on_violation,
     )
-    clock, report = StageClock(), progress or _silent
+    clock, report = StageClock(), progress or silent
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
     found, receipt = settled_place(checked, position, clock, report, cache)
     with clock.stage("root stress"):
@@ -141,10 +141,6 @@ def root_stress(
 def _not_root(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
     """Return findings without the estimated root stress, which is solved here."""
     return tuple(finding for finding in findings if finding.check != "root_stress")
-
-
-def _silent(_stage: str, _fraction: float) -> None:
-    """Report no progress."""
 
 
 def _histories(

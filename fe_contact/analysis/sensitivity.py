@@ -11,9 +11,9 @@ import numpy as np
 
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.analyze import analyze
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.geometry import ParallelAxes
+from fe_contact.progress import Progress
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess, Workers

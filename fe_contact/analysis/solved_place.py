@@ -13,12 +13,12 @@ from fe_contact.analysis.assumptions import check_one_place
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.checks import finite
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError, SolveError
 from fe_contact.planning import Plan, planned
+from fe_contact.progress import Progress
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json, Status
 

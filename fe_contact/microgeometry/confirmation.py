@@ -17,6 +17,7 @@ from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.harris_map import HarrisMap
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.microgeometry.variables import modified
+from fe_contact.progress import silent
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, FloatArray, Json
 
@@ -122,7 +123,7 @@ def full_table(
         accuracy=replace(request.accuracy, tolerance=None, time_budget=None, level=decided.mesh.level),
     )
     checked = check_asked(asked, spare=False)
-    table = compute_database(checked, asked.to_json(), _silent, cache, replace(decided, checked=checked))
+    table = compute_database(checked, asked.to_json(), silent, cache, replace(decided, checked=checked))
     table.require_complete()
     return table
 
@@ -147,7 +148,3 @@ def _scatter_error(problem: DesignProblem, values: Mapping[str, float]) -> float
     other = replace(search, nodes=finer)
     one, two = (problem.objective.of(each.expected(each.evaluate(values))) for each in (search, other))
     return abs(two - one)
-
-
-def _silent(stage: str, fraction: float) -> None:
-    """Report no progress."""

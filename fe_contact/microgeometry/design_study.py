@@ -15,7 +15,6 @@ from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked, check_request
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.table_axes import LARGEST_DEVIATION
 from fe_contact.checks import increasing, integer, within
 from fe_contact.effects.misalignment import Misalignment
@@ -24,6 +23,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
 from fe_contact.microgeometry.variables import effect_of, figure, modified
+from fe_contact.progress import Progress
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
 

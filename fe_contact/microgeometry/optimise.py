@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.choice import Choice, choose, posed, step_aside
 from fe_contact.microgeometry.conclusion import conclusion, not_tried
@@ -18,6 +17,7 @@ from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter
 from fe_contact.microgeometry.search import Cancel, Search, never
 from fe_contact.microgeometry.search_starts import search_all
 from fe_contact.microgeometry.variables import DesignVariable
+from fe_contact.progress import Progress, silent
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess, Workers
@@ -94,7 +94,7 @@ def optimise(
     MeshError, SolveError
         No acceptable mesh, or the contact of one of both designs cannot be solved.
     """
-    clock, report, cancelled = StageClock(), progress or _silent, cancel or never
+    clock, report, cancelled = StageClock(), progress or silent, cancel or never
     accuracy = Accuracies(tolerance, level, time_budget, model, effects)
     judged = scatter, misalignment, objective, limits
     asked = OptimisationRequest(pair, torques, tuple(variables), *judged, search, accuracy, map_torques)
@@ -136,7 +136,3 @@ def _result(
         cost=clock.to_json() | {"evaluations": sum(run.evaluations for run in choice.runs)},
         asked=asked.to_json(study),
     )
-
-
-def _silent(stage: str, fraction: float) -> None:
-    """Report no progress."""

@@ -6,10 +6,10 @@ from dataclasses import replace
 
 from scipy.stats import qmc
 
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.microgeometry.counted_merit import Cancelled
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.search import Cancel, Ended, Search, SearchRun, search_from
+from fe_contact.progress import Progress
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess, Workers
 

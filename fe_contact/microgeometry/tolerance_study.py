@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.checks import increasing, integer, within
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
@@ -21,6 +20,7 @@ from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.scatter import ONE_NODE, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.spread import Quantile, quantile, rank_correlation
 from fe_contact.microgeometry.tolerances import Tolerances
+from fe_contact.progress import Progress, silent
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
 from fe_contact.workers import InProcess, Workers
@@ -160,7 +160,7 @@ def scatter(
     MeshError, SolveError
         No acceptable mesh, or the contact of a pair cannot be solved.
     """
-    clock, report = StageClock(), progress or _silent
+    clock, report = StageClock(), progress or silent
     integer("samples", samples, 2, 1_000_000)
     integer("seed", seed, 0, 2**63 - 1)
     within("confidence", confidence, 0.5, 0.9999)
@@ -259,7 +259,3 @@ def ripple_of_samples(shared: tuple[Evaluator, tuple[str, ...]], deviation: Floa
     evaluator, names = shared
     weight = np.full(deviation.shape[0], 1.0 / deviation.shape[0])
     return replace(evaluator, nodes=ScatterNodes(names, deviation, weight)).evaluate({}).peak_to_peak
-
-
-def _silent(stage: str, fraction: float) -> None:
-    """Report no progress."""

@@ -21,11 +21,11 @@ from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versio
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.slice_laws import mean_stiffness, parabolic_stiffness
 from fe_contact.analysis.slice_springs import SliceLaw, SpringContact
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import Plan, make_plan
+from fe_contact.progress import Progress
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash

@@ -9,11 +9,11 @@ from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked
-from fe_contact.analysis.solved_table import Progress
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.errors import InputError
 from fe_contact.planning import Accuracy
 from fe_contact.planning.discretisation import PLANE_REFINEMENT
+from fe_contact.progress import Progress
 from fe_contact.ste import SteDatabase
 
 SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}

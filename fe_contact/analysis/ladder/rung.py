@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Protocol
 
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.solved_table import Progress
+from fe_contact.progress import Progress
 from fe_contact.ste import SteDatabase
 
 
