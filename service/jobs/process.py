@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from service.jobs.key import content_key
+from service.loading import LOADING
 from service.problems import NoSuchProcess
 from service.schemas.model import BoundaryModel
 
@@ -86,7 +87,9 @@ def on_demand(entry: str) -> Callable[..., Any]:
     def call(*arguments: object) -> Any:
         """Import, then call."""
         module, _, name = entry.partition(":")
-        return getattr(import_module(module), name)(*arguments)
+        with LOADING:
+            function = getattr(import_module(module), name)
+        return function(*arguments)
 
     return call
 

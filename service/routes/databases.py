@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Request
 
+from service.loading import LOADING
 from service.routes.context import Ctx
 from service.routes.cursor import Cursor, Limit, mark_of, page_links
 from service.routes.errors import documented
@@ -28,7 +29,8 @@ def databases(request: Request, context: Ctx, limit: Limit = 20, cursor: Cursor 
 
 def _entry(store: ResultStore, mark: Mark, line: IndexLine) -> DatabaseEntry:
     """Return what the list tells of a database, which is not thereby used; of a damaged file its name."""
-    from service.convert.database_case import case_of_file  # noqa: PLC0415 (start-up time)
+    with LOADING:
+        from service.convert.database_case import case_of_file  # noqa: PLC0415 (start-up time)
 
     try:
         case = case_of_file(store.files.local(line.file, line.sha256))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from fastapi import APIRouter
 from pydantic import BaseModel
 
+from service.loading import LOADING
+
 router = APIRouter(tags=["effects"])
 
 
@@ -22,7 +24,8 @@ class EffectBody(BaseModel):
 @router.get("/effects", summary="Optional physics")
 def effects() -> list[EffectBody]:
     """All effects; a case switches them in its table [effects]."""
-    from fe_contact.effects import EFFECTS  # noqa: PLC0415 (start-up time)
+    with LOADING:
+        from fe_contact.effects import EFFECTS  # noqa: PLC0415 (start-up time)
 
     return [
         EffectBody(

@@ -8,6 +8,7 @@ from functools import cached_property
 from threading import Lock
 from typing import TYPE_CHECKING
 
+from service.loading import LOADING
 from service.store import ResultStore
 
 if TYPE_CHECKING:
@@ -31,8 +32,9 @@ class OpenDatabase:
     @cached_property
     def law(self) -> CompiledForce:
         """The compiled force; raises as `boundary_errors` of what `CompiledForce.of` raises."""
-        from fe_contact.ste.compiled_force import CompiledForce  # noqa: PLC0415 (loads the compiler)
-        from service.convert.case import boundary_errors  # noqa: PLC0415
+        with LOADING:
+            from fe_contact.ste.compiled_force import CompiledForce  # noqa: PLC0415 (loads the compiler)
+            from service.convert.case import boundary_errors  # noqa: PLC0415
 
         with boundary_errors():
             return CompiledForce.of(self.database)
@@ -62,7 +64,8 @@ class OpenDatabases:
 
     def _read(self, store: ResultStore, key: str) -> OpenDatabase:
         """Read and verify a database; the one not asked for longest is closed."""
-        from fe_contact.ste import SteDatabase  # noqa: PLC0415 (start-up time)
+        with LOADING:
+            from fe_contact.ste import SteDatabase  # noqa: PLC0415 (start-up time)
 
         found = OpenDatabase(SteDatabase.from_netcdf(store.verified(key, "database").path))
         with self._lock:

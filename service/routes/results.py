@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
+from service.loading import LOADING
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
 from service.routes.media_types import JSON, negotiated
@@ -57,10 +58,12 @@ def _add_result(kind: ResultKind) -> None:
 def _figures(context: Context, stored: StoredResult) -> dict[str, Any]:
     """Return what a stored file says; the libraries that read it are loaded when they are asked."""
     if stored.kind == "database":
-        from service.convert.answers import metadata_json  # noqa: PLC0415 (start-up time)
+        with LOADING:
+            from service.convert.answers import metadata_json  # noqa: PLC0415 (start-up time)
 
         return metadata_json(context.databases.get(context.store, stored.key).database)
-    from service.convert.result_figures import figures_of  # noqa: PLC0415 (start-up time)
+    with LOADING:
+        from service.convert.result_figures import figures_of  # noqa: PLC0415 (start-up time)
 
     return figures_of(stored.kind, stored.path)
 

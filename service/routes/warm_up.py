@@ -6,6 +6,8 @@ import threading
 from collections.abc import Sequence
 from importlib import import_module
 
+from service.loading import LOADING
+
 HEAVY = (
     "service.jobs.preparations",
     "service.convert.answers",
@@ -17,7 +19,7 @@ HEAVY = (
 
 
 def warm_up(modules: Sequence[str] = HEAVY) -> threading.Thread:
-    """Import modules in a thread; a request that needs one before waits for the rest of its import only."""
+    """Import modules in a thread; a request that needs one of them waits for all."""
     thread = threading.Thread(target=_load, args=(modules,), name="warm-up", daemon=True)
     thread.start()
     return thread
@@ -25,5 +27,6 @@ def warm_up(modules: Sequence[str] = HEAVY) -> threading.Thread:
 
 def _load(modules: Sequence[str]) -> None:
     """Import one after the other."""
-    for module in modules:
-        import_module(module)
+    with LOADING:
+        for module in modules:
+            import_module(module)
