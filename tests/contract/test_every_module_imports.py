@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 BLOCKED = f"""
 import importlib, pkgutil, sys, types
@@ -49,6 +51,7 @@ print(*before - set(import_all(but=("host.posix",))))
     assert _run(code).split() == ["host.posix"]
 
 
+@pytest.mark.nightly
 def test_without_them_a_pair_is_computed_to_the_same_last_bit() -> None:
     code = """
 import numpy as np

@@ -89,6 +89,7 @@ def wind_turbine() -> GearPair:
     return GearPair(*gears, 240e-3)
 
 
+@pytest.mark.nightly
 def test_misalignment_of_the_wind_turbine_pair(cache, record_figure):
     """Peak-to-peak STE doubles by 60 um if contact ends at A and E, hardly changes with corner contact."""
     steps = [0.0, 20e-6, 40e-6, 60e-6]
