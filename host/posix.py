@@ -9,6 +9,7 @@ import signal
 import sys
 
 from host.ending import RESIDENT_UNIT
+from host.proc import memory_figure
 
 assert sys.platform != "win32"
 
@@ -20,8 +21,12 @@ def children_cpu_seconds() -> float:
 
 
 def peak_memory() -> int:
-    """Return the most resident memory this process has had, bytes."""
-    return RESIDENT_UNIT * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    """Return the most resident memory this process has had, bytes.
+
+    The counter of getrusage begins with the peak of who started the process; Linux has another, its own.
+    """
+    own = memory_figure("VmHWM")
+    return RESIDENT_UNIT * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss if own is None else own
 
 
 def children_peak_memory() -> int:

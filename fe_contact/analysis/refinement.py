@@ -189,9 +189,9 @@ def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
 def _refined(resolution: _Resolution) -> _Resolution:
     """Refine what dominates until the tolerance is predicted to be kept, or nothing is left to refine."""
     while resolution.used > AIM:
-        order = np.argsort(-resolution.sources, kind="stable")
-        decides = (resolution.used > 1.0) & (resolution.used**2 - resolution.sources**2 <= 1.0)
-        order = order[(resolution.sources > SMALL)[order] | decides[order]]
+        used, sources = resolution.used, resolution.sources
+        decides = (used > 1.0) & (used**2 - sources**2 <= 1.0)
+        order = [k for k in np.argsort(-sources, kind="stable") if sources[k] > SMALL or decides[k]]
         finer = next((step for source in order if (step := resolution.step(int(source)))), None)
         if finer is None:
             break

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from host import memory_figure
+from host import peak_memory
 
 BYTES_PER_MB = float(1 << 20)
 
@@ -37,7 +37,6 @@ class Usage:
         }
 
 
-def own_peak_mb() -> float | None:
-    """Return the most resident memory this process has had, MB; None where the system does not tell."""
-    peak = memory_figure("VmHWM")
-    return None if peak is None else peak / BYTES_PER_MB
+def own_peak_mb() -> float:
+    """Return the most resident memory this process has had, MB."""
+    return peak_memory() / BYTES_PER_MB
