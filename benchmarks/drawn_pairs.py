@@ -22,12 +22,12 @@ Draw = np.random.Generator
 
 def assessed_pairs() -> list[PairCase]:
     """Return the pairs on which stated errors are assessed."""
-    return drawn_pairs(16, 12)
+    return drawn_pairs(41, 20)
 
 
 def fresh_pairs() -> list[PairCase]:
     """Return those that besides them assess a tolerance, and nothing else."""
-    return drawn_pairs(29, 2)
+    return drawn_pairs(29, 10)
 
 
 def in_plane(case: PairCase) -> bool:

@@ -20,7 +20,8 @@ from fe_contact.planning.discretisation import FINER_SLICES, Discretisation
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 
-PLANE_FACTOR, SLICES = 1.5, FINER_SLICES[-1]
+FINER, SLICES = 1.5, FINER_SLICES[-1]
+"""Elements of the level fine over those of the finest solution, and its slices."""
 PLANE_POSITIONS, FACE_POSITIONS = 512, 128
 _SAMPLES, _FEW = 4096, 50
 
@@ -28,8 +29,8 @@ _SAMPLES, _FEW = 4096, 50
 def finest(case: PairCase, cache: Path) -> FloatArray:
     """Return mean, peak-to-peak and three harmonics (5, loads) in m.
 
-    In the plane on elements `PLANE_FACTOR` times as fine as those of the level fine, over the face on the
-    mesh of the level fine in `SLICES` slices, at many positions.
+    On elements and layers `FINER` times as fine as those of the level fine, over the face in `SLICES` slices,
+    at many positions.
     """
     checked = check_request(case.pair, normal_forces=case.forces, level="fine", **case.options)
     return solved_finely(checked, pair_contact(checked.request.pair, finest_plan(checked), cache))
@@ -71,8 +72,9 @@ def _quantities(position: FloatArray, curve: FloatArray) -> FloatArray:
 def _finer(made: Discretisation, bodies: tuple[Toothing, Toothing]) -> Discretisation:
     """Return a discretisation beyond "fine"."""
     if isinstance(made, FaceDiscretisation):
-        return made.in_slices(SLICES)
-    one, two = (recipe.refined(PLANE_FACTOR) for recipe in made.recipes)
+        first, second = (recipe.scaled(1.0 / FINER) for recipe in made.recipes)
+        return replace(made, recipes=(first, second)).in_slices(SLICES)
+    one, two = (recipe.refined(FINER) for recipe in made.recipes)
     solids = None
     if made.finite_width is not None:
         solids = (_fine_solid(bodies[0]), _fine_solid(bodies[1]))
@@ -81,6 +83,4 @@ def _finer(made: Discretisation, bodies: tuple[Toothing, Toothing]) -> Discretis
 
 def _fine_solid(gear: Toothing) -> SectorRecipe:
     """Return solids of half the face with elements of 0.6 of the usual size and one more layer."""
-    recipe = SectorRecipe.even_load(gear)
-    sizes = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
-    return replace(recipe, layers=4, **{name: 0.6 * getattr(recipe, name) for name in sizes})
+    return replace(SectorRecipe.even_load(gear).scaled(0.6), layers=4)

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import sys
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from benchmarks.assessed import HARMONICS, QUANTITIES
-from benchmarks.finest_solution import finest
+from benchmarks.finest_solution import FINER, finest
 from benchmarks.pair_cases import PairCase
 from fe_contact import SteDatabase, analyze
 from fe_contact.analysis.warm_up import warm_up
+from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.curve_errors import AT_NODES, all_sources
 from fe_contact.types import FloatArray, Json
 
@@ -68,7 +68,8 @@ def table_run(case: PairCase, **accuracy: Any) -> StoredRun:
 
 def finest_run(case: PairCase) -> FloatArray:
     """Return the quantities (5, loads) of the finest solution of a case, m."""
-    return np.array(_stored(case, "finest", lambda folder: {"value": finest(case, folder).tolist()})["value"])
+    found = _stored(case, f"finest, {FINER:g}", lambda folder: {"value": finest(case, folder).tolist()})
+    return np.array(found["value"])
 
 
 def _run(case: PairCase, folder: Path, accuracy: Json) -> Json:
@@ -103,8 +104,8 @@ def quantities(table: SteDatabase) -> FloatArray:
 
 def _stored(case: PairCase, run: str, measure: Callable[[Path], Json]) -> Json:
     """Read a run, or make and store it."""
-    text = repr([VERSION, case.pair, case.forces, sorted(case.options.items()), run])
-    key = hashlib.sha256(text.encode()).hexdigest()[:24]
+    asked = {"pair": asdict(case.pair), "forces": case.forces, "options": dict(case.options), "run": run}
+    key = content_hash(asked, str(VERSION), 0)[:24]
     lines = FILE.read_text(encoding="utf-8").splitlines() if FILE.exists() else []
     for line in map(json.loads, lines):
         if line["key"] == key:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from itertools import pairwise
 from typing import Protocol
 
@@ -16,6 +16,7 @@ from fe_contact.types import Json
 
 HELICAL_BODY_LAYERS = 6
 """Layers that the body below a helical tooth wants at least."""
+_SIZES = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
 
 
 class HasFace(Protocol):
@@ -84,8 +85,7 @@ class SectorRecipe:
     half_face: bool = False
 
     def __post_init__(self) -> None:
-        sizes = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
-        for field in sizes:
+        for field in _SIZES:
             positive(field, getattr(self, field))
         for field in ("tip_growth", "depth_growth", "body_growth"):
             within(field, getattr(self, field), 0.05, 2.0, "0.5 is usual.")
@@ -183,6 +183,12 @@ class SectorRecipe:
             merge_rows=(),
             half_face=True,
         )
+
+    def scaled(self, factor: float) -> SectorRecipe:
+        """Return the recipe with elements and layers `factor` > 0 times as large, layers in whole groups."""
+        group = self.layer_group
+        layers = group * max(math.ceil(self.layers / factor / group * (1.0 - 1e-9)), 1)
+        return replace(self, layers=layers, **{name: factor * getattr(self, name) for name in _SIZES})
 
     def content(self) -> Json:
         """Return all fields as plain JSON."""

@@ -178,10 +178,6 @@ def _coarser(recipe: SectorRecipe, gear: Toothing) -> SectorRecipe:
 
     Layers of a helical body are not merged where too few would be left.
     """
-    sizes = ("flank_size", "tip_size", "depth_size", "depth_limit", "body_size", "body_limit")
-    group = recipe.layer_group
-    layers = group * max(math.ceil(recipe.layers / COARSER / group), 1)
-    few = gear.helix_angle and layers < group * HELICAL_BODY_LAYERS
-    merge = () if few else recipe.merge_rows
-    larger = {name: COARSER * getattr(recipe, name) for name in sizes}
-    return replace(recipe, layers=layers, merge_rows=merge, **larger)
+    larger = recipe.scaled(COARSER)
+    few = gear.helix_angle and larger.layers < larger.layer_group * HELICAL_BODY_LAYERS
+    return replace(larger, merge_rows=()) if few else larger
