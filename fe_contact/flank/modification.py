@@ -74,12 +74,12 @@ class FlankModification(  # the last comes first: dataclasses take the fields of
         """Whether the modification depends on the face position, at any roll length."""
         return Direction.FACE in self.varies
 
-    @property
+    @cached_property
     def along_profile(self) -> FlankModification:
         """The part that is the same all over the face."""
         return _together(part for part in self.parts if Direction.FACE not in part.varies)
 
-    @property
+    @cached_property
     def along_face(self) -> FlankModification:
         """The part that differs over the face; twisted or free, it varies along the profile too."""
         return _together(part for part in self.parts if Direction.FACE in part.varies)
