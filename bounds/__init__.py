@@ -18,12 +18,13 @@ from bounds.bound import (
     exactly,
     integers,
     one_of,
+    up_to,
 )
 from bounds.checks import Checks
-from bounds.declared import DEPTHS, Declared, Direction, Kind, attributes, declarations, declared
+from bounds.declared import DEPTHS, Declared, Direction, Kind, declarations, declared, described, required
 from bounds.plausibility import Check, Finding, PlausibilityWarning, finding_of, warn_of
 from bounds.reader import Reader
-from bounds.refused import RefusedValue
+from bounds.refused import RefusedValue, inside
 from bounds.text import Quantity, SiNote, Text, Words
 from bounds.unit import Unit
 
@@ -49,14 +50,17 @@ __all__ = [
     "above",
     "at_least",
     "at_most",
-    "attributes",
     "below",
     "between",
     "declarations",
     "declared",
+    "described",
     "exactly",
     "finding_of",
+    "inside",
     "integers",
     "one_of",
+    "required",
+    "up_to",
     "warn_of",
 ]

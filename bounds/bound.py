@@ -97,6 +97,11 @@ def above(low: float, unit: str = "", name: str = "", note: Words = "") -> Bound
     return Bound(low=low, low_open=True, unit=unit, low_name=name, note=Text.of(note))
 
 
+def up_to(high: float) -> Bound:
+    """Return the bound above 0 up to `high`."""
+    return Bound(low=0.0, high=high, low_open=True)
+
+
 def at_least(low: float, unit: str = "", name: str = "", note: Words = "") -> Bound:
     """Return the bound from `low`, which is the quantity called `name`."""
     return Bound(low=low, unit=unit, low_name=name, note=Text.of(note))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -74,9 +74,12 @@ class Checks:
         return value
 
     def declared_fields(self, thing: Any) -> None:
-        """Check the declared fields of a dataclass, whatever the others are."""
+        """Check the declared fields of a dataclass, whatever the others are; what is left out passes."""
+        defaults = {entry.name: entry.default for entry in fields(thing)}
         for field, what in declarations(type(thing)).items():
             value, advice = getattr(thing, field), SiNote(f"In {what.unit}, for example {what.example}.")
+            if value is None and defaults[field] is None:
+                continue
             if isinstance(what.bound, Choice):
                 self.one_of(field, value, what.bound.names)
             elif isinstance(what.bound, Bound):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import MISSING, dataclass, field, fields
 from enum import Flag, StrEnum, auto
 from functools import cache
 from types import MappingProxyType
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 from bounds.bound import Bound, Choice
+
+Thing = TypeVar("Thing")
 
 
 class Kind(StrEnum):
@@ -28,6 +30,9 @@ class Kind(StrEnum):
     """A law by its name."""
     SURFACE = auto()
     """A table of its own."""
+    STIFFNESS = auto()
+    """A force, traction or stress per displacement or strain."""
+    RATIO = auto()
 
 
 DEPTHS = (Kind.AMOUNT, Kind.SLOPE)
@@ -69,16 +74,25 @@ class Declared:
 
 
 def declared(default: Any, what: Declared) -> Any:
-    """Return the field of a dataclass with its default and its declaration."""
+    """Return the field of a dataclass with its default and its declaration; left out where that is None."""
     return field(default=default, metadata={Declared: what})
 
 
-def attributes(kind: type[Any]) -> str:
-    """Return the section of a docstring that says what the declared fields of a dataclass are."""
-    entries = (
-        f"{name} : {what.unit or 'name'}\n    {what.description}" for name, what in declarations(kind).items()
-    )
-    return "\n".join(("Attributes", "----------", *entries))
+def required(what: Declared) -> Any:
+    """Return the field of a dataclass without a default, with its declaration."""
+    return declared(MISSING, what)
+
+
+def described(kind: type[Thing]) -> type[Thing]:
+    """Append to the docstring of a dataclass what its declared fields are; a decorator."""
+    entries = (f"{name} : {_unit(what)}\n    {what.description}" for name, what in declarations(kind).items())
+    kind.__doc__ = "\n".join((f"{kind.__doc__}\n", "Attributes", "----------", *entries, ""))
+    return kind
+
+
+def _unit(what: Declared) -> str:
+    """Write the unit of a field, or what it is in place of one."""
+    return what.unit or ("name" if isinstance(what.bound, Choice) else "1")
 
 
 def declarations(kind: type[Any]) -> Mapping[str, Declared]:

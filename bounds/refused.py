@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any, Self
 
 import numpy as np
@@ -48,3 +50,12 @@ class RefusedValue(Exception):
     def within(self, prefix: str) -> Self:
         """Return the same error with its field named inside `prefix`."""
         return type(self)(f"{prefix}.{self.field}", self.value, self.bound, self.suggestion)
+
+
+@contextmanager
+def inside(part: str) -> Iterator[None]:
+    """Name the field of a value that is refused inside `part`."""
+    try:
+        yield
+    except RefusedValue as error:
+        raise error.within(part) from None

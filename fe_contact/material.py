@@ -4,31 +4,27 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bounds import Quantity, Text
-from fe_contact.checks import positive, within
+from bounds import Declared, Kind, between, declared, described
+from fe_contact.checks import declared_fields, positive
+
+_YOUNG = Declared(Kind.STIFFNESS, "Pa", between(1e6, 2e12), "Young's modulus; steel is 210", 210e9)
+_POISSON = Declared(Kind.RATIO, "", between(0.0, 0.499), "Poisson's ratio; steel is 0.3", 0.3)
 
 
+@described
 @dataclass(frozen=True)
 class Material:
     """Isotropic elasticity.
 
-    Attributes
-    ----------
-    youngs_modulus : float
-        E in Pa.
-    poissons_ratio : float
-        nu, from 0 to 0.499.
-    density : float
-        rho in kg/m^3; used by dynamics only, through masses the caller derives from it.
+    The density in kg/m^3 is used by dynamics only, through masses that the caller derives from it.
     """
 
-    youngs_modulus: float = 210e9
-    poissons_ratio: float = 0.3
+    youngs_modulus: float = declared(210e9, _YOUNG)
+    poissons_ratio: float = declared(0.3, _POISSON)
     density: float = 7850.0
 
     def __post_init__(self) -> None:
-        positive("youngs_modulus", self.youngs_modulus, Text.of("Steel is ", Quantity(2.1e11, "Pa"), "."))
-        within("poissons_ratio", self.poissons_ratio, 0.0, 0.499, "Steel is 0.3.")
+        declared_fields(self)
         positive("density", self.density, "Steel is 7850 kg/m^3.")
 
     @property

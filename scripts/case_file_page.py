@@ -7,19 +7,21 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import MISSING
 from pathlib import Path
 
-from fe_contact.flank.modification import FlankModification
+from bounds import Choice
+from service.convert.vocabulary import DECLARED
 from service.schemas.declared import Figure, figures
 
-DECLARED = {kind.__name__: kind for kind in (FlankModification,)}
+KINDS = {kind.__name__: kind for kind in DECLARED}
 TABLE = re.compile(r"(<!-- fields of (\w+) -->\n).*?(<!-- end of fields -->)", re.DOTALL)
 HEAD = "| field | meaning | accepted | default |\n|---|---|---|---|\n"
 
 
 def page(text: str) -> str:
     """Return the page with its tables anew."""
-    return TABLE.sub(lambda found: f"{found[1]}{table(DECLARED[found[2]])}{found[3]}", text)
+    return TABLE.sub(lambda found: f"{found[1]}{table(KINDS[found[2]])}{found[3]}", text)
 
 
 def table(kind: type) -> str:
@@ -33,21 +35,27 @@ def row(figure: Figure) -> str:
         f"`{figure.field}`",
         figure.what.description,
         accepted(figure),
-        written(figure.own(figure.default)),
+        written(figure),
     )
     return f"| {' | '.join(cells)} |"
 
 
 def accepted(figure: Figure) -> str:
     """Say what is accepted."""
-    low, high = figure.limits.get("ge"), figure.limits.get("le")
-    if low is None or high is None:
-        return ", ".join(f'`"{name}"`' for name in figure.what.bound.names)
-    return f"{low:.7g} to {high:.7g}"
+    bound, limits = figure.what.bound, figure.limits
+    if isinstance(bound, Choice):
+        return ", ".join(f'`"{name}"`' for name in bound.names)
+    low = f"above {limits['gt']:.7g}, up" if "gt" in limits else f"{limits['ge']:.7g}"
+    return f"{low} to {limits['le']:.7g}"
 
 
-def written(default: object) -> str:
+def written(figure: Figure) -> str:
     """Write a default as a case file has it."""
+    if figure.default is MISSING:
+        return "required"
+    if figure.default is None:
+        return "left out"
+    default = figure.own(figure.default)
     return f"{default:.7g}" if isinstance(default, float) else f'`"{default}"`'
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bounds import Direction, Kind, attributes, declarations
+from bounds import Direction, Kind, declarations, described
 from fe_contact.flank.cut_tip import CutTip
 from fe_contact.flank.end_relief import EndRelief
 from fe_contact.flank.free_form import FreeForm
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 
+@described
 @dataclass(frozen=True, kw_only=True)
 class FlankModification(  # the last comes first: dataclasses take the fields of their bases from the end
     FreeForm,
@@ -158,4 +159,3 @@ def _together(parts: Iterable[FlankPart]) -> FlankModification:
 
 
 UNMODIFIED = FlankModification()
-FlankModification.__doc__ = f"{FlankModification.__doc__}\n{attributes(FlankModification)}\n"

@@ -6,8 +6,20 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING
 
-from bounds import LIMIT_SLACK, Quantity, SiNote, Text, at_most, between
-from fe_contact.checks import finite, positive, within
+from bounds import (
+    LIMIT_SLACK,
+    Declared,
+    Kind,
+    Quantity,
+    Text,
+    at_most,
+    between,
+    declared,
+    described,
+    required,
+    up_to,
+)
+from fe_contact.checks import declared_fields
 from fe_contact.errors import InfeasibleGeometry, InputError
 from fe_contact.types import Json
 
@@ -17,55 +29,50 @@ if TYPE_CHECKING:
 
 NARROWEST = 0.02  # seat in face widths
 FOUNDATIONS = ("radial_foundation", "tangential_foundation", "axial_foundation")
-
-
-_FOUNDATION = Text.of(SiNote("In N/m^3: "), Quantity(1e13, "N/m^3"), " is 10 N/mm^2 per um. Left out: rigid.")
 _KEY = Text.of(
     "About G / h for a key of height h: ", Quantity(1e13, "N/m^3"), " for ", Quantity(8e-3, "m"), " of steel."
 )
 
 
+def _foundation(direction: str, example: float) -> Declared:
+    """Return the declaration of a foundation modulus: traction per displacement, N/m^3."""
+    return Declared(
+        Kind.STIFFNESS, "N/m^3", up_to(1e18), f"{direction} foundation modulus; left out: rigid", example
+    )
+
+
+_ACROSS = "Width along the circumference"
+_ANGLE = "Angle of its middle, counter-clockwise from the center line of the reference tooth at mid-face"
+_WIDTH = "Axial length of the seat, 0.02 face widths or more; left out: the face width"
+_OFFSET = "Middle of the seat towards +z from mid-face; the seat stays within the face"
+
+
+@described
 @dataclass(frozen=True)
 class Key:
     """One parallel key along the axis.
 
-    Attributes
-    ----------
-    width : float
-        Along the circumference of the bore, m.
-    angle : float
-        Of its middle, counter-clockwise from the centre line of tooth 0 at mid-face, rad.
-
     Raises
     ------
     InputError
         A value out of its bounds.
     """
 
-    width: float
-    angle: float = 0.0
+    width: float = required(Declared(Kind.LENGTH, "m", up_to(5.0), _ACROSS, 0.012))
+    angle: float = declared(0.0, Declared(Kind.ANGLE, "rad", between(-math.pi, math.pi), _ANGLE, math.pi))
 
     def __post_init__(self) -> None:
-        positive("width", self.width, SiNote("In m: 12 mm is 0.012."))
-        within("angle", self.angle, -math.pi, math.pi, SiNote("In rad: 0 is below tooth 0, pi is opposite."))
+        declared_fields(self)
 
 
+@described
 @dataclass(frozen=True)
 class BoreSeat:
     """A seat all round the bore, rigid or elastic, over the whole face or part of it.
 
-    Attributes
-    ----------
-    radial_foundation, tangential_foundation, axial_foundation : float, optional
-        Foundation modulus: traction per displacement, N/m^3; None is rigid. It pulls as well as it
-        pushes, as a fit does until it opens.
-    width : float, optional
-        Axial length of the seat, m; default: the face width.
-    offset : float
-        Axial distance of its middle from mid-face, m.
-    key : Key, optional
-        Then the tangential foundation is that of the key and acts over its width only; elsewhere the bore
-        slides around the shaft. It has to be given: about G / h for a key of height h.
+    Foundation moduli are traction per displacement; they pull as well as they push, as a fit does until it
+    opens. With a key the tangential foundation is that of the key and acts over its width only; elsewhere the
+    bore slides around the shaft. It then has to be given: about G / h for a key of height h.
 
     Raises
     ------
@@ -73,20 +80,15 @@ class BoreSeat:
         A value out of its bounds.
     """
 
-    radial_foundation: float | None = None
-    tangential_foundation: float | None = None
-    axial_foundation: float | None = None
-    width: float | None = None
-    offset: float = 0.0
+    radial_foundation: float | None = declared(None, _foundation("Radial", 2e13))
+    tangential_foundation: float | None = declared(None, _foundation("Tangential", 1e13))
+    axial_foundation: float | None = declared(None, _foundation("Axial", 1e13))
+    width: float | None = declared(None, Declared(Kind.LENGTH, "m", up_to(5.0), _WIDTH, 0.02))
+    offset: float = declared(0.0, Declared(Kind.LENGTH, "m", between(-5.0, 5.0), _OFFSET, 0.002))
     key: Key | None = None
 
     def __post_init__(self) -> None:
-        for field in FOUNDATIONS:
-            if getattr(self, field) is not None:
-                positive(field, getattr(self, field), _FOUNDATION)
-        if self.width is not None:
-            positive("width", self.width, SiNote("In m: 20 mm is 0.02. Left out: the face width."))
-        finite("offset", self.offset, SiNote("In m, from mid-face."))
+        declared_fields(self)
         if self.key is not None and self.tangential_foundation is None:
             raise InputError("tangential_foundation", None, "given with a key", _KEY)
 

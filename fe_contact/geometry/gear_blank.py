@@ -5,8 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from bounds import LIMIT_SLACK, SiNote, at_least, below, between
-from fe_contact.checks import finite, positive
+from bounds import (
+    LIMIT_SLACK,
+    Declared,
+    Kind,
+    at_least,
+    below,
+    between,
+    declared,
+    described,
+    required,
+    up_to,
+)
+from fe_contact.checks import declared_fields
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.types import Json
 
@@ -18,20 +29,16 @@ THINNEST_WEB = 0.02  # in face widths
 ROUNDING = 1e-4  # of the face width: faces closer than that are one, since foils of elements are no help
 
 
+_RIM = "Rim thickness s_R below the root circle; half a module or more, less than what lies above the hub"
+_WEB = "Web thickness b_s; 0.02 face widths to the face width, which is a solid gear"
+_HUB = "Outside of the hub, the bore diameter or more; left out: the web reaches down to the bore"
+_OFFSET = "Middle of the web towards +z from mid-face; the web stays within the face"
+
+
+@described
 @dataclass(frozen=True)
 class GearBlank:
     """A rim as wide as the face, a web, and a hub as wide as the face.
-
-    Attributes
-    ----------
-    rim_thickness : float
-        s_R, from the root circle down to the inside of the rim, m.
-    web_thickness : float
-        b_s, m. A web as thick as the face is wide is a solid gear.
-    hub_diameter : float, optional
-        Outside of the hub, m; default: the bore, the web reaches down to it.
-    web_offset : float
-        Axial distance of the middle of the web from mid-face, m.
 
     Raises
     ------
@@ -39,17 +46,13 @@ class GearBlank:
         A value out of its bounds.
     """
 
-    rim_thickness: float
-    web_thickness: float
-    hub_diameter: float | None = None
-    web_offset: float = 0.0
+    rim_thickness: float = required(Declared(Kind.LENGTH, "m", up_to(20.0), _RIM, 0.012))
+    web_thickness: float = required(Declared(Kind.LENGTH, "m", up_to(5.0), _WEB, 0.01))
+    hub_diameter: float | None = declared(None, Declared(Kind.LENGTH, "m", between(1e-6, 20.0), _HUB, 0.06))
+    web_offset: float = declared(0.0, Declared(Kind.LENGTH, "m", between(-5.0, 5.0), _OFFSET, 0.005))
 
     def __post_init__(self) -> None:
-        positive("rim_thickness", self.rim_thickness, SiNote("In m: 12 mm is 0.012."))
-        positive("web_thickness", self.web_thickness, SiNote("In m: 8 mm is 0.008."))
-        if self.hub_diameter is not None:
-            positive("hub_diameter", self.hub_diameter, SiNote("In m: 60 mm is 0.06."))
-        finite("web_offset", self.web_offset, SiNote("In m, from mid-face."))
+        declared_fields(self)
 
     def mirrored(self) -> GearBlank:
         """Return the mirror image in the plane of mid-face."""

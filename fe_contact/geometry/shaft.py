@@ -4,27 +4,30 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from bounds import SiNote
-from fe_contact.checks import positive, within
+from bounds import Declared, Kind, SiNote, between, declared, described, required, up_to
+from fe_contact.checks import declared_fields, within
 from fe_contact.material import STEEL, Material
 
+_LENGTH = Declared(Kind.LENGTH, "m", up_to(50.0), "Distance between the bearings", 0.2)
+_DIAMETER = Declared(Kind.LENGTH, "m", between(1e-6, 10.0), "Diameter", 0.04)
+_POSITION = Declared(
+    Kind.LENGTH,
+    "m",
+    between(-50.0, 100.0),
+    "Mid-face of the gear towards +z from the bearing of smaller z; overhangs by at most the length",
+    0.06,
+)
+_STIFFNESS = Declared(
+    Kind.STIFFNESS, "N/m", up_to(1e15), "Radial stiffness of each bearing; left out: rigid", 4e8
+)
 
+
+@described
 @dataclass(frozen=True)
 class Shaft:
     """A round shaft of constant diameter on two radial bearings, with the gear between or beside them.
 
-    Attributes
-    ----------
-    length : float
-        Distance between the bearings, m.
-    diameter : float
-        m.
-    position : float
-        Mid-face of the gear as distance in m along the pinion's axis (+z) from the bearing of smaller z;
-        negative or above `length` is a gear that overhangs.
-    bearing_stiffness : float, optional
-        Radial stiffness of each bearing, N/m; None is rigid.
-    material : Material
+    A gear whose position is negative or beyond the length overhangs; +z is along the pinion's axis.
 
     Raises
     ------
@@ -32,19 +35,16 @@ class Shaft:
         A value out of its bounds.
     """
 
-    length: float
-    diameter: float
-    position: float
-    bearing_stiffness: float | None = None
+    length: float = required(_LENGTH)
+    diameter: float = required(_DIAMETER)
+    position: float = required(_POSITION)
+    bearing_stiffness: float | None = declared(None, _STIFFNESS)
     material: Material = STEEL
 
     def __post_init__(self) -> None:
-        positive("length", self.length, SiNote("In m: 200 mm is 0.2."))
-        positive("diameter", self.diameter, SiNote("In m: 40 mm is 0.04."))
+        declared_fields(self)
         advice = SiNote("In m from the bearing of smaller z; a gear may overhang by one length.")
         within("position", self.position, -self.length, 2.0 * self.length, advice)
-        if self.bearing_stiffness is not None:
-            positive("bearing_stiffness", self.bearing_stiffness, SiNote("In N/m; left out: rigid bearings."))
 
 
 Shafts = tuple[Shaft | None, Shaft | None]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from bounds import inside
 from fe_contact.allowed_error import AllowedError
-from fe_contact.errors import FeContactError, InputError
+from fe_contact.errors import FeContactError
 from fe_contact.geometry import (
     BoreSeat,
     FlankGrid,
@@ -24,7 +24,7 @@ from fe_contact.geometry import (
     Shaft,
 )
 from fe_contact.material import Material
-from service.convert.declared import in_si
+from service.convert.declared import declared_part, in_si
 from service.convert.errors import translated
 from service.problems import BadInput
 from service.schemas import (
@@ -36,7 +36,7 @@ from service.schemas import (
     ToothingInput,
     WheelInput,
 )
-from service.units import DEGREE, GPA, MM, N_PER_MM3, N_PER_UM, NM, UM
+from service.units import DEGREE, MM, NM, UM
 
 Json = dict[str, Any]
 
@@ -80,27 +80,25 @@ def boundary_errors(prefix: str = "") -> Iterator[None]:
 def _gear(name: str, pair: PairInput, material: MaterialInput, hand: float) -> Gear:
     """One external gear of the pair; mating ones have opposite hands."""
     given = getattr(pair, name)
-    try:
-        toothing = _toothing(given, pair, material, hand)
+    with inside(name):
         return Gear(
-            bore_diameter=given.bore_diameter_mm * MM, blank=_blank(given), seat=_seat(given), **toothing
+            bore_diameter=given.bore_diameter_mm * MM,
+            blank=declared_part(GearBlank, given.blank, "blank"),
+            seat=_seat(given.seat),
+            **_toothing(given, pair, material, hand),
         )
-    except InputError as error:
-        raise error.within(name) from None
 
 
 def _ring_gear(pair: PairInput, material: MaterialInput) -> RingGear:
     """Return the wheel as a ring gear, which has the hand of its pinion."""
     given: WheelInput = pair.wheel
-    try:
+    with inside("wheel"):
         return RingGear(
             rim_diameter=(given.rim_diameter_mm or 0.0) * MM,
             cutter_teeth=given.cutter_teeth or 0,
             cutter_profile_shift_coefficient=given.cutter_profile_shift_coefficient or 0.0,
             **_toothing(given, pair, material, +1.0),
         )
-    except InputError as error:
-        raise error.within("wheel") from None
 
 
 def _toothing(given: ToothingInput, pair: PairInput, material: MaterialInput, hand: float) -> Json:
@@ -115,71 +113,23 @@ def _toothing(given: ToothingInput, pair: PairInput, material: MaterialInput, ha
         "tip_diameter": None if tip is None else tip * MM,
         "thickness_allowance": given.thickness_allowance_um * UM,
         "modification": _modification(given),
-        "material": _material(given.material or material),
+        "material": Material(**in_si(Material, given.material or material)),
         "pitch_deviation": PitchDeviation(tuple(value * UM for value in given.pitch_deviation_um)),
         **{coefficient: getattr(given, coefficient) for coefficient in _COEFFICIENTS},
     }
 
 
-def _blank(given: ToothingInput) -> GearBlank | None:
-    """Return rim, web and hub of a gear, None for a solid one."""
-    blank = given.blank
-    if blank is None:
-        return None
-    try:
-        return GearBlank(
-            rim_thickness=blank.rim_thickness_mm * MM,
-            web_thickness=blank.web_thickness_mm * MM,
-            hub_diameter=None if blank.hub_diameter_mm is None else blank.hub_diameter_mm * MM,
-            web_offset=blank.web_offset_mm * MM,
-        )
-    except InputError as error:
-        raise error.within("blank") from None
-
-
-def _seat(given: ToothingInput) -> BoreSeat:
+def _seat(given: BoreSeatInput | None) -> BoreSeat:
     """Return the seat of the bore; without one it is fixed."""
-    seat = given.seat
-    if seat is None:
+    if given is None:
         return BoreSeat()
-    foundation = {
-        name: None if value is None else value * N_PER_MM3
-        for name in ("radial_foundation", "tangential_foundation", "axial_foundation")
-        for value in [getattr(seat, f"{name}_n_per_mm3")]
-    }
-    width = None if seat.width_mm is None else seat.width_mm * MM
-    try:
-        return BoreSeat(**foundation, width=width, offset=seat.offset_mm * MM, key=_key(seat))
-    except InputError as error:
-        raise error.within("seat") from None
-
-
-def _key(seat: BoreSeatInput) -> Key | None:
-    """Return the key of a seat."""
-    if seat.key is None:
-        return None
-    try:
-        # 180 deg is pi to the last bit
-        return Key(seat.key.width_mm * MM, math.radians(seat.key.angle_deg))
-    except InputError as error:
-        raise error.within("key") from None
+    with inside("seat"):
+        return BoreSeat(**in_si(BoreSeat, given), key=declared_part(Key, given.key, "key"))
 
 
 def _shaft(name: str, gear: ToothingInput) -> Shaft | None:
     """Return the shaft of a gear, None for a rigid one."""
-    given = gear.shaft
-    if given is None:
-        return None
-    stiffness = given.bearing_stiffness_n_per_um
-    try:
-        return Shaft(
-            length=given.length_mm * MM,
-            diameter=given.diameter_mm * MM,
-            position=given.position_mm * MM,
-            bearing_stiffness=None if stiffness is None else stiffness * N_PER_UM,
-        )
-    except InputError as error:
-        raise error.within(f"{name}.shaft") from None
+    return declared_part(Shaft, gear.shaft, f"{name}.shaft")
 
 
 def _modification(given: ToothingInput) -> FlankModification:
@@ -192,19 +142,12 @@ def _flank_grid(given: ToothingInput) -> FlankGrid | None:
     grid = given.flank_grid
     if grid is None:
         return None
-    try:
+    with inside("flank_grid"):
         return FlankGrid(
             roll_length=tuple(value * MM for value in grid.roll_length_mm),
             face_position=tuple(value * MM for value in grid.face_position_mm),
             removed=tuple(tuple(value * UM for value in row) for row in grid.removed_um),
         )
-    except InputError as error:
-        raise error.within("flank_grid") from None
-
-
-def _material(given: MaterialInput) -> Material:
-    """Return the material of a gear."""
-    return Material(youngs_modulus=given.youngs_modulus_gpa * GPA, poissons_ratio=given.poissons_ratio)
 
 
 def analysis_arguments(case: Case) -> Json:

@@ -2,11 +2,28 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import BaseModel
 
+from bounds import inside
 from service.schemas.declared import figures
+
+Part = TypeVar("Part")
+
+
+def declared_part(kind: type[Part], given: BaseModel | None, name: str, **further: Any) -> Part | None:
+    """Return a part of the libraries' from the model that has its declared fields, None if it is left out.
+
+    Raises
+    ------
+    RefusedValue
+        A value out of its bounds, named within `name`.
+    """
+    if given is None:
+        return None
+    with inside(name):
+        return kind(**in_si(kind, given), **further)
 
 
 def in_si(kind: type[Any], given: BaseModel) -> dict[str, Any]:

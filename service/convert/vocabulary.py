@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from fe_contact.flank.modification import FlankModification
+from fe_contact.geometry.bore_seat import BoreSeat, Key
+from fe_contact.geometry.gear_blank import GearBlank
+from fe_contact.geometry.shaft import Shaft
+from fe_contact.material import Material
 from service.schemas.declared import figures
 
 # Fields of a case, by the library's name (see fe_contact.geometry and fe_contact.planning).
@@ -26,7 +30,10 @@ _CASE = {
     "on_violation": "accuracy.on_violation",
 }
 
-_LAST = {figure.name: figure.field for figure in figures(FlankModification)} | {
+DECLARED = (FlankModification, Material, GearBlank, Key, BoreSeat, Shaft)
+"""What declares its fields."""
+
+_LAST = {figure.name: figure.field for kind in DECLARED for figure in figures(kind)} | {
     # gear
     "face_width": "face_width_mm",
     "bore_diameter": "bore_diameter_mm",
@@ -34,26 +41,12 @@ _LAST = {figure.name: figure.field for figure in figures(FlankModification)} | {
     "tip_diameter": "tip_diameter_mm",
     "thickness_allowance": "thickness_allowance_um",
     "pitch_deviation": "pitch_deviation_um",
-    "rim_thickness": "rim_thickness_mm",
-    "web_thickness": "web_thickness_mm",
-    "hub_diameter": "hub_diameter_mm",
-    "web_offset": "web_offset_mm",
-    "radial_foundation": "radial_foundation_n_per_mm3",
-    "tangential_foundation": "tangential_foundation_n_per_mm3",
-    "axial_foundation": "axial_foundation_n_per_mm3",
-    "width": "width_mm",
-    "offset": "offset_mm",
     "roll_length": "roll_length_mm",
     "face_position": "face_position_mm",
     "removed": "removed_um",
-    "youngs_modulus": "youngs_modulus_gpa",
-    "diameter": "diameter_mm",
     "reference_diameter": "reference_diameter_mm",
-    "bearing_stiffness": "bearing_stiffness_n_per_um",
     # scene
     "duration": "duration_s",
-    "length": "length_mm",
-    "position": "position_mm",
     "outer_diameter": "diameter_mm",
     "base_radius": "base_radius_mm",
     "radial_stiffness": "radial_stiffness_n_per_m",
@@ -69,7 +62,6 @@ _LAST = {figure.name: figure.field for figure in figures(FlankModification)} | {
     "transverse": "transverse_kg_m2",
     "torsional_stiffness": "torsional_stiffness_n_m_per_rad",
     "torsional_damping": "torsional_damping_n_m_s_per_rad",
-    "angle": "angle_deg",
     "initial_speed": "initial_speed_rpm",
     "angles": "angles_deg",
     "fade": "speed_rpm",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import Field, create_model
@@ -26,7 +26,7 @@ class Figure:
         The field of the library.
     what : Declared
     default : object
-        In SI.
+        In SI; `MISSING` where one has to be given, None where it may be left out.
     """
 
     name: str
@@ -63,7 +63,8 @@ class Figure:
         """The type with its bounds."""
         if isinstance(self.what.bound, Choice):
             return Literal[self.what.bound.names]
-        return Annotated[float, Field(**self.limits)]
+        number = Annotated[float, Field(**self.limits)]
+        return number | None if self.default is None else number
 
     def own(self, value: Any) -> Any:
         """Return a value in SI in the unit of the boundary, without the noise of the conversion."""
@@ -78,7 +79,7 @@ class Figure:
         """Return type and field of a model that has it with its default."""
         extra: Any = {"x-kind": self.what.kind.value, "x-along": _names(self.what.along)}
         field = Field(
-            default=self.own(self.default),
+            default=... if self.default is MISSING else self.own(self.default),
             description=self.with_unit(self.what.description),
             examples=[self.own(self.what.example)],
             json_schema_extra=extra,
@@ -94,6 +95,11 @@ def figures(kind: type[Any], *kinds: Kind) -> tuple[Figure, ...]:
         for name, what in declarations(kind).items()
         if what.bound is not None and (not kinds or what.kind in kinds)
     )
+
+
+def declared_in(kind: type[Any]) -> Fields:
+    """Return the declared numbers and names of a dataclass as fields of a model."""
+    return {figure.field: figure.as_field() for figure in figures(kind)}
 
 
 def with_fields(further: Fields) -> Callable[[type[Model]], type[Model]]:

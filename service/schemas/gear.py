@@ -7,7 +7,7 @@ from typing import Annotated, Self
 from pydantic import Field, Strict, model_validator
 
 from fe_contact.flank.modification import FlankModification
-from service.schemas.declared import figures, with_fields
+from service.schemas.declared import declared_in, with_fields
 from service.schemas.gear_body import BoreSeatInput, GearBlankInput, GearShaftInput, MaterialInput
 from service.schemas.model import BoundaryModel, refuse
 
@@ -43,7 +43,7 @@ class FlankGridInput(BoundaryModel):
     )
 
 
-@with_fields({figure.field: figure.as_field() for figure in figures(FlankModification)})
+@with_fields(declared_in(FlankModification))
 class ToothingInput(BoundaryModel):
     """What all gears have. Modifications: > 0 is material removed, normal to the involute, transverse."""
 

@@ -7,17 +7,19 @@ from dataclasses import fields, replace
 from typing import Any
 
 import pytest
+from pydantic import ValidationError
 
 from bounds import Direction, Kind
 from fe_contact.analysis import analyze
 from fe_contact.errors import InputError
 from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry import Gear, GearPair
+from fe_contact.geometry import BoreSeat, Gear, GearBlank, GearPair, Key, Shaft
+from fe_contact.material import Material
 from fe_contact.microgeometry import QUANTITIES
 from fe_contact.microgeometry.variables import ACROSS_FACE
 from fe_contact.plausibility import pair_findings
 from service.convert.case import gear_pair
-from service.convert.vocabulary import boundary_name
+from service.convert.vocabulary import boundary_name, case_field
 from service.schemas import Case
 from service.schemas.declared import Figure, figures
 from service.schemas.live import LiveInput
@@ -85,6 +87,57 @@ def test_it_can_be_changed_live_and_is_told_by_its_own_name(figure: Figure) -> N
     question = LiveInput.model_validate_json(json.dumps({"torque_n_m": [1.0], "pinion": change}))
     assert question.pinion.model_dump(exclude_none=True) == change
     assert boundary_name(f"pinion.{figure.name}") == f"pinion.{figure.field}"
+
+
+BODIES = {
+    Material: ("pair.pinion.material", {}),
+    Shaft: ("pair.pinion.shaft", {"length": 0.2, "diameter": 0.04, "position": 0.06}),
+    GearBlank: ("pair.pinion.blank", {"rim_thickness": 0.006, "web_thickness": 0.012}),
+    BoreSeat: ("pair.pinion.seat", {"radial_foundation": 1e13, "tangential_foundation": 1e13}),
+    Key: ("pair.pinion.seat.key", {"width": 0.006}),
+}
+"""Where a case has each body, and what it needs."""
+
+
+@pytest.mark.parametrize("kind", BODIES, ids=lambda kind: kind.__name__)
+def test_a_body_of_a_case_means_that_of_the_library(kind: type[Any]) -> None:
+    place, facts = BODIES[kind]
+    table = json.loads(json.dumps(CASE))
+    at = table
+    for name in place.split("."):
+        at = at.setdefault(name, {"tangential_foundation_n_per_mm3": 1e4} if name == "seat" else {})
+    at |= {each.field: each.own(facts[each.name]) for each in figures(kind) if each.name in facts}
+    pair = gear_pair(Case.model_validate_json(json.dumps(table)))
+    gear = pair.pinion
+    assert isinstance(gear, Gear)
+    read = {Material: gear.material, Shaft: pair.shafts[0], GearBlank: gear.blank}
+    read |= {BoreSeat: gear.seat, Key: gear.seat.key}
+    for each in figures(kind):
+        value = getattr(kind(**facts), each.name)
+        assert getattr(read[kind], each.name) == (None if value is None else pytest.approx(value, rel=1e-15))
+
+
+@pytest.mark.parametrize(
+    ("kind", "figure"),
+    [(kind, each) for kind in BODIES for each in figures(kind)],
+    ids=lambda one: getattr(one, "name", None) or one.__name__,
+)
+def test_a_body_is_refused_beyond_its_bound_by_case_and_library(kind: type[Any], figure: Figure) -> None:
+    place, facts = BODIES[kind]
+    beyond = 1.01 * figure.what.bound.high
+    with pytest.raises(InputError) as caught:
+        kind(**facts | {figure.name: beyond})
+    assert caught.value.field == figure.name
+    assert case_field(f"pinion.{figure.name}") == f"pair.pinion.{figure.field}"
+    table = json.loads(json.dumps(CASE))
+    at = table
+    for name in place.split("."):
+        at = at.setdefault(name, {})
+    at |= {each.field: each.own(facts[each.name]) for each in figures(kind) if each.name in facts}
+    at[figure.field] = figure.own(beyond)
+    with pytest.raises(ValidationError) as refused:
+        Case.model_validate_json(json.dumps(table))
+    assert figure.field in str(refused.value)
 
 
 def test_design_variables_and_scatter_are_depths_and_lengths() -> None:

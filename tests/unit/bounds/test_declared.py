@@ -13,11 +13,12 @@ from bounds import (
     Kind,
     RefusedValue,
     above,
-    attributes,
     between,
     declarations,
     declared,
+    described,
     one_of,
+    required,
 )
 
 CHECKS = Checks(RefusedValue)
@@ -76,4 +77,29 @@ def test_a_bound_holds_its_ends_unless_they_are_open(bound: Bound, inside: Any, 
 
 
 def test_a_docstring_can_say_what_the_fields_are() -> None:
-    assert attributes(Strip).splitlines()[2:4] == ["width : m", "    Width of the strip"]
+    text = described(Strip).__doc__ or ""
+    assert text.splitlines()[0] == "Has two declared fields and another."
+    assert text.splitlines()[4:8] == [
+        "width : m",
+        "    Width of the strip",
+        "law : name",
+        "    Course across it",
+    ]
+
+
+@dataclass(frozen=True)
+class Plate:
+    """Has a field that is required and one that may be left out."""
+
+    width: float = required(WIDTH)
+    depth: float | None = declared(None, WIDTH)
+
+
+def test_what_may_be_left_out_passes_and_what_is_required_does_not() -> None:
+    CHECKS.declared_fields(Plate(1.0))
+    with pytest.raises(TypeError):
+        Plate()  # type: ignore[call-arg]
+    for given, field in ((Plate(None), "width"), (Plate(1.0, 3.0), "depth")):  # type: ignore[arg-type]
+        with pytest.raises(RefusedValue) as caught:
+            CHECKS.declared_fields(given)
+        assert caught.value.field == field
