@@ -1,0 +1,19 @@
+"""Kinds of parts of a scene, by the names of their fields of `Scene` and of their tables in a scene file."""
+
+KINDS = (
+    "shafts",
+    "gears",
+    "bushings",
+    "planet_bearings",
+    "couplings",
+    "meshes",
+    "drives",
+    "free_rotations",
+    "loads",
+    "speed_torques",
+    "housings",
+)
+"""Kinds whose parts have a name."""
+
+ON_A_SHAFT = ("gears", "bushings", "planet_bearings", "drives", "free_rotations", "loads", "speed_torques")
+"""Kinds whose parts name the shaft that they are on."""
