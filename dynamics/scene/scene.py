@@ -12,6 +12,7 @@ from dynamics.checks import distinct, integer, not_negative, one_of, positive, w
 from dynamics.errors import InputError
 from dynamics.forces import GearMesh, LoadTorque, RollingContact, SpeedTorque, SpringCurve
 from dynamics.joints import Bushing, Coupling, FreeRotation, Housing, ImposedRotation, PlanetBearing
+from dynamics.parts import KINDS, ON_A_SHAFT
 from dynamics.scene.bearing_check import check_bearing_laws
 from dynamics.scene.frame_check import check_couplings, check_frames
 from dynamics.scene.housing_check import check_housings
@@ -126,21 +127,6 @@ class Reference(Protocol):
     def rigid(self) -> bool: ...  # noqa: D102
 
 
-KINDS = (
-    "shafts",
-    "gears",
-    "bushings",
-    "planet_bearings",
-    "couplings",
-    "meshes",
-    "drives",
-    "free_rotations",
-    "loads",
-    "speed_torques",
-    "housings",
-)
-
-
 @dataclass(frozen=True)
 class Scene:
     """A geared system and the run to make with it.
@@ -203,15 +189,7 @@ class Scene:
             distinct(kind, [part.name for part in getattr(self, kind)])
         shafts, gears = _names(self.shafts), _names(self.gears)
         distinct("planet_bearings", _names((*self.bushings, *self.planet_bearings)))
-        for kind in (
-            "gears",
-            "bushings",
-            "planet_bearings",
-            "drives",
-            "free_rotations",
-            "loads",
-            "speed_torques",
-        ):
+        for kind in ON_A_SHAFT:
             for index, part in enumerate(getattr(self, kind)):
                 one_of(f"{kind}[{index}].shaft", part.shaft, shafts)
         for kind in ("gears", "bushings", "planet_bearings"):

@@ -6,6 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, Strict, model_validator
 
+from dynamics.parts import KINDS, ON_A_SHAFT
 from service.schemas.case import Case, EffectName, Switch
 from service.schemas.model import BoundaryModel, refuse
 from service.schemas.scene_bodies import (
@@ -20,19 +21,6 @@ from service.schemas.scene_motion import DriveInput, FreeRotationInput, LoadTorq
 from service.schemas.scene_shafts import ShaftInput
 from service.schemas.scene_types import Name
 
-_NAMED = (
-    "shafts",
-    "gears",
-    "bushings",
-    "planet_bearings",
-    "couplings",
-    "meshes",
-    "drives",
-    "free_rotations",
-    "loads",
-    "speed_torques",
-    "housings",
-)
 _SOURCES = ("case", "case_file", "database_file", "database_hash")
 
 
@@ -255,7 +243,7 @@ class SceneInput(BoundaryModel):
     def _tables(cls, data: Any) -> Any:
         """Say how a part is written when a single table stands where a list is meant."""
         if isinstance(data, dict):
-            for kind in (*_NAMED, "planets"):
+            for kind in (*KINDS, "planets"):
                 if isinstance(data.get(kind), dict):
                     refuse(kind, data[kind], "a list of tables", f"Write [[{kind}]] with two brackets.")
         return data
@@ -263,11 +251,10 @@ class SceneInput(BoundaryModel):
     @model_validator(mode="after")
     def _parts_exist(self) -> Self:
         """Names are unique, and every part names parts that exist."""
-        for kind in _NAMED:
+        for kind in KINDS:
             _refuse_repeated(kind, [part.name for part in getattr(self, kind)])
         shafts = [shaft.name for shaft in self.shafts]
-        on_one_shaft = ("gears", "bushings", "planet_bearings", "drives", "free_rotations", "loads")
-        for kind in (*on_one_shaft, "speed_torques"):
+        for kind in ON_A_SHAFT:
             for index, part in enumerate(getattr(self, kind)):
                 _refuse_unknown(f"{kind}[{index}].shaft", part.shaft, shafts)
         for index, shaft in enumerate(self.shafts):
