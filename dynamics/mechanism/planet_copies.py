@@ -53,45 +53,63 @@ def with_planets(
         If the shaft is no planet, or its teeth do not fit the central gears at an angle.
     """
     integer("number", number, 1, 100)
-    one_of("planet", shaft, [part.name for part in scene.shafts])
-    carrier = scene.frame_index(scene.shaft_index(shaft))
-    if carrier is None or on_axis(scene.shafts[scene.shaft_index(shaft)], scene.shafts[carrier]):
-        bound = "a shaft in the frame of a carrier, off its axis"
-        raise InputError("planet", shaft, bound, "Give the shaft its carrier as frame.")
+    carrier = _carrier(scene, shaft)
     turns = _turns(number, angles)
     if pin_errors is not None and len(pin_errors) != number:
         raise InputError("pin_errors", len(pin_errors), f"one for each of the {number} planets")
     offsets = _offsets(scene, solve_kinematics(scene), shaft, turns)
-    axis = scene.shafts[carrier].origin
-    of_shaft = {gear.name for gear in scene.gears if gear.shaft == shaft}
-    shafts, gears = list(scene.shafts), list(scene.gears)
-    bearings, meshes = list(scene.planet_bearings), list(scene.meshes)
-    for index in range(1, number):
-        shafts += [_turned(part, axis, turns[index], index) for part in scene.shafts if part.name == shaft]
-        gears += [_again(part, index) for part in scene.gears if part.shaft == shaft]
-        bearings += [_again(part, index) for part in scene.planet_bearings if part.shaft == shaft]
-        meshes += [
-            _mesh_again(mesh, of_shaft, index, offsets[mesh.name][index])
-            for mesh in scene.meshes
-            if {mesh.driver, mesh.driven} & of_shaft
-        ]
+    planet = scene.shafts[scene.shaft_index(shaft)]
     copied = {
         part.name: [_numbered(part.name, index) for index in range(1, number)]
         for part in scene.planet_bearings
         if part.shaft == shaft
     }
-    if pin_errors is not None:
-        of_pin = {_numbered(shaft, index): pin_errors[index] for index in range(number)}
-        bearings = [_with_error(bearing, of_pin.get(bearing.shaft)) for bearing in bearings]
     return replace(
         scene,
-        shafts=tuple(shafts),
-        gears=tuple(gears),
-        planet_bearings=tuple(bearings),
-        meshes=tuple(meshes),
+        shafts=(*scene.shafts, *(_turned(planet, carrier.origin, turns[i], i) for i in range(1, number))),
+        gears=_with_copies(scene.gears, shaft, number),
+        planet_bearings=_on_pins(_with_copies(scene.planet_bearings, shaft, number), shaft, pin_errors),
+        meshes=(*scene.meshes, *_mesh_copies(scene, shaft, number, offsets)),
         rolling_contacts=_on_copies(scene.rolling_contacts, copied),
         spring_curves=_on_copies(scene.spring_curves, copied),
     )
+
+
+def _carrier(scene: Scene, shaft: str) -> Shaft:
+    """Return the carrier of the planet on `shaft`."""
+    one_of("planet", shaft, [part.name for part in scene.shafts])
+    carrier = scene.frame_index(scene.shaft_index(shaft))
+    if carrier is None or on_axis(scene.shafts[scene.shaft_index(shaft)], scene.shafts[carrier]):
+        bound = "a shaft in the frame of a carrier, off its axis"
+        raise InputError("planet", shaft, bound, "Give the shaft its carrier as frame.")
+    return scene.shafts[carrier]
+
+
+def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, ...]:
+    """Return `parts` and the copies of those on `shaft`, planet by planet."""
+    copies = (_copy(part, index) for index in range(1, number) for part in parts if part.shaft == shaft)
+    return (*parts, *copies)
+
+
+def _mesh_copies(
+    scene: Scene, shaft: str, number: int, offsets: Mapping[str, Sequence[Turn]]
+) -> list[GearMesh]:
+    """Return the meshes of all planets but the first."""
+    of_shaft = {gear.name for gear in scene.gears if gear.shaft == shaft}
+    meshes = [mesh for mesh in scene.meshes if {mesh.driver, mesh.driven} & of_shaft]
+    return [
+        _copied_mesh(mesh, of_shaft, index, offsets[mesh.name][index])
+        for index in range(1, number)
+        for mesh in meshes
+    ]
+
+
+def _on_pins(
+    bearings: Sequence[PlanetBearing], shaft: str, pin_errors: Sequence[tuple[float, float]] | None
+) -> tuple[PlanetBearing, ...]:
+    """Return `bearings`, those of the planets on pins with these errors if there are any."""
+    of_pin = {_numbered(shaft, index): error for index, error in enumerate(pin_errors or ())}
+    return tuple(_with_error(bearing, of_pin.get(bearing.shaft)) for bearing in bearings)
 
 
 def _on_copies(laws: Sequence[BearingLaw], copied: Mapping[str, Sequence[str]]) -> tuple[BearingLaw, ...]:
@@ -150,7 +168,7 @@ def _numbered(name: str, index: int) -> str:
     return name if index == 0 else f"{name} {index + 1}"
 
 
-def _again(part: Part, index: int) -> Part:
+def _copy(part: Part, index: int) -> Part:
     """Return a part of another planet."""
     return replace(part, name=_numbered(part.name, index), shaft=_numbered(part.shaft, index))
 
@@ -163,7 +181,7 @@ def _turned(shaft: Shaft, axis: tuple[float, float, float], turn: Turn, index: i
     return replace(shaft, name=_numbered(shaft.name, index), origin=origin)
 
 
-def _mesh_again(mesh: GearMesh, of_shaft: set[str], index: int, ahead: Turn) -> GearMesh:
+def _copied_mesh(mesh: GearMesh, of_shaft: set[str], index: int, ahead: Turn) -> GearMesh:
     """Return a mesh of another planet."""
     driver, driven = (_numbered(g, index) if g in of_shaft else g for g in (mesh.driver, mesh.driven))
     offset = mesh.position_offset + float(ahead)

@@ -140,8 +140,26 @@ def follow_branch(
         return Branch(BranchStatus.NO_START, (start,), ())
     scale = max(abs(first), abs(last))
     towards = np.append(np.zeros(start.state.size), np.sign(last - first) * np.sign(scale))
-    trail, found, step = [_point_on_branch(problem, scale, start, towards)], [], largest_step
-    low, high = sorted((first, last))
+    point = _point_on_branch(problem, scale, start, towards)
+    return _continue(problem, scale, point, (first, last), largest_step, points, progress)
+
+
+def _continue(
+    problem: PeriodicProblem,
+    scale: float,
+    start: _Point,
+    speeds: tuple[float, float],
+    largest_step: float,
+    points: int,
+    progress: Callable[[float], None] | None,
+) -> Branch:
+    """Step along the branch from `start` at the first of `speeds`, shorter where Newton fails.
+
+    Other parameters as `follow_branch`.
+    """
+    first, last = speeds
+    low, high = sorted(speeds)
+    trail, bifurcations, step = [start], list[Bifurcation](), largest_step
     status = BranchStatus.POINT_LIMIT
     while len(trail) < points:
         arrived = _step(problem, scale, trail[-1], step)
@@ -151,7 +169,7 @@ def follow_branch(
                 status = BranchStatus.STEP_FLOOR
                 break
             continue
-        found += _passed(problem, scale, trail[-1], arrived, step, len(trail) - 1)
+        bifurcations += _passed(problem, scale, trail[-1], arrived, step, len(trail) - 1)
         trail.append(arrived)
         if progress is not None:
             progress(min(max(abs(p.orbit.speed - first) for p in trail) / abs(last - first), 1.0))
@@ -160,7 +178,7 @@ def follow_branch(
         if not low <= arrived.orbit.speed <= high:
             status = BranchStatus.COMPLETED
             break
-    return Branch(status, tuple(point.orbit for point in trail), tuple(found))
+    return Branch(status, tuple(point.orbit for point in trail), tuple(bifurcations))
 
 
 def _point_on_branch(problem: PeriodicProblem, scale: float, orbit: Orbit, along: FloatArray) -> _Point:
