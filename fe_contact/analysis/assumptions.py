@@ -188,9 +188,10 @@ def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
     """Nominal teeth that jam by no more than rounding of printed data have no backlash."""
     pair = run.places.places[0].contact.pair
     if pair.rounding_jam > LEAST_BACKLASH:
+        rounding = backlash_rounding(pair.pinion, pair.wheel, pair.center_distance)
         reason = (
             f"jam of {1e6 * pair.rounding_jam:.2g} um is rounding of the printed data, which makes up to "
-            f"{1e6 * backlash_rounding(pair):.2g} um; computed as zero backlash"
+            f"{1e6 * rounding:.2g} um; computed as zero backlash"
         )
         yield Assumption("", "nominal teeth do not jam", True, float("nan"), reason)
 

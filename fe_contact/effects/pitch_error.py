@@ -64,7 +64,10 @@ class PitchError:
         gears = (scene.pair.pinion, scene.pair.wheel)
         if all(gear.pitch_deviation.neutral for gear in gears):
             return model
-        first, second = (tuple((-gear.pitch_deviation.on_line_of_action(gear)).tolist()) for gear in gears)
+        first, second = (
+            tuple((-gear.pitch_deviation.on_line_of_action(gear.transverse_pressure_angle)).tolist())
+            for gear in gears
+        )
         return replace(model, tooth_gaps=(*model.tooth_gaps, PitchGap(first, second, _period(scene))))
 
 

@@ -3,7 +3,7 @@
 from fe_contact.flank.flank_grid import FlankGrid
 from fe_contact.flank.modification import FlankModification
 from fe_contact.geometry.basic_rack import BasicRack
-from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat, Key, seat_compliance
+from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat, Key
 from fe_contact.geometry.corner_contact import CornerContact, Side, corner_contact, corner_gap, edge_gap
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.gear_blank import GearBlank
@@ -14,6 +14,7 @@ from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.pitch_deviation import PitchDeviation
 from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.geometry.seated_gear import seat_compliance
 from fe_contact.geometry.shaft import Shaft
 from fe_contact.geometry.tooth_profile import ToothProfile, tooth_profile
 from fe_contact.geometry.toothing import Toothing

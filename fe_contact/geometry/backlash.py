@@ -31,6 +31,11 @@ def base_radius_sum(pinion: Toothing, wheel: Toothing) -> float:
     return pinion.base_radius + wheel.sign * wheel.base_radius
 
 
+def working_pressure_angle(pinion: Toothing, wheel: Toothing, center_distance: float) -> float:
+    """Transverse working pressure angle alpha_wt at a centre distance in m, rad."""
+    return math.acos(abs(base_radius_sum(pinion, wheel)) / center_distance)
+
+
 def base_circle_backlash(pinion: Toothing, wheel: Toothing, working_pressure_angle: float) -> float:
     """Backlash in m along the transverse line of action; negative if the teeth jam.
 

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from fe_contact.geometry.gear import Gear
-    from fe_contact.geometry.gear_pair import GearPair
+    from fe_contact.geometry.parallel_axes import ParallelAxes
+    from fe_contact.geometry.toothing import Toothing
 
 _SAMPLES = 513
 
 
-def fillet_penetration(pair: GearPair, tip: Gear, flank: Gear) -> float:
-    """Depth in m (arc) to which the edge of `tip` cuts the fillet of `flank`; 0 if clear.
+def fillet_penetration(pair: ParallelAxes, tip: Toothing, flank: Toothing) -> float:
+    """Depth in m (arc) to which the edge of `tip` cuts the fillet of `flank`, both external; 0 if clear.
 
     The gears turn in conjugate motion. The edge is followed on both sides of the line of centres, from where
     it crosses the line of action; its path in the mate's frame is compared with the fillet at equal radius.

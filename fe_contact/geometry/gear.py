@@ -14,7 +14,7 @@ from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.basic_rack import BasicRack
 from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
 from fe_contact.geometry.form_point import FormPoint, find_form_point
-from fe_contact.geometry.gear_blank import GearBlank, Web, web_of
+from fe_contact.geometry.gear_blank import GearBlank, Web
 from fe_contact.geometry.gear_feasibility import refuse_infeasible_gear
 from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation
 from fe_contact.geometry.toothing import Toothing
@@ -93,9 +93,9 @@ class Gear(Toothing):
         if self.tip_diameter is not None:
             positive("tip_diameter", self.tip_diameter, SiNote("In m: 88 mm is 0.088."))
         self._check_thickness_allowance()
-        refuse_infeasible_gear(self)
+        refuse_infeasible_gear(self, self.blank)
         self.modification.check_fits(self)
-        self.pitch_deviation.check_fits(self)
+        self.pitch_deviation.check_fits(self.teeth)
 
     def _check_thickness_allowance(self) -> None:
         """Check the basic rack, and the allowance against the tooth it is taken from."""
@@ -151,7 +151,9 @@ class Gear(Toothing):
     @cached_property
     def web(self) -> Web | None:
         """Where the body is narrower than the face; None for a solid gear."""
-        return web_of(self)
+        if self.blank is None:
+            return None
+        return self.blank.web(self.face_width, self.root_radius, self.bore_diameter)
 
     def solid(self) -> Gear:
         """Return the gear with a solid body."""

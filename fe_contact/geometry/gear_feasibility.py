@@ -3,37 +3,78 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bounds import Quantity, Text, above, below
+from bounds import LIMIT_SLACK, Quantity, Text, above, at_least, below, between
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry.bore_seat import refuse_misfit_seat
-from fe_contact.geometry.gear_blank import refuse_misfit
+from fe_contact.geometry.gear_blank import GearBlank
+from fe_contact.geometry.seated_gear import refuse_misfit_seat
+from fe_contact.geometry.toothing import Toothing
 
-if TYPE_CHECKING:
-    from fe_contact.geometry.gear import Gear
+THINNEST_RIM = 0.5  # in normal modules
+THINNEST_WEB = 0.02  # in face widths
 
 
-def refuse_infeasible_gear(gear: Gear) -> None:
-    """Raise `InfeasibleGeometry` if no such gear can be generated."""
+def refuse_infeasible_gear(gear: Toothing, blank: GearBlank | None) -> None:
+    """Raise `InfeasibleGeometry` if no such external gear can be generated."""
     _refuse_bore(gear)
-    refuse_misfit(gear)
+    if blank is not None:
+        _refuse_rim(gear, blank)
+        _refuse_web(gear, blank)
     refuse_misfit_seat(gear)
     _refuse_undercut(gear)
     _refuse_pointed_tooth(gear)
 
 
-def _refuse_bore(gear: Gear) -> None:
+def _refuse_bore(gear: Toothing) -> None:
     """Refuse a bore that leaves no rim under the teeth."""
-    if gear.bore_diameter >= 2.0 * gear.root_radius:
+    bore = 2.0 * gear.held_radius
+    if bore >= 2.0 * gear.root_radius:
         bound = below(2.0 * gear.root_radius, "m", "the root diameter")
         advice = "Lower the bore or add teeth."
-        raise InfeasibleGeometry("bore", "bore_diameter", gear.bore_diameter, bound, advice)
+        raise InfeasibleGeometry("bore", "bore_diameter", bore, bound, advice)
 
 
-def _refuse_undercut(gear: Gear) -> None:
+def _refuse_rim(gear: Toothing, blank: GearBlank) -> None:
+    """Refuse a hub inside the bore, a rim that leaves no web, and one that carries no teeth."""
+    bore = 2.0 * gear.held_radius
+    hub = bore if blank.hub_diameter is None else blank.hub_diameter
+    if hub < bore:
+        bound = at_least(bore, "m", "the bore diameter")
+        raise InfeasibleGeometry("hub", "blank.hub_diameter", hub, bound, "Raise it or leave it out.")
+    least, deepest = THINNEST_RIM * gear.normal_module, gear.root_radius - 0.5 * hub
+    if deepest <= least:
+        field = "bore_diameter" if blank.hub_diameter is None else "blank.hub_diameter"
+        widest = 2.0 * (gear.root_radius - least)
+        bound = below(widest, "m", note=f", which leaves a rim of {THINNEST_RIM:g} normal modules")
+        raise InfeasibleGeometry("rim", field, hub, bound, "Leave the blank out for a solid gear.")
+    if not blank.rim_thickness < deepest:
+        bound = below(deepest, "m", note=", what lies between root circle and hub (or bore)")
+        advice = "Lower the rim thickness or the hub diameter; leave the blank out for a solid gear."
+        raise InfeasibleGeometry("rim", "blank.rim_thickness", blank.rim_thickness, bound, advice)
+    if blank.rim_thickness < least * (1.0 - LIMIT_SLACK):
+        bound = at_least(least, "m", note=f", {THINNEST_RIM:g} normal modules")
+        raise InfeasibleGeometry(
+            "rim", "blank.rim_thickness", blank.rim_thickness, bound, "Raise the rim thickness."
+        )
+
+
+def _refuse_web(gear: Toothing, blank: GearBlank) -> None:
+    """Refuse a web that is a foil, or that leaves the face."""
+    least = THINNEST_WEB * gear.face_width
+    if not least * (1.0 - LIMIT_SLACK) <= blank.web_thickness <= (1.0 + 1e-9) * gear.face_width:
+        bound = between(least, gear.face_width, "m", "the face width")
+        advice = "A web as thick as the face is wide is a solid gear."
+        raise InfeasibleGeometry("web", "blank.web_thickness", blank.web_thickness, bound, advice)
+    room = 0.5 * (gear.face_width - blank.web_thickness)
+    if abs(blank.web_offset) > room + 1e-9 * gear.face_width:
+        bound = between(-room, room, "m", note=", so that the web stays within the face")
+        advice = "Lower the offset or the web thickness."
+        raise InfeasibleGeometry("web", "blank.web_offset", blank.web_offset, bound, advice)
+
+
+def _refuse_undercut(gear: Toothing) -> None:
     """Refuse a tip circle or a fillet that leaves no involute, or no material in the tooth's root."""
     advice = "Raise the tip diameter, the profile shift or the number of teeth, or lower the dedendum."
     if gear.form_radius >= gear.tip_radius:
@@ -48,7 +89,7 @@ def _refuse_undercut(gear: Gear) -> None:
         )
 
 
-def _refuse_pointed_tooth(gear: Gear) -> None:
+def _refuse_pointed_tooth(gear: Toothing) -> None:
     """Refuse a tooth whose flanks meet below the tip circle."""
     if gear.tip_tooth_thickness <= 0.0:
         thickness = Quantity(gear.tip_tooth_thickness, "m", digits=3)

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.gear import Gear
+from fe_contact.geometry.internal_interference import tip_clearances
 from fe_contact.geometry.internal_pair_feasibility import (
     refuse_infeasible_internal_pair,
     refuse_tooth_numbers,
+    refuse_trimming_interference,
 )
 from fe_contact.geometry.pair_feasibility import refuse_strangers
 from fe_contact.geometry.parallel_axes import ParallelAxes
@@ -65,6 +67,8 @@ class InternalGearPair(ParallelAxes):
         if self.center_distance is None:
             object.__setattr__(self, "center_distance", reference_center_distance(self.pinion, self.wheel))
         refuse_infeasible_internal_pair(self)
+        if self.radial_assembly:
+            refuse_trimming_interference(self.radial_assembly_clearance)
 
     @property
     def tooth_number_difference(self) -> int:
@@ -74,8 +78,7 @@ class InternalGearPair(ParallelAxes):
     @property
     def tip_clearances(self) -> tuple[float, float]:
         """Distance in m from the pinion's tip to the ring's root circle, and from ring tip to pinion root."""
-        at_pinion_tip = self.wheel.root_radius - self.center_distance - self.pinion.tip_radius
-        return at_pinion_tip, self.wheel.tip_radius - self.center_distance - self.pinion.root_radius
+        return tip_clearances(self)
 
     @property
     def radial_assembly_clearance(self) -> float:

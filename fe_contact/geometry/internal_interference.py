@@ -19,7 +19,7 @@ from fe_contact.flank.involute import involute_function
 from fe_contact.types import BoolArray, FloatArray
 
 if TYPE_CHECKING:
-    from fe_contact.geometry.internal_gear_pair import InternalGearPair
+    from fe_contact.geometry.parallel_axes import ParallelAxes
     from fe_contact.geometry.toothing import Toothing
 
 _SAMPLES = 1025
@@ -40,17 +40,23 @@ class EdgePath(NamedTuple):
     depth: FloatArray
 
 
-def tip_interference(pair: InternalGearPair) -> float:
+def tip_interference(pair: ParallelAxes) -> float:
     """Depth in m to which a tip edge cuts the mating involute on its way in or out; 0 if the tips pass."""
     return max(_deepest(path, mate, on_fillet=False) for path, mate in _paths(pair))
 
 
-def trochoidal_interference(pair: InternalGearPair) -> float:
+def trochoidal_interference(pair: ParallelAxes) -> float:
     """Depth in m to which a tip edge cuts the mating fillet; 0 if clear."""
     return max(_deepest(path, mate, on_fillet=True) for path, mate in _paths(pair))
 
 
-def pinion_edge_path(pair: InternalGearPair) -> EdgePath:
+def tip_clearances(pair: ParallelAxes) -> tuple[float, float]:
+    """Distance in m from the pinion's tip to the ring's root circle, and from ring tip to pinion root."""
+    at_pinion_tip = pair.wheel.root_radius - pair.center_distance - pair.pinion.tip_radius
+    return at_pinion_tip, pair.wheel.tip_radius - pair.center_distance - pair.pinion.root_radius
+
+
+def pinion_edge_path(pair: ParallelAxes) -> EdgePath:
     """Path of the pinion's tip edge in the ring's tooth space, from where it enters to where it leaves."""
     pinion, ring = pair.pinion, pair.wheel
     polar = _lens(pair.center_distance, pinion.tip_radius, ring.tip_radius)
@@ -61,7 +67,7 @@ def pinion_edge_path(pair: InternalGearPair) -> EdgePath:
     return EdgePath(radius, radius * (np.arctan2(x, y) - facing))
 
 
-def ring_edge_path(pair: InternalGearPair) -> EdgePath:
+def ring_edge_path(pair: ParallelAxes) -> EdgePath:
     """Path of the ring's tip edge in the pinion's tooth space, from where it enters to where it leaves."""
     pinion, ring, working = pair.pinion, pair.wheel, involute_function(pair.working_pressure_angle)
     polar = _lens(-pair.center_distance, ring.tip_radius, pinion.tip_radius)
@@ -99,12 +105,12 @@ def _tip_involute(gear: Toothing) -> float:
     return involute_function(math.acos(min(1.0, gear.base_radius / gear.tip_radius)))
 
 
-def _pitch_point_angle(pair: InternalGearPair) -> float:
+def _pitch_point_angle(pair: ParallelAxes) -> float:
     """Angle of the ring tooth's centre line when its flank is at the pitch point, rad."""
     return pair.wheel.base_thickness_half_angle + involute_function(pair.working_pressure_angle)
 
 
-def _paths(pair: InternalGearPair) -> tuple[tuple[EdgePath, Toothing], ...]:
+def _paths(pair: ParallelAxes) -> tuple[tuple[EdgePath, Toothing], ...]:
     """Both tip edges, each with the gear it moves in."""
     return (pinion_edge_path(pair), pair.wheel), (ring_edge_path(pair), pair.pinion)
 

@@ -9,7 +9,11 @@ from bounds import LIMIT_SLACK, Quantity, SiNote, Text, above, at_least, at_most
 from fe_contact.checks import positive
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.geometry.backlash import base_radius_sum, tight_center_distance
-from fe_contact.geometry.internal_interference import tip_interference, trochoidal_interference
+from fe_contact.geometry.internal_interference import (
+    tip_clearances,
+    tip_interference,
+    trochoidal_interference,
+)
 from fe_contact.geometry.pair_feasibility import (
     FILLET_SLACK,
     refuse_face_overlap,
@@ -18,14 +22,13 @@ from fe_contact.geometry.pair_feasibility import (
 )
 
 if TYPE_CHECKING:
-    from fe_contact.geometry.gear import Gear
-    from fe_contact.geometry.internal_gear_pair import InternalGearPair
-    from fe_contact.geometry.ring_gear import RingGear
+    from fe_contact.geometry.parallel_axes import ParallelAxes
+    from fe_contact.geometry.toothing import Toothing
 
 _SHORTER = "Raise the ring's tip diameter, or lower the pinion's"
 
 
-def refuse_tooth_numbers(pinion: Gear, ring: RingGear) -> None:
+def refuse_tooth_numbers(pinion: Toothing, ring: Toothing) -> None:
     """Refuse a pinion that is no smaller than the ring."""
     if ring.teeth <= pinion.teeth:
         bound = above(pinion.teeth, name="the pinion's")
@@ -33,7 +36,7 @@ def refuse_tooth_numbers(pinion: Gear, ring: RingGear) -> None:
         raise InfeasibleGeometry("tooth number difference", "wheel.teeth", ring.teeth, bound, advice)
 
 
-def refuse_infeasible_internal_pair(pair: InternalGearPair) -> None:
+def refuse_infeasible_internal_pair(pair: ParallelAxes) -> None:
     """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
     positive("center_distance", pair.center_distance, SiNote("In m, positive: 80 mm is 0.08."))
     refuse_face_overlap(pair)
@@ -45,10 +48,9 @@ def refuse_infeasible_internal_pair(pair: InternalGearPair) -> None:
     _refuse_interference(pair)
     _refuse_tip_interference(pair)
     _refuse_trochoidal_interference(pair)
-    _refuse_trimming_interference(pair)
 
 
-def _refuse_short_distance(pair: InternalGearPair) -> None:
+def _refuse_short_distance(pair: ParallelAxes) -> None:
     """Refuse base circles without a common tangent."""
     shortest = abs(base_radius_sum(pair.pinion, pair.wheel))
     if pair.center_distance <= shortest:
@@ -58,7 +60,7 @@ def _refuse_short_distance(pair: InternalGearPair) -> None:
         raise InfeasibleGeometry("center distance", "center_distance", pair.center_distance, bound, advice)
 
 
-def _refuse_contact_ratio(pair: InternalGearPair) -> None:
+def _refuse_contact_ratio(pair: ParallelAxes) -> None:
     """Refuse a pair that loses contact between one tooth pair and the next."""
     if pair.total_contact_ratio < 1.0:
         bound = f"larger: the contact ratio is {pair.total_contact_ratio:.6g}, below 1"
@@ -66,9 +68,9 @@ def _refuse_contact_ratio(pair: InternalGearPair) -> None:
         raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, advice)
 
 
-def _refuse_tip_clearance(pair: InternalGearPair) -> None:
+def _refuse_tip_clearance(pair: ParallelAxes) -> None:
     """Refuse a tip circle that reaches the mating root circle."""
-    at_pinion_tip, at_ring_tip = pair.tip_clearances
+    at_pinion_tip, at_ring_tip = tip_clearances(pair)
     if at_pinion_tip <= 0.0:
         largest = 2.0 * (pair.pinion.tip_radius + at_pinion_tip)
         bound = below(largest, "m", note=", where the tip reaches the ring's root circle")
@@ -83,7 +85,7 @@ def _refuse_tip_clearance(pair: InternalGearPair) -> None:
         raise InfeasibleGeometry("tip clearance", "wheel.tip_diameter", value, bound, advice)
 
 
-def _refuse_interference(pair: InternalGearPair) -> None:
+def _refuse_interference(pair: ParallelAxes) -> None:
     """Refuse a tip that meets the mating flank on the line of action where it is no involute."""
     pinion, ring, path = pair.pinion, pair.wheel, pair.path_of_contact
     if path.start < pinion.form_roll_length * (1.0 - LIMIT_SLACK):
@@ -101,18 +103,19 @@ def _refuse_interference(pair: InternalGearPair) -> None:
         raise InfeasibleGeometry("interference", "pinion.tip_diameter", value, bound, advice)
 
 
-def _refuse_tip_interference(pair: InternalGearPair) -> None:
+def _refuse_tip_interference(pair: ParallelAxes) -> None:
     """Refuse tips that hit each other as they enter or leave."""
     depth = tip_interference(pair)
     if depth > FILLET_SLACK * pair.pinion.normal_module:
         overlap = Quantity(depth, "m", digits=3)
         bound = Text.of("larger: the tips overlap by ", overlap, " as they pass each other")
-        advice = f"{_SHORTER}, or raise the difference of the tooth numbers, {pair.tooth_number_difference}."
+        difference = pair.wheel.teeth - pair.pinion.teeth
+        advice = f"{_SHORTER}, or raise the difference of the tooth numbers, {difference}."
         value = 2.0 * pair.wheel.tip_radius
         raise InfeasibleGeometry("tip interference", "wheel.tip_diameter", value, bound, advice)
 
 
-def _refuse_trochoidal_interference(pair: InternalGearPair) -> None:
+def _refuse_trochoidal_interference(pair: ParallelAxes) -> None:
     """Refuse a tip that cuts the mating fillet."""
     depth = trochoidal_interference(pair)
     if depth > FILLET_SLACK * pair.pinion.normal_module:
@@ -123,10 +126,9 @@ def _refuse_trochoidal_interference(pair: InternalGearPair) -> None:
         raise InfeasibleGeometry("trochoidal interference", "wheel.tip_diameter", value, bound, advice)
 
 
-def _refuse_trimming_interference(pair: InternalGearPair) -> None:
-    """Refuse radial assembly past tips that stand in the way."""
-    clearance = pair.radial_assembly_clearance
-    if pair.radial_assembly and clearance < 0.0:
+def refuse_trimming_interference(clearance: float) -> None:
+    """Refuse radial assembly past tips that stand in the way (`clearance` in m below 0)."""
+    if clearance < 0.0:
         overlap = Quantity(-clearance, "m", digits=3)
         bound = Text.of("false: the tips are in the way by ", overlap, " on the pinion's base circle")
         advice = (

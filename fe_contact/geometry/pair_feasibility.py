@@ -20,8 +20,6 @@ from fe_contact.geometry.fillet_interference import fillet_penetration
 from fe_contact.geometry.printed_data import backlash_rounding
 
 if TYPE_CHECKING:
-    from fe_contact.geometry.gear import Gear
-    from fe_contact.geometry.gear_pair import GearPair
     from fe_contact.geometry.parallel_axes import ParallelAxes
     from fe_contact.geometry.toothing import Toothing
 
@@ -50,8 +48,8 @@ def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
             raise InfeasibleGeometry(name, f"wheel.{field}", value, bound, advice)
 
 
-def refuse_infeasible_pair(pair: GearPair) -> None:
-    """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
+def refuse_infeasible_pair(pair: ParallelAxes) -> None:
+    """Raise `InfeasibleGeometry` if two external gears cannot run at their centre distance."""
     positive("center_distance", pair.center_distance, SiNote("In m: 80 mm is 0.08."))
     refuse_face_overlap(pair)
     refuse_jamming(pair)
@@ -92,12 +90,15 @@ def refuse_jamming(pair: ParallelAxes) -> None:
 
 def _beyond_rounding(pair: ParallelAxes) -> Text:
     """Say how large a jam is beside what rounding of printed data makes."""
-    jam, rounding = -pair.transverse_base_backlash, backlash_rounding(pair)
+    jam, rounding = (
+        -pair.transverse_base_backlash,
+        backlash_rounding(pair.pinion, pair.wheel, pair.center_distance),
+    )
     most = Text.of("rounding of the printed values makes ", Quantity(rounding, "m", digits=2), " at most")
     return Text.of("Jam ", Quantity(jam, "m", digits=3), "; ", most)
 
 
-def _refuse_contact_ratio(pair: GearPair) -> None:
+def _refuse_contact_ratio(pair: ParallelAxes) -> None:
     """Refuse a pair that loses contact between one tooth pair and the next."""
     if pair.total_contact_ratio < 1.0:
         value = pair.total_contact_ratio
@@ -121,7 +122,7 @@ def refuse_short_flanks(pair: ParallelAxes) -> None:
     raise InfeasibleGeometry("contact ratio", f"{name}.modification.{field}", getattr(shape, field), bound)
 
 
-def _refuse_tip_clearance(pair: GearPair) -> None:
+def _refuse_tip_clearance(pair: ParallelAxes) -> None:
     """Refuse a tip circle that reaches the mating root circle."""
     gears = (("pinion", pair.pinion, pair.wheel), ("wheel", pair.wheel, pair.pinion))
     for name, gear, mate in gears:
@@ -134,7 +135,7 @@ def _refuse_tip_clearance(pair: GearPair) -> None:
             )
 
 
-def _refuse_interference(pair: GearPair) -> None:
+def _refuse_interference(pair: ParallelAxes) -> None:
     """Refuse a tip that meets the mating flank below its form point, where it is no involute."""
     gears = (("pinion", pair.pinion, pair.wheel), ("wheel", pair.wheel, pair.pinion))
     for name, gear, mate in gears:
@@ -145,7 +146,7 @@ def _refuse_interference(pair: GearPair) -> None:
             _refuse_long_tip(pair, name, gear, reason, advice)
 
 
-def _refuse_fillet_interference(pair: GearPair) -> None:
+def _refuse_fillet_interference(pair: ParallelAxes) -> None:
     """Refuse a tip that cuts the mating fillet on its way through the tooth space."""
     gears = (("pinion", pair.pinion, pair.wheel), ("wheel", pair.wheel, pair.pinion))
     for name, gear, mate in gears:
@@ -157,7 +158,7 @@ def _refuse_fillet_interference(pair: GearPair) -> None:
             _refuse_long_tip(pair, name, gear, reason, advice)
 
 
-def _refuse_long_tip(pair: GearPair, name: str, gear: Gear, reason: Words, advice: str) -> NoReturn:
+def _refuse_long_tip(pair: ParallelAxes, name: str, gear: Toothing, reason: Words, advice: str) -> NoReturn:
     """Refuse a tip diameter, and say which one is clear of the mating flank and fillet."""
     mate = pair.wheel if gear is pair.pinion else pair.pinion
     largest = _largest_clear_tip(pair, gear, mate)
@@ -167,13 +168,14 @@ def _refuse_long_tip(pair: GearPair, name: str, gear: Gear, reason: Words, advic
     raise InfeasibleGeometry("interference", f"{name}.tip_diameter", 2.0 * gear.tip_radius, bound, advice)
 
 
-def _largest_clear_tip(pair: GearPair, gear: Gear, mate: Gear) -> float | None:
+def _largest_clear_tip(pair: ParallelAxes, gear: Toothing, mate: Toothing) -> float | None:
     """Return the largest tip diameter in m that interferes nowhere, None if even the form diameter does."""
     reach = max(pair.common_tangent - mate.form_roll_length, 0.0)
     low, high = gear.form_radius, min(gear.tip_radius, math.hypot(gear.base_radius, reach))
 
     def cuts(radius: float) -> bool:
-        shorter = replace(gear, tip_diameter=2.0 * radius, modification=UNMODIFIED)
+        tip_diameter = 2.0 * radius
+        shorter = replace(gear, tip_diameter=tip_diameter, modification=UNMODIFIED)  # type: ignore[call-arg]
         return fillet_penetration(pair, shorter, mate) > FILLET_SLACK * gear.normal_module
 
     low += 1e-6 * gear.normal_module

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import LIMIT_SLACK
-from fe_contact.geometry.backlash import allowance_backlash, base_circle_backlash, base_radius_sum
+from fe_contact.geometry.backlash import allowance_backlash, base_circle_backlash, working_pressure_angle
 from fe_contact.geometry.path_of_contact import PathOfContact
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.types import FloatArray
@@ -72,7 +72,7 @@ class ParallelAxes:
     @cached_property
     def working_pressure_angle(self) -> float:
         """Transverse working pressure angle alpha_wt, rad."""
-        return math.acos(abs(base_radius_sum(self.pinion, self.wheel)) / self.center_distance)
+        return working_pressure_angle(self.pinion, self.wheel, self.center_distance)
 
     @property
     def base_helix_angle(self) -> float:
@@ -212,7 +212,10 @@ class ParallelAxes:
         else that of the gears as they are. 0 where teeth do not jam, or by more than rounding makes.
         """
         computed = base_circle_backlash(self.pinion, self.wheel, self.working_pressure_angle)
-        largest = backlash_rounding(self) + LIMIT_SLACK * self.center_distance
+        largest = (
+            backlash_rounding(self.pinion, self.wheel, self.center_distance)
+            + LIMIT_SLACK * self.center_distance
+        )
         jams = (allowance_backlash(self.pinion, self.wheel) - computed, -computed)
         return next((jam for jam in jams if 0.0 < jam <= largest), 0.0)
 

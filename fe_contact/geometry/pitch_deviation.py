@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,9 +11,6 @@ from bounds import SiNote
 from fe_contact.checks import within
 from fe_contact.errors import InputError
 from fe_contact.types import FloatArray
-
-if TYPE_CHECKING:
-    from fe_contact.geometry.toothing import Toothing
 
 LARGEST = 1e-3
 """m; larger deviations are micrometres given as metres."""
@@ -89,16 +85,16 @@ class PitchDeviation:
         """The same teeth for the other sense of rotation; the first one stays."""
         return PitchDeviation(self.cumulative[:1] + self.cumulative[:0:-1])
 
-    def on_line_of_action(self, gear: Toothing) -> FloatArray:
+    def on_line_of_action(self, transverse_pressure_angle: float) -> FloatArray:
         """Deviation of every tooth along the transverse line of action, m: F_pi cos(alpha_t)."""
-        return np.array(self.cumulative or (0.0,)) * math.cos(gear.transverse_pressure_angle)
+        return np.array(self.cumulative or (0.0,)) * math.cos(transverse_pressure_angle)
 
-    def check_fits(self, gear: Toothing) -> None:
+    def check_fits(self, teeth: int) -> None:
         """Refuse a list that is not as long as the gear has teeth, naming the field of the gear."""
         count = len(self.cumulative)
-        if count not in (0, gear.teeth):
+        if count not in (0, teeth):
             advice = "One value per tooth, in the order of meshing."
-            raise InputError("pitch_deviation", f"{count} values", f"a list of {gear.teeth}", advice)
+            raise InputError("pitch_deviation", f"{count} values", f"a list of {teeth}", advice)
 
 
 NO_PITCH_DEVIATION = PitchDeviation()

@@ -14,10 +14,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from fe_contact.geometry.parallel_axes import ParallelAxes
+from fe_contact.geometry.backlash import working_pressure_angle
+from fe_contact.geometry.toothing import Toothing
 
 
 @dataclass(frozen=True)
@@ -52,8 +51,8 @@ HELIX_ANGLE = PrintedDigits(
 )
 
 
-def backlash_rounding(pair: ParallelAxes) -> float:
-    """Return the most in m that printing x_1, x_2, a, m_n and beta moves `transverse_base_backlash`.
+def backlash_rounding(pinion: Toothing, wheel: Toothing, center_distance: float) -> float:
+    """Return the most in m that printing x_1, x_2, a, m_n and beta moves the backlash of a pair.
 
     With the base module m_b = m_t cos(alpha_t) and j = 0::
 
@@ -62,32 +61,32 @@ def backlash_rounding(pair: ParallelAxes) -> float:
         dj/dm_n = -(a / m_n) dj/da                                    j has the degree 1 in lengths
         dj/dbeta = -2 (r_b1 + r_b2) tan(beta) cos^2(alpha_t) [tan(alpha_wt) + tan^3(alpha_t)]
     """
-    pinion, distance = pair.pinion, pair.center_distance
-    by_distance = 2.0 * math.sin(pair.working_pressure_angle)
-    by_module = by_distance * distance / pinion.normal_module
+    working = working_pressure_angle(pinion, wheel, center_distance)
+    by_distance = 2.0 * math.sin(working)
+    by_module = by_distance * center_distance / pinion.normal_module
     return (
-        _by_shift(pair)
-        + by_distance * CENTER_DISTANCE.rounding(distance)
+        _by_shift(pinion, wheel)
+        + by_distance * CENTER_DISTANCE.rounding(center_distance)
         + by_module * NORMAL_MODULE.rounding(pinion.normal_module)
-        + _by_helix(pair) * HELIX_ANGLE.rounding(pinion.helix_angle)
+        + _by_helix(pinion, center_distance, working) * HELIX_ANGLE.rounding(pinion.helix_angle)
     )
 
 
-def _by_shift(pair: ParallelAxes) -> float:
+def _by_shift(pinion: Toothing, wheel: Toothing) -> float:
     """Return what rounding of both profile shifts does, m; a shift of 0 is none."""
-    shifts = [gear.profile_shift_coefficient for gear in (pair.pinion, pair.wheel)]
+    shifts = [gear.profile_shift_coefficient for gear in (pinion, wheel)]
     shifts = [shift for shift in shifts if shift]
-    base_module = pair.base_pitch / math.pi
-    slope = 2.0 * base_module * math.tan(pair.pinion.normal_pressure_angle)
+    base_module = pinion.base_pitch / math.pi
+    slope = 2.0 * base_module * math.tan(pinion.normal_pressure_angle)
     return slope * len(shifts) * PROFILE_SHIFT.rounding(*shifts)
 
 
-def _by_helix(pair: ParallelAxes) -> float:
-    """Return the size of dj/dbeta, m per rad."""
-    working, transverse = pair.working_pressure_angle, pair.pinion.transverse_pressure_angle
+def _by_helix(pinion: Toothing, center_distance: float, working: float) -> float:
+    """Return the size of dj/dbeta at a working pressure angle, m per rad."""
+    transverse = pinion.transverse_pressure_angle
     bracket = math.tan(working) + math.tan(transverse) ** 3
-    base_radii = pair.center_distance * math.cos(working)
-    helix = math.tan(abs(pair.pinion.helix_angle))
+    base_radii = center_distance * math.cos(working)
+    helix = math.tan(abs(pinion.helix_angle))
     return 2.0 * base_radii * helix * math.cos(transverse) ** 2 * bracket
 
 

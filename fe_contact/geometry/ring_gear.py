@@ -16,7 +16,11 @@ from fe_contact.geometry.cutter_trochoid import CutterTrochoid
 from fe_contact.geometry.form_point import FormPoint
 from fe_contact.geometry.pinion_cutter import PinionCutter
 from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation
-from fe_contact.geometry.ring_gear_feasibility import refuse_infeasible_ring, refuse_shift_sum_of_cutter
+from fe_contact.geometry.ring_gear_feasibility import (
+    refuse_infeasible_ring,
+    refuse_narrow_rim,
+    refuse_shift_sum_of_cutter,
+)
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import STEEL, Material
 from fe_contact.types import Json
@@ -99,9 +103,10 @@ class RingGear(Toothing):
         if self.tip_diameter is not None:
             positive("tip_diameter", self.tip_diameter, SiNote("In m: 180 mm is 0.18."))
         self._check_tool()
-        refuse_infeasible_ring(self)
+        refuse_narrow_rim(self)
+        refuse_infeasible_ring(self, self.cutter)
         self.modification.check_fits(self)
-        self.pitch_deviation.check_fits(self)
+        self.pitch_deviation.check_fits(self.teeth)
 
     def _check_tool(self) -> None:
         """Check the numbers that describe the tool."""
@@ -151,10 +156,11 @@ class RingGear(Toothing):
     @cached_property
     def _generating_pressure_angle(self) -> float:
         """Working pressure angle with the cutter, from the profile shifts, rad."""
-        shifts = self.cutter_profile_shift_coefficient + self.profile_shift_coefficient
+        cutter_shift = self.cutter_profile_shift_coefficient
+        shifts = cutter_shift + self.profile_shift_coefficient
         involute = involute_function(self.transverse_pressure_angle)
         involute -= 2.0 * math.tan(self.normal_pressure_angle) * shifts / (self.teeth - self.cutter_teeth)
-        refuse_shift_sum_of_cutter(self, involute)
+        refuse_shift_sum_of_cutter(self, self.cutter_teeth, cutter_shift, involute)
         return inverse_involute(involute)
 
     @property

@@ -3,55 +3,53 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 from bounds import LIMIT_SLACK, Quantity, Text, above, at_least, below
 from fe_contact.errors import InfeasibleGeometry
+from fe_contact.geometry.pinion_cutter import PinionCutter
+from fe_contact.geometry.toothing import Toothing
 from fe_contact.geometry.trimming import radial_clearance
-
-if TYPE_CHECKING:
-    from fe_contact.geometry.ring_gear import RingGear
 
 _OTHER_CUTTER = "Choose another number of teeth or profile shift of the cutter."
 
 
-def refuse_infeasible_ring(gear: RingGear) -> None:
-    """Raise `InfeasibleGeometry` if no such ring gear can be generated."""
-    _refuse_rim(gear)
-    _refuse_rounding(gear)
-    _refuse_tip_diameter(gear)
-    _refuse_cut_tips(gear)
+def refuse_infeasible_ring(gear: Toothing, cutter: PinionCutter) -> None:
+    """Raise `InfeasibleGeometry` if the cutter cannot generate such a ring gear."""
+    _refuse_rounding(gear, cutter)
+    _refuse_tip_diameter(gear, cutter)
+    _refuse_cut_tips(gear, cutter)
     _refuse_pointed_tooth(gear)
 
 
-def refuse_shift_sum_of_cutter(gear: RingGear, involute: float) -> None:
+def refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float, involute: float) -> None:
     """Refuse a cutter too thick for the tooth space at any centre distance (`involute` below 0)."""
     if involute <= 0.0:
         angle = math.tan(gear.transverse_pressure_angle) - gear.transverse_pressure_angle
-        largest = angle * (gear.teeth - gear.cutter_teeth) / (2.0 * math.tan(gear.normal_pressure_angle))
+        largest = angle * (gear.teeth - teeth) / (2.0 * math.tan(gear.normal_pressure_angle))
         limit = largest - gear.profile_shift_coefficient
         raise InfeasibleGeometry(
             "profile shift sum",
             "cutter_profile_shift_coefficient",
-            gear.cutter_profile_shift_coefficient,
+            profile_shift,
             below(limit, note=", where the cutter fills the tooth space"),
             _OTHER_CUTTER,
         )
 
 
-def _refuse_rim(gear: RingGear) -> None:
+def refuse_narrow_rim(gear: Toothing) -> None:
     """Refuse a rim that leaves nothing behind the teeth."""
-    if gear.rim_diameter <= 2.0 * gear.root_radius:
+    rim = 2.0 * gear.held_radius
+    if rim <= 2.0 * gear.root_radius:
         bound = above(2.0 * gear.root_radius, "m", "the root diameter")
-        raise InfeasibleGeometry("rim", "rim_diameter", gear.rim_diameter, bound, "Raise the rim diameter.")
+        raise InfeasibleGeometry("rim", "rim_diameter", rim, bound, "Raise the rim diameter.")
 
 
-def _refuse_tip_diameter(gear: RingGear) -> None:
+def _refuse_tip_diameter(gear: Toothing, cutter: PinionCutter) -> None:
     """Refuse a tip circle beyond the involute at the fillet, or inside what the cutter's involute reaches."""
     if gear.tip_radius >= gear.form_radius:
         bound = below(2.0 * gear.form_radius, "m", "the form diameter", ", where the fillet begins")
         raise InfeasibleGeometry("tip diameter", "tip_diameter", 2.0 * gear.tip_radius, bound)
-    smallest = math.hypot(gear.base_radius, gear.cutter.common_tangent)
+    smallest = math.hypot(gear.base_radius, cutter.common_tangent)
     if gear.tip_radius < smallest * (1.0 - LIMIT_SLACK):
         bound = at_least(2.0 * smallest, "m", note=", where the cutter's involute ends at its base circle")
         advice = f"Raise the tip diameter, or lower the addendum or the profile shift. {_OTHER_CUTTER}"
@@ -59,9 +57,8 @@ def _refuse_tip_diameter(gear: RingGear) -> None:
         raise InfeasibleGeometry(name, "tip_diameter", 2.0 * gear.tip_radius, bound, advice)
 
 
-def _refuse_rounding(gear: RingGear) -> None:
+def _refuse_rounding(gear: Toothing, cutter: PinionCutter) -> None:
     """Refuse a rounding that does not fit on the cutter's tip."""
-    cutter = gear.cutter
     if cutter.corner_angle < 0.0 or cutter.corner_center_radius < cutter.base_radius:
         bound = "smaller: the rounding does not fit between the two flanks of the cutter's tooth"
         advice = "Lower the root radius or the dedendum."
@@ -70,9 +67,8 @@ def _refuse_rounding(gear: RingGear) -> None:
         )
 
 
-def _refuse_cut_tips(gear: RingGear) -> None:
+def _refuse_cut_tips(gear: Toothing, cutter: PinionCutter) -> None:
     """Refuse a cutter that trims the tips it passes while it is fed in radially."""
-    cutter = gear.cutter
     at_tips = (
         math.acos(cutter.base_radius / cutter.tip_radius),
         math.acos(min(1.0, gear.base_radius / gear.tip_radius)),
@@ -80,10 +76,10 @@ def _refuse_cut_tips(gear: RingGear) -> None:
     if radial_clearance(cutter.ratio, at_tips, cutter.working_pressure_angle) < 0.0:
         bound = "smaller: the cutter would trim the ring's tips while it is fed in"
         advice = "Lower the cutter's number of teeth, or raise the tip diameter."
-        raise InfeasibleGeometry("trimming interference", "cutter_teeth", gear.cutter_teeth, bound, advice)
+        raise InfeasibleGeometry("trimming interference", "cutter_teeth", cutter.teeth, bound, advice)
 
 
-def _refuse_pointed_tooth(gear: RingGear) -> None:
+def _refuse_pointed_tooth(gear: Toothing) -> None:
     """Refuse a tooth whose flanks meet before the tip circle."""
     if gear.tip_tooth_thickness <= 0.0:
         thickness = Quantity(gear.tip_tooth_thickness, "m", digits=3)

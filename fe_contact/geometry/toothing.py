@@ -65,6 +65,10 @@ class Toothing:
             """h_fP / m_n."""
 
         @property
+        def root_radius_coefficient(self) -> float:
+            """rho_fP / m_n, or rho_a0 / m_n of the cutter of a ring gear."""
+
+        @property
         def tip_diameter(self) -> float | None:
             """d_a in m, if given."""
 

@@ -47,7 +47,7 @@ def test_along_the_line_of_action_an_arc_is_shorter_by_the_transverse_pressure_a
     """The tooth turns by F_pi / r; the line of action sees r_b of it."""
     helical = replace(GEAR, helix_angle=0.4, pitch_deviation=PitchDeviation((1e-6,) * 20))
     turned = 1e-6 / helical.reference_radius
-    found = helical.pitch_deviation.on_line_of_action(helical)
+    found = helical.pitch_deviation.on_line_of_action(helical.transverse_pressure_angle)
     assert found == pytest.approx([turned * helical.base_radius] * 20, rel=1e-12, abs=0.0)
     assert helical.base_radius / helical.reference_radius < math.cos(math.radians(20.0))
 
@@ -89,5 +89,5 @@ def test_the_list_has_one_value_per_tooth(count):
 def test_ring_gears_have_them_too():
     ring = RingGear(teeth=60, normal_module=4e-3, face_width=25e-3, rim_diameter=300e-3, cutter_teeth=25)
     erring = replace(ring, pitch_deviation=PitchDeviation((1e-6,) * 60))
-    found = erring.pitch_deviation.on_line_of_action(erring)
+    found = erring.pitch_deviation.on_line_of_action(erring.transverse_pressure_angle)
     assert found == pytest.approx([1e-6 * math.cos(math.radians(20.0))] * 60, rel=1e-12, abs=0.0)
