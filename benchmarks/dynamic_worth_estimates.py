@@ -86,7 +86,7 @@ def _bearings(run: RunFigures) -> FloatArray:
 
 
 def markdown(found: Sequence[JudgedWorth]) -> str:
-    """Return the section of docs/effects/worth.md."""
+    """Return the section of docs/effects/influence.md."""
     scenes = list(dict.fromkeys(one.where for one in found))
     head = (
         f"{len(found)} ablations in time: {len(scenes)} scenes, every effect that can be switched in them. "

@@ -15,8 +15,8 @@ from fe_contact.analysis.request import Checked
 from fe_contact.analysis.table_places import table_places
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation, make_plan
-from fe_contact.planning.discretisation import FINER_SLICES, Discretisation
+from fe_contact.planning import FaceDiscretization, Plan, PlaneDiscretization, make_plan
+from fe_contact.planning.discretization import FINER_SLICES, Discretization
 from fe_contact.ste.interpolation import Axis, interpolate
 from fe_contact.types import FloatArray
 
@@ -40,14 +40,14 @@ def finest_plan(checked: Checked) -> Plan:
     """Plan a request of the level fine on meshes, or in slices, beyond it."""
     request = checked.request
     plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
-    return replace(plan, discretisation=_finer(plan.discretisation, plan.bodies(request.pair)))
+    return replace(plan, discretization=_finer(plan.discretization, plan.bodies(request.pair)))
 
 
 def solved_finely(checked: Checked, contact: PairContact) -> FloatArray:
     """Return the quantities (5, loads) in m of the one place of a request at many positions."""
     request = checked.request
     (place,) = table_places(request.scene, request.choices, contact).places
-    flat = isinstance(contact.plan.discretisation, PlaneDiscretisation)
+    flat = isinstance(contact.plan.discretization, PlaneDiscretization)
     position = np.arange(count := PLANE_POSITIONS if flat else FACE_POSITIONS) / count
     curves = place.solve(position, request.load)[1].deflection
     return np.stack([_quantities(position, curve) for curve in curves.T], axis=1)
@@ -69,9 +69,9 @@ def _quantities(position: FloatArray, curve: FloatArray) -> FloatArray:
     return np.array([even.mean(), np.ptp(even), *lines])
 
 
-def _finer(made: Discretisation, bodies: tuple[Toothing, Toothing]) -> Discretisation:
-    """Return a discretisation beyond "fine"."""
-    if isinstance(made, FaceDiscretisation):
+def _finer(made: Discretization, bodies: tuple[Toothing, Toothing]) -> Discretization:
+    """Return a discretization beyond "fine"."""
+    if isinstance(made, FaceDiscretization):
         first, second = (recipe.scaled(1.0 / FINER) for recipe in made.recipes)
         return replace(made, recipes=(first, second)).in_slices(SLICES)
     one, two = (recipe.refined(FINER) for recipe in made.recipes)

@@ -41,7 +41,7 @@ def draw() -> None:
     )
 
 
-def _lines(case: FullContactCase, colour: str) -> list[list[Line]]:
+def _lines(case: FullContactCase, color: str) -> list[list[Line]]:
     """Return the lines of mean and of peak-to-peak: three levels, and full contact's own error."""
     position, exact, error = reference(case.name)
     truth = quantities(position, exact)
@@ -54,13 +54,13 @@ def _lines(case: FullContactCase, colour: str) -> list[list[Line]]:
     timed = solve_full_contact(case.pair, [float(t) for t in table.torque], list(TIMED), estimate_error=True)
     peer = float(np.mean(timed.cpu_seconds)) * position.size
     own = float(np.max(error.mean(axis=0) / truth[0]))
-    return [_pair_of_lines(case.name, colour, seconds, np.array(off)[:, q], peer, own) for q in range(2)]
+    return [_pair_of_lines(case.name, color, seconds, np.array(off)[:, q], peer, own) for q in range(2)]
 
 
 def _pair_of_lines(
-    name: str, colour: str, seconds: list[float], off: FloatArray, peer: float, own: float
+    name: str, color: str, seconds: list[float], off: FloatArray, peer: float, own: float
 ) -> list[Line]:
     """Return one pair's levels as a line and full contact as a point."""
-    levels = Line(f"{name}: draft, standard, fine", np.array(seconds), 100.0 * off, colour, markers=True)
+    levels = Line(f"{name}: draft, standard, fine", np.array(seconds), 100.0 * off, color, markers=True)
     at = np.array([peer]), np.array([100.0 * own])
-    return [levels, Line(f"{name}: full contact", *at, colour, width=0.0, markers=True)]
+    return [levels, Line(f"{name}: full contact", *at, color, width=0.0, markers=True)]

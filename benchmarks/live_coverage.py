@@ -135,7 +135,7 @@ def _exact(bodies: Bodies) -> dict[str, FloatArray]:
 
 
 def _condensed(bodies: Bodies, level: str) -> CondensedPair:
-    """Analyse the plain pair and fetch its bodies, as the service does."""
+    """Analyze the plain pair and fetch its bodies, as the service does."""
     wish = {"normal_forces": bodies.forces, "level": level, "positions": 32, "cache": FOLDER}
     table = analyze(bodies.plain, **wish, **bodies.options)
     found = condensed_pair(bodies.plain, table, {}, FOLDER)

@@ -49,7 +49,7 @@ def _service() -> Iterator[str]:
 
 
 def _measured(page: Page, address: str, name: str) -> list[Figure]:
-    """Analyse an example, then move its slider of tip relief step by step."""
+    """Analyze an example, then move its slider of tip relief step by step."""
     page.set_default_timeout(_PATIENCE_MS)
     page.goto(address)
     page.wait_for_selector("html[data-ready=yes]")

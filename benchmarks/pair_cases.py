@@ -70,7 +70,7 @@ def plane_cases() -> list[PairCase]:
         PairCase("spur 17/43, shifted", spur_pair(gear_of(17, **spread), gear_of(43), 0.295)),
         PairCase("spur 30/60, tip relief", spur_pair(gear_of(30, modification=relieved), gear_of(60))),
         PairCase("spur 25/31, profile crowning", spur_pair(gear_of(25, modification=crowned), gear_of(31))),
-        PairCase("spur 24/37, centre distance + 0.1 modules", spur_pair(gear_of(24), gear_of(37), 0.1)),
+        PairCase("spur 24/37, center distance + 0.1 modules", spur_pair(gear_of(24), gear_of(37), 0.1)),
         PairCase("spur 20/20, face of 1.2 modules", spur_pair(gear_of(20, 1.2), gear_of(20, 1.2))),
         PairCase(
             "spur 20/40, thin rim",

@@ -114,7 +114,7 @@ def _curve(checked: Checked, folder: Path) -> tuple[float, float]:
 
 
 def markdown(found: Sequence[JudgedInfluence]) -> str:
-    """Return the section of docs/effects/worth.md."""
+    """Return the section of docs/effects/influence.md."""
     said = ", ".join(
         f"{share_right(group):.0f} % of {len(group)} on pairs {title} when they were made"
         for title, group in groups(found).items()

@@ -55,7 +55,7 @@ def _reference(torque: float, contact_ratio: float) -> tuple[FloatArray, FloatAr
         rows = [row for row in csv.DictReader(file) if float(row["torque_n_m"]) == torque]
     position = np.array([float(row["position_driver"]) for row in rows])
     order = np.argsort(position)
-    neighbours = np.array([float(row["share_pair_minus1"]) + float(row["share_pair_plus1"]) for row in rows])
+    neighbors = np.array([float(row["share_pair_minus1"]) + float(row["share_pair_plus1"]) for row in rows])
     single = np.abs(position) < 1.0 - contact_ratio / 2.0
-    corner = (neighbours > 0.0) & single
+    corner = (neighbors > 0.0) & single
     return position[order], np.array([float(row["ste_um"]) for row in rows])[order] * 1e-6, corner[order]

@@ -22,7 +22,7 @@ from fe_contact.analysis.model_choice import decide
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.worth import Worth, estimate_worths
 
-PAGE = Path(__file__).parents[1] / "docs" / "effects" / "worth.md"
+PAGE = Path(__file__).parents[1] / "docs" / "effects" / "influence.md"
 SECTION = "worth estimates"
 TOLERANCES = (0.01, 0.05)
 STUDY = WorthStudy(
@@ -100,7 +100,7 @@ def _judged(
 
 
 def markdown(found: Sequence[LoadedWorth]) -> str:
-    """Return the section of docs/effects/worth.md."""
+    """Return the section of docs/effects/influence.md."""
     cases = list(dict.fromkeys(one.where for one in found))
     head = (
         f"{len(found)} ablations: {len(cases)} pairs, every effect that they hold, two loads "

@@ -7,7 +7,7 @@ import math
 from bounds.unit import Unit
 
 TYPED: dict[str, tuple[Unit, ...]] = {
-    "m": (Unit("metres", 1.0), Unit("millimetres", 1e-3), Unit("micrometres", 1e-6), Unit("inches", 25.4e-3)),
+    "m": (Unit("meters", 1.0), Unit("millimeters", 1e-3), Unit("micrometers", 1e-6), Unit("inches", 25.4e-3)),
     "N m": (Unit("kN m", 1e3), Unit("N mm", 1e-3), Unit("N m", 1.0)),
     "N": (Unit("kN", 1e3), Unit("N", 1.0)),
     "rad": (Unit("radians", 1.0), Unit("degrees", math.pi / 180.0)),

@@ -41,7 +41,7 @@ def static_lines(database: SteDatabase) -> list[str]:
 
 
 def _estimate(name: str, estimate: Estimate) -> str:
-    """One number in micrometres with its error."""
+    """One number in micrometers with its error."""
     return f"{name:<34}{1e6 * estimate.value:9.3f} ± {1e6 * estimate.error:.3f} µm"
 
 

@@ -1,6 +1,6 @@
 """Errors change slowly along an axis: they are measured at a few of its nodes and interpolated between them.
 
-The errors of a discretisation are nearly a fixed part of the deflection, so that linear interpolation between
+The errors of a discretization are nearly a fixed part of the deflection, so that linear interpolation between
 loads a factor of some apart carries them on; the same holds between alignments. What is to be estimated is
 an error, of which one digit counts.
 """
@@ -12,7 +12,7 @@ import numpy as np
 from fe_contact.types import FloatArray, IntArray
 
 LOADS, ALIGNMENTS = 3, 3
-"""Nodes of an axis of loads, of misalignments or centre distances that are solved; shorter axes whole."""
+"""Nodes of an axis of loads, of misalignments or center distances that are solved; shorter axes whole."""
 WIDE_INTERVALS, WIDE_PROBES = 4, 3
 """Up to so many intervals of an axis of loads hold so many held-out loads each; more of them, which are
 shorter, one."""

@@ -40,7 +40,7 @@ STORED = {
     "frequency": Stored(("speed", "mode"), "Hz", "damped frequency of a whirl mode"),
     "damping_ratio": Stored(("speed", "mode"), "1", "damping ratio of a whirl mode"),
     "whirl": Stored(("speed", "mode"), "1", "-1 backward circular, 0 in a plane, 1 forward circular"),
-    "shape": Stored(("speed", "mode", "freedom"), "m or rad", "mode shape, largest entry in metres 1"),
+    "shape": Stored(("speed", "mode", "freedom"), "m or rad", "mode shape, largest entry in meters 1"),
     "strain_energy": Stored(("speed", "mode", "spring"), "1", _ENERGY[0]),
     "kinetic_energy": Stored(("speed", "mode", "freedom"), "1", _ENERGY[1]),
     "critical_speed": Stored(("crossing",), "rad s-1", "speed of the leading shaft"),

@@ -87,8 +87,8 @@ def _carrier(scene: Scene, shaft: str) -> Shaft:
 
 def _with_copies(parts: Sequence[Part], shaft: str, number: int) -> tuple[Part, ...]:
     """Return `parts` and the copies of those on `shaft`, planet by planet."""
-    copies = (_copy(part, index) for index in range(1, number) for part in parts if part.shaft == shaft)
-    return (*parts, *copies)
+    copies = [_copy(part, index) for index in range(1, number) for part in parts if part.shaft == shaft]
+    return tuple(parts) + tuple(copies)
 
 
 def _mesh_copies(

@@ -51,7 +51,7 @@ SERIES = (
     Series("largest_mesh_force", ("mesh", "time"), "N", "largest mesh force between samples, unfiltered"),
     Series("contact", ("mesh", "time"), "1", "flanks in contact: 0 none, 1 driving, 2 coast, 3 both"),
     Series("misalignment", ("mesh", "time"), "m", "misalignment at which the table was read"),
-    Series("center_distance_change", ("mesh", "time"), "m", "centre-distance change likewise"),
+    Series("center_distance_change", ("mesh", "time"), "m", "center-distance change likewise"),
     Series("load_centroid", ("mesh", "time"), "m", "place of the mesh force from mid-face towards +z"),
     Series("speed", ("shaft", "time"), "rad s-1", "speed about +z"),
     Series("drive_torque", ("drive", "time"), "N m", "drive torque about +z"),

@@ -73,11 +73,11 @@ class SolvedRun(Protocol):
 
     @property
     def plan(self) -> Plan:
-        """Discretisation."""
+        """Discretization."""
 
     @property
     def places(self) -> Places:
-        """Misalignments and centre distances."""
+        """Misalignments and center distances."""
 
     @property
     def solved(self) -> Sequence[tuple[ContactProblem, ContactSolution]]:
@@ -162,7 +162,7 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     found = "; ".join(reasons) if reasons else "nothing in the scene acts across it"
     name = FaceLoadDistribution.name
     yield Assumption(name, "load even over the face", not reasons, float("nan"), found)
-    missing = left_out(run.places.places[0].contact.pair, run.plan.discretisation)
+    missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
     if missing:
         reason = f"the finite width is worth about {100 * missing:.2g} % of the mean"
         holds = missing <= allowed(run).relative

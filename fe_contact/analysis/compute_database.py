@@ -74,7 +74,7 @@ def compute_pass(
     cache : Path, optional
         Directory of flank compliances.
     decided : Decided, optional
-        Model and discretisation; default: those that the accuracy asks for.
+        Model and discretization; default: those that the accuracy asks for.
     workers : Workers
         Who condenses the gears and solves the contact; the table does not depend on them.
     clock : StageClock, optional

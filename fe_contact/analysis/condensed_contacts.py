@@ -1,7 +1,7 @@
-"""A pair on the discretisation of its table and on rougher ones, each with what it assembled kept.
+"""A pair on the discretization of its table and on rougher ones, each with what it assembled kept.
 
 Flanks, loads and alignments change from question to question; bodies and positions do not, so that the
-compliance between the candidates is assembled once on every discretisation.
+compliance between the candidates is assembled once on every discretization.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from fe_contact.geometry import ParallelAxes
 
 @dataclass(frozen=True)
 class CondensedContacts:
-    """One pair at one centre distance.
+    """One pair at one center distance.
 
     Attributes
     ----------
@@ -44,8 +44,8 @@ class CondensedContacts:
 
     @classmethod
     def of(cls, own: PairContact, coarse: PairContact | None) -> CondensedContacts:
-        """Take the rougher discretisations that need no other bodies from the pair itself."""
-        made = own.plan.discretisation
+        """Take the rougher discretizations that need no other bodies from the pair itself."""
+        made = own.plan.discretization
         part = left_by_patches(own.pair, own.plan)
         return cls(
             own,

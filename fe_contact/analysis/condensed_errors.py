@@ -1,6 +1,6 @@
 """How wrong a table is that was solved on a condensed pair, at a part of the cost of solving it.
 
-The rougher discretisations are those of an analysis, at half of the positions or fewer, and the parts of
+The rougher discretizations are those of an analysis, at half of the positions or fewer, and the parts of
 their changes that are left are the same. What is between the positions is told by half of them. Coarse
 meshes that are not at hand are no reason to compute any: the error known of the level stands in. Wide load
 patches, which the mesh asks for, count with it.
@@ -46,10 +46,10 @@ def condensed_errors(
     ----------
     table : SteDatabase
     places : Places
-        Its one place, on the discretisation of the table.
+        Its one place, on the discretization of the table.
     solution : ContactSolution
     contacts : CondensedContacts
-        The same flanks on rougher discretisations, assembled at the sample.
+        The same flanks on rougher discretizations, assembled at the sample.
     sample : TableSample
         Points that are solved again.
     plan : Plan
@@ -61,7 +61,7 @@ def condensed_errors(
     """
 
     def solved(rougher: PairContact | None, otherwise: FloatArray) -> FloatArray:
-        """Solve the sample on a rougher discretisation, (T R, f, 1, 1) in m."""
+        """Solve the sample on a rougher discretization, (T R, f, 1, 1) in m."""
         if rougher is None:
             return otherwise
         return sample.solved(replace(places, places=(replace(places.places[0], contact=rougher),)), places)
@@ -74,12 +74,12 @@ def condensed_errors(
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     if contacts.coarse is None:
         errors[BY_MESH], band = _expected(table, plan, contacts.own)
-        sources = replace(sources, discretisation=np.broadcast_to(band, sources.contact.shape))
+        sources = replace(sources, discretization=np.broadcast_to(band, sources.contact.shape))
     if contacts.patched is not None:
         wider, part = solved(contacts.patched, own), contacts.left_by_patches
         errors[BY_MESH] = np.hypot(errors[BY_MESH], _changed(sample, own, wider, part))
         band = sample.spread_points(part * np.nan_to_num(np.abs(own - wider)))
-        sources = replace(sources, discretisation=sources.discretisation + band)
+        sources = replace(sources, discretization=sources.discretization + band)
     return JudgedTable(sources.total, with_axes(errors, {}), sources.to_json(), {})
 
 

@@ -1,7 +1,7 @@
 """A pair whose bodies are condensed: other flanks, loads and alignments are a matter of contact alone.
 
 The compliance of a gear depends on its macro geometry, not on its flank modifications, the load, the
-alignment or the centre distance. With it in memory a new curve costs the gaps and the contact, no finite
+alignment or the center distance. With it in memory a new curve costs the gaps and the contact, no finite
 elements; and its errors about as much again.
 """
 
@@ -44,7 +44,7 @@ handovers are steep, and positions cost little."""
 MOST_ROWS, FEWEST_POSITIONS = 4096, 16
 """Of longer periods, which repeat the positions in every base pitch."""
 KEPT_DISTANCES = 2
-"""Changes of the centre distance at which the compliance stays assembled."""
+"""Changes of the center distance at which the compliance stays assembled."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class CondensedPair:
     checked : Checked
         What the table was asked, its model bound to the bodies it had.
     contacts : CondensedContacts
-        At the nominal centre distance; they keep what was assembled for the positions.
+        At the nominal center distance; they keep what was assembled for the positions.
     spared : mapping of str to str
         Effects of the bodies that the tolerance of the table left off, and why.
     """
@@ -68,7 +68,7 @@ class CondensedPair:
 
     @property
     def contact(self) -> PairContact:
-        """The pair at its nominal centre distance."""
+        """The pair at its nominal center distance."""
         return self.contacts.own
 
     @property
@@ -107,7 +107,7 @@ class CondensedPair:
         Raises
         ------
         InputError
-            Other bodies, loads beyond those of the table, flanks that its model cannot hold, or a centre
+            Other bodies, loads beyond those of the table, flanks that its model cannot hold, or a center
             distance at which more teeth meet than are condensed.
         """
         clock = StageClock()
@@ -144,7 +144,7 @@ class CondensedPair:
         Returns
         -------
         pair : GearPair or InternalGearPair
-            At its centre distance.
+            At its center distance.
         checked : Checked
         problem, solution
             At the positions of `table`.
@@ -162,11 +162,11 @@ class CondensedPair:
         return self._checked(pair, self._levels(pair, torques), misalignment, change)
 
     def _refuse_other_bodies(self, pair: ParallelAxes) -> None:
-        """Refuse gears or a centre distance that this compliance is not of."""
+        """Refuse gears or a center distance that this compliance is not of."""
         known = self.checked.request.pair
         if _plain(pair) != _plain(known):
-            bound = "of the gears and the centre distance of the table, but for flank modifications"
-            raise InputError("pair", "another", bound, "Analyse the other pair first.")
+            bound = "of the gears and the center distance of the table, but for flank modifications"
+            raise InputError("pair", "another", bound, "Analyze the other pair first.")
 
     def _levels(self, pair: ParallelAxes, torques: FloatArray) -> FloatArray:
         """Return the loads as normal forces; refuse what outgrows the load patches."""
@@ -174,7 +174,7 @@ class CondensedPair:
         if load[-1] > self.largest_load * (1.0 + 1e-9):
             most = float(pair.torque(np.array([self.largest_load]))[0])
             bound = at_most(most, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
-            advice = "Analyse the case with a higher load."
+            advice = "Analyze the case with a higher load."
             raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, advice)
         return load
 
@@ -216,7 +216,7 @@ class CondensedPair:
         return here, table_places(scene, request.choices, here.own)
 
     def _at(self, change: float) -> CondensedContacts:
-        """Return the contacts at a change of the centre distance in m; those asked for last are kept."""
+        """Return the contacts at a change of the center distance in m; those asked for last are kept."""
         if change == 0.0:
             return self.contacts
         if change not in self._apart:
@@ -236,7 +236,7 @@ def _refuse_more_teeth(contact: PairContact, change: float) -> None:
     teeth, needed = int(contact.plane[0].teeth.size), condensed_teeth(contact.pair)
     if needed > teeth:
         bound = f"a change at which at most {teeth} teeth can touch: so many are condensed, {needed} can"
-        advice = "Put it on the axis of the case and analyse that."
+        advice = "Put it on the axis of the case and analyze that."
         raise InputError("center_distance_changes[0]", change, bound, advice)
 
 

@@ -26,7 +26,7 @@ class ContactBlock:
     Attributes
     ----------
     pair : GearPair or InternalGearPair
-        At the centre distance of the line.
+        At the center distance of the line.
     plan : Plan
     candidates : Candidates
         Of plain involutes at the positions of the block.

@@ -1,6 +1,6 @@
 """Lines of a table, cut into blocks for workers and put together again.
 
-A line is one centre distance at some misalignments: they share the compliance between the candidates, which
+A line is one center distance at some misalignments: they share the compliance between the candidates, which
 costs most. It is cut between positions (see `contact_block`), by what its blocks are predicted to cost: by
 the case alone, not by who works.
 """
@@ -63,7 +63,7 @@ class Line:
     @property
     def seconds_a_position(self) -> float:
         """CPU seconds that one position is predicted to take."""
-        work = unit_work(self.contact.pair, self.contact.plan, self.contact.plan.discretisation.slices)
+        work = unit_work(self.contact.pair, self.contact.plan, self.contact.plan.discretization.slices)
         pitches = 1 if self.pitches is None else self.pitches.size
         return work.of(1, len(self.models) * pitches * sum(load.size for load in self.loads))
 

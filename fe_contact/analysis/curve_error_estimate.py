@@ -1,7 +1,7 @@
 """How wrong mean, peak-to-peak and harmonics are, by source.
 
-Each quantity is computed from nested discretisations, the run's own and a rougher one, and the change between
-the two is carried on to the error that is left by the order known of the discretisation, as the point bands
+Each quantity is computed from nested discretizations, the run's own and a rougher one, and the change between
+the two is carried on to the error that is left by the order known of the discretization, as the point bands
 are (`error_estimate`). Errors common to all positions so count in the mean alone, and what bends the curve in
 peak-to-peak and harmonics. Between the nodes of an axis the changes at held-out points count.
 """
@@ -18,7 +18,7 @@ from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
-from fe_contact.planning import LEFT_OUT, FaceDiscretisation, Plan, left_out
+from fe_contact.planning import LEFT_OUT, FaceDiscretization, Plan, left_out
 from fe_contact.planning.model_error import model_errors, of_bending
 from fe_contact.ste.curve_errors import AT_NODES, BETWEEN_NODES, SOURCES
 from fe_contact.ste.curve_quantities import (
@@ -38,7 +38,7 @@ LEFT_BY_MESH = {
 }
 """Error left of mean, peak-to-peak and harmonics over the change to the coarse mesh: in the plane, of
 elements half as large; over the face of a spur pair, of elements of two thirds; of a helical pair, over what
-second order leaves of that change (`FaceDiscretisation.remaining`). Coarse meshes are not in the range yet in
+second order leaves of that change (`FaceDiscretization.remaining`). Coarse meshes are not in the range yet in
 which errors fall with a power of the size: a draft in the plane leaves less of its change than a finer mesh,
 one over the face more. Set on pairs that docs/accuracy.md names under "Constants"; the level fine has the
 parts of standard."""
@@ -57,11 +57,11 @@ def curve_errors(
 ) -> FloatArray:
     """Return the errors at the nodes of the table, (6, 22, F, M, D) in m: sources `AT_NODES`.
 
-    Parameters are those of `estimate_errors`. Errors of the discretisation are those at the loads and
+    Parameters are those of `estimate_errors`. Errors of the discretization are those at the loads and
     alignments that were solved again, and interpolated between them.
     """
-    made, sample, pair = plan.discretisation, nested.sample, places.nominal.pair
-    helical = isinstance(made, FaceDiscretisation) and pair.base_helix_angle != 0.0
+    made, sample, pair = plan.discretization, nested.sample, places.nominal.pair
+    helical = isinstance(made, FaceDiscretization) and pair.base_helix_angle != 0.0
     # on the curve: half the slices may multiply a small ripple, and no part of that is what many change
     many_slices = nested.table + made.remaining_slices * (nested.table - nested.sliced)
     own, by_mesh, by_slices, free_ends = _changes(
@@ -114,8 +114,8 @@ def _by_solver(places: Places, solutions: list[ContactSolution], sample: TableSa
 
 def _left_by_mesh(plan: Plan, helical: bool) -> FloatArray:
     """Error left over the change to the coarse mesh, (22,)."""
-    made = plan.discretisation
-    kind = ("helical" if helical else "spur") if isinstance(made, FaceDiscretisation) else "plane"
+    made = plan.discretization
+    kind = ("helical" if helical else "spur") if isinstance(made, FaceDiscretization) else "plane"
     mean, ripple, harmonics = LEFT_BY_MESH[kind]["draft" if plan.level == "draft" else "standard"]
     part = np.array([mean, ripple, *[harmonics] * (QUANTITIES - FIRST_HARMONIC)])
     return part * made.remaining if helical else part

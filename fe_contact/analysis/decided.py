@@ -9,7 +9,7 @@ from fe_contact.analysis.request import Checked
 from fe_contact.analysis.ripple import expected_curves
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.planning import (
-    FaceDiscretisation,
+    FaceDiscretization,
     MeshChoice,
     MeshOption,
     NodeRule,
@@ -44,11 +44,11 @@ class Decided:
 
     def in_slices(self, count: int) -> Decided:
         """Return the same model and mesh in another number of slices; itself in the plane."""
-        if not isinstance(self.plan.discretisation, FaceDiscretisation):
+        if not isinstance(self.plan.discretization, FaceDiscretization):
             return self
-        made = self.plan.discretisation.in_slices(count)
+        made = self.plan.discretization.in_slices(count)
         mesh = replace(self.mesh, option=replace(self.mesh.option, slices=made.slices))
-        return replace(self, mesh=mesh, plan=replace(self.plan, discretisation=made))
+        return replace(self, mesh=mesh, plan=replace(self.plan, discretization=made))
 
     @property
     def usual_nodes(self) -> NodeRule:
@@ -61,7 +61,7 @@ class Decided:
         request, model = self.checked.request, self.checked.model
         error = expected_error(request.pair, plan, expected_curves(self.checked))
         work = effort(request.pair, plan, model, request.alignments)
-        option = MeshOption(level, plan.discretisation.slices, error, work)
+        option = MeshOption(level, plan.discretization.slices, error, work)
         return replace(self, mesh=MeshChoice(option, True, reason), plan=plan)
 
     def predicted(self, cache: Path | None) -> Prediction:

@@ -20,7 +20,7 @@ from fe_contact.compliance.deformed_gear import DeformedGear
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.mesh.export import write_cells
-from fe_contact.planning import FaceDiscretisation
+from fe_contact.planning import FaceDiscretization
 from fe_contact.progress import Progress, silent
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
@@ -32,7 +32,7 @@ Both = tuple[DeformedGear, DeformedGear]
 class DeformedPair:
     """Both gears at one position, placed as they mesh.
 
-    The pinion's centre is the origin, the wheel's is on +y, a ring gear's on -y; the pinion drives clockwise
+    The pinion's center is the origin, the wheel's is on +y, a ring gear's on -y; the pinion drives clockwise
     seen from +z.
 
     Attributes
@@ -44,7 +44,7 @@ class DeformedPair:
     pinion, wheel : DeformedGear
     wheel_base_radius : float
         m; negative for a ring gear.
-    wheel_centre : (float, float, float)
+    wheel_center : (float, float, float)
         m.
     """
 
@@ -53,7 +53,7 @@ class DeformedPair:
     pinion: DeformedGear
     wheel: DeformedGear
     wheel_base_radius: float
-    wheel_centre: tuple[float, float, float]
+    wheel_center: tuple[float, float, float]
 
     @property
     def wheel_lag(self) -> FloatArray:
@@ -62,7 +62,7 @@ class DeformedPair:
         Added to the elastic displacements it closes the gap that bending opens: warped by any factor, the
         loaded flanks stay together.
         """
-        arm = self.wheel.points - np.asarray(self.wheel_centre)
+        arm = self.wheel.points - np.asarray(self.wheel_center)
         # it turns counter-clockwise, a ring clockwise, and lags
         angle = -self.deflection / self.wheel_base_radius
         return angle * np.column_stack([-arm[:, 1], arm[:, 0], np.zeros(len(arm))])
@@ -93,7 +93,7 @@ def deformed_pairs(
     """Solve the contact at some positions and expand it to the finite elements of both gears.
 
     A plane model gives the whole transverse section, three dimensions give the loaded teeth and their
-    neighbours. What shafts bend is not in the fields.
+    neighbors. What shafts bend is not in the fields.
 
     Parameters
     ----------
@@ -150,9 +150,9 @@ def deformed_pairs(
 def deformed_gears(solved: SolvedPlace, beside: int = 1) -> tuple[Both, ...]:
     """Expand a solution at all its positions; each gear in its own frame."""
     contact, candidates = solved.contact, solved.problem.candidates
-    force, made = solved.solution.force[:, 0], contact.plan.discretisation
+    force, made = solved.solution.force[:, 0], contact.plan.discretization
     gears, positions = contact.plan.bodies(contact.pair), range(candidates.position.size)
-    if isinstance(made, FaceDiscretisation):
+    if isinstance(made, FaceDiscretization):
         face, offset = contact.face, contact.pair.axial_offset
         assert face is not None
         solid = [face_flank_forces(candidates, force, p, face, offset) for p in positions]
@@ -176,11 +176,11 @@ def deformed_gears(solved: SolvedPlace, beside: int = 1) -> tuple[Both, ...]:
 def placed_pair(pair: ParallelAxes, position: float, deflection: float, gears: Both) -> DeformedPair:
     """Turn both gears so that their flanks touch on the line of action, at mid-face of the pinion."""
     sign = pair.wheel.sign
-    centre = (0.0, sign * pair.center_distance, pair.axial_offset)
+    center = (0.0, sign * pair.center_distance, pair.axial_offset)
     angle_1, angle_2 = mesh_angles(pair, position)
     wheel = gears[1].turned_over() if pair.internal else gears[1]
-    pinion, wheel = gears[0].placed(angle_1, (0.0, 0.0, 0.0)), wheel.placed(angle_2, centre)
-    return DeformedPair(position, deflection, pinion, wheel, sign * pair.wheel.base_radius, centre)
+    pinion, wheel = gears[0].placed(angle_1, (0.0, 0.0, 0.0)), wheel.placed(angle_2, center)
+    return DeformedPair(position, deflection, pinion, wheel, sign * pair.wheel.base_radius, center)
 
 
 def mesh_angles(pair: ParallelAxes, position: float) -> tuple[float, float]:

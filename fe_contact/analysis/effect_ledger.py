@@ -97,7 +97,7 @@ def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
     if run is None:
         plan = planned(*wanted, request.alignments, cache)
     else:
-        slices = run.discretisation.slices
+        slices = run.discretization.slices
         plan = make_plan(*wanted, run.level, slices if slices > 1 else None)
     return predict_run(request.pair, plan, checked.model, request.alignments, cache).cpu_seconds
 

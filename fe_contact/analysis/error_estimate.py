@@ -1,8 +1,8 @@
 """How wrong a table is, by source.
 
-The finite-element error comes from a second, coarser discretisation solved at the same points; with
+The finite-element error comes from a second, coarser discretization solved at the same points; with
 quadratic elements and Galerkin patches the error falls at least with the square of the element size, which
-bounds what is left of the difference (`Discretisation.remaining`). The table's error is measured at the
+bounds what is left of the difference (`Discretization.remaining`). The table's error is measured at the
 middles between its nodes. Where the plane stands in for three dimensions, a part of what it was corrected by
 is its error; it is measured against three-dimensional solutions (docs/effects/finite_width.md). A plane that
 is not corrected, asked for by name or not, errs by what it leaves out of the finite width.
@@ -34,14 +34,14 @@ class ErrorSources:
 
     Attributes
     ----------
-    discretisation, slices, interpolation, contact, finite_width, model : ndarray
+    discretization, slices, interpolation, contact, finite_width, model : ndarray
         Finite elements, slices of the face, table beside the node, contact, the plane for a finite width, and
         what the method leaves out.
     left_out : float
         Relative part of the mean STE that an uncorrected plane leaves out; it is part of `finite_width`.
     """
 
-    discretisation: FloatArray
+    discretization: FloatArray
     slices: FloatArray
     interpolation: FloatArray
     contact: FloatArray
@@ -52,7 +52,7 @@ class ErrorSources:
     @property
     def total(self) -> FloatArray:
         """Sum of the sources at each point, m."""
-        parts = self.discretisation, self.slices, self.interpolation, self.contact, self.finite_width
+        parts = self.discretization, self.slices, self.interpolation, self.contact, self.finite_width
         return np.asarray(sum(parts) + self.model)
 
     def to_json(self) -> Json:
@@ -61,7 +61,7 @@ class ErrorSources:
         Beside a failed point errors are unknown and left out; None where that leaves none.
         """
         sources = {
-            "discretisation_m": self.discretisation,
+            "discretisation_m": self.discretization,
             "slices_m": self.slices,
             "table_interpolation_m": self.interpolation,
             "contact_solver_m": self.contact,
@@ -80,7 +80,7 @@ def _largest_known(errors: FloatArray) -> list[float | None]:
 
 @dataclass(frozen=True)
 class Nested:
-    """STE at some points of a table, from the run's own and rougher discretisations.
+    """STE at some points of a table, from the run's own and rougher discretizations.
 
     Attributes
     ----------
@@ -122,7 +122,7 @@ def estimate_errors(
         The largest of the judged places stand for every place.
     plan : Plan
     """
-    made, pair = plan.discretisation, places.places[0].contact.pair
+    made, pair = plan.discretization, places.places[0].contact.pair
     missing = left_out(pair, made)
 
     def left(these: FloatArray, those: FloatArray, part: float) -> FloatArray:

@@ -61,7 +61,7 @@ class FlankScene:
 def flank_scene(
     pair: ParallelAxes, normal_force: float, misalignment: float = 0.0, center_distance_change: float = 0.0
 ) -> FlankScene:
-    """Describe a pair that stands at its changed centre distance, under a normal force in N."""
+    """Describe a pair that stands at its changed center distance, under a normal force in N."""
     path = pair.path_of_contact
     start, pitch, end = (
         (rolled, float(pair.roll_lengths(pair.position(rolled))[1]))

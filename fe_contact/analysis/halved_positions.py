@@ -38,7 +38,7 @@ def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> Posi
     Returns
     -------
     PositionErrors
-        Bands (K, F) from what each position's neighbours miss of it; of the curves (22, F) the larger change
+        Bands (K, F) from what each position's neighbors miss of it; of the curves (22, F) the larger change
         of the two halves.
     """
     change = np.maximum(*(_changed(knots, values, slice(first, None, 2), period) for first in (0, 1)))

@@ -22,7 +22,7 @@ LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.arra
 """Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it. Of more
 than four intervals the middles alone: those are short."""
 POSITIONS = 16
-"""Positions at which an interval of centre distances is judged: each needs a compliance of its own."""
+"""Positions at which an interval of center distances is judged: each needs a compliance of its own."""
 
 Curves = tuple[FloatArray, FloatArray]
 """Interpolant and solutions, (positions, L) in m."""
@@ -36,12 +36,12 @@ class AxisError:
     ----------
     at : ndarray, shape (I,)
         The middle of every interval: of loads the geometric mean in N, beside which the quarters are held
-        out, too; of misalignments or changes of the centre distance in m.
+        out, too; of misalignments or changes of the center distance in m.
     error : ndarray, shape (I, L) or (I, 1)
         Largest difference between interpolant and solution over the positions in m, at each load of the
         table; of the held-out loads themselves for the axis of loads. NaN where a solution did not converge.
     change : ndarray, shape (22, I, L) or (22, I, 1)
-        What that does to mean, peak-to-peak and harmonics, m; bounds of it from `error` for centre distances,
+        What that does to mean, peak-to-peak and harmonics, m; bounds of it from `error` for center distances,
         which are not judged at all positions.
     """
 
@@ -61,8 +61,8 @@ def held_out_axes(
     """Solve one held-out point in every interval of every axis that has one.
 
     Positions are some of the table's, so that the axis alone is interpolated; what is missed between
-    positions `table_nodes` measures. Loads and misalignments are judged at 32 of them or more; centre
-    distances at those where the curves of the neighbouring nodes differ most. On the other axes the point
+    positions `table_nodes` measures. Loads and misalignments are judged at 32 of them or more; center
+    distances at those where the curves of the neighboring nodes differ most. On the other axes the point
     stands at the node nearest to zero; a longer period is judged in its first pitch.
 
     Parameters
@@ -152,7 +152,7 @@ class _Judged:
         return AxisError(middles, spread(force, some, error, 1), spread(force, some, change, 2))
 
     def center_distance_change(self) -> AxisError:
-        """Judge the changes of the centre distance, at some loads and at the positions that tell most."""
+        """Judge the changes of the center distance, at some loads and at the positions that tell most."""
         force, some = self.table.force, sample_of(self.table.force.size, LOADS)
         middles, m = _middles(self.table.center_distance_change), self._nearest("misalignment")
         position = [self.table.position[rows] for rows in _telling(self.table)]
@@ -183,7 +183,7 @@ class _Judged:
         return Start(first[0].candidates, lower + part * (upper - lower))
 
     def _place(self, m: int, change: float) -> int:
-        """Return which place of the table has misalignment `m`, the nearest in centre distance."""
+        """Return which place of the table has misalignment `m`, the nearest in center distance."""
         nodes = self.table.center_distance_change
         return m * nodes.size + int(np.argmin(np.abs(nodes - change)))
 
@@ -224,7 +224,7 @@ def _worst(found: Curves) -> FloatArray:
 
 
 def _telling(table: SteDatabase) -> list[IntArray]:
-    """Return the rows that tell most of the error of every interval of centre distances.
+    """Return the rows that tell most of the error of every interval of center distances.
 
     Those in which the transmission errors at its two ends differ most, in parts of their largest difference
     at each load: there handovers move.

@@ -54,7 +54,7 @@ def judged_table(
     checked: Checked,
     plan: Plan,
 ) -> JudgedTable:
-    """Solve the table once more on each rougher discretisation, and held-out points of its axes.
+    """Solve the table once more on each rougher discretization, and held-out points of its axes.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def judged_table(
     checked : Checked
     plan : Plan
     """
-    made, found = plan.discretisation, [solution for _, solution in solved]
+    made, found = plan.discretization, [solution for _, solution in solved]
     axes = plan.load, table.misalignment, table.center_distance_change
     sample = TableSample.of(nodes.position, fine.period, axes)
     own = sample.taken(found)
@@ -85,6 +85,6 @@ def judged_table(
 
 def unjudged_table(table: SteDatabase, places: Places, plan: Plan) -> JudgedTable:
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
-    left = {"plane_for_finite_width_relative": left_out(places.places[0].contact.pair, plan.discretisation)}
+    left = {"plane_for_finite_width_relative": left_out(places.places[0].contact.pair, plan.discretization)}
     unknown = np.full(table.error_estimate.shape, np.nan)
     return JudgedTable(unknown, unestimated(places, plan), left, {})

@@ -160,7 +160,7 @@ def load_distribution(
     Parameters
     ----------
     pair : GearPair or InternalGearPair
-        At its centre distance.
+        At its center distance.
     problem : ContactProblem
     solution : ContactSolution
         Converged at all positions.

@@ -88,7 +88,7 @@ class MeasuredFullContact:
 
     @property
     def own_error(self) -> float:
-        """Largest relative error that the peer states of its own discretisation; NaN without a solution."""
+        """Largest relative error that the peer states of its own discretization; NaN without a solution."""
         stated = np.array([table.error_estimate / np.abs(table.transmission_error) for table in self.tables])
         return float(np.nanmax(stated)) if np.isfinite(stated).any() else float("nan")
 
@@ -174,7 +174,7 @@ def full_contact_refusal(checked: Checked) -> str | None:
     if (reason := (refusal_over_face if over_face(checked) else refusal)(request.pair)) is not None:
         return reason
     if request.center_distance_change.size > 1 or request.center_distance_change[0] != 0.0:
-        return "changes of the centre distance: it runs at the nominal one"
+        return "changes of the center distance: it runs at the nominal one"
     return None
 
 

@@ -29,7 +29,7 @@ from fe_contact.planning import (
 _TELL = (FACE, WIDTH)
 WIDTH_SHARE = 0.8
 """Part of the tolerance up to which the finite width may be estimated: estimates of its change of
-peak-to-peak read 0.8 of what is measured in the median (docs/effects/worth.md)."""
+peak-to-peak read 0.8 of what is measured in the median (docs/effects/influence.md)."""
 
 
 TRIED = ((2.0, 0.1), (1.25, 0.5))

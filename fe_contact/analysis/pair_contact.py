@@ -34,7 +34,7 @@ from fe_contact.contact import (
 )
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe
-from fe_contact.planning import FaceDiscretisation, Plan, PlaneDiscretisation
+from fe_contact.planning import FaceDiscretization, Plan, PlaneDiscretization
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.types import FloatArray, IntArray
 
@@ -71,12 +71,12 @@ class PairContact:
     @classmethod
     def of_bodies(cls, pair: ParallelAxes, plan: Plan, bodies: Bodies) -> PairContact:
         """Return a pair of these compliances, which are of the kind of its plan."""
-        over_face = isinstance(plan.discretisation, FaceDiscretisation)
+        over_face = isinstance(plan.discretization, FaceDiscretization)
         return cls(pair, plan, **{"face" if over_face else "plane": bodies})  # type: ignore[arg-type]
 
     @property
     def bodies(self) -> Bodies:
-        """Its compliances; the same object at every centre distance."""
+        """Its compliances; the same object at every center distance."""
         found = self.plane if self.face is None else self.face
         if found is None:
             raise ValueError("a pair contact needs the compliance of its gears")
@@ -140,10 +140,10 @@ class PairContact:
 
     def in_slices(self, count: int) -> PairContact:
         """Return the same bodies in another number of slices; itself in the plane."""
-        made = self.plan.discretisation
-        if not isinstance(made, FaceDiscretisation):
+        made = self.plan.discretization
+        if not isinstance(made, FaceDiscretization):
             return self
-        plan = replace(self.plan, discretisation=made.in_slices(count))
+        plan = replace(self.plan, discretization=made.in_slices(count))
         return replace(self, plan=plan, _problems={})
 
     def in_patches(self, wider: float) -> PairContact:
@@ -160,7 +160,7 @@ class PairContact:
 
     def _located(self, model: ContactModel, position: FloatArray) -> Candidates:
         """Find the candidates of plain involutes."""
-        slices = Slices.of_pair(self.pair, self.plan.discretisation.slices)
+        slices = Slices.of_pair(self.pair, self.plan.discretization.slices)
         return contact_candidates(self.pair, model, position, self.plan.patch, slices)
 
     def key(self, model: ContactModel, position: FloatArray) -> tuple[object, ...]:
@@ -211,11 +211,11 @@ def pair_contact(
         Take the coarse meshes, which serve the error estimate; in the plane without the correction for the
         finite width, which has an error of its own.
     distance_changes : ndarray, optional
-        Changes of the centre distance in m at which the same compliance will be used.
+        Changes of the center distance in m at which the same compliance will be used.
     """
-    made = plan.discretisation
+    made = plan.discretization
     gears = plan.bodies(pair)
-    if isinstance(made, FaceDiscretisation):
+    if isinstance(made, FaceDiscretization):
         first, second = flank_compliances_3d(
             gears, made.coarse_recipes if coarse else made.recipes, cache=cache
         )
@@ -239,8 +239,8 @@ def bodies_are_kept(
     coarse: bool = False,
 ) -> bool:
     """Whether `pair_contact` of the same arguments would find both gears in the cache."""
-    made, gears = plan.discretisation, plan.bodies(pair)
-    if isinstance(made, FaceDiscretisation):
+    made, gears = plan.discretization, plan.bodies(pair)
+    if isinstance(made, FaceDiscretization):
         solids = made.coarse_recipes if coarse else made.recipes
         return all(solid_kept(*each, cache) for each in zip(gears, solids, strict=True))
     teeth, recipes = _teeth(pair, distance_changes), made.coarse_recipes if coarse else made.recipes
@@ -251,7 +251,7 @@ def bodies_are_kept(
 
 
 def _teeth(pair: ParallelAxes, distance_changes: FloatArray | None) -> int:
-    """Return the number of teeth that can touch at once, at any of the centre distances."""
+    """Return the number of teeth that can touch at once, at any of the center distances."""
     changes = () if distance_changes is None else distance_changes.tolist()
     others = [pair.at_center_distance(pair.center_distance + change) for change in changes if change]
     return max(condensed_teeth(each) for each in (pair, *others))
@@ -259,7 +259,7 @@ def _teeth(pair: ParallelAxes, distance_changes: FloatArray | None) -> int:
 
 def _plane_flanks(
     gears: tuple[Toothing, Toothing],
-    made: PlaneDiscretisation,
+    made: PlaneDiscretization,
     recipes: tuple[MeshRecipe, MeshRecipe],
     teeth: int,
     cache: Path | None,

@@ -13,12 +13,12 @@ from fe_contact.types import Json
 
 @dataclass(frozen=True)
 class Pass:
-    """One run of the table on one discretisation.
+    """One run of the table on one discretization.
 
     Attributes
     ----------
     decided : Decided
-        Model and discretisation.
+        Model and discretization.
     cost : dict
         Times by stage and memory, as in a receipt.
     table : SteDatabase or None

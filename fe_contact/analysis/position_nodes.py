@@ -116,7 +116,7 @@ def _inserted(
     found: FloatArray,
     error: FloatArray,
 ) -> tuple[FloatArray, FloatArray, BoolArray, FloatArray, FloatArray]:
-    """Insert the middles of the missed intervals; both halves and the neighbours are measured again."""
+    """Insert the middles of the missed intervals; both halves and the neighbors are measured again."""
     touched = missed | np.roll(missed, 1) | np.roll(missed, -1)
     order = np.argsort(np.concatenate([nodes, middles[missed]]), kind="stable")
     merged = np.concatenate([nodes, middles[missed]])[order]

@@ -13,8 +13,8 @@ import numpy as np
 
 from fe_contact.analysis.decided import Decided, model_name
 from fe_contact.analysis.model_choice import next_model
-from fe_contact.planning import LEVELS, FaceDiscretisation, NodeRule
-from fe_contact.planning.discretisation import FINER_SLICES, SLICE_ORDER, SLICES, face_discretisation
+from fe_contact.planning import LEVELS, FaceDiscretization, NodeRule
+from fe_contact.planning.discretization import FINER_SLICES, SLICE_ORDER, SLICES, face_discretization
 from fe_contact.planning.plan import CLOSEST
 from fe_contact.ste.curve_errors import AT_NODES, all_sources
 from fe_contact.types import FloatArray
@@ -39,7 +39,7 @@ class Refinement:
     Attributes
     ----------
     decided : Decided
-        Model and discretisation of the pass.
+        Model and discretization of the pass.
     source : str
         The source that takes most of the tolerance where most of it is used.
     steps : tuple of str
@@ -87,7 +87,7 @@ class _Resolution:
     def step(self, source: int) -> _Resolution | None:
         """Return the next finer resolution of a source; None if there is none."""
         plan = self.decided.plan
-        across_face = isinstance(plan.discretisation, FaceDiscretisation)
+        across_face = isinstance(plan.discretization, FaceDiscretization)
         if source == _MESH:
             return self._next_level(across_face=across_face)
         if source == _SLICES and across_face:
@@ -120,7 +120,7 @@ class _Resolution:
 
     def _slices_that_fit(self, wanted: int, level: str) -> int:
         """Return how many of the wanted slices the layers of a mesh resolve."""
-        return face_discretisation(self.decided.checked.request.pair, level, wanted).slices
+        return face_discretization(self.decided.checked.request.pair, level, wanted).slices
 
     def _in_slices(self, count: int) -> _Resolution:
         """Return the same mesh in so many slices."""
@@ -168,7 +168,7 @@ def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
     begun = _Resolution(
         decided,
         plan.level,
-        plan.discretisation.slices,
+        plan.discretization.slices,
         plan.nodes,
         np.nan_to_num(shares[: len(AT_NODES)]),
         len(LEVELS),

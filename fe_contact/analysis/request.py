@@ -73,7 +73,7 @@ class Request:
 
     @property
     def alignments(self) -> tuple[int, int]:
-        """Numbers of misalignments and of centre distances."""
+        """Numbers of misalignments and of center distances."""
         return self.misalignment.size, self.center_distance_change.size
 
     @property

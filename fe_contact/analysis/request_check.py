@@ -162,7 +162,7 @@ def _cycle_cost(request: Request, model: ContactModel) -> CycleCost:
 
 
 def _refuse_distances(request: Request) -> None:
-    """Refuse a change of the centre distance at which the gears do not mesh, by its place in the list."""
+    """Refuse a change of the center distance at which the gears do not mesh, by its place in the list."""
     for i, change in enumerate(request.center_distance_change):
         if change == 0.0:  # where the pair stands already
             continue

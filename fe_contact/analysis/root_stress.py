@@ -116,7 +116,7 @@ def root_stress(
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
     found, receipt = settled_place(checked, position, clock, report, cache)
     with clock.stage("root stress"):
-        meshes = root_meshes(found.contact.plan.discretisation)
+        meshes = root_meshes(found.contact.plan.discretization)
         pinion, wheel = _histories(found, meshes, cache)
     report("root stress", 1.0)
     requested = checked.request.findings

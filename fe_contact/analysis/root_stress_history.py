@@ -28,7 +28,7 @@ class RootPeak(NamedTuple):
     flank_coordinate : float
         m; between stations by a parabola.
     tangent_angle : float
-        Of the surface there with the tooth's centre line, rad.
+        Of the surface there with the tooth's center line, rad.
     face_position : float
         Distance from the pinion's mid-face, m.
     """
@@ -70,11 +70,11 @@ class RootStressHistory:
     position : ndarray, shape (P,)
         Base pitches, by the driving gear's angle.
     pair : ndarray of int, shape (N,)
-        Pair index of each tooth: those that touch, and one beyond at either end, which only neighbours load.
+        Pair index of each tooth: those that touch, and one beyond at either end, which only neighbors load.
     flank_coordinate : ndarray, shape (p,)
         Of the stations along the profile, m, from the middle of the tooth space to the form point.
     tangent_angle : ndarray, shape (p,)
-        Of the surface there with the tooth's centre line, rad.
+        Of the surface there with the tooth's center line, rad.
     face_position : ndarray, shape (q,)
         Of the stations across, as distance from the pinion's mid-face, m; a single one in the plane.
     stress : ndarray, shape (P, N, 2, 3, p, q)
@@ -87,7 +87,7 @@ class RootStressHistory:
         Of the peaks, by the finite elements of the root: from a coarser mesh.
     critical_coordinate : float
         Where ISO 6336-3 takes the critical section: the tangent has 30 degrees (internal gears: 60) with the
-        tooth's centre line, m.
+        tooth's center line, m.
     """
 
     position: FloatArray
@@ -151,7 +151,7 @@ class RootStressHistory:
 
 
 def crests(s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return the largest value along the last axis and its place, by a parabola through its neighbours.
+    """Return the largest value along the last axis and its place, by a parabola through its neighbors.
 
     Parameters
     ----------

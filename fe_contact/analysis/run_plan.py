@@ -159,7 +159,7 @@ def _planned(
     plan = make_plan(asked.pair, asked.load, accuracy, checked.model, slices=slices)
     cost = predict_run(asked.pair, plan, checked.model, asked.alignments, cache)
     error = expected_error(asked.pair, plan, curves)
-    return PlannedLevel(level, plan.discretisation.slices, cost, error)
+    return PlannedLevel(level, plan.discretization.slices, cost, error)
 
 
 def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:

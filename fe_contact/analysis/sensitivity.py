@@ -1,4 +1,4 @@
-"""Sensitivity of the transmission error's ripple to misalignment and centre distance."""
+"""Sensitivity of the transmission error's ripple to misalignment and center distance."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RippleCurve:
     Attributes
     ----------
     deviation : ndarray, shape (N,)
-        Misalignment or change of the centre distance in m, increasing; 0 is among them.
+        Misalignment or change of the center distance in m, increasing; 0 is among them.
     peak_to_peak, error : ndarray, shape (N,)
         Peak-to-peak STE and the half-width of its error band, m.
     """
@@ -67,7 +67,7 @@ def study_sensitivity(
     progress: Progress | None = None,
     cache: Path | None = None,
 ) -> tuple[Sensitivity, Sensitivity]:
-    """Vary misalignment and centre distance, one at a time, without and with corner contact.
+    """Vary misalignment and center distance, one at a time, without and with corner contact.
 
     Parameters
     ----------

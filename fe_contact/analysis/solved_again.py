@@ -1,4 +1,4 @@
-"""A table solved again at some of its points, on the rougher discretisations that its errors are told by.
+"""A table solved again at some of its points, on the rougher discretizations that its errors are told by.
 
 Bodies, slices and corrections change; where teeth touch does not, so that the candidates of the run serve
 again unless the slices are others.
@@ -18,7 +18,7 @@ from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spr
 from fe_contact.types import FloatArray, IntArray
 
 Axes = tuple[FloatArray, FloatArray, FloatArray]
-"""Loads in N, misalignments and changes of the centre distance in m of a table."""
+"""Loads in N, misalignments and changes of the center distance in m of a table."""
 
 
 @dataclass(frozen=True)
@@ -32,11 +32,11 @@ class TableSample:
     period : int
         Base pitches T.
     axes : tuple of ndarray
-        Loads, misalignments, changes of the centre distance.
+        Loads, misalignments, changes of the center distance.
     rows : ndarray of int, shape (R,)
         Positions that are solved.
     nodes : tuple of ndarray of int
-        Loads (f), misalignments (m) and changes of the centre distance (d) that are.
+        Loads (f), misalignments (m) and changes of the center distance (d) that are.
     """
 
     position: FloatArray
@@ -58,7 +58,7 @@ class TableSample:
 
     @property
     def places(self) -> list[int]:
-        """The places of the alignments that are solved, centre distance running fastest."""
+        """The places of the alignments that are solved, center distance running fastest."""
         _, skews, changes = self.nodes
         return [int(m) * self.axes[2].size + int(d) for m in skews for d in changes]
 
@@ -108,7 +108,7 @@ class TableSample:
         None in other slices and under other load patches, which have candidates of their own.
         """
         plans = place.contact.plan, known[0].contact.plan
-        one, other = ((plan.discretisation.slices, plan.patch) for plan in plans)
+        one, other = ((plan.discretization.slices, plan.patch) for plan in plans)
         if one != other:
             return None
         return [one.contact.candidates(one.model, self.position).rows(self.rows) for one in known]

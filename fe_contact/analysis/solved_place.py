@@ -25,7 +25,7 @@ from fe_contact.types import FloatArray, Json, Status
 
 @dataclass(frozen=True)
 class SolvedPlace:
-    """A converged solution with the pair it was made for, which stands at its centre distance."""
+    """A converged solution with the pair it was made for, which stands at its center distance."""
 
     checked: Checked
     places: Places
@@ -39,7 +39,7 @@ class SolvedPlace:
 
     @property
     def plan(self) -> Plan:
-        """Discretisation."""
+        """Discretization."""
         return self.contact.plan
 
     @property

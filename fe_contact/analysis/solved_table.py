@@ -20,7 +20,7 @@ from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.compliance.condensed_elsewhere import condense_elsewhere
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning import FaceDiscretisation, Plan, Prediction, predict_run
+from fe_contact.planning import FaceDiscretization, Plan, Prediction, predict_run
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.types import FloatArray
@@ -36,7 +36,7 @@ class SolvedTable:
     Attributes
     ----------
     decided : Decided
-        Model and discretisation.
+        Model and discretization.
     prediction : Prediction
         What it was expected to cost.
     places : Places
@@ -65,7 +65,7 @@ class SolvedTable:
 
     @property
     def plan(self) -> Plan:
-        """Discretisation."""
+        """Discretization."""
         return self.decided.plan
 
 
@@ -91,7 +91,7 @@ def solve_table(
     before : SolvedTable, optional
         The same pair with other effects: its compliance is taken if the bodies are the same.
     decided : Decided, optional
-        Model and discretisation; default: those that the accuracy asks for.
+        Model and discretization; default: those that the accuracy asks for.
     workers : Workers
         Who condenses the gears and solves the contact.
     """
@@ -144,8 +144,8 @@ def _condensed(
     workers: Workers,
 ) -> PairContact:
     """Condense the gears, those of three dimensions by the workers if there are any."""
-    made = plan.discretisation
-    if isinstance(workers, InProcess) or not isinstance(made, FaceDiscretisation):
+    made = plan.discretization
+    if isinstance(workers, InProcess) or not isinstance(made, FaceDiscretization):
         return pair_contact(pair, plan, cache, coarse, changes)
     with TemporaryDirectory() as folder:
         kept = cache or Path(folder)
@@ -156,7 +156,7 @@ def _condensed(
 
 def _same_bodies(one: Plan, other: Plan) -> bool:
     """Whether two plans of one pair have the same finite elements."""
-    first, second = ((plan.discretisation, plan.thin_rim, plan.bore_seat) for plan in (one, other))
+    first, second = ((plan.discretization, plan.thin_rim, plan.bore_seat) for plan in (one, other))
     return first == second
 
 

@@ -11,7 +11,7 @@ from fe_contact.effects.worth import Worth, estimate_worths
 
 SHARE = 0.1
 """Part of the tolerance that all spared effects together may be worth by their estimates, which are right
-within a factor of two in most cases (docs/effects/worth.md): what is left out stays below the tolerance."""
+within a factor of two in most cases (docs/effects/influence.md): what is neglected stays below it."""
 
 
 def spared_effects(

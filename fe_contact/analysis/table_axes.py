@@ -1,4 +1,4 @@
-"""Axes of a table as they are asked for: its loads, misalignments and changes of the centre distance."""
+"""Axes of a table as they are asked for: its loads, misalignments and changes of the center distance."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
 LARGEST_DEVIATION = 0.01
-"""m; larger values of an axis are micrometres given as metres."""
+"""m; larger values of an axis are micrometers given as meters."""
 
 
 def load_levels(
@@ -44,7 +44,7 @@ def axis(name: str, values: Sequence[float] | FloatArray) -> FloatArray:
     Raises
     ------
     InputError
-        Not increasing, not finite, or larger than 1 cm: micrometres given as metres.
+        Not increasing, not finite, or larger than 1 cm: micrometers given as meters.
     """
     levels = increasing(name, values)
     for i, value in enumerate(levels):

@@ -38,7 +38,7 @@ def table_nodes(places: Places, plan: Plan) -> PositionNodes:
 
 
 def judged_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
-    """Return base pitches to judge, each with its neighbours.
+    """Return base pitches to judge, each with its neighbors.
 
     Where all teeth are alike, the one pitch there is: ``([0],)``. Else ``[m - 1, m, m + 1]`` of pitches m, at
     most `most`, evenly taken from all in the order of how much the gaps of their three pairs differ, both

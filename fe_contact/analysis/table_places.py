@@ -1,4 +1,4 @@
-"""The sweep over misalignment and centre distance: one contact problem per place of the table."""
+"""The sweep over misalignment and center distance: one contact problem per place of the table."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from fe_contact.workers import InProcess, Workers
 
 @dataclass(frozen=True)
 class Place:
-    """One misalignment at one change of the centre distance."""
+    """One misalignment at one change of the center distance."""
 
     contact: PairContact
     model: ContactModel
@@ -44,16 +44,16 @@ class Place:
 
 @dataclass(frozen=True)
 class Places:
-    """All places of the table, centre distance running fastest.
+    """All places of the table, center distance running fastest.
 
     Attributes
     ----------
     shape : (int, int)
-        Numbers of misalignments and centre distances.
+        Numbers of misalignments and center distances.
     places : tuple of Place
-        Those of one centre distance share their compliance.
+        Those of one center distance share their compliance.
     nominal : PairContact
-        The pair at its nominal centre distance, which may be no place of the table.
+        The pair at its nominal center distance, which may be no place of the table.
     workers : Workers
         Who solves them.
     """
@@ -94,7 +94,7 @@ class Places:
         return self._with_contacts(lambda contact: contact.in_slices(count))
 
     def _with_contacts(self, change: Callable[[PairContact], PairContact]) -> Places:
-        """Return the same places with other contacts; those of one centre distance share their compliance."""
+        """Return the same places with other contacts; those of one center distance share their compliance."""
         contacts = {id(place.contact): change(place.contact) for place in self.places}
         places = tuple(replace(place, contact=contacts[id(place.contact)]) for place in self.places)
         return replace(self, places=places)
@@ -120,7 +120,7 @@ def table_places(
     choices : mapping
         Effect name to "on", "off" or "auto".
     nominal : PairContact
-        The pair at its nominal centre distance.
+        The pair at its nominal center distance.
     workers : Workers
         Who solves them.
     """
@@ -136,7 +136,7 @@ def table_places(
 
 
 def _contacts(nominal: PairContact, changes: FloatArray) -> Iterator[PairContact]:
-    """Yield the pair at each centre distance: other contact, same gears, same compliance."""
+    """Yield the pair at each center distance: other contact, same gears, same compliance."""
     for change in changes:
         if change == 0.0:
             yield nominal

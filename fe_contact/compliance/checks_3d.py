@@ -141,7 +141,7 @@ def element_forces(sector: SweptSector, stiffness: ElementStiffness, field: Floa
 def residual(gear: CondensedGear, forces: FloatArray, load: FloatArray) -> float:
     """Return the norm of f - K u over that of f, on all free freedoms of the loaded sector with both cuts.
 
-    `forces` (e, 60) are those of its elements. The neighbours act on the cuts by their condensed stiffness.
+    `forces` (e, 60) are those of its elements. The neighbors act on the cuts by their condensed stiffness.
     """
     sector = gear.sector
     free = sector.element_freedoms >= 0

@@ -65,12 +65,12 @@ class DeformedGear:
             stress=over @ self.stress @ over,
         )
 
-    def placed(self, angle: float, centre: tuple[float, float, float]) -> DeformedGear:
-        """Return the gear turned counter-clockwise by `angle` (rad) about its axis, its centre moved (m)."""
+    def placed(self, angle: float, center: tuple[float, float, float]) -> DeformedGear:
+        """Return the gear turned counter-clockwise by `angle` (rad) about its axis, its center moved (m)."""
         turn = turn_about_axis(angle)
         return replace(
             self,
-            points=self.points @ turn.T + np.asarray(centre),
+            points=self.points @ turn.T + np.asarray(center),
             displacement=self.displacement @ turn.T,
             stress=turn @ self.stress @ turn.T,
         )

@@ -7,7 +7,7 @@ is even across the face, so what counts is the mean displacement of a flank unde
 
 E the map from profile nodes to even loads (and, transposed, from a flank to its mean over the face), b the
 width. Near the load the gear is in plane strain but for its very ends, so the logarithm of the contact
-cancels in S - S_strain, and so does most of the discretisation if both are taken on one mesh, once free and
+cancels in S - S_strain, and so does most of the discretization if both are taken on one mesh, once free and
 once held along the axis. What is left is smooth: a coarse mesh of half the face holds it, and it is added to
 a fine plane solution.
 
@@ -82,7 +82,7 @@ def finite_width_compliances(
     recipes : sequence of SectorRecipe
         Of half the face, one per gear; `SectorRecipe.even_load` is made for it.
     teeth : int
-        Number of neighbouring teeth that can carry load at once.
+        Number of neighboring teeth that can carry load at once.
     cache : Path, optional
         Directory of kept compliances; None: neither read nor written.
 
@@ -134,8 +134,8 @@ def even_load(z: FloatArray, index: IntArray) -> FloatArray:
     for low, part in zip(range(0, len(index) - 1, 2), share, strict=True):
         for plane, simpson, beside in ((low, 1.0, -1.0), (low + 1, 4.0, 2.0), (low + 2, 1.0, -1.0)):
             forces[index[plane, sides], sides] += part * simpson / 6.0
-            for neighbour in (middles - 1, middles + 1):
-                forces[index[plane, neighbour], middles] += part * beside / 6.0
+            for neighbor in (middles - 1, middles + 1):
+                forces[index[plane, neighbor], middles] += part * beside / 6.0
         for plane in (low, low + 2):
             forces[index[plane, middles], middles] += 0.5 * part
     return forces

@@ -63,7 +63,7 @@ class FlankCompliance:
         Flank coordinate of the nodes, m, the same for all teeth; quadratic elements with nodes 2e, 2e+1,
         2e+2, the middle one at the exact middle, so that s is linear within an element.
     teeth : (t,) int array
-        Consecutive tooth numbers, centred on 0; tooth j is turned by j pitches counter-clockwise from
+        Consecutive tooth numbers, centered on 0; tooth j is turned by j pitches counter-clockwise from
         tooth 0.
     matrix : (t k, t k) array
         Inward displacement along the flank normal at node a per inward consistent nodal force along the

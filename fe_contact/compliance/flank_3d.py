@@ -16,7 +16,7 @@ class FlankCompliance3D:
 
     Flank freedoms are displacements and forces along the flank's normal at the nodes of eight-node
     quadrilaterals in (s, z): node (2 l + i, 2 e + j), i and j from 0 to 2, belongs to layer l and profile
-    element e; there is none at the centre i = j = 1. Teeth are numbered counter-clockwise seen from +z.
+    element e; there is none at the center i = j = 1. Teeth are numbered counter-clockwise seen from +z.
 
     Attributes
     ----------
@@ -27,7 +27,7 @@ class FlankCompliance3D:
         Ends of the layers, m, increasing along the gear's axis; z = 0 is mid-face of this gear. Planes of
         nodes are the ends and middles of layers.
     index : (2 L + 1, k) int array
-        Flank freedom at plane and profile node; -1 at the centres.
+        Flank freedom at plane and profile node; -1 at the centers.
     blocks : (reach + 1, nf, nf) array
         Displacement of the flank of tooth m (row) per force on the flank of tooth 0 (column), both along the
         normal with the same sign, m/N; tooth 0 by tooth -m is the transpose. ``blocks[0]`` is symmetric.

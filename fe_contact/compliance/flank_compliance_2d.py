@@ -53,7 +53,7 @@ def flank_compliance(
     hypothesis : PlaneHypothesis
         Plane strain or plane stress.
     teeth : int, optional
-        Number of condensed teeth, odd, centred on tooth 0, at most the real ones; default 5, or as many as
+        Number of condensed teeth, odd, centered on tooth 0, at most the real ones; default 5, or as many as
         there are.
     solver : Solver, optional
         Default `SuperLuMetis()`.
@@ -116,7 +116,7 @@ def condensed_teeth(gear: Toothing, recipe: MeshRecipe, teeth: int | None) -> in
         return min(USUAL_TEETH, most)
     count = integer("teeth", teeth, 1, most, "Condensed teeth must be real ones; see MeshRecipe.real_teeth.")
     if count % 2 == 0:
-        raise InputError("teeth", teeth, "odd", "The teeth are centred on tooth 0.")
+        raise InputError("teeth", teeth, "odd", "The teeth are centered on tooth 0.")
     return count
 
 
@@ -197,5 +197,5 @@ def condensed_ring(gear: Toothing, mesh: GearMesh, hypothesis: PlaneHypothesis, 
 
 def tooth_indices(mesh: GearMesh, teeth: int) -> IntArray:
     """Return where the `teeth` teeth around tooth 0 stand in `mesh.teeth`."""
-    centre = int(np.flatnonzero(mesh.teeth == 0)[0])
-    return centre + np.arange(teeth) - (teeth - 1) // 2
+    center = int(np.flatnonzero(mesh.teeth == 0)[0])
+    return center + np.arange(teeth) - (teeth - 1) // 2

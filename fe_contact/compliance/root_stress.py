@@ -49,7 +49,7 @@ class UnitRootStress:
     station_z : (q,) array
         Distance of the stations from mid-face of this gear, m; a single 0 in the plane.
     tangent_angle : (p,) array
-        Angle between the surface there and the tooth's centre line, rad; pi/2 at the root circle.
+        Angle between the surface there and the tooth's center line, rad; pi/2 at the root circle.
     s : (k,) array
         Flank coordinate of the profile nodes that carry forces, m.
     z : (L + 1,) array

@@ -84,7 +84,7 @@ def _weigh(
 
 
 @njit(cache=True, error_model="numpy")
-def _linearised(problem: PointProblem, force: FloatArray) -> tuple[State, NewtonSystem, int]:
+def _linearized(problem: PointProblem, force: FloatArray) -> tuple[State, NewtonSystem, int]:
     """Return the state of a solution, and Newton's equations there with their number."""
     n = problem.bodies.shape[0]
     state, system = State(np.zeros(n), np.zeros(n), force, np.zeros(force.size), np.zeros(n)), empty_system(n)
@@ -99,7 +99,7 @@ def _linearised(problem: PointProblem, force: FloatArray) -> tuple[State, Newton
 @njit(cache=True, error_model="numpy")
 def _weights(problem: PointProblem, force: FloatArray) -> FloatArray:
     """Return the weights (m,) under the forces of a solution."""
-    state, system, size = _linearised(problem, force)
+    state, system, size = _linearized(problem, force)
     for r in range(size):
         system.right[0, r] = system.shares[system.member[r]]
     if not eliminate(system.matrix, system.right[:1], size):
@@ -151,7 +151,7 @@ def _respond(every: PointProblems, force: FloatArray, opened: FloatArray, change
 @njit(cache=True, error_model="numpy")
 def _answers(problem: PointProblem, force: FloatArray, opened: FloatArray) -> FloatArray:
     """Return the changes of the forces (A, m): dF = D (m dd - dg - N K dh), dh = y dd - z, n'dF = 0."""
-    state, system, size = _linearised(problem, force)
+    state, system, size = _linearized(problem, force)
     count, m = opened.shape
     right, rows = np.zeros((count + 1, size)), np.zeros((count + 1, state.held.size))
     right[0] = system.right[0, :size]  # N'D m

@@ -139,7 +139,7 @@ def with_gaps(pair: ParallelAxes, candidates: Candidates, model: ContactModel) -
 
 
 def teeth_in_reach(pair: ParallelAxes) -> int:
-    """Return how many teeth, odd and centred on tooth 0, hold every contact of a plane pair in a pitch.
+    """Return how many teeth, odd and centered on tooth 0, hold every contact of a plane pair in a pitch.
 
     Where the path of contact lies off the pitch point, as with unlike profile shifts, pairs run further to
     one side than to the other.

@@ -28,7 +28,7 @@ class FaceGrid(NamedTuple):
     z : ndarray, shape (L + 1,)
         Ends of the layers along the face, m.
     freedom : ndarray of int, shape (2 L + 1, k)
-        Freedom at each plane (layer ends and middles in turn) and profile node; -1 at the centres of faces.
+        Freedom at each plane (layer ends and middles in turn) and profile node; -1 at the centers of faces.
     """
 
     s: FloatArray

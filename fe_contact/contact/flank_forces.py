@@ -32,7 +32,7 @@ class FaceNodes(ProfileNodes, Protocol):
 
     @property
     def index(self) -> IntArray:
-        """Freedom at plane and profile node, -1 at the centres."""
+        """Freedom at plane and profile node, -1 at the centers."""
 
 
 def plane_flank_forces(

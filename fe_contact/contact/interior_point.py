@@ -63,22 +63,22 @@ class Answer:
     iterations: int
 
 
-def pieces(about: GapAbout, centre: Array, half: Array) -> tuple[Array, Array, Array]:
+def pieces(about: GapAbout, center: Array, half: Array) -> tuple[Array, Array, Array]:
     """Means of g', g' sin t and g over the angle of strips, from break to break; shapes (n, ...).
 
     Between two breaks g is a parabola through its values at the ends and the middle, g' the straight line
     that belongs to it; their integrals against 1 and sin t are elementary.
     """
-    extra = (1,) * (centre.ndim - 1)
-    angle = [np.full(centre.shape, -0.5 * np.pi), np.full(centre.shape, 0.5 * np.pi)]
+    extra = (1,) * (center.ndim - 1)
+    angle = [np.full(center.shape, -0.5 * np.pi), np.full(center.shape, 0.5 * np.pi)]
     for k in range(about.place.shape[1]):
         place = about.place[:, k].reshape(-1, *extra)
-        angle.append(np.arcsin(np.clip((place - centre) / half, -1.0, 1.0)))
+        angle.append(np.arcsin(np.clip((place - center) / half, -1.0, 1.0)))
     bounds = np.sort(np.stack(angle), axis=0)
-    slope, first, mean = np.zeros((3, *centre.shape))
+    slope, first, mean = np.zeros((3, *center.shape))
     for left, right in pairwise(bounds):
         sine = np.stack([np.sin(left), 0.5 * (np.sin(left) + np.sin(right)), np.sin(right)])
-        g = gap_at(about, centre + half * sine)
+        g = gap_at(about, center + half * sine)
         width = np.where(sine[2] > sine[0], sine[2] - sine[0], 1.0)
         bend = 2.0 * (g[2] - 2.0 * g[1] + g[0]) / width**2  # g = bend/1 (u - u1)^2 + tilt (u - u1) + g1
         tilt = (g[2] - g[0]) / width

@@ -114,7 +114,7 @@ class ContactModel:
     Attributes
     ----------
     couple_teeth : bool
-        Load on one tooth moves its neighbours.
+        Load on one tooth moves its neighbors.
     corner_contact : bool
         Tip edges may touch off the line of action, before A and after E.
     across_face : bool

@@ -1,6 +1,6 @@
 """Load patches on a flank and their consistent nodal forces.
 
-Away from the tip a patch is semi-elliptic, (2/(pi a)) sqrt(1 - x^2/a^2) about its centre. Near a tip edge
+Away from the tip a patch is semi-elliptic, (2/(pi a)) sqrt(1 - x^2/a^2) about its center. Near a tip edge
 it takes the form that contact has there (see `fe_contact.hertz.edge_contact`): over a length c from the
 edge a mixture of the semi-ellipse and of (2/(pi c)) sqrt((c - x)/x), singular at the edge. With t the arc
 distance of the contact from the edge (negative, -phi R, off the line of action) the singular share is (c/2
@@ -50,7 +50,7 @@ class Patches:
         return Patches(self.center[keep], self.half_width[keep], self.edge_share[keep], self.count)
 
     def by_slice(self, position: int, slices: IntArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Return centres, half-widths and edge shares (k, Q) on some slices at one position."""
+        """Return centers, half-widths and edge shares (k, Q) on some slices at one position."""
         arrays = (self.center, self.half_width, self.edge_share)
         first, second, third = (each[position].reshape(-1, self.count)[slices] for each in arrays)
         return first, second, third
@@ -117,7 +117,7 @@ def load_vector(
     nodes : ndarray, shape (k,)
         Increasing flank coordinates; element e has nodes 2e, 2e+1, 2e+2 with 2e+1 at its middle.
     center, half_width : float
-        Patch centre s0 and half-width a in the unit of `nodes`; the patch must lie within the nodes.
+        Patch center s0 and half-width a in the unit of `nodes`; the patch must lie within the nodes.
     edge_share : float
         Share of the load that is singular at the upper end of the patch, 0 to 1 (see `Patches`).
     out : ndarray, shape (k,)

@@ -32,7 +32,7 @@ def in_pitches(problem: ContactProblem, model: ContactModel, pitch: IntArray) ->
     Notes
     -----
     Pair j of pitch m is the pair of teeth that meets (m - j)-th: one pitch later each pair has moved on to
-    the place of the next one. The touching points stay those of perfect pitches: micrometres of rolling are
+    the place of the next one. The touching points stay those of perfect pitches: micrometers of rolling are
     nothing to the curvatures there.
     """
     candidates = problem.candidates

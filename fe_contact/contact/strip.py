@@ -134,17 +134,17 @@ def strip_load(gap: Gap, i: int, half: float, modulus: float) -> tuple[float, fl
     if half <= free_strip(gap, i):
         rise = 0.25 * gap.curvature[i] * half * half
         return math.pi * modulus * rise, rise
-    centre = strip_middle(gap, i, half)
-    slope, first, mean, _ = _means(gap, i, centre, half)
-    if gap.low[i] + half < centre < gap.high[i] - half:  # what is left of the slope is the middle's rounding
-        first -= slope * _tilting(gap, i, centre, half)
+    center = strip_middle(gap, i, half)
+    slope, first, mean, _ = _means(gap, i, center, half)
+    if gap.low[i] + half < center < gap.high[i] - half:  # what is left of the slope is the middle's rounding
+        first -= slope * _tilting(gap, i, center, half)
     else:
         first += abs(slope)
     return 0.5 * math.pi * modulus * half * first, mean
 
 
 @njit(cache=True, error_model="numpy")
-def _tilting(gap: Gap, i: int, centre: float, half: float) -> float:
+def _tilting(gap: Gap, i: int, center: float, half: float) -> float:
     """Return how the mean of g' sin t changes with that of g' as the middle moves.
 
     Where a break is at the end of the strip both go with the root of the distance, so that the middle is
@@ -153,7 +153,7 @@ def _tilting(gap: Gap, i: int, centre: float, half: float) -> float:
     by_slope, by_first = float(gap.curvature[i]), 0.0
     for k in range(gap.place.shape[1]):
         side = 1.0 if gap.place[i, k] >= 0.0 else -1.0
-        sine = side * (gap.place[i, k] - centre) / half
+        sine = side * (gap.place[i, k] - center) / half
         if sine < 1.0 + 4.0 * _TOLERANCE:  # the end may be held at a break, to either side of it by rounding
             sine = min(max(sine, -1.0), 1.0)
             cosine = max(math.sqrt(1.0 - sine * sine), 1e-12)
@@ -170,14 +170,14 @@ def strip_middle(gap: Gap, i: int, half: float) -> float:
     high: float = min(half, gap.high[i] - half)
     if low >= high:
         return 0.5 * (low + high)
-    centre, before = min(max(0.0, low), high), math.inf
+    center, before = min(max(0.0, low), high), math.inf
     for _ in range(_STEPS):
-        slope, _, _, bend = _means(gap, i, centre, half)
+        slope, _, _, bend = _means(gap, i, center, half)
         if slope > 0.0:
-            high = centre
+            high = center
         else:
-            low = centre
-        following = centre - slope / bend
+            low = center
+        following = center - slope / bend
         if not low < following < high:
             end = high if slope < 0.0 else low
             at_end = _means(gap, i, end, half)[0]
@@ -186,10 +186,10 @@ def strip_middle(gap: Gap, i: int, half: float) -> float:
             following = 0.5 * (low + high)
         elif abs(slope) > 0.5 * before:  # Newton runs back and forth over the end of a break
             following = 0.5 * (low + high)
-        if abs(following - centre) <= _TOLERANCE * half:
+        if abs(following - center) <= _TOLERANCE * half:
             return following
-        centre, before = following, abs(slope)
-    return centre
+        center, before = following, abs(slope)
+    return center
 
 
 @njit(cache=True, error_model="numpy")
@@ -219,16 +219,16 @@ def past_break(beyond: float, half: float) -> tuple[float, float, float, float, 
 
 
 @njit(cache=True, error_model="numpy")
-def _means(gap: Gap, i: int, centre: float, half: float) -> tuple[float, float, float, float]:
+def _means(gap: Gap, i: int, center: float, half: float) -> tuple[float, float, float, float]:
     """Return the means of g', g' sin t, g and g'' over the angle t of the strip."""
     s, q = float(gap.slope[i]), float(gap.curvature[i])
-    slope = s + q * centre
+    slope = s + q * center
     first = 0.5 * q * half
-    mean = s * centre + 0.5 * q * (centre * centre + 0.5 * half * half)
+    mean = s * center + 0.5 * q * (center * center + 0.5 * half * half)
     bend = q
     for k in range(gap.place.shape[1]):
         side = 1.0 if gap.place[i, k] >= 0.0 else -1.0
-        beyond = side * (gap.place[i, k] - centre)  # from the middle to the break
+        beyond = side * (gap.place[i, k] - center)  # from the middle to the break
         if beyond >= half:
             continue
         a, b = gap.jump[i, k], gap.bend[i, k]

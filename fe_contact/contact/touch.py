@@ -149,7 +149,7 @@ def modified_touch(pair: ParallelAxes, touch: Touch, face: FloatArray, gaps: tup
 
     Sloping modifications move the touching point off the line of action: over the distance x along the flank
     the gap is x^2/(2R) plus the modifications, and its least value counts. On a relief of slope m' it is less
-    than the modification on the line of action by R m'^2/2, some tenths of a micrometre. About the touching
+    than the modification on the line of action by R m'^2/2, some tenths of a micrometer. About the touching
     point of plain involutes the modifications are parabolas, from one break of theirs to the next.
 
     Parameters

@@ -1,4 +1,4 @@
-"""Tooth-to-tooth coupling: load on one tooth moves its neighbours through the rim and the body."""
+"""Tooth-to-tooth coupling: load on one tooth moves its neighbors through the rim and the body."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class ToothCoupling:
     def called_for(self, scene: ContactScene) -> Verdict:
         """On wherever two pairs can share load."""
         ratio = scene.pair.active_contact_ratio
-        return Verdict(True, f"contact ratio {ratio:.3f}: neighbouring pairs share the load")
+        return Verdict(True, f"contact ratio {ratio:.3f}: neighboring pairs share the load")
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:
         """Couple the teeth."""

@@ -8,7 +8,7 @@ from bounds import Declared, Direction, Kind, between, declared, one_of
 
 Shape = Literal["linear", "parabolic"]
 SHAPES: tuple[Shape, ...] = ("linear", "parabolic")
-_DEEPEST = 1e-3  # m; catches micrometres given as metres
+_DEEPEST = 1e-3  # m; catches micrometers given as meters
 _LONGEST = 10.0  # m; what a gear has room for depends on the gear
 
 

@@ -14,7 +14,7 @@ from fe_contact.checks import increasing, within
 from fe_contact.errors import InputError
 from fe_contact.types import FloatArray
 
-_LARGEST = 0.01  # m; catches micrometres given as metres
+_LARGEST = 0.01  # m; catches micrometers given as meters
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class FlankGrid:
     Notes
     -----
     Between the nodes: the cubic Hermite interpolant of either direction, with the slopes of the parabola
-    through three neighbouring nodes. It is C1, as the search for the touching point needs (at the kinks of a
+    through three neighboring nodes. It is C1, as the search for the touching point needs (at the kinks of a
     bilinear surface contact would stay for a while and then jump), reproduces twist and parabolic crowning
     to rounding, and spreads an error of one node over two cells. Beside a step between even nodes it swings
     by 2/27 of it, at the border of the grid by 1/8. Beyond the grid the end value holds.
@@ -109,6 +109,6 @@ def _row(index: int, row: Sequence[float], length: int) -> tuple[float, ...]:
 
 
 def _slope(values: FloatArray, axis: tuple[float, ...], direction: int) -> FloatArray:
-    """Slope at the nodes of the parabola through three neighbours; of the straight line where two are all."""
+    """Slope at the nodes of the parabola through three neighbors; of the straight line where two are all."""
     order: Literal[1, 2] = 2 if len(axis) > 2 else 1
     return np.asarray(np.gradient(values, np.array(axis), axis=direction, edge_order=order))

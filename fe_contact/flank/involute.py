@@ -61,7 +61,7 @@ def involute_point(base_radius: float, half_angle: float, roll_length: FloatArra
     Returns
     -------
     (n, 2) array
-        Coordinates in m; gear centre at the origin, tooth centre line on +y.
+        Coordinates in m; gear center at the origin, tooth center line on +y.
     """
     radial = half_angle - roll_length / base_radius
     sine, cosine = np.sin(radial), np.cos(radial)

@@ -29,13 +29,13 @@ _CHAMFER = "It must leave an involute and some of the tip; at a smaller angle it
 def rounding_start(gear: Tooth, radius: float) -> float:
     """Roll length in m of the tip form point of a rounding that touches involute and tip circle.
 
-    Its centre lies on the normal of the tip form point, `radius` inside the tooth, and as far from the tip
+    Its center lies on the normal of the tip form point, `radius` inside the tooth, and as far from the tip
     circle; NaN where there is none.
     """
-    centre = gear.tip_radius - gear.sign * radius
-    if centre < gear.base_radius:
+    center = gear.tip_radius - gear.sign * radius
+    if center < gear.base_radius:
         return math.nan
-    return math.sqrt(centre**2 - gear.base_radius**2) + gear.sign * radius
+    return math.sqrt(center**2 - gear.base_radius**2) + gear.sign * radius
 
 
 def chamfer_start(gear: Tooth, height: float) -> float:
@@ -85,9 +85,9 @@ def _above_form_point(gear: Tooth, roll: float) -> bool:
 
 
 def _rounding_angle(gear: Tooth, roll: float, radius: float) -> float:
-    """Angle in rad from the tooth's centre line to where the rounding meets the tip circle."""
-    centre = roll - gear.sign * radius
-    rolled = roll / gear.base_radius - math.atan2(centre, gear.base_radius)
+    """Angle in rad from the tooth's center line to where the rounding meets the tip circle."""
+    center = roll - gear.sign * radius
+    rolled = roll / gear.base_radius - math.atan2(center, gear.base_radius)
     return gear.base_thickness_half_angle - gear.sign * rolled
 
 

@@ -1,7 +1,7 @@
 """Input deck of CalculiX for one loaded position of a pair; units mm, N, MPa.
 
 Plane strain in six-node triangles, small displacements, surface-to-surface penalty contact without friction.
-Gear 2's bore is held. Gear 1's is rigid and turns clockwise about its centre by u / r_b1, where u is the
+Gear 2's bore is held. Gear 1's is rigid and turns clockwise about its center by u / r_b1, where u is the
 displacement of one node of its own, so that the force conjugate to the transmission error is F_bt.
 """
 

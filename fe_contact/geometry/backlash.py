@@ -1,4 +1,4 @@
-"""Backlash, and the centre distance and profile shift sum without it (ISO 21771-1, clause 5.5).
+"""Backlash, and the center distance and profile shift sum without it (ISO 21771-1, clause 5.5).
 
 Two involute teeth mesh without backlash when their thicknesses at the operating pitch circles fill the pitch.
 Multiplied by the cosine of the working pressure angle, all lengths become arcs of the base circles.
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 _LARGER = (
-    "larger: the teeth are too thin to mesh without backlash at any centre distance",
+    "larger: the teeth are too thin to mesh without backlash at any center distance",
     "Raise x_1 + x_2.",
 )
 _SMALLER = (
-    "smaller: the teeth are too thick for the ring's spaces at any centre distance",
+    "smaller: the teeth are too thick for the ring's spaces at any center distance",
     "Lower x_1 + x_2.",
 )
 
@@ -32,7 +32,7 @@ def base_radius_sum(pinion: Toothing, wheel: Toothing) -> float:
 
 
 def working_pressure_angle(pinion: Toothing, wheel: Toothing, center_distance: float) -> float:
-    """Transverse working pressure angle alpha_wt at a centre distance in m, rad."""
+    """Transverse working pressure angle alpha_wt at a center distance in m, rad."""
     return math.acos(abs(base_radius_sum(pinion, wheel)) / center_distance)
 
 
@@ -54,7 +54,7 @@ def allowance_backlash(pinion: Toothing, wheel: Toothing) -> float:
 
 
 def tight_center_distance(pinion: Toothing, wheel: Toothing) -> float:
-    """Centre distance in m at which the teeth, as thick as they are, have no backlash.
+    """Center distance in m at which the teeth, as thick as they are, have no backlash.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def tight_center_distance(pinion: Toothing, wheel: Toothing) -> float:
 
 
 def reference_center_distance(pinion: Toothing, wheel: Toothing) -> float:
-    """Centre distance in m without backlash if neither gear had a thickness allowance.
+    """Center distance in m without backlash if neither gear had a thickness allowance.
 
     inv(alpha_wt) = inv(alpha_t) + 2 tan(alpha_n) (x_1 + x_2) / (z_1 + z_2).
 
@@ -94,7 +94,7 @@ def tight_shift_sum(pinion: Toothing, wheel: Toothing, working_pressure_angle: f
 
 
 def _distance_at(pinion: Toothing, wheel: Toothing, involute: float) -> float:
-    """Centre distance whose working pressure angle has this involute function."""
+    """Center distance whose working pressure angle has this involute function."""
     if involute < 0.0:
         bound, advice = _LARGER if wheel.sign > 0 else _SMALLER
         total = shift_sum(pinion, wheel)

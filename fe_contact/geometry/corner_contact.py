@@ -5,13 +5,13 @@ ends (exit) the pinion's tip edge can touch the wheel's. Rigid gears are apart t
 
 Derivation. Hold the tip gear at the roll length l its flank would touch at on the line of action, l beyond
 its tip roll length l_a. The normal at its tip edge touches the base circle at the angle
-tau = alpha_wt + (l_a - l) / r_b from the line of centres, which places the edge. The edge's distance rho
-from the other centre gives the roll length sqrt(rho^2 - r_b^2) of the flank point it can touch, and its
+tau = alpha_wt + (l_a - l) / r_b from the line of centers, which places the edge. The edge's distance rho
+from the other center gives the roll length sqrt(rho^2 - r_b^2) of the flank point it can touch, and its
 polar angle there the rotation at which that gear touches it. The gap is what the conjugate rotation lacks
 of it, times the base radius.
 
 Signs. Angles of an external pair are seen from either gear towards the other, half a turn apart. A ring gear
-and its pinion are seen the same way, both from the ring's centre towards the mesh. With the gears' signs
+and its pinion are seen the same way, both from the ring's center towards the mesh. With the gears' signs
 (`Toothing.sign`; their product is the pair's) one set of formulas serves both kinds.
 """
 
@@ -32,7 +32,7 @@ from fe_contact.types import BoolArray, FloatArray
 Side = Literal["approach", "exit"]
 _ITERATIONS = 50
 _ROUNDING = 4.0 * float(np.finfo(float).eps)
-"""Of a gap, in parts of the centre distance: it is a difference of lengths of that order."""
+"""Of a gap, in parts of the center distance: it is a difference of lengths of that order."""
 
 
 @dataclass(frozen=True)
@@ -148,10 +148,10 @@ def _touch(
 ) -> _Touch:
     """Turn the flank gear until it touches the `edge` of the tip gear held at its nominal `roll_length`."""
     working, sign = pair.working_pressure_angle, tip.sign * flank.sign
-    distance = tip.sign * pair.center_distance  # of the tip gear's centre along the flank gear's +x
+    distance = tip.sign * pair.center_distance  # of the tip gear's center along the flank gear's +x
     tip_foot = working + (edge - roll_length) / tip.base_radius
     sine, cosine = np.sin(tip_foot), np.cos(tip_foot)
-    # the edge as seen from the flank gear's centre
+    # the edge as seen from the flank gear's center
     x = distance - sign * tip.base_radius * cosine - sign * edge * sine
     y = sign * (edge * cosine - tip.base_radius * sine)
     with np.errstate(invalid="ignore"):

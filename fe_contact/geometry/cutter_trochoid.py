@@ -2,13 +2,13 @@
 
 The cutter rolls inside the gear: its pitch circle on the gear's. Its rounding is a circle in the transverse
 plane. The rounding's points are named by `tool_angle` theta: the angle of their normal from the tangent at
-the rounding's centre, pi/2 being the cutter's tip, which generates the root circle. Every point generates
+the rounding's center, pi/2 being the cutter's tip, which generates the root circle. Every point generates
 the gear point at which its normal passes through the pitch point (law of gearing). The normal through the
 point meets the cutter's pitch circle at the distance
 
     q = sqrt(r_w0^2 - r_M^2 cos^2 theta) - r_M sin theta
 
-from the rounding's centre M, r_M its radius; turning that crossing onto the line of centres is the
+from the rounding's center M, r_M its radius; turning that crossing onto the line of centers is the
 generating position.
 """
 
@@ -33,7 +33,7 @@ class CutterTrochoid(FilletCurve):
     cutter : PinionCutter
         The tool and its place in the gear.
     half_pitch_angle : float
-        pi / z of the gear, rad: from its tooth's centre line to that of the tooth space.
+        pi / z of the gear, rad: from its tooth's center line to that of the tooth space.
     """
 
     cutter: PinionCutter
@@ -41,7 +41,7 @@ class CutterTrochoid(FilletCurve):
 
     @property
     def root_angle(self) -> float:
-        """Angle from the tooth's centre line to the fillet's end on the root circle, rad."""
+        """Angle from the tooth's center line to the fillet's end on the root circle, rad."""
         return self.half_pitch_angle - self.cutter.corner_angle * self.cutter.ratio
 
     def _reach(self, tool_angle: FloatArray) -> FloatArray:
@@ -50,19 +50,19 @@ class CutterTrochoid(FilletCurve):
         return np.asarray(np.sqrt(self.cutter.pitch_radius**2 - across**2), dtype=float)
 
     def _crossing(self, tool_angle: FloatArray) -> FloatArray:
-        """Distance q along the normal from the rounding's centre to the pitch circle, m."""
+        """Distance q along the normal from the rounding's center to the pitch circle, m."""
         return self._reach(tool_angle) - self.cutter.corner_center_radius * np.sin(tool_angle)
 
     def _crossing_angle(self, tool_angle: FloatArray) -> FloatArray:
-        """Polar angle of that crossing on the cutter, from the rounding's centre, rad."""
+        """Polar angle of that crossing on the cutter, from the rounding's center, rad."""
         crossing = self._crossing(tool_angle)
         along = self.cutter.corner_center_radius + crossing * np.sin(tool_angle)
         return np.asarray(np.arctan2(crossing * np.cos(tool_angle), along), dtype=float)
 
     def _to_tooth(self, x: FloatArray, y: FloatArray, tool_angle: FloatArray) -> FloatArray:
-        """Vectors of the frame of centres at the generating position, in the tooth frame.
+        """Vectors of the frame of centers at the generating position, in the tooth frame.
 
-        The gear has turned with the cutter; the space's centre line lies half a pitch from the tooth's, and
+        The gear has turned with the cutter; the space's center line lies half a pitch from the tooth's, and
         the right flank of the tooth is the left one of the space: hence the mirror.
         """
         turned = (self.cutter.corner_angle + self._crossing_angle(tool_angle)) * self.cutter.ratio
@@ -84,11 +84,11 @@ class CutterTrochoid(FilletCurve):
         return self._to_tooth(tool[..., 0], tool[..., 1], angle)
 
     def radius(self, tool_angle: FloatArray) -> FloatArray:
-        """Distance from the gear's centre, m; grows monotonically with the tool angle."""
+        """Distance from the gear's center, m; grows monotonically with the tool angle."""
         return np.asarray(np.hypot(*np.moveaxis(self.point(tool_angle), -1, 0)), dtype=float)
 
     def polar_angle(self, tool_angle: FloatArray) -> FloatArray:
-        """Angle from the tooth's centre line, rad; positive on the right flank's side."""
+        """Angle from the tooth's center line, rad; positive on the right flank's side."""
         x, y = np.moveaxis(self.point(tool_angle), -1, 0)
         return np.asarray(np.arctan2(x, y), dtype=float)
 

@@ -22,7 +22,7 @@ class FilletCurve(ABC):
     @property
     @abstractmethod
     def root_angle(self) -> float:
-        """Angle from the tooth's centre line to the fillet's end on the root circle, rad."""
+        """Angle from the tooth's center line to the fillet's end on the root circle, rad."""
 
     @abstractmethod
     def point(self, tool_angle: FloatArray) -> FloatArray:
@@ -34,11 +34,11 @@ class FilletCurve(ABC):
 
     @abstractmethod
     def radius(self, tool_angle: FloatArray) -> FloatArray:
-        """Distance from the gear's centre, m; monotone."""
+        """Distance from the gear's center, m; monotone."""
 
     @abstractmethod
     def polar_angle(self, tool_angle: FloatArray) -> FloatArray:
-        """Angle from the tooth's centre line, rad; positive on the right flank's side."""
+        """Angle from the tooth's center line, rad; positive on the right flank's side."""
 
     @abstractmethod
     def speed(self, tool_angle: FloatArray) -> FloatArray:

@@ -17,12 +17,12 @@ _SAMPLES = 513
 def fillet_penetration(pair: ParallelAxes, tip: Toothing, flank: Toothing) -> float:
     """Depth in m (arc) to which the edge of `tip` cuts the fillet of `flank`, both external; 0 if clear.
 
-    The gears turn in conjugate motion. The edge is followed on both sides of the line of centres, from where
+    The gears turn in conjugate motion. The edge is followed on both sides of the line of centers, from where
     it crosses the line of action; its path in the mate's frame is compared with the fillet at equal radius.
     """
     opening = math.atan2(tip.tip_roll_length, tip.base_radius)
     widest = abs(pair.working_pressure_angle - opening)
-    polar = np.linspace(-widest, widest, _SAMPLES)  # of the edge, from the line of centres
+    polar = np.linspace(-widest, widest, _SAMPLES)  # of the edge, from the line of centers
     x = pair.center_distance - tip.tip_radius * np.cos(polar)
     y = -tip.tip_radius * np.sin(polar)
     roll_length = tip.tip_roll_length - tip.base_radius * (polar + opening - pair.working_pressure_angle)

@@ -1,7 +1,7 @@
 """The exact transverse flank of a tooth: involute, fillet, root and tip arcs.
 
-Tooth frame: gear centre at the origin, tooth centre line on +y, the right flank (x > 0). One coordinate s
-runs over the whole flank from the tooth space's centre up to the tip: on the involute it is the arc length
+Tooth frame: gear center at the origin, tooth center line on +y, the right flank (x > 0). One coordinate s
+runs over the whole flank from the tooth space's center up to the tip: on the involute it is the arc length
 from the base circle, s = l^2 / (2 r_b); below the form point it goes on by the arc length along fillet and
 root circle, so that s may be negative there. With the standard's negative radii of an internal gear the
 same definition gives s = -l^2 / (2 r_b): again rising from the root to the tip, and negative throughout.
@@ -59,7 +59,7 @@ class FlankProfile:
 
     @property
     def s_space(self) -> float:
-        """Flank coordinate of the tooth space's centre, on the root circle, m; the lowest."""
+        """Flank coordinate of the tooth space's center, on the root circle, m; the lowest."""
         return self.s_root - self.gear.root_radius * (0.5 * self.pitch_angle - self.root_angle)
 
     @cached_property
@@ -70,12 +70,12 @@ class FlankProfile:
 
     @property
     def root_angle(self) -> float:
-        """Angle from the tooth's centre line to the fillet's end on the root circle, rad."""
+        """Angle from the tooth's center line to the fillet's end on the root circle, rad."""
         return self.gear.trochoid.root_angle
 
     @property
     def tip_angle(self) -> float:
-        """Angle from the tooth's centre line to the tip edge, rad."""
+        """Angle from the tooth's center line to the tip edge, rad."""
         return 0.5 * self.gear.tip_tooth_thickness / self.gear.tip_radius
 
     def roll_length(self, s: ArrayLike) -> FloatArray:

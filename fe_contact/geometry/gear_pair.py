@@ -32,7 +32,7 @@ class GearPair(ParallelAxes):
     Raises
     ------
     InputError
-        A centre distance that is no positive number.
+        A center distance that is no positive number.
     InfeasibleGeometry
         No such pair: "normal module", "pressure angle", "helix angle", "profile shift sum", "contact ratio",
         "interference", "tip clearance".

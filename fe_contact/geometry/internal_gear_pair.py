@@ -47,7 +47,7 @@ class InternalGearPair(ParallelAxes):
     Raises
     ------
     InputError
-        A centre distance that is no positive number.
+        A center distance that is no positive number.
     InfeasibleGeometry
         No such pair: "normal module", "pressure angle", "helix angle", "tooth number difference", "face
         overlap", "center distance", "profile shift sum", "contact ratio", "tip clearance", "interference",

@@ -1,9 +1,9 @@
 """Interference of a tip edge with the mating tooth of an internal pair, off the line of action.
 
-Frame: the ring's centre at the origin, the pinion's at (0, a); angles clockwise from the line of centres. At
+Frame: the ring's center at the origin, the pinion's at (0, a); angles clockwise from the line of centers. At
 turn 0 the driving flanks touch at the pitch point; at turn omega of the pinion the ring has turned by
 omega z_1 / z_2. A tip edge is followed over the whole lens in which the two tip circles overlap, on both
-sides of the line of centres, and compared with the mating driving flank at equal radius. At the ends of the
+sides of the line of centers, and compared with the mating driving flank at equal radius. At the ends of the
 lens this is the angle criterion of the handbooks for tips that pass each other. The rear flanks are the
 mirror image, farther apart by the backlash.
 """
@@ -31,7 +31,7 @@ class EdgePath(NamedTuple):
     Attributes
     ----------
     radius : (n,) array
-        Distance from the mate's centre, m.
+        Distance from the mate's center, m.
     depth : (n,) array
         Arc in m by which the edge is inside the mate's tooth; negative outside.
     """
@@ -79,7 +79,7 @@ def ring_edge_path(pair: ParallelAxes) -> EdgePath:
 
 
 def flank_angle(gear: Toothing, radius: FloatArray) -> FloatArray:
-    """Angle in rad from the tooth's centre line to its right flank at `radius`, on involute and fillet."""
+    """Angle in rad from the tooth's center line to its right flank at `radius`, on involute and fillet."""
     pressure = np.arccos(np.minimum(1.0, gear.base_radius / radius))
     involute = gear.base_thickness_half_angle - gear.sign * (np.tan(pressure) - pressure)
     tool_angle = np.linspace(gear.form_point.tool_angle, 0.5 * math.pi, _SAMPLES)
@@ -106,7 +106,7 @@ def _tip_involute(gear: Toothing) -> float:
 
 
 def _pitch_point_angle(pair: ParallelAxes) -> float:
-    """Angle of the ring tooth's centre line when its flank is at the pitch point, rad."""
+    """Angle of the ring tooth's center line when its flank is at the pitch point, rad."""
     return pair.wheel.base_thickness_half_angle + involute_function(pair.working_pressure_angle)
 
 

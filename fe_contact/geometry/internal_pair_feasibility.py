@@ -37,7 +37,7 @@ def refuse_tooth_numbers(pinion: Toothing, ring: Toothing) -> None:
 
 
 def refuse_infeasible_internal_pair(pair: ParallelAxes) -> None:
-    """Raise `InfeasibleGeometry` if the two gears cannot run at their centre distance."""
+    """Raise `InfeasibleGeometry` if the two gears cannot run at their center distance."""
     positive("center_distance", pair.center_distance, SiNote("In m, positive: 80 mm is 0.08."))
     refuse_face_overlap(pair)
     _refuse_short_distance(pair)
@@ -64,7 +64,7 @@ def _refuse_contact_ratio(pair: ParallelAxes) -> None:
     """Refuse a pair that loses contact between one tooth pair and the next."""
     if pair.total_contact_ratio < 1.0:
         bound = f"larger: the contact ratio is {pair.total_contact_ratio:.6g}, below 1"
-        advice = "Raise the centre distance or the pinion's tip diameter, or lower the ring's tip diameter."
+        advice = "Raise the center distance or the pinion's tip diameter, or lower the ring's tip diameter."
         raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, advice)
 
 

@@ -49,7 +49,7 @@ def refuse_strangers(pinion: Toothing, wheel: Toothing) -> None:
 
 
 def refuse_infeasible_pair(pair: ParallelAxes) -> None:
-    """Raise `InfeasibleGeometry` if two external gears cannot run at their centre distance."""
+    """Raise `InfeasibleGeometry` if two external gears cannot run at their center distance."""
     positive("center_distance", pair.center_distance, SiNote("In m: 80 mm is 0.08."))
     refuse_face_overlap(pair)
     refuse_jamming(pair)
@@ -105,7 +105,7 @@ def _refuse_contact_ratio(pair: ParallelAxes) -> None:
         if pair.overlap_ratio == 0.0:
             value = pair.transverse_contact_ratio
         bound = f"smaller: the contact ratio is {value:.6g}, below 1"
-        advice = "Lower the centre distance, or raise the tip diameters or the number of teeth."
+        advice = "Lower the center distance, or raise the tip diameters or the number of teeth."
         raise InfeasibleGeometry("contact ratio", "center_distance", pair.center_distance, bound, advice)
 
 

@@ -42,7 +42,7 @@ class ParallelAxes:
 
         @property
         def center_distance(self) -> float:
-            """Centre distance a in m, > 0."""
+            """Center distance a in m, > 0."""
 
         @property
         def axial_offset(self) -> float:
@@ -91,7 +91,7 @@ class ParallelAxes:
 
     @property
     def operating_pitch_radii(self) -> tuple[float, float]:
-        """d_w1 / 2 and d_w2 / 2, m: their sum, or difference of an internal pair, is the centre distance."""
+        """d_w1 / 2 and d_w2 / 2, m: their sum, or difference of an internal pair, is the center distance."""
         cosine = math.cos(self.working_pressure_angle)
         return self.pinion.base_radius / cosine, self.wheel.base_radius / cosine
 

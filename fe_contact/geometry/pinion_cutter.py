@@ -51,12 +51,12 @@ class PinionCutter:
 
     @property
     def corner_center_radius(self) -> float:
-        """Distance of the rounding's centre from the cutter's axis, m."""
+        """Distance of the rounding's center from the cutter's axis, m."""
         return self.tip_radius - self.corner_radius
 
     @property
     def corner_roll_length(self) -> float:
-        """Roll length of the rounding's centre, which lies on the flank's equidistant, m."""
+        """Roll length of the rounding's center, which lies on the flank's equidistant, m."""
         return math.sqrt(max(self.corner_center_radius**2 - self.base_radius**2, 0.0))
 
     @property
@@ -71,6 +71,6 @@ class PinionCutter:
 
     @property
     def corner_angle(self) -> float:
-        """Angle from the cutter tooth's centre line to the rounding's centre, rad; < 0 does not fit."""
+        """Angle from the cutter tooth's center line to the rounding's center, rad; < 0 does not fit."""
         foot = self.base_half_angle - self.flank_end_roll_length / self.base_radius
         return foot + self.first_tool_angle

@@ -13,7 +13,7 @@ from fe_contact.errors import InputError
 from fe_contact.types import FloatArray
 
 LARGEST = 1e-3
-"""m; larger deviations are micrometres given as metres."""
+"""m; larger deviations are micrometers given as meters."""
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,12 @@
 """The digits that data sheets print, and what their rounding does to backlash (docs/theory/geometry.md).
 
-Nominal gears have no backlash: their profile shifts follow from the centre distance, or it from them. A sheet
+Nominal gears have no backlash: their profile shifts follow from the center distance, or it from them. A sheet
 prints both rounded, and the printed ones may jam. Each printed value is off by at most half its last digit,
 and backlash by at most the sum of what those halves do to it, to first order.
 
 A value tells its last digit: it is the first of the customary ones of which the value is a whole multiple.
-A value on the round grid of its kind was chosen, not rounded: a module of ISO 54, a shift of 0, a centre
-distance in half millimetres, a helix angle in tenths of a degree.
+A value on the round grid of its kind was chosen, not rounded: a module of ISO 54, a shift of 0, a center
+distance in half millimeters, a helix angle in tenths of a degree.
 Numbers of teeth, pressure angles and thickness allowances are exact.
 """
 

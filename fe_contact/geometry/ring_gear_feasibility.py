@@ -22,7 +22,7 @@ def refuse_infeasible_ring(gear: Toothing, cutter: PinionCutter) -> None:
 
 
 def refuse_shift_sum_of_cutter(gear: Toothing, teeth: int, profile_shift: float, involute: float) -> None:
-    """Refuse a cutter too thick for the tooth space at any centre distance (`involute` below 0)."""
+    """Refuse a cutter too thick for the tooth space at any center distance (`involute` below 0)."""
     if involute <= 0.0:
         angle = math.tan(gear.transverse_pressure_angle) - gear.transverse_pressure_angle
         largest = angle * (gear.teeth - teeth) / (2.0 * math.tan(gear.normal_pressure_angle))

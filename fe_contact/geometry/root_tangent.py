@@ -16,9 +16,9 @@ SAMPLES = 1001
 
 
 def tangent_angle(profile: FlankProfile, s: ArrayLike) -> FloatArray:
-    """Angle in rad between the surface at flank coordinates `s` and the tooth's centre line.
+    """Angle in rad between the surface at flank coordinates `s` and the tooth's center line.
 
-    Taken in the transverse section; 0 where the surface is parallel to the centre line, pi/2 in the middle
+    Taken in the transverse section; 0 where the surface is parallel to the center line, pi/2 in the middle
     of the tooth space of a large gear, negative above the waist of an undercut tooth.
     """
     normal = profile.normal(s)
@@ -26,7 +26,7 @@ def tangent_angle(profile: FlankProfile, s: ArrayLike) -> FloatArray:
 
 
 def critical_section(profile: FlankProfile, samples: int = SAMPLES) -> float:
-    """Flank coordinate in m where the fillet's tangent has `CRITICAL_ANGLE` with the tooth's centre line.
+    """Flank coordinate in m where the fillet's tangent has `CRITICAL_ANGLE` with the tooth's center line.
 
     At an end of the fillet if it leans less or more everywhere. Interpolated linearly between `samples`.
     """

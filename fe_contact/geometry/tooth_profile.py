@@ -11,7 +11,7 @@ from fe_contact.geometry.toothing import Toothing
 
 @dataclass(frozen=True)
 class ToothProfile(FlankProfile):
-    """Right flank of one tooth; a ring gear's points towards the centre. Make it by `tooth_profile`."""
+    """Right flank of one tooth; a ring gear's points towards the center. Make it by `tooth_profile`."""
 
     gear: Toothing
 

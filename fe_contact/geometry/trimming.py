@@ -1,7 +1,7 @@
 """Trimming interference: whether a pinion or a cutter can be moved radially into a ring gear.
 
-On the way out along the line of centres every tooth tip of the pinion must pass the ring's tip beside it.
-The clearance of the two edges across the line of centres is least where both move across at the same
+On the way out along the line of centers every tooth tip of the pinion must pass the ring's tip beside it.
+The clearance of the two edges across the line of centers is least where both move across at the same
 speed; the condition is JGMA's, in closed form, as e.g. in the gear handbooks of KHK and SDP/SI (eq. 5-9).
 """
 

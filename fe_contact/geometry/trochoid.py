@@ -28,9 +28,9 @@ class Trochoid(FilletCurve):
     reference_radius : float
         Radius in m of the circle that rolls on the tool's pitch line.
     corner_distance : float
-        Transverse distance in m along the pitch line from the tooth's centre line to the rounding's centre.
+        Transverse distance in m along the pitch line from the tooth's center line to the rounding's center.
     corner_height : float
-        Height in m of the rounding's centre above the pitch line (usually negative).
+        Height in m of the rounding's center above the pitch line (usually negative).
     corner_radius : float
         Radius rho_fP of the rounding in the normal plane, m.
     helix_angle : float
@@ -45,7 +45,7 @@ class Trochoid(FilletCurve):
 
     @property
     def root_angle(self) -> float:
-        """Angle from the tooth's centre line to the fillet's end on the root circle, rad."""
+        """Angle from the tooth's center line to the fillet's end on the root circle, rad."""
         return self.corner_distance / self.reference_radius
 
     def height(self, tool_angle: FloatArray) -> FloatArray:
@@ -74,12 +74,12 @@ class Trochoid(FilletCurve):
         return turned_clockwise(slope / length, 1.0 / length, self._rotation(tool_angle))
 
     def radius(self, tool_angle: FloatArray) -> FloatArray:
-        """Distance from the gear's centre, m; falls monotonically with the tool angle."""
+        """Distance from the gear's center, m; falls monotonically with the tool angle."""
         height = self.height(tool_angle)
         return np.hypot(height * self._normal_slope(tool_angle), self.reference_radius + height)
 
     def polar_angle(self, tool_angle: FloatArray) -> FloatArray:
-        """Angle from the tooth's centre line, rad; positive on the right flank's side."""
+        """Angle from the tooth's center line, rad; positive on the right flank's side."""
         height = self.height(tool_angle)
         offset = np.arctan2(height * self._normal_slope(tool_angle), self.reference_radius + height)
         return self._rotation(tool_angle) + offset

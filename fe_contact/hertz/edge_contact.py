@@ -2,7 +2,7 @@ r"""Contact of a smooth flank with the tip edge of its partner.
 
 Along the tip gear's flank, measured inwards from its edge, the gap is g(x) = phi x + x^2/(2R). Contact
 spreads over 0 <= x <= c; the pressure is singular at the edge and vanishes at c. Inverting the half-plane
-equation with that end behaviour [1]_ gives
+equation with that end behavior [1]_ gives
 
     q(x) = (E*/2) sqrt((c - x)/x) [phi + (x + c/2)/R],      p = (pi E* c/4) (phi + 3c/(4R)).
 

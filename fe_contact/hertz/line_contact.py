@@ -56,7 +56,7 @@ def local_approach(
     Two half-plane solutions with the same resultant are subtracted, so the far field cancels and no
     reference depth appears: k p [ln(a/b) + 1/4] with k = 2 (1 - nu^2)/(pi E). The surface under a
     semi-elliptic pressure of half-width a falls off as x^2/a^2, whose mean weighted by that pressure is the
-    1/4; under the Hertz strip the centre point counts.
+    1/4; under the Hertz strip the center point counts.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ def local_approach(
 def two_cylinder_approach(
     line_load: float, radii: tuple[float, float], materials: tuple[Material, Material]
 ) -> float:
-    """Approach in m of the centres of two solid cylinders pressed together [1]_.
+    """Approach in m of the centers of two solid cylinders pressed together [1]_.
 
     The sum over both of p (1 - nu^2)/(pi E) [2 ln(4 R_i/b) - 1].
     """

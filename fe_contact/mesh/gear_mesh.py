@@ -38,7 +38,7 @@ class FlankNodes:
 class GearMesh:
     """Six-node triangles on the complete ring of one gear, transverse section.
 
-    Tooth sectors are copies of one mesh, turned by whole pitches, so all teeth are discretised alike.
+    Tooth sectors are copies of one mesh, turned by whole pitches, so all teeth are discretized alike.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class GearMesh:
 
 
 def real_teeth(teeth: int, wanted: int | None) -> IntArray:
-    """Return the numbers of the real teeth: `wanted` of them centred on 0, or all."""
+    """Return the numbers of the real teeth: `wanted` of them centered on 0, or all."""
     count = teeth if wanted is None else min(wanted, teeth)
     return np.arange(count) - (count - 1) // 2
 

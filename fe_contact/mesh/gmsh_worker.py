@@ -149,14 +149,14 @@ def rows_above(bottom: list[int], quads: list[list[int]]) -> list[list[int]]:
         for a, b in zip(rows[-1], rows[-1][1:], strict=False):
             (number,) = set(beside[frozenset((a, b))]) - used
             used.add(number)
-            row += [neighbour(quads[number], a, b)] if not row else []
-            row.append(neighbour(quads[number], b, a))
+            row += [neighbor(quads[number], a, b)] if not row else []
+            row.append(neighbor(quads[number], b, a))
         rows.append(row)
     return rows
 
 
-def neighbour(quad: list[int], node: int, other: int) -> int:
-    """Return the neighbour of a corner that is not `other`."""
+def neighbor(quad: list[int], node: int, other: int) -> int:
+    """Return the neighbor of a corner that is not `other`."""
     i = quad.index(node)
     return quad[i - 1] if quad[i - 1] != other else quad[(i + 1) % 4]
 

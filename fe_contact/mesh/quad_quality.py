@@ -19,7 +19,7 @@ def quad_quality(points: FloatArray, quads: IntArray) -> MeshQuality:
     """Return the quality of eight-node quadrilaterals (m, 8) on points (n, 2).
 
     `angle` is the least of a corner's angle and what it lacks to a straight one; `scaled_jacobian` the least
-    over the largest Jacobian determinant among nodes and centre, negative where clockwise.
+    over the largest Jacobian determinant among nodes and center, negative where clockwise.
     """
     nodes = points[quads]
     gradients = np.einsum(

@@ -42,7 +42,7 @@ class MeshRecipe:
     growth : float
         Growth of the element size per unit distance, 0.05 to 1.
     real_teeth : int or None
-        Number of generated teeth, odd, centred on tooth 0; elsewhere the ring is plain, of root radius.
+        Number of generated teeth, odd, centered on tooth 0; elsewhere the ring is plain, of root radius.
         None, or no fewer than the gear has: all teeth.
     """
 
@@ -63,7 +63,7 @@ class MeshRecipe:
         if self.real_teeth is not None:
             integer("real_teeth", self.real_teeth, 1, 100_001)
             if self.real_teeth % 2 == 0:
-                raise InputError("real_teeth", self.real_teeth, "odd", "The teeth are centred on tooth 0.")
+                raise InputError("real_teeth", self.real_teeth, "odd", "The teeth are centered on tooth 0.")
 
     @classmethod
     def standard(cls, gear: HasNormalModule) -> MeshRecipe:
@@ -80,7 +80,7 @@ class MeshRecipe:
     def refined(self, factor: float = 2.0) -> MeshRecipe:
         """Return the recipe with every element size and the growth divided by `factor` > 0.
 
-        Teeth and margin stay, so that recipes of one family differ by their discretisation only.
+        Teeth and margin stay, so that recipes of one family differ by their discretization only.
         """
         positive("factor", factor)
         return replace(

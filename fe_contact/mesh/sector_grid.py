@@ -17,7 +17,7 @@ from fe_contact.types import BoolArray, IntArray
 # Corners of a quadrilateral and the middles of its sides 0-1, 1-2, 2-3, 3-0 as (row, column) of the grid of
 # nodes, counter-clockwise when the columns run from right to left.
 OFFSETS = np.array([(0, 2), (0, 0), (2, 0), (2, 2), (0, 1), (1, 0), (2, 1), (1, 2)])
-# Of teeth that point inwards, whose rows run towards the centre; the side 0-1 stays the one to the body.
+# Of teeth that point inwards, whose rows run towards the center; the side 0-1 stays the one to the body.
 INWARD_OFFSETS = np.array([(0, 0), (0, 2), (2, 2), (2, 0), (0, 1), (1, 2), (2, 1), (1, 0)])
 
 
@@ -34,7 +34,7 @@ class SectorGrid:
     across : int
         Columns of elements across the tooth.
     inward : bool
-        Whether the tooth points to the gear's centre: the rows then run from the rim's outside inwards.
+        Whether the tooth points to the gear's center: the rows then run from the rim's outside inwards.
     web_rows : (int, int)
         First row of the web, and the first one of the rim above it; equal if there is no web.
     """

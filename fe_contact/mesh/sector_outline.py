@@ -18,7 +18,7 @@ from fe_contact.types import FloatArray
 DIP = 0.12  # of the line between tooth and body below the split points, in modules: makes its angles even
 THIN = 0.25  # largest such dip, in parts of the rim's thickness
 DEEP = 0.25  # height of body elements deep below the root, in parts of their depth
-LEAN = 0.4  # least slope of the fillet where tooth and body part: sine of its angle to the centre line
+LEAN = 0.4  # least slope of the fillet where tooth and body part: sine of its angle to the center line
 LOWEST_SPLIT = 0.9  # lowest such point, in parts of the fillet
 TAPER = 0.5  # largest height of body elements, in parts of the radius of their upper end
 

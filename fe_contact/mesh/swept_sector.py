@@ -76,7 +76,7 @@ class SweptSector:
 
     @cached_property
     def flank_index(self) -> IntArray:
-        """Number of each flank node among the flank freedoms, (2 L + 1, k), -1 at the centres of faces."""
+        """Number of each flank node among the flank freedoms, (2 L + 1, k), -1 at the centers of faces."""
         exists = self.nodes[:, self.grid.flank] >= 0
         return np.where(exists, np.cumsum(exists).reshape(exists.shape) - 1, -1)
 

@@ -18,7 +18,7 @@ LARGEST_ARC = math.radians(
 )  # of one quadratic edge: it leaves its circle by less than 1e-5 of the radius
 COARSE = 201  # samples of the size inside the material, where it changes slowly
 TINY = 1e-6  # rounding of a root land that is not there, in parts of the fillet size
-SNAP = 0.25  # a piece shorter than this part of an element is left to its neighbour
+SNAP = 0.25  # a piece shorter than this part of an element is left to its neighbor
 THINNEST = 0.01  # rim that still limits the element size by its thickness, in normal modules
 
 
@@ -26,8 +26,8 @@ THINNEST = 0.01  # rim that still limits the element size by its thickness, in n
 class ToothOutline:
     """Right half of the sector of one tooth.
 
-    Pieces: ``bottom`` (from the centre line to the side), ``side`` (to the root), ``land`` (root circle) and
-    ``fillet`` where they exist, ``flank`` (from the margin below the form point), ``tip``, ``centre``;
+    Pieces: ``bottom`` (from the center line to the side), ``side`` (to the root), ``land`` (root circle) and
+    ``fillet`` where they exist, ``flank`` (from the margin below the form point), ``tip``, ``center``;
     counter-clockwise, of a ring gear, whose bottom is outside, clockwise.
 
     Attributes
@@ -122,7 +122,7 @@ def land_piece(profile: ToothProfile, s_low: float, recipe: MeshRecipe) -> Piece
 
 
 def tip_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
-    """Return the tip circle from the tip edge to the centre line."""
+    """Return the tip circle from the tip edge to the center line."""
     radius, edge = profile.gear.tip_radius, profile.tip_angle
     largest = min(recipe.body_size / radius, LARGEST_ARC)
 
@@ -137,13 +137,13 @@ def tip_piece(profile: ToothProfile, recipe: MeshRecipe) -> Piece:
 def inner_pieces(
     surface: list[Piece], half_pitch_angle: float, bottom_radius: float, recipe: MeshRecipe
 ) -> list[Piece]:
-    """Return bottom, side and centre, which lie inside the material, sized by the distance to the surface."""
+    """Return bottom, side and center, which lie inside the material, sized by the distance to the surface."""
     sources = np.concatenate([p.nodes[1::2] for p in surface])
     lengths = np.concatenate([p.edge_lengths for p in surface])
     width = half_pitch_angle * bottom_radius
     size = spread(sources, lengths, recipe.growth, max(recipe.body_size, width))
     root, tip = np.linalg.norm(surface[0].nodes[0]), np.linalg.norm(surface[-1].nodes[-1])
-    side, centre, bottom = radial_line(half_pitch_angle), radial_line(0.0), arc(bottom_radius)
+    side, center, bottom = radial_line(half_pitch_angle), radial_line(0.0), arc(bottom_radius)
 
     def bottom_size(angle: FloatArray) -> FloatArray:
         return np.minimum(size(bottom(angle)) / bottom_radius, LARGEST_ARC)
@@ -151,11 +151,11 @@ def inner_pieces(
     def side_size(radius: FloatArray) -> FloatArray:
         return np.minimum(size(side(radius)), half_pitch_angle * radius)
 
-    def centre_size(radius: FloatArray) -> FloatArray:
-        return np.minimum(size(centre(radius)), half_pitch_angle * radius)
+    def center_size(radius: FloatArray) -> FloatArray:
+        return np.minimum(size(center(radius)), half_pitch_angle * radius)
 
     return [
         piece("bottom", bottom, divide(0.0, half_pitch_angle, bottom_size, COARSE)),
         piece("side", side, divide(bottom_radius, float(root), side_size, COARSE)),
-        piece("centre", centre, divide(float(tip), bottom_radius, centre_size, COARSE)),
+        piece("center", center, divide(float(tip), bottom_radius, center_size, COARSE)),
     ]

@@ -26,7 +26,7 @@ class ToothSector:
     triangles : (m, 6) array
         Six-node triangles.
     right_side, left_side : int arrays
-        Nodes shared with the neighbours, from the bottom to the root. The left side turned clockwise by one
+        Nodes shared with the neighbors, from the bottom to the root. The left side turned clockwise by one
         pitch is the right one.
     bottom : int array
         Nodes of the lower arc from left to right, both corners included.
@@ -49,11 +49,11 @@ class ToothSector:
 def tooth_sector(half: QuadraticMesh, outline: ToothOutline) -> ToothSector:
     """Join the mesh of the right half of a sector with its mirror image."""
     (boundary,) = half.boundary
-    centre = boundary[outline.outline.positions("centre")]
+    center = boundary[outline.outline.positions("center")]
     points = half.points.copy()
-    points[centre, 0] = 0.0
-    image = mirror_image(len(points), centre)
-    others = np.setdiff1d(np.arange(len(points)), centre)
+    points[center, 0] = 0.0
+    image = mirror_image(len(points), center)
+    others = np.setdiff1d(np.arange(len(points)), center)
     flank = boundary[outline.outline.positions("flank")]
     side = boundary[outline.outline.positions("side")]
     right_bottom = boundary[outline.outline.positions("bottom")]
@@ -69,9 +69,9 @@ def tooth_sector(half: QuadraticMesh, outline: ToothOutline) -> ToothSector:
     )
 
 
-def mirror_image(count: int, centre: IntArray) -> IntArray:
-    """Return the number of each node's mirror image; nodes on the centre line are their own."""
+def mirror_image(count: int, center: IntArray) -> IntArray:
+    """Return the number of each node's mirror image; nodes on the center line are their own."""
     image = np.arange(count)
-    others = np.setdiff1d(image, centre)
+    others = np.setdiff1d(image, center)
     image[others] = count + np.arange(len(others))
     return image

@@ -69,7 +69,7 @@ def not_tried(choice: Choice, asked: OptimisationRequest, study: DesignStudy) ->
         f"effects that are off: {', '.join(off)}" if off else "",
         f"other searches than {starts} of {asked.search.method.to_json()['method'].replace('_', ' ')}; "
         "ripple has many local minima",
-        "other centre distances, and torques but those that count",
+        "other center distances, and torques but those that count",
     ]
     return tuple(one for one in found if one)
 

@@ -1,4 +1,4 @@
-"""Analyse a design anew as `analyze` would, with the errors of its curves, at every node of the scatter."""
+"""Analyze a design anew as `analyze` would, with the errors of its curves, at every node of the scatter."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from fe_contact.types import Estimate, FloatArray, Json
 
 @dataclass(frozen=True)
 class ConfirmedDesign:
-    """A design as analysed in full.
+    """A design as analyzed in full.
 
     Attributes
     ----------
@@ -70,7 +70,7 @@ class ConfirmedDesign:
 def confirm(
     problem: DesignProblem, values: Mapping[str, float], study: DesignStudy, cache: Path | None
 ) -> ConfirmedDesign:
-    """Analyse a design in full, over all torques of a study.
+    """Analyze a design in full, over all torques of a study.
 
     Parameters
     ----------

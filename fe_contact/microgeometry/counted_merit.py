@@ -83,10 +83,10 @@ class CountedMerit:
         self._budget.take(self._most)
         return self._counted(self._problem.judge(place), place)
 
-    def linearise(self, place: FloatArray) -> tuple[float, LinearMerit]:
+    def linearize(self, place: FloatArray) -> tuple[float, LinearMerit]:
         """Judge a design, and return its merit with what is known about it to first order."""
         self._budget.take(self._most)
-        judged, merit = self._problem.linearise(place)
+        judged, merit = self._problem.linearize(place)
         return self._counted(judged, place), merit
 
     def _counted(self, judged: Judged, place: FloatArray) -> float:

@@ -39,7 +39,7 @@ CENTER_DISTANCE, TORQUE = "center_distance_change", "torque"
 AMOUNT_STEP, LENGTH_STEP = 1e-6, 1e-4
 """Of differences of the flanks: in m, by which the gap is linear in its amounts; and in parts of a length."""
 DISTANCE_STEP = 1e-7
-"""To a larger centre distance in m, at which the curve is solved: other places of the flanks touch there."""
+"""To a larger center distance in m, at which the curve is solved: other places of the flanks touch there."""
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def curve_derivatives(
 
     Notes
     -----
-    By the centre distance the curve is solved once more, as its compliance changes.
+    By the center distance the curve is solved once more, as its compliance changes.
     """
     loads = np.asarray(torques, dtype=float)
     at_distance, checked, problem, solution = bodies.solve(pair, loads, misalignment, center_distance_change)
@@ -214,7 +214,7 @@ def _check_name(name: str, pair: ParallelAxes, checked: Checked) -> None:
         if lacks_length(pair, name.removesuffix("_length")):
             raise InputError("by", name, "a relief that has a length", "Give the flank its length.")
     if not _acts(name, checked):
-        advice = "Analyse the pair over the face width, and leave the effect at auto."
+        advice = "Analyze the pair over the face width, and leave the effect at auto."
         raise InputError("by", name, "a figure whose effect the table has", advice)
 
 

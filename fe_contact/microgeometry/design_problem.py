@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.linear_merit import LinearMerit
-from fe_contact.microgeometry.linearised_design import linearised
+from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import Limits, Objective
 from fe_contact.microgeometry.variables import DesignVariable
 from fe_contact.types import FloatArray
@@ -21,7 +21,7 @@ PENALTY = 10.0
 
 @dataclass(frozen=True)
 class Judged:
-    """One design: its objective in m, by how much it exceeds the limits, and the merit that is minimised."""
+    """One design: its objective in m, by how much it exceeds the limits, and the merit that is minimized."""
 
     objective: float
     violation: float
@@ -94,13 +94,13 @@ class DesignProblem:
         """Evaluate the design at a place; one whose contact cannot be solved has an infinite merit."""
         return self._with_merit(*self._figures(self.values(place)))
 
-    def linearise(self, place: FloatArray) -> tuple[Judged, LinearMerit]:
+    def linearize(self, place: FloatArray) -> tuple[Judged, LinearMerit]:
         """Evaluate the design at a place (d,) with its derivatives; the memory learns of it.
 
         Its merit to first order has NaN where the contact cannot be solved.
         """
         values = self.values(place)
-        found = linearised(self.evaluator, values, self.names, self.limits)
+        found = linearized(self.evaluator, values, self.names, self.limits)
         objective, violation = self._judged(found.evaluation, values)
         ranges = np.array([one.high - one.low for one in self.variables])
         merit = LinearMerit(

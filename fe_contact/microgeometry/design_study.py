@@ -35,7 +35,7 @@ class DesignStudy:
     Attributes
     ----------
     decided : Decided
-        Model and discretisation, of all designs and all torques.
+        Model and discretization, of all designs and all torques.
     all_torques : ndarray, shape (T,)
         Of its loads, N m.
     counted : ndarray of int, shape (L,)

@@ -29,7 +29,7 @@ class HarrisMap:
         Peak-to-peak without scatter and its error, m.
     peak_to_peak, error : ndarray, shape (S, T)
         At the nodes, m. The error is that of the table at the node's misalignment: deviations of the
-        modification change the ripple, not the discretisation.
+        modification change the ripple, not the discretization.
     weight : ndarray, shape (S,)
         Of the nodes.
     """

@@ -1,4 +1,4 @@
-"""The merit of designs about one of them, its curves to first order: where it is least is a linear programme.
+"""The merit of designs about one of them, its curves to first order: where it is least is a linear program.
 
 Peak-to-peak is the difference of two maxima, and so has kinks at every optimum; over curves that are linear
 in the variables it is exact [1]_.
@@ -51,7 +51,7 @@ class LinearMerit:
 
     def least(self, low: FloatArray, high: FloatArray) -> tuple[FloatArray, float]:
         """Return the step (d,) between two ends (d,) at which the merit is least, and that merit."""
-        made = _Programme(self.by.shape[-1])
+        made = _Program(self.by.shape[-1])
         nodes, loads = self.by.shape[0], self.by.shape[2]
         reach = np.maximum(np.abs(low), np.abs(high))
         top, bottom = made.columns(nodes * loads), made.columns(nodes * loads)
@@ -70,8 +70,8 @@ class LinearMerit:
         return made.solve(low, high, objective, exceeded, self.penalty)
 
 
-class _Programme:
-    """A linear programme in `count` steps and further columns, row by row."""
+class _Program:
+    """A linear program in `count` steps and further columns, row by row."""
 
     def __init__(self, count: int) -> None:
         self._count, self._least = count, [-np.inf] * count

@@ -45,10 +45,10 @@ def optimise(
     cache: Path | None = None,
     memory: Path | None = None,
 ) -> Optimisation:
-    """Minimise the expected peak-to-peak transmission error over torques under scatter.
+    """Minimize the expected peak-to-peak transmission error over torques under scatter.
 
     The compliance of both gears is computed once; every design is then a contact solve with other gaps. The
-    best design and the one to begin with are analysed in full at the end, and the gain is stated with the
+    best design and the one to begin with are analyzed in full at the end, and the gain is stated with the
     errors of both.
 
     Parameters
@@ -76,7 +76,7 @@ def optimise(
     workers : Workers
         Who searches from the starts; the result does not depend on it.
     cancel : callable, optional
-        Asked before every design whether to end the search: the best so far is then analysed in full, and
+        Asked before every design whether to end the search: the best so far is then analyzed in full, and
         the reason says so. Workers elsewhere end their starts first.
     memory : Path, optional
         Directory of designs that were judged before: a search that was killed, or is repeated with more

@@ -149,7 +149,7 @@ def search_from(
     rough = CountedMerit(problem.rough(search.exploration), budget, int(EXPLORED * search.evaluations))
     ended = Ended.CONVERGED
     try:
-        search.method.minimise(merit, rough, start, np.random.SeedSequence((search.seed, index)))
+        search.method.minimize(merit, rough, start, np.random.SeedSequence((search.seed, index)))
     except Spent:
         ended = Ended.SPENT
     except ending:

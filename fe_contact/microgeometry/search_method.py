@@ -23,7 +23,7 @@ SPREAD = 1e-3
 """Standard deviation of the merit over a population that has converged, in parts of its mean."""
 
 FIRST_REGION = 0.2
-"""Largest step of a linear programme to begin with, in parts of the ranges."""
+"""Largest step of a linear program to begin with, in parts of the ranges."""
 POOR, GOOD, POORER = 0.25, 0.75, 0.4
 """Parts of the promised fall by which the region shrinks or grows; to what part of the step it shrinks."""
 
@@ -37,7 +37,7 @@ ASIDE, LEAST_GAIN, MISSES = 0.05, 0.005, 3
 class Method(Protocol):
     """A way to search the unit cube."""
 
-    def minimise(
+    def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search from `start` (d,) until converged; the merits remember the best.
@@ -63,7 +63,7 @@ class NelderMead:
     Cheap and local: start it more than once.
     """
 
-    def minimise(
+    def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; nothing is random, and nothing is rough."""
@@ -91,9 +91,9 @@ class NelderMead:
 class SequentialLinearProgramming:
     """From design to design by linear programmes over the derivatives of the curves, in a trust region.
 
-    Peak-to-peak is made of maxima, whose kinks a programme of all positions, loads and nodes sees [1]_. It is
+    Peak-to-peak is made of maxima, whose kinks a program of all positions, loads and nodes sees [1]_. It is
     local: a Sobol' sequence ranked by the rough merit gives further starts; each is followed for some
-    designs, the best of them to its end. Where a contact begins curves have kinks that a programme sees from
+    designs, the best of them to its end. Where a contact begins curves have kinks that a program sees from
     one side only; so it is taken up again a little beside where it ended.
 
     Attributes
@@ -116,7 +116,7 @@ class SequentialLinearProgramming:
         integer("method.sample", self.sample, 0, 4096)
         integer("method.trials", self.trials, 0, 64)
 
-    def minimise(
+    def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; the sequence and the places beside an end are random."""
@@ -163,7 +163,7 @@ class _Walk:
 
     def __init__(self, merit: CountedMerit, start: FloatArray, region: float = FIRST_REGION) -> None:
         self._merit, self.place, self._region = merit, start, region
-        self.value, self._linear = merit.linearise(start)
+        self.value, self._linear = merit.linearize(start)
 
     def follow(self, most: int | None = None) -> None:
         """Step until converged, or so often at most."""
@@ -178,7 +178,7 @@ class _Walk:
         if self.value - promised <= SIMPLEX_MERIT * self.value:
             return False
         place = np.clip(self.place + step, 0.0, 1.0)
-        value, linear = self._merit.linearise(place)
+        value, linear = self._merit.linearize(place)
         kept = (self.value - value) / (self.value - promised)
         if kept < POOR:
             self._region = POORER * float(np.abs(step).max())
@@ -204,7 +204,7 @@ class DifferentialEvolution:
     def __post_init__(self) -> None:
         integer("method.population", self.population, 3, 50)
 
-    def minimise(
+    def minimize(
         self, merit: CountedMerit, rough: CountedMerit, start: FloatArray, seed: np.random.SeedSequence
     ) -> None:
         """Search; the start is one of the first population."""
@@ -220,7 +220,7 @@ class DifferentialEvolution:
                 maxiter=10**6,
                 polish=False,
             )
-        NelderMead().minimise(merit, rough, start if rough.best is None else rough.best[1], seed)
+        NelderMead().minimize(merit, rough, start if rough.best is None else rough.best[1], seed)
 
     def to_json(self) -> Json:
         """Return plain JSON."""

@@ -15,7 +15,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import full_table
 from fe_contact.microgeometry.design_study import Accuracies, check_study, design_study
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
-from fe_contact.microgeometry.linearised_design import linearised
+from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.scatter import ONE_NODE, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.spread import Quantile, quantile, rank_correlation
@@ -245,7 +245,7 @@ def first_order(nominal: Evaluator, names: tuple[str, ...], deviation: FloatArra
 
     Nothing is removed below zero by a deviation.
     """
-    found = linearised(nominal, {}, names, NO_LIMITS)
+    found = linearized(nominal, {}, names, NO_LIMITS)
     least = np.array([least_deviation(nominal.contact.pair, name) for name in names])
     held = np.maximum(deviation, least)
     curves = (

@@ -3,7 +3,7 @@
 from fe_contact.planning.accuracy import LEVELS, Accuracy
 from fe_contact.planning.cost_model import Prediction, predict_run
 from fe_contact.planning.cycle_cost import MOST_ROWS, CycleCost, cycle_cost, refuse_long_cycle
-from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
+from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
 from fe_contact.planning.error_model import (
     LEFT_OUT,
     ExpectedError,
@@ -26,13 +26,13 @@ __all__ = [
     "CycleCost",
     "ExpectedCurves",
     "ExpectedError",
-    "FaceDiscretisation",
+    "FaceDiscretization",
     "FaceRootMeshes",
     "MeshChoice",
     "MeshOption",
     "NodeRule",
     "Plan",
-    "PlaneDiscretisation",
+    "PlaneDiscretization",
     "PlaneRootMeshes",
     "Prediction",
     "chosen_mesh",

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from fe_contact.contact import ContactModel
 from fe_contact.contact.slices import POINTS
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning.discretisation import FaceDiscretisation
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.plan import Plan
 from fe_contact.sampled import ALIGNMENTS, LOADS, WIDE_INTERVALS, WIDE_PROBES, some_positions
 
@@ -27,7 +27,7 @@ _JUDGED = 3
 _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
 _HELD_OUT_DISTANCES = 16
-"""Positions at which an interval of centre distances is judged."""
+"""Positions at which an interval of center distances is judged."""
 _PLANE_CHECK = 6e-3
 """CPU seconds that the estimate of errors takes beside its solutions."""
 _TABLE_POINT = 2e-6
@@ -69,7 +69,7 @@ def contact_seconds(
     if plan.positions is None:
         begun = plan.nodes.start
         tried = _TRIED_PER_START * begun + _TRIED_PER_NODE * max(kept - begun, 0)
-    work = unit_work(pair, plan, plan.discretisation.slices)
+    work = unit_work(pair, plan, plan.discretization.slices)
     contact = work.of(tried * distances, tried * judged * loads)
     contact += work.of(kept * distances, kept * rows * (loads + plan.support.size))
     return contact, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
@@ -77,7 +77,7 @@ def contact_seconds(
 
 def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, int]) -> float:
     """CPU seconds of rougher solutions of some of the table, middles, and held-out points of its axes."""
-    made, kept, loads = plan.discretisation, expected_positions(plan), plan.load.size
+    made, kept, loads = plan.discretization, expected_positions(plan), plan.load.size
     work = unit_work(pair, plan, made.slices)
     again = [work, *([work] if made.corrected else [])]
     if made.slices > 1:
@@ -102,8 +102,8 @@ def held_out_loads(loads: int) -> int:
 def contact_bytes(pair: ParallelAxes, plan: Plan) -> float:
     """Return the bytes of compliance and touching points that are held at once."""
     held = _HELD_POSITIONS if plan.positions is None else _HELD_PART * plan.positions
-    count = candidates(pair, plan.discretisation.slices)
-    points = count * (POINTS if plan.discretisation.slices > 1 else 1)
+    count = candidates(pair, plan.discretization.slices)
+    points = count * (POINTS if plan.discretization.slices > 1 else 1)
     return 8.0 * held * (count**2 + _POINT_NUMBERS * points)
 
 
@@ -114,9 +114,9 @@ def candidates(pair: ParallelAxes, slices: int) -> float:
 
 def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> Work:
     """Return what one position and one point of it cost in so many slices."""
-    made = plan.discretisation
+    made = plan.discretization
     count = candidates(pair, slices)
-    if not isinstance(made, FaceDiscretisation):
+    if not isinstance(made, FaceDiscretization):
         return Work(_PLANE_POSITION, _PLANE_POINT + _PLANE_CANDIDATE * count)
     elements = max(pair.pinion.normal_module / recipe.flank_size for recipe in made.recipes)
     return Work(_FACE_POSITION * elements**2 * count, _FACE_CANDIDATE * count + _FACE_SQUARE * count**2)
@@ -126,4 +126,4 @@ def expected_positions(plan: Plan) -> int:
     """Return the positions in a base pitch: asked for, or those that the search usually ends with."""
     if plan.positions is not None:
         return plan.positions
-    return _FACE_EXPECTED if isinstance(plan.discretisation, FaceDiscretisation) else _PLANE_EXPECTED
+    return _FACE_EXPECTED if isinstance(plan.discretization, FaceDiscretization) else _PLANE_EXPECTED

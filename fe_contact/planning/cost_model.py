@@ -19,7 +19,7 @@ from fe_contact.contact import ContactModel, teeth_in_reach
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.mesh import MeshRecipe, SectorRecipe
 from fe_contact.planning.contact_cost import contact_bytes, contact_seconds, expected_positions
-from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
+from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
 from fe_contact.planning.host_speed import host_slowness
 from fe_contact.planning.plan import Plan
 from fe_contact.planning.run_log import corrections
@@ -131,14 +131,14 @@ def predict_run(
     model : ContactModel
         For the base pitches of its period.
     alignments : (int, int)
-        Numbers of misalignments and of centre distances.
+        Numbers of misalignments and of center distances.
     cache : Path, optional
         Directory of compliances, which cost nothing if they are there, and of what is known of the host.
     with_errors : bool
         Whether errors are estimated: a minimal receipt has no such stage.
     """
-    made = plan.discretisation
-    kind = "face" if isinstance(made, FaceDiscretisation) else "plane"
+    made = plan.discretization
+    kind = "face" if isinstance(made, FaceDiscretization) else "plane"
     fine = _compliance(pair, plan, cache, coarse=False)
     coarse = _compliance(pair, plan, cache, coarse=True) if with_errors else Cost(0.0, 0.0, 0.0)
     solve, check = contact_seconds(pair, plan, model, alignments, with_errors=with_errors)
@@ -159,11 +159,11 @@ def predict_run(
 
 def _compliance(pair: ParallelAxes, plan: Plan, cache: Path | None, *, coarse: bool) -> Cost:
     """Cost of both gears' compliance; gears alike are computed once."""
-    made = plan.discretisation
+    made = plan.discretization
     bodies = plan.bodies(pair)
     recipes = made.coarse_recipes if coarse else made.recipes
     gears = list(dict.fromkeys(zip((body.right_handed() for body in bodies), recipes, strict=True)))
-    if isinstance(made, FaceDiscretisation):
+    if isinstance(made, FaceDiscretization):
         solids = [(gear, recipe) for gear, recipe in gears if isinstance(recipe, SectorRecipe)]
         return Cost.of(_solid(*solid, cache) for solid in solids)
     hypothesis = made.hypothesis
@@ -186,7 +186,7 @@ def _solid(gear: Toothing, recipe: SectorRecipe, cache: Path | None) -> Cost:
 def _free_ends(
     pair: ParallelAxes,
     bodies: tuple[Toothing, Toothing],
-    made: PlaneDiscretisation,
+    made: PlaneDiscretization,
     cache: Path | None,
 ) -> Iterator[Cost]:
     """Yield the cost of the solids that correct the plane: free at their ends, and held along the axis."""

@@ -13,7 +13,7 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh import SectorRecipe
 from fe_contact.planning.contact_cost import contact_seconds
 from fe_contact.planning.cost_model import section_cost
-from fe_contact.planning.discretisation import FaceDiscretisation
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.plan import Plan
 
 # one gear over the face: mesher, factor, powers of layers and teeth, part of it for the coarse mesh
@@ -32,10 +32,10 @@ def effort(pair: ParallelAxes, plan: Plan, model: ContactModel, alignments: tupl
 
     Parameters are those of `fe_contact.planning.predict_run`.
     """
-    made = plan.discretisation
+    made = plan.discretization
     bodies = tuple(body.right_handed() for body in plan.bodies(pair))
     work = sum(contact_seconds(pair, plan, model, alignments))
-    if isinstance(made, FaceDiscretisation):
+    if isinstance(made, FaceDiscretization):
         gears = dict.fromkeys(zip(bodies, made.recipes, strict=True))
         return work + sum(_solid(gear.teeth, recipe, plan.level) for gear, recipe in gears)
     for recipes in (made.recipes, made.coarse_recipes):

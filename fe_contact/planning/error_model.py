@@ -15,7 +15,7 @@ import numpy as np
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.geometry import ParallelAxes
 from fe_contact.geometry.finite_width import finite_width_excess, plane_stress_excess
-from fe_contact.planning.discretisation import SLICE_ORDER, Discretisation, FaceDiscretisation
+from fe_contact.planning.discretization import SLICE_ORDER, Discretization, FaceDiscretization
 from fe_contact.planning.expected_curves import ExpectedCurves, usual_curves
 from fe_contact.planning.model_error import in_small_displacements, model_errors, of_bending
 from fe_contact.planning.plan import Plan
@@ -70,7 +70,7 @@ class ExpectedError:
     peak_to_peak: float | None = None
 
     @property
-    def discretisation(self) -> float:
+    def discretization(self) -> float:
         """What finer meshes, more slices and positions mend."""
         return float(np.sqrt(self.mesh**2 + self.slices**2 + self.positions**2))
 
@@ -82,7 +82,7 @@ class ExpectedError:
     @property
     def total(self) -> float:
         """Of all, which are independent of each other."""
-        return float(np.hypot(self.discretisation, self.lasting))
+        return float(np.hypot(self.discretization, self.lasting))
 
     def to_json(self) -> Json:
         """Return plain JSON."""
@@ -112,7 +112,7 @@ def expected_error(pair: ParallelAxes, plan: Plan, curves: ExpectedCurves | None
 
 def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
     """Return the median error by mesh of mean and of peak-to-peak, in parts of what the load adds."""
-    if not isinstance(plan.discretisation, FaceDiscretisation):
+    if not isinstance(plan.discretization, FaceDiscretization):
         return _PLANE[plan.level]
     if pair.base_helix_angle == 0.0:
         return _SPUR[plan.level]
@@ -122,13 +122,13 @@ def usual_mesh_error(pair: ParallelAxes, plan: Plan) -> tuple[float, float]:
 
 def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, FloatArray]:
     """Return the errors of mean and peak-to-peak by source, each (2, C) in m."""
-    made = plan.discretisation
+    made = plan.discretization
     mean, ripple = known.mean, known.peak_to_peak
     own = np.stack([mean, ripple])
     by_mesh = np.outer(usual_mesh_error(pair, plan), known.added)
     nothing = np.zeros_like(by_mesh)
     slices, model = nothing.copy(), nothing.copy()
-    if isinstance(made, FaceDiscretisation):
+    if isinstance(made, FaceDiscretization):
         helical = pair.base_helix_angle != 0.0
         part = _HELICAL_SLICES * pair.overlap_ratio if helical else _SPUR_SLICES
         slices[1] = part * (_SLICES / made.slices) ** SLICE_ORDER * known.added
@@ -139,18 +139,18 @@ def _parts(pair: ParallelAxes, plan: Plan, known: ExpectedCurves) -> dict[str, F
     left = model_errors if known.absolute else in_small_displacements  # large ones are known in m alone
     method = left(pair, known.force, own)
     positions = nothing.copy()
-    over_allowed = _FACE_POSITIONS if isinstance(made, FaceDiscretisation) else _PLANE_POSITIONS
+    over_allowed = _FACE_POSITIONS if isinstance(made, FaceDiscretization) else _PLANE_POSITIONS
     positions[1] = over_allowed * plan.nodes.tolerance * np.maximum(ripple, plan.nodes.least_ripple)
     return {"mesh": by_mesh, "slices": slices, "model": model, "positions": positions, "method": method}
 
 
-def left_out(pair: ParallelAxes, made: Discretisation) -> float:
+def left_out(pair: ParallelAxes, made: Discretization) -> float:
     """Return the relative part of the mean STE that a plane leaves out of a finite width; 0 if none.
 
     Plane strain deflects less than the gear, plane stress more. The plane that is corrected leaves nothing
     out, nor do three dimensions.
     """
-    if isinstance(made, FaceDiscretisation) or made.corrected:
+    if isinstance(made, FaceDiscretization) or made.corrected:
         return 0.0
     thin = made.hypothesis is PlaneHypothesis.PLANE_STRESS
     return plane_stress_excess(pair) if thin else finite_width_excess(pair)

@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.allowed_error import RELATIVE, AllowedError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning.discretisation import FaceDiscretisation
+from fe_contact.planning.discretization import FaceDiscretization
 from fe_contact.planning.plan import Plan
 from fe_contact.types import FloatArray
 
@@ -50,7 +50,7 @@ class ExpectedCurves:
 def usual_curves(pair: ParallelAxes, plan: Plan) -> ExpectedCurves:
     """Return those of usual pairs, whose mean is 1."""
     one = np.ones(plan.load.size)
-    across_face = isinstance(plan.discretisation, FaceDiscretisation)
+    across_face = isinstance(plan.discretization, FaceDiscretization)
     spur = _SPUR_RIPPLE if across_face else _PLANE_RIPPLE
     ripple = _HELICAL_RIPPLE if pair.base_helix_angle else spur
     return ExpectedCurves(plan.load, one, one, ripple * one, RELATIVE, absolute=False)

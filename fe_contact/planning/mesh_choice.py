@@ -80,11 +80,11 @@ def mesh_for_tolerance(tolerance: AllowedError, options: Sequence[MeshOption]) -
     if within:
         best = min(within, key=_effort)
         return MeshChoice(best, True, f"expected error {_percent(best.error.total)} %")
-    enough = [option for option in options if option.error.discretisation <= tolerance.relative]
+    enough = [option for option in options if option.error.discretization <= tolerance.relative]
     beyond = min(option.error.lasting for option in options) > tolerance.relative
     best = min(enough, key=_effort) if enough and beyond else min(options, key=lambda o: o.error.total)
     error = best.error
-    parts = f"mesh {_percent(error.discretisation)} %, model {_percent(error.lasting)} %"
+    parts = f"mesh {_percent(error.discretization)} %, model {_percent(error.lasting)} %"
     return MeshChoice(best, False, f"no mesh is expected within {tolerance.words} ({parts})")
 
 

@@ -1,4 +1,4 @@
-"""From a pair, an accuracy and a contact model to the discretisation of a run."""
+"""From a pair, an accuracy and a contact model to the discretization of a run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fe_contact.contact import ContactModel, PatchRule
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
 from fe_contact.planning.accuracy import Accuracy
-from fe_contact.planning.discretisation import Discretisation, face_discretisation, plane_discretisation
+from fe_contact.planning.discretization import Discretization, face_discretization, plane_discretization
 from fe_contact.types import FloatArray, Json
 
 EDGE_PATCH = 0.0125
@@ -36,7 +36,7 @@ SMALLEST_SUPPORT = 1e-3
 LARGEST_SUPPORT = 2.0
 """Highest support load over the largest load: dynamic forces exceed the static ones."""
 SUPPORT_RATIO = 5.0
-"""Largest ratio of neighbouring support loads."""
+"""Largest ratio of neighboring support loads."""
 
 
 @dataclass(frozen=True)
@@ -92,11 +92,11 @@ FACE_NODES = NodeRule(64, 0.005, 192, 3)
 
 @dataclass(frozen=True)
 class Plan:
-    """Discretisation of one run.
+    """Discretization of one run.
 
     Attributes
     ----------
-    discretisation : PlaneDiscretisation or FaceDiscretisation
+    discretization : PlaneDiscretization or FaceDiscretization
     patch : PatchRule
     positions : int or None
         Fixed number, or None for adaptive nodes.
@@ -114,7 +114,7 @@ class Plan:
         "draft", "standard" or "fine": that of the meshes.
     """
 
-    discretisation: Discretisation
+    discretization: Discretization
     patch: PatchRule
     positions: int | None
     nodes: NodeRule
@@ -135,7 +135,7 @@ class Plan:
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        return self.discretisation.to_json() | {
+        return self.discretization.to_json() | {
             "patch": asdict(self.patch),
             "positions": self.positions or "adaptive",
             "load": self.load.tolist(),
@@ -170,20 +170,20 @@ def make_plan(
     """
     level = accuracy.level or level
     levels = increasing("load", load)
-    discretisation: Discretisation
+    discretization: Discretization
     if model.across_face:
-        discretisation = face_discretisation(pair, level, slices)
+        discretization = face_discretization(pair, level, slices)
     else:
         stress = accuracy.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
-        discretisation = plane_discretisation(pair, level, hypothesis, model.finite_width)
-    patch = _patch_rule(pair, float(levels[-1]), discretisation)
+        discretization = plane_discretization(pair, level, hypothesis, model.finite_width)
+    patch = _patch_rule(pair, float(levels[-1]), discretization)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
     if accuracy.tolerance is not None:
         nodes = nodes.for_tolerance(accuracy.tolerance)
     support = _support_loads(levels)
     return Plan(
-        discretisation,
+        discretization,
         patch,
         accuracy.positions,
         nodes,
@@ -202,7 +202,7 @@ def _support_loads(levels: FloatArray) -> FloatArray:
     return np.concatenate([np.geomspace(low, high, below + 1)[:-1], [LARGEST_SUPPORT * levels[-1]]])
 
 
-def _patch_rule(pair: ParallelAxes, force: float, made: Discretisation) -> PatchRule:
+def _patch_rule(pair: ParallelAxes, force: float, made: Discretization) -> PatchRule:
     """Return patches wider than any contact strip, within reason, and than the meshes ask for.
 
     `force` is the largest requested load in N.

@@ -8,7 +8,7 @@ from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning.accuracy import LEVELS, Accuracy
 from fe_contact.planning.cost_model import predict_run
-from fe_contact.planning.discretisation import FINER_SLICES, FaceDiscretisation
+from fe_contact.planning.discretization import FINER_SLICES, FaceDiscretization
 from fe_contact.planning.effort import effort
 from fe_contact.planning.error_model import expected_error
 from fe_contact.planning.expected_curves import ExpectedCurves
@@ -52,7 +52,7 @@ def chosen_mesh(
     accuracy : Accuracy
     model : ContactModel
     alignments : (int, int)
-        Numbers of misalignments and of centre distances.
+        Numbers of misalignments and of center distances.
     cache : Path, optional
         Directory of compliances and of what is known of the host: a time depends on them, a tolerance does
         not.
@@ -63,7 +63,7 @@ def chosen_mesh(
     def option(level: str, slices: int | None = None) -> MeshOption:
         plan = make_plan(pair, load, accuracy, model, level, slices)
         error = expected_error(pair, plan, curves)
-        return MeshOption(level, plan.discretisation.slices, error, effort(pair, plan, model, alignments))
+        return MeshOption(level, plan.discretization.slices, error, effort(pair, plan, model, alignments))
 
     def seconds(choice: MeshOption) -> float:
         plan = make_plan(pair, load, accuracy, model, choice.level, choice.slices)
@@ -74,8 +74,8 @@ def chosen_mesh(
     if accuracy.tolerance is None and accuracy.time_budget is None:
         return MeshChoice(option("standard"), True, "nothing asked")
     options = [option(level) for level in LEVELS]
-    usual = make_plan(pair, load, accuracy, model, "draft").discretisation
-    if isinstance(usual, FaceDiscretisation):
+    usual = make_plan(pair, load, accuracy, model, "draft").discretization
+    if isinstance(usual, FaceDiscretization):
         options += [option(level, n) for level in LEVELS for n in FINER_SLICES]
     if accuracy.tolerance is not None:
         return mesh_for_tolerance(accuracy.tolerance, options)

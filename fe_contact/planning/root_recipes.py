@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from fe_contact.compliance import PlaneHypothesis
 from fe_contact.mesh import MeshRecipe, SectorRecipe
-from fe_contact.planning.discretisation import FaceDiscretisation, PlaneDiscretisation
+from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
 
 FINER_LAND, FINER_DEPTH = 2, 2.0 / 3.0
 """Elements along the root, and their depth below both flanks, against those of the contact's sectors."""
@@ -48,9 +48,9 @@ class FaceRootMeshes:
     """Error left over the difference of the two meshes: ratio one and a half or more, second order."""
 
 
-def root_meshes(made: PlaneDiscretisation | FaceDiscretisation) -> PlaneRootMeshes | FaceRootMeshes:
-    """Choose the meshes of the root stress for a contact discretised as `made`."""
-    if isinstance(made, PlaneDiscretisation):
+def root_meshes(made: PlaneDiscretization | FaceDiscretization) -> PlaneRootMeshes | FaceRootMeshes:
+    """Choose the meshes of the root stress for a contact discretized as `made`."""
+    if isinstance(made, PlaneDiscretization):
         return PlaneRootMeshes(made.hypothesis, made.recipes, made.coarse_recipes)
     first, second = (finer_root(recipe) for recipe in made.recipes)
     coarse = tuple(

@@ -98,11 +98,11 @@ _DEVIATIONS = (
     ),
     Check(
         "center_distance_change",
-        "largest change of the centre distance that is not 0",
+        "largest change of the center distance that is not 0",
         0.1e-6,
         None,
         "m",
-        "ISO 286-1: grades of centre distances begin at 1 um",
+        "ISO 286-1: grades of center distances begin at 1 um",
     ),
 )
 _SHAFTS = (

@@ -16,7 +16,7 @@ def with_axis_derivatives(mesh_force: MeshForce) -> ForceTable:
     """Return the table of `mesh_force` with the derivatives that its interpolant uses.
 
     Stiffnesses come limited over all axes jointly, so that the force never falls with deflection; a table
-    with one knot of misalignment and of centre distance is returned as it is.
+    with one knot of misalignment and of center distance is returned as it is.
     """
     table = mesh_force.table
     if table.misalignment.size == 1 and table.center_distance_change.size == 1:
@@ -29,7 +29,7 @@ def with_axis_derivatives(mesh_force: MeshForce) -> ForceTable:
 
 
 def _by_order(grid: LevelGrid) -> FloatArray:
-    """Numbers of a grid over position, misalignment, centre distance as (2, 2, 2, M, D, P, L)."""
+    """Numbers of a grid over position, misalignment, center distance as (2, 2, 2, M, D, P, L)."""
     shape = np.moveaxis(grid.nodal[(0, 0, 0)], 0, 2).shape
     numbers = np.zeros((2, 2, 2, *shape))
     for (position, misalignment, distance), entry in grid.nodal.items():

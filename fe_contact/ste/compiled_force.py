@@ -54,7 +54,7 @@ class CompiledForce:
         return cls(table)
 
     def force_at(self, points: FloatArray) -> Forces:
-        """Evaluate at `points` (4, n): position, misalignment, change of centre distance, deflection.
+        """Evaluate at `points` (4, n): position, misalignment, change of center distance, deflection.
 
         Positions in base pitches, lengths in m, all finite, which the caller has checked. The GIL is free
         meanwhile.

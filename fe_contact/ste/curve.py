@@ -28,7 +28,7 @@ class Curve:
     Attributes
     ----------
     point : OperatingPoint
-        Normal force in N, misalignment and centre-distance change in m.
+        Normal force in N, misalignment and center-distance change in m.
     torque : float
         The load as torque on gear 1, N m.
     position : (Q,) array

@@ -48,7 +48,7 @@ def all_sources(errors: FloatArray) -> FloatArray:
 
 
 def _linear(knots: FloatArray, values: FloatArray, at: float) -> FloatArray:
-    """Interpolate values (K, ...) linearly, held beyond the ends; a knot is not touched by its neighbours."""
+    """Interpolate values (K, ...) linearly, held beyond the ends; a knot is not touched by its neighbors."""
     left = int(np.clip(np.searchsorted(knots, at, side="right") - 1, 0, knots.size - 1))
     if left == knots.size - 1 or at <= knots[left]:
         return np.asarray(values[left])

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class SteDatabase(SteFields):
-    """Static transmission error over position, load, misalignment and centre distance.
+    """Static transmission error over position, load, misalignment and center distance.
 
     The attributes are those of `SteFields`. Arguments left at None mean: perfect alignment, or the only
     stored value of an axis of length 1. A table with failed points answers only with ``allow_failed=True``,
@@ -43,7 +43,7 @@ class SteDatabase(SteFields):
 
         The arguments broadcast. Stored loads give the stored values at the knots. Below the smallest load
         the law of the first interval holds, above the highest the curve goes on straight; misalignment and
-        centre-distance change are held at the ends of their axes (`force_at` flags all three).
+        center-distance change are held at the ends of their axes (`force_at` flags all three).
 
         Raises
         ------
@@ -202,7 +202,7 @@ class SteDatabase(SteFields):
     def _alignment(
         self, misalignment: ArrayLike | None, center_distance_change: ArrayLike | None
     ) -> tuple[ArrayLike, ArrayLike]:
-        """Misalignment and centre-distance change with their defaults."""
+        """Misalignment and center-distance change with their defaults."""
         return (
             default_value(None, self.misalignment) if misalignment is None else misalignment,
             default_value(None, self.center_distance_change)

@@ -65,7 +65,7 @@ class SteFields:
     misalignment : (M,) array
         Gap growth over the common face width in the plane of action, m; zero at mid-face.
     center_distance_change : (D,) array
-        Deviation from the nominal centre distance, m.
+        Deviation from the nominal center distance, m.
     pair : (N,) array
         Consecutive indices of the tooth pairs, counted anew at every whole pitch: pair j touches at phase
         `position` - floor(`position`) + j.
@@ -266,7 +266,7 @@ def _check_values(table: SteFields) -> None:
         not np.all(np.isfinite(ste) == good), "static_transmission_error", "be finite exactly where converged"
     )
     for name in ("static_transmission_error", "no_load_transmission_error"):
-        # micrometres passed as metres are larger than the gear
+        # micrometers passed as meters are larger than the gear
         too_large = np.abs(getattr(table, name)) > table.facts.base_radius[0]
         _refuse(bool(np.any(too_large)), name, "be in m (it exceeds the base radius)")
     _refuse(

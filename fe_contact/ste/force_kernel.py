@@ -24,7 +24,7 @@ class KernelTable(NamedTuple):
     Attributes
     ----------
     knots, spacing : (K,) arrays
-        Of position, misalignment and centre-distance change, one axis after the other; widths of the
+        Of position, misalignment and center-distance change, one axis after the other; widths of the
         intervals that begin at the knots (unused at the last knot of an open axis).
     first, size : (3,) arrays
         Where each axis begins, and how many knots it has.
@@ -180,7 +180,7 @@ def sample_forces(
 ) -> None:
     """Fill force (N), stiffness (N/m) and validity, each (n,).
 
-    `points` (4, n) are position, misalignment, change of centre distance and deflection, all finite.
+    `points` (4, n) are position, misalignment, change of center distance and deflection, all finite.
     """
     knots, spacing, first, size, period, level, deflections, stiffnesses, order = table
     corners = order.shape[0]

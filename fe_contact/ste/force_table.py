@@ -34,8 +34,8 @@ class ForceTable:
     period : int
         Whole base pitches after which the table repeats.
     deflection_derivative, stiffness_derivative : (2, 2, 2, M, D, P, L) arrays or None
-        Differentiated once (1) or not (0) in misalignment, centre-distance change and position: what the C1
-        interpolant over all axes uses. None without a second knot of misalignment or centre distance.
+        Differentiated once (1) or not (0) in misalignment, center-distance change and position: what the C1
+        interpolant over all axes uses. None without a second knot of misalignment or center distance.
     face_centroid : (M, D, P, L) array or None
         Centroid of the load from mid-face at each level, m, towards positive z of the driving gear; at
         lift-off that of the lowest load.

@@ -21,7 +21,7 @@ import numpy as np
 
 from fe_contact.types import BoolArray, FloatArray, IntArray
 
-# between two knots the gap of neighbouring curves keeps at least this part of each end's gap in its
+# between two knots the gap of neighboring curves keeps at least this part of each end's gap in its
 # Bernstein form, so the curves cannot touch
 _GAP_KEPT = 1.0 / 3.0
 
@@ -40,7 +40,7 @@ class Axis:
             return np.diff(self.knots, append=self.knots[0] + self.period)
         return np.diff(self.knots)
 
-    def neighbours(self, per_interval: FloatArray, outside: float) -> tuple[FloatArray, FloatArray]:
+    def neighbors(self, per_interval: FloatArray, outside: float) -> tuple[FloatArray, FloatArray]:
         """Values of the intervals left and right of every knot; `outside` beyond open ends."""
         if self.period:
             return np.roll(per_interval, 1, axis=0), per_interval
@@ -102,7 +102,7 @@ def monotone_slopes(axis: Axis, values: FloatArray) -> FloatArray:
 def ordered_slopes(axis: Axis, levels: FloatArray) -> FloatArray:
     """Slopes of a family of curves (P, ..., L), increasing in L: none overshoots, none touches the next.
 
-    Each slope has its box (monotone pieces), each pair of neighbours a bound on the difference (their gap
+    Each slope has its box (monotone pieces), each pair of neighbors a bound on the difference (their gap
     stays positive). Zero meets all of them, so one pass up the chain finds what is feasible, and one pass
     down picks the slopes nearest to the unbounded ones.
     """
@@ -141,7 +141,7 @@ def _secants(axis: Axis, values: FloatArray) -> FloatArray:
 
 def _monotone_box(axis: Axis, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Bounds of the slope at every knot: three times the flatter chord, zero at an extremum."""
-    before, after = axis.neighbours(_secants(axis, values), np.inf)
+    before, after = axis.neighbors(_secants(axis, values), np.inf)
     low = np.where((before < 0.0) & (after < 0.0), 3.0 * np.maximum(before, after), 0.0)
     high = np.where((before > 0.0) & (after > 0.0), 3.0 * np.minimum(before, after), 0.0)
     if not axis.period:  # an end knot has one chord, of either sign
@@ -151,7 +151,7 @@ def _monotone_box(axis: Axis, values: FloatArray) -> tuple[FloatArray, FloatArra
 
 
 def _akima_slopes(axis: Axis, values: FloatArray) -> FloatArray:
-    """Akima's slopes: of the two chords at a knot, the one in line with its next neighbour counts more."""
+    """Akima's slopes: of the two chords at a knot, the one in line with its next neighbor counts more."""
     chords = _secants(axis, values)
     if axis.period:
         two_left, left, right, two_right = (np.roll(chords, shift, axis=0) for shift in (2, 1, 0, -1))
@@ -179,7 +179,7 @@ def _extended_chords(chords: FloatArray) -> FloatArray:
 def _gap_bounds(axis: Axis, gaps: FloatArray) -> tuple[FloatArray, FloatArray]:
     """How fast the gap to the next curve may fall and rise at every knot."""
     spacing = axis.spacing.reshape(-1, *(1,) * (gaps.ndim - 1))
-    before, after = axis.neighbours(np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:])), 0.0)
+    before, after = axis.neighbors(np.broadcast_to(spacing, (len(spacing), *gaps.shape[1:])), 0.0)
     allowed = 3.0 * (1.0 - _GAP_KEPT) * gaps
     with np.errstate(divide="ignore"):
         return np.asarray(allowed / after), np.asarray(allowed / before)

@@ -177,6 +177,6 @@ def _knot_minimum(axes: tuple[Axis, ...], per_cell: FloatArray) -> FloatArray:
     for i, axis in enumerate(axes):
         if len(axis.knots) > 1:
             moved = np.moveaxis(per_cell, i, 0)
-            before, after = axis.neighbours(moved, np.inf)
+            before, after = axis.neighbors(moved, np.inf)
             per_cell = np.moveaxis(np.minimum(before, after), 0, i)
     return per_cell

@@ -1,4 +1,4 @@
-"""Which load, misalignment and centre distance a question means."""
+"""Which load, misalignment and center distance a question means."""
 
 from __future__ import annotations
 

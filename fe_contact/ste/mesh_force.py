@@ -1,7 +1,7 @@
 """Mesh force as a function of position and deflection, C1 in both, and its exact inverse.
 
 Between two levels the force is a cubic in the deflection with the stored force and tangent stiffness at
-both ends; levels and stiffnesses follow position (and misalignment and centre distance) by C1 monotone
+both ends; levels and stiffnesses follow position (and misalignment and center distance) by C1 monotone
 interpolation. Below the lift-off level the force is zero, above the top level it goes on straight.
 """
 
@@ -33,7 +33,7 @@ class Validity(IntFlag):
     LIFTED_OFF = 1  # no contact; the zero force is right
     ABOVE_TABLE = 2  # beyond the highest stored load: straight continuation
     OUTSIDE_MISALIGNMENT = 4  # value of the nearest stored misalignment
-    OUTSIDE_CENTER_DISTANCE = 8  # value of the nearest stored centre-distance change
+    OUTSIDE_CENTER_DISTANCE = 8  # value of the nearest stored center-distance change
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ class MeshForce:
 
     @cached_property
     def axes(self) -> tuple[Axis, Axis, Axis]:
-        """Position (periodic), misalignment, centre-distance change."""
+        """Position (periodic), misalignment, center-distance change."""
         table = self.table
         position = Axis(table.position, float(table.period))
         return position, Axis(table.misalignment), Axis(table.center_distance_change)

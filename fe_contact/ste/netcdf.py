@@ -33,7 +33,7 @@ ATTRIBUTES: dict[str, tuple[str, str]] = {
     "force": ("N", "total normal tooth force"),
     "torque": ("N m", "torque on the driving gear"),
     "misalignment": ("m", "gap growth over the common face width in the plane of action"),
-    "center_distance_change": ("m", "deviation from the nominal centre distance"),
+    "center_distance_change": ("m", "deviation from the nominal center distance"),
     "pair": ("1", "index of the tooth pair, counted anew at every whole pitch, 0 = reference pair"),
     "static_transmission_error": (
         "m",

@@ -17,7 +17,7 @@ Table = TypeVar("Table", bound=SteFields)
 
 # the lift-off level is closed-form geometry, so it outweighs any solve
 _LIFT_OFF_WEIGHT = 1e6
-# repaired neighbours stay apart by at least this part of the smallest stored tangent compliance
+# repaired neighbors stay apart by at least this part of the smallest stored tangent compliance
 _LEAST_COMPLIANCE = 0.1
 
 

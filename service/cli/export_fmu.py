@@ -95,7 +95,7 @@ def _show(facts: dict[str, Any]) -> None:
     out = console()
     out.print(
         f"{facts['positions']} positions x {facts['levels']} levels to {facts['largest_force_n']:.4g} N, "
-        f"{facts['misalignments']} misalignments x {facts['center_distances']} centre distances",
+        f"{facts['misalignments']} misalignments x {facts['center_distances']} center distances",
         highlight=False,
     )
     out.print(

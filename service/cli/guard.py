@@ -57,7 +57,7 @@ def guarded(verb: Callable[P, R]) -> Callable[P, R]:
             _leave("\n".join((str(stop) or "interrupted", *_notes(stop))), EXIT_INTERRUPTED)
         except BrokenPipeError:
             _close_pipe()
-        except Exception as error:  # noqa: BLE001 (the last line of defence: logged by number below)
+        except Exception as error:  # noqa: BLE001 (the last line of defense: logged by number below)
             known = _known(error)
             _leave(_text(known), known.exit_code)
 

@@ -35,13 +35,13 @@ def _show(found: RunPlan) -> None:
             f"{entry.cost.memory_bytes / 2**20:.0f}",
             f"{100.0 * entry.error.total:.2g}",
             f"{100.0 * entry.error.model:.2g}",
-            *(_micrometres(error) for error in (entry.error.mean, entry.error.peak_to_peak)),
+            *(_micrometers(error) for error in (entry.error.mean, entry.error.peak_to_peak)),
             "chosen" if entry is found.chosen else "",
         ]
         for entry in found.levels
     ]
     out.print(table(head, rows, "Predicted, nothing computed"))
-    model = found.plan.discretisation.to_json()["model"].replace("_", " ")
+    model = found.plan.discretization.to_json()["model"].replace("_", " ")
     positions = found.plan.positions or f"about {found.chosen.cost.positions}, placed where the curve bends"
     out.print(
         f"model {model}; positions {positions}; mesh {found.choice.option.name}: {found.choice.reason}",
@@ -53,6 +53,6 @@ def _show(found: RunPlan) -> None:
         out.print(line, highlight=False)
 
 
-def _micrometres(error: float | None) -> str:
+def _micrometers(error: float | None) -> str:
     """Return an expected error in um: per cent of a small ripple mean little; none where no size is known."""
     return "" if error is None else f"{error / UM:.2g}"

@@ -14,7 +14,7 @@ Json = dict[str, Any]
 _AXES = {
     "force": ("loads", 1.0, "N"),
     "misalignment": ("misalignments", UM, "um"),
-    "center_distance_change": ("centre distance changes", MM, "mm"),
+    "center_distance_change": ("center distance changes", MM, "mm"),
 }
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class LineOfActionClient(Studies):
-    """Analyse cases and simulate scenes at a service; as `JobClient`, which has its parameters."""
+    """Analyze cases and simulate scenes at a service; as `JobClient`, which has its parameters."""
 
     def submit_case(self, case: CaseLike) -> JobState:
         """Enter the analysis of a case: a model, a table of the same shape, or a file."""
@@ -160,7 +160,7 @@ class LineOfActionClient(Studies):
         ------
         BadInput
             Named by the fields of the question.
-        NotAnalysed
+        NotAnalyzed
             The compliance is not in the cache of the service: ask with `condense`.
         NotFound, QueueFull, Superseded, LiveUnavailable, Unreachable, ServiceError
         """

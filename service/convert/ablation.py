@@ -25,7 +25,7 @@ _LEFT_ASIDE = ("receipt", "on_violation", "center_distance_changes")
 
 
 def ablation_of_case(case: Case, only: Sequence[str] | None, cache: Path | None, report: Report) -> Ablation:
-    """Switch the effects of a case over at its nominal centre distance.
+    """Switch the effects of a case over at its nominal center distance.
 
     Raises
     ------
@@ -68,16 +68,16 @@ def ablation_json(found: Ablation | SceneAblation) -> Json:
     return {"of": "case" if isinstance(found, Ablation) else "scene", **in_um(found.to_json())}
 
 
-def in_um(value: Any, *, metres: bool = False) -> Any:
+def in_um(value: Any, *, meters: bool = False) -> Any:
     """Turn every field that ends in _m (and no torque) into one that ends in _um."""
     if isinstance(value, dict):
         return dict(_field(name, inner) for name, inner in value.items())
     if isinstance(value, list):
-        return [in_um(inner, metres=metres) for inner in value]
-    return value / UM if metres and value is not None else value
+        return [in_um(inner, meters=meters) for inner in value]
+    return value / UM if meters and value is not None else value
 
 
 def _field(name: str, value: Any) -> tuple[str, Any]:
     """One field."""
-    metres = name.endswith("_m") and not name.endswith("_n_m")
-    return (f"{name.removesuffix('_m')}_um" if metres else name), in_um(value, metres=metres)
+    meters = name.endswith("_m") and not name.endswith("_n_m")
+    return (f"{name.removesuffix('_m')}_um" if meters else name), in_um(value, meters=meters)

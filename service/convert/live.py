@@ -15,7 +15,7 @@ from fe_contact.ste import SteDatabase
 from service.convert.answers import curve_json
 from service.convert.case import boundary_errors, gear_pair
 from service.convert.derivatives import derivatives_json
-from service.problems import BadInput, Fault, NotAnalysed, NotFound
+from service.problems import BadInput, Fault, NotAnalyzed, NotFound
 from service.schemas import Case
 from service.schemas.live import LiveInput
 from service.schemas.reading import validated
@@ -33,7 +33,7 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
     ------
     NotFound
         The table was removed since it was asked for.
-    NotAnalysed
+    NotAnalyzed
         The compliance is not in the cache, and is not to be computed.
     """
     if not file.exists():
@@ -44,8 +44,8 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
     with boundary_errors():
         found = condensed_pair(gear_pair(case), database, dict(case.effects), cache, compute=compute)
     if found is None:
-        raise NotAnalysed(
-            "The compliance of these gears is not in the cache of this service: they were analysed "
+        raise NotAnalyzed(
+            "The compliance of these gears is not in the cache of this service: they were analyzed "
             "elsewhere, or it was removed. Ask once with condense = true: it is then computed here first, in "
             "seconds in the plane and up to some minutes over the face."
         )

@@ -22,7 +22,7 @@ _FLANK_POINTS, _ROOT_POINTS, _TIP_POINTS = 24, 24, 5
 def outline_json(case: Case) -> Json:
     """Return what a drawing of the pair at position 0 needs; x to the right, y upwards, seen from +z.
 
-    Each gear has one tooth with half a space on either side, in its tooth frame (centre at the origin, tooth
+    Each gear has one tooth with half a space on either side, in its tooth frame (center at the origin, tooth
     on +y), the number of its teeth and the angle by which the whole is turned counter-clockwise. A ring
     gear's tooth is seen from the other side, so that it stands as in the mesh.
 
@@ -88,5 +88,5 @@ def _figures(pair: ParallelAxes) -> Json:
 
 
 def _points(points: FloatArray) -> list[list[float]]:
-    """Return points in mm, to a tenth of a micrometre."""
+    """Return points in mm, to a tenth of a micrometer."""
     return [[round(float(x) / MM, 4), round(float(y) / MM, 4)] for x, y in points]

@@ -21,7 +21,7 @@ _PASSED_ON = ("tolerance", "time_budget", "level", "model", "positions", "effect
 
 @dataclass(frozen=True)
 class Deviations:
-    """What is varied: misalignment in um, centre distance in per cent of the nominal one."""
+    """What is varied: misalignment in um, center distance in per cent of the nominal one."""
 
     misalignment_um: tuple[float, ...]
     center_distance_change_percent: tuple[float, ...]
@@ -54,7 +54,7 @@ def study_case(
     progress: Callable[[str, float], None] | None = None,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> PairStudy:
-    """Study a case at its highest load; its own misalignments and centre distances are left aside.
+    """Study a case at its highest load; its own misalignments and center distances are left aside.
 
     Raises
     ------

@@ -21,10 +21,10 @@ _AXES = ("misalignment", "center_distance_change")
 # dimensions, units and long name; the models are without and with corner contact
 STORED: dict[str, tuple[tuple[str, ...], str, str]] = {
     "normal_force": (("pair",), "N", "normal tooth force F_bn"),
-    "center_distance": (("pair",), "m", "nominal centre distance"),
+    "center_distance": (("pair",), "m", "nominal center distance"),
     "corner_contact": (("model",), "1", "1 with corner contact"),
     "misalignment": (("pair", "misaligned"), "m", "gap growth over the common face width"),
-    "center_distance_change": (("pair", "changed"), "m", "deviation from the nominal centre distance"),
+    "center_distance_change": (("pair", "changed"), "m", "deviation from the nominal center distance"),
     **{
         f"{name}_over_{axis}": (("pair", "model", along), "m", f"{text} over the {axis.replace('_', ' ')}")
         for axis, along in zip(_AXES, ("misaligned", "changed"), strict=True)
@@ -47,7 +47,7 @@ def write_studies(studies: Sequence[PairStudy], path: Path) -> None:
     }
     attributes = {
         "Conventions": "CF-1.11",
-        "title": "Sensitivity of the transmission error to misalignment and centre distance",
+        "title": "Sensitivity of the transmission error to misalignment and center distance",
         "format": FORMAT,
         "schema_version": np.int64(SCHEMA_VERSION),
         "names": json.dumps([study.name for study in studies]),

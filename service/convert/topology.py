@@ -91,4 +91,4 @@ def check_center_distances(scene: SceneInput, facts: Mapping[str, PairFacts]) ->
             bound = (
                 f"{wanted:.7g} mm across the axis from shaft {carrier[mesh.driver]}, not {distance:.7g} mm"
             )
-            raise BadInput.of(field, list(other), bound, f"That is the centre distance of mesh {mesh.name}.")
+            raise BadInput.of(field, list(other), bound, f"That is the center distance of mesh {mesh.name}.")

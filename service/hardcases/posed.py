@@ -31,7 +31,7 @@ class Posed:
 
     @property
     def plan(self) -> Plan:
-        """The discretisation."""
+        """The discretization."""
         return self.contact.plan
 
     @property

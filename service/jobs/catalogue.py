@@ -44,8 +44,8 @@ FLANK = Process(
 )
 SENSITIVITY = Process(
     id="sensitivity",
-    title="Sensitivity to misalignment and centre distance",
-    description="Peak-to-peak transmission error over misalignment and centre distance, varied one at a "
+    title="Sensitivity to misalignment and center distance",
+    description="Peak-to-peak transmission error over misalignment and center distance, varied one at a "
     "time, without and with corner contact.",
     version="2",
     inputs=SensitivityInputs,

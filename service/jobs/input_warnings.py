@@ -21,7 +21,7 @@ Json = dict[str, Any]
 
 @lru_cache(maxsize=256)
 def input_warnings(inputs: str) -> tuple[Json, ...]:
-    """Return the warnings of normalised inputs, given as JSON.
+    """Return the warnings of normalized inputs, given as JSON.
 
     There are none of what has neither case nor scene, and of an older job whose inputs are refused today.
     """
@@ -41,7 +41,7 @@ def _warnings(given: Json) -> list[Json]:
 
 
 def warnings_of_case(case: Json) -> list[Json]:
-    """Judge a normalised case."""
+    """Judge a normalized case."""
     return case_warnings(Case.model_validate_json(json.dumps(case)))
 
 

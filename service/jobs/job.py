@@ -17,7 +17,7 @@ ENDED = ("successful", "failed", "dismissed")
 
 @dataclass(frozen=True)
 class Job:
-    """A job with the state of its computation; times are RFC 3339 in UTC, normalised inputs JSON."""
+    """A job with the state of its computation; times are RFC 3339 in UTC, normalized inputs JSON."""
 
     id: str
     computation: str

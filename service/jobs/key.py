@@ -11,7 +11,7 @@ from service.version import solver_version
 
 
 def content_key(process: str, process_version: str, inputs: dict[str, Any]) -> str:
-    """Return the SHA-256 of the RFC 8785 form of the normalised inputs and the versions, hexadecimal."""
+    """Return the SHA-256 of the RFC 8785 form of the normalized inputs and the versions, hexadecimal."""
     facts: dict[str, Any] = {
         "process": process,
         "process_version": process_version,

@@ -23,7 +23,7 @@ class WorkOrder:
     entry : str
         ``"module:function"`` to call.
     inputs : dict
-        Normalised inputs.
+        Normalized inputs.
     key : str
         Name of the result.
     workspace : Path

@@ -42,14 +42,14 @@ class Process:
     kind : str
         Kind of the result in the store; the client takes the output's name for it, so both are the same.
     prepare : callable
-        ``prepare(inputs, store)`` checks what a schema cannot (raises `BadInput`) and returns the normalised
+        ``prepare(inputs, store)`` checks what a schema cannot (raises `BadInput`) and returns the normalized
         inputs: what is hashed, stored and handed to the worker. Cheap: it runs in the request.
     entry : str
         ``"module:function"`` of the work, called as ``function(order, progress)`` in a process of its own.
     stages : tuple[Stage, ...]
         What the work reports, in order.
     name_result : callable, optional
-        Normalised inputs to the result's content hash, where the work itself defines one; default: the hash
+        Normalized inputs to the result's content hash, where the work itself defines one; default: the hash
         of the inputs with the process and the version of the program.
     """
 
@@ -66,7 +66,7 @@ class Process:
     name_result: Callable[[Json], str] | None = None
 
     def key(self, inputs: Json) -> str:
-        """Return the content hash of the result of normalised inputs."""
+        """Return the content hash of the result of normalized inputs."""
         if self.name_result is not None:
             return self.name_result(inputs)
         return content_key(self.id, self.version, inputs)

@@ -20,7 +20,7 @@
     |- RateExceeded      the caller's key asks more often than it may; try again later
     |- TooManyRequests   the server process is busy with others; try again later
     |- Superseded        a later question of the same caller took its place
-    |- NotAnalysed       nothing is kept to answer from; submit a job first
+    |- NotAnalyzed       nothing is kept to answer from; submit a job first
     |- LiveUnavailable   the live worker ended or took too long; try again
     |- DatabaseUnavailable  the database does not answer; try again later
     |  `- DatabaseDamaged    it answers, and has to be mended first
@@ -36,7 +36,7 @@ from __future__ import annotations
 
 from service.problems.busy import (
     LiveUnavailable,
-    NotAnalysed,
+    NotAnalyzed,
     QueueFull,
     RateExceeded,
     Superseded,
@@ -97,7 +97,7 @@ __all__ = [
     "NoSuchJob",
     "NoSuchProcess",
     "NotAcceptable",
-    "NotAnalysed",
+    "NotAnalyzed",
     "NotForUs",
     "NotFound",
     "QueueFull",

@@ -55,12 +55,12 @@ class Superseded(ServiceError):
     exit_code = EXIT_FAILED
 
 
-class NotAnalysed(ServiceError):
+class NotAnalyzed(ServiceError):
     """There is nothing to answer a live question from."""
 
     status = 409
     type = "urn:lineofaction:problem:not-analysed"
-    title = "The pair has to be analysed first"
+    title = "The pair has to be analyzed first"
     exit_code = EXIT_FAILED
 
 

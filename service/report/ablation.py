@@ -143,12 +143,12 @@ def _over_orders(states: list[tuple[str, FloatArray]], title: str, label: str, u
     lines = []
     for index, (name, amplitude) in enumerate(states):
         order = np.arange(1, amplitude.size + 1, dtype=float)
-        colour = palette.INK if index == 0 else palette.category(index - 1)
+        color = palette.INK if index == 0 else palette.category(index - 1)
         width = 2.6 if index == 0 else 1.2
         values = np.where(amplitude > 0.0, unit * amplitude, np.nan)
         if np.isnan(values).all():
             continue
-        lines.append(Line(name.replace("_", " "), order, values, colour, "solid", width, markers=True))
+        lines.append(Line(name.replace("_", " "), order, values, color, "solid", width, markers=True))
     return Panel(Axis("mesh order"), Axis(label, "log"), tuple(lines), title=title)
 
 

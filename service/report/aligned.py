@@ -1,4 +1,4 @@
-"""The slice of a database that plots show: no misalignment, nominal centre distance, some base pitches."""
+"""The slice of a database that plots show: no misalignment, nominal center distance, some base pitches."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _LIFT_OFF = 0.002  # loads up to this part of the largest serve lift-off
 
 
 def aligned_index(database: SteDatabase) -> tuple[int, int]:
-    """Return the indices on the misalignment and centre-distance axes nearest to zero."""
+    """Return the indices on the misalignment and center-distance axes nearest to zero."""
     axes = (database.misalignment, database.center_distance_change)
     return int(np.argmin(np.abs(axes[0]))), int(np.argmin(np.abs(axes[1])))
 
 
 def aligned(database: SteDatabase) -> tuple[float, float]:
-    """Return the misalignment and centre-distance change (m) that plots show."""
+    """Return the misalignment and center-distance change (m) that plots show."""
     m, d = aligned_index(database)
     return float(database.misalignment[m]), float(database.center_distance_change[d])
 
@@ -108,9 +108,9 @@ def load_labels(database: SteDatabase) -> tuple[str, ...]:
 def load_lines(database: SteDatabase, position: FloatArray, values: FloatArray) -> tuple[Line, ...]:
     """Draw `values` (n, F) as one line per load shown, dark for the smallest."""
     labels, loads = load_labels(database), shown_loads(database)
-    colours = (palette.ordered(step, len(loads)) for step in range(len(loads)))
+    colors = (palette.ordered(step, len(loads)) for step in range(len(loads)))
     return tuple(
-        Line(labels[k], position, values[:, k], colour) for k, colour in zip(loads, colours, strict=True)
+        Line(labels[k], position, values[:, k], color) for k, color in zip(loads, colors, strict=True)
     )
 
 

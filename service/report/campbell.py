@@ -38,7 +38,7 @@ def campbell(run: RunResult) -> Figure:
     return Figure(
         key="campbell",
         title=f"Campbell diagram of the {signal.name}",
-        caption="Colour: amplitude of each block's spectrum (Hann window), in dB below the largest. Dotted: "
+        caption="Color: amplitude of each block's spectrum (Hann window), in dB below the largest. Dotted: "
         f"multiples of the mesh frequency. {CAPTION[whirling(run)]}, one for those that lie together. "
         f"{validity(valid, float(run.mesh_frequency[0].max()))}",
         alternative=_words(made, amplitude, place, axis, modes),
@@ -50,7 +50,7 @@ def campbell(run: RunResult) -> Figure:
 def _panel(
     made: Waterfall, amplitude: FloatArray, axis: Axis, place: FloatArray, top: float, modes: list[ModeLine]
 ) -> Panel:
-    """Colours, orders and modes."""
+    """Colors, orders and modes."""
     shade = _shade(made, amplitude, place, top)
     ends = (float(shade.x[0]), float(shade.x[-1]))
     lines = []
@@ -61,7 +61,7 @@ def _panel(
     marks = []
     flat = all(float(np.ptp(mode.frequency)) == 0.0 for mode in modes)
     for index, mode in enumerate(modes):
-        lines.append(Line(mode.name, place, mode.frequency, mode.colour, "dash", 1.4))
+        lines.append(Line(mode.name, place, mode.frequency, mode.color, "dash", 1.4))
         if flat:
             level = float(mode.frequency[0])
             marks.append(

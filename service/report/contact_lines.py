@@ -26,7 +26,7 @@ def contact_lines(found: LoadDistribution) -> Figure:
         key="contact_lines",
         title="Contact lines in the plane of action",
         caption="Where the tooth pairs touch: face across, path of contact upwards from the pinion's root "
-        "(A) to its tip (E). Colour and thickness: what the line carries there; thin grey: the flanks could "
+        "(A) to its tip (E). Color and thickness: what the line carries there; thin gray: the flanks could "
         "touch but carry nothing.",
         alternative=f"At most {number(float(1e-3 * found.line_load.max()), 4)} N/mm; at position {at}, the "
         f"one of the largest pressure, {_carrying(found, worst)} tooth pairs carry load.",

@@ -94,7 +94,7 @@ def _lead(read: Inputs) -> str:
     facts = pair_facts(read)
     if facts is not None:
         parts.append(
-            f"centre distance {1e3 * facts.center_distance:.6g} mm, "
+            f"center distance {1e3 * facts.center_distance:.6g} mm, "
             f"face width {1e3 * facts.face_width:.6g} mm, base pitch {1e3 * facts.base_pitch:.5g} mm"
         )
     if read.run is not None:

@@ -1,4 +1,4 @@
-"""Peak-to-peak transmission error over the misalignment and centre-distance axes of a database."""
+"""Peak-to-peak transmission error over the misalignment and center-distance axes of a database."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from service.report.figure import Axis, Figure, FloatArray, Panel, Table, number
 
 _RIPPLE = Axis("peak to peak, µm")
 _MISALIGNMENT = Axis("misalignment over the common face width, µm")
-_DISTANCE = Axis("change of the centre distance, mm")
+_DISTANCE = Axis("change of the center distance, mm")
 
 
 def has_deviations(database: SteDatabase) -> bool:
@@ -35,7 +35,7 @@ def deviation_curves(database: SteDatabase) -> Figure:
         axes.append((_DISTANCE, 1e3 * database.center_distance_change, values))
     return Figure(
         key="deviations",
-        title="Peak-to-peak transmission error over misalignment and centre distance",
+        title="Peak-to-peak transmission error over misalignment and center distance",
         caption="Each deviation alone, the other at its stored value nearest to zero. Misalignment > 0: "
         "the gap grows along the face, and the load moves to the other side.",
         alternative=_words(database, axes),

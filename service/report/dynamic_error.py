@@ -64,5 +64,5 @@ def _table(run: RunSeries, speeds: tuple[float, ...], windows: list[slice]) -> T
 
 
 def _um(value: np.floating) -> str:
-    """Write metres as micrometres."""
+    """Write meters as micrometers."""
     return number(1e6 * float(value))

@@ -26,14 +26,14 @@ def line_load_figure(found: LoadDistribution) -> Figure:
     mean = 1e-3 * found.face_load.mean(axis=0)
     names = [f"position {found.position[k]:.3g}" for k in chosen]
     x = 1e3 * found.face_position
-    colours = [palette.BLUE, palette.SKY, palette.GREEN, palette.PURPLE][: len(chosen)]
+    colors = [palette.BLUE, palette.SKY, palette.GREEN, palette.PURPLE][: len(chosen)]
     loads = [
-        Line(name, x, 1e-3 * found.face_load[k], colour)
-        for name, k, colour in zip(names, chosen, colours, strict=True)
+        Line(name, x, 1e-3 * found.face_load[k], color)
+        for name, k, color in zip(names, chosen, colors, strict=True)
     ]
     cycle = Line("mean over the positions", x, mean, palette.VERMILLION, width=3.0)
     factor = found.mean_face_load_factor
-    gaps = _gap_panel(found, face, dict(zip(names, chosen, strict=True)), colours)
+    gaps = _gap_panel(found, face, dict(zip(names, chosen, strict=True)), colors)
     return Figure(
         key="line_load",
         title="Load and gap over the face" if gaps else "Load over the face",
@@ -49,16 +49,14 @@ def line_load_figure(found: LoadDistribution) -> Figure:
 
 
 def _gap_panel(
-    found: LoadDistribution, face: Axis, chosen: dict[str, int], colours: list[str]
+    found: LoadDistribution, face: Axis, chosen: dict[str, int], colors: list[str]
 ) -> tuple[Panel, ...]:
     """Draw the gap left on the pair that carries most; nothing where its flanks touch all along the face."""
     gaps = {name: _gap(found, int(k)) for name, k in chosen.items()}
     if not any(np.nanmax(gap, initial=0.0) > _VISIBLE_GAP for gap in gaps.values()):
         return ()
     x = 1e3 * found.face_position
-    lines = tuple(
-        Line(name, x, gap, colour) for (name, gap), colour in zip(gaps.items(), colours, strict=True)
-    )
+    lines = tuple(Line(name, x, gap, color) for (name, gap), color in zip(gaps.items(), colors, strict=True))
     return (Panel(face, Axis("gap, µm"), lines),)
 
 

@@ -32,7 +32,7 @@ class Line:
     name: str
     x: FloatArray
     y: FloatArray
-    colour: str
+    color: str
     dash: Dash = "solid"
     width: float = 1.8
     markers: bool = False
@@ -48,7 +48,7 @@ class Line:
 class Reference:
     """A straight line across a panel at one value, with a short label beside it.
 
-    The label of a horizontal line is centred at the fraction `at` of the width, or ends there if it is above
+    The label of a horizontal line is centered at the fraction `at` of the width, or ends there if it is above
     one half.
     """
 
@@ -71,9 +71,9 @@ class Note:
 
 @dataclass(frozen=True)
 class HeatMap:
-    """Cells coloured by a value; NaN stays blank.
+    """Cells colored by a value; NaN stays blank.
 
-    `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colours run from 0 to `largest`; `label`
+    `x` (n,) and `y` (m,) are the middles of the cells, `z` (m, n); colors run from 0 to `largest`; `label`
     has the unit after its last comma.
     """
 
@@ -86,9 +86,9 @@ class HeatMap:
 
 @dataclass(frozen=True)
 class Strokes:
-    """Straight strokes coloured and widened by a value.
+    """Straight strokes colored and widened by a value.
 
-    `x` and `y` (n, 2) are their ends, `value` (n,); where it is 0 the stroke is thin and grey. Colours run
+    `x` and `y` (n, 2) are their ends, `value` (n,); where it is 0 the stroke is thin and gray. Colors run
     from 0 to `largest`; `label` has the unit after its last comma.
     """
 
@@ -101,7 +101,7 @@ class Strokes:
 
 @dataclass(frozen=True)
 class Panel:
-    """One pair of axes with its curves, or with values as colours; `title` tells it from its neighbours."""
+    """One pair of axes with its curves, or with values as colors; `title` tells it from its neighbors."""
 
     x: Axis
     y: Axis

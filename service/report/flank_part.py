@@ -69,5 +69,5 @@ def operating_point(found: LoadDistribution) -> str:
     if scene.misalignment:
         parts.append(f"misalignment {number(1e6 * scene.misalignment, 3)} µm")
     if scene.center_distance_change:
-        parts.append(f"centre distance {1e3 * scene.center_distance_change:+.3g} mm")
+        parts.append(f"center distance {1e3 * scene.center_distance_change:+.3g} mm")
     return ", ".join(parts)

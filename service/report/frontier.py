@@ -72,13 +72,11 @@ def _panel(
 ) -> Panel:
     """One panel: points by family, the peer, and the marks."""
     lines = []
-    for name, members, colour in _FAMILIES:
+    for name, members, color in _FAMILIES:
         points = [r for r in found.results if r.name in members and error(r) > 0.0]
         if points:
             time = np.array([r.cpu_seconds for r in points])
-            lines.append(
-                Line(name, time, _percent([error(r) for r in points]), colour, width=0, markers=True)
-            )
+            lines.append(Line(name, time, _percent([error(r) for r in points]), color, width=0, markers=True))
     if with_peer:
         lines += full_contact.known_cost(found)
     judged = float("nan") if found.full_contact is None else error(found.full_contact)

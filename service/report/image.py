@@ -14,7 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from service.report import palette
 from service.report.figure import Axis, Figure, Line, Panel, Reference, Surface, legend_names, repeats_below
-from service.report.image_shade import colour_map, draw_shade
+from service.report.image_shade import color_map, draw_shade
 
 _WIDTH, _PANEL_HEIGHT, _SURFACE_HEIGHT, _DPI = 9.0, 2.7, 6.4, 150
 _LEGEND_CHARACTERS, _HANDLE_CHARACTERS = 120, 9  # of the legend's type: across the sheet, beside a name
@@ -77,12 +77,12 @@ def _legend_columns(names: list[str]) -> int:
 
 def _draw(ax: Axes, line: Line) -> Any:
     """Draw one curve and return its handle."""
-    stroke: dict[str, Any] = {"color": line.colour, "ls": _DASH[line.dash], "lw": line.width * 0.8}
+    stroke: dict[str, Any] = {"color": line.color, "ls": _DASH[line.dash], "lw": line.width * 0.8}
     if line.markers:
         stroke |= {"marker": "o", "ms": 6}
     (handle,) = ax.plot(line.x, line.y, **stroke)
     if line.has_band:
-        ax.fill_between(line.x, line.y - line.band, line.y + line.band, color=line.colour, alpha=0.2, lw=0)
+        ax.fill_between(line.x, line.y - line.band, line.y + line.band, color=line.color, alpha=0.2, lw=0)
     return handle
 
 
@@ -127,7 +127,7 @@ def _scale(ax: Axes, axis: Axis, name: str) -> None:
 
 
 def _refer(ax: Axes, reference: Reference, *, boxed: bool) -> None:
-    """Draw a reference line with its label, in a white box where colours lie under it."""
+    """Draw a reference line with its label, in a white box where colors lie under it."""
     text = f" {reference.label}"
     stroke: dict[str, Any] = {"color": palette.MUTED, "ls": "--", "lw": 0.8, "zorder": 2.5 if boxed else 0.5}
     if reference.direction == "vertical":
@@ -151,10 +151,10 @@ def _surface_sheet(surface: Surface) -> Sheet:
     sheet = Sheet(figsize=(_WIDTH, _SURFACE_HEIGHT), layout="constrained")
     ax: Any = sheet.add_subplot(projection="3d")
     ax.set_box_aspect((1.4, 1.2, 0.8), zoom=1.05)
-    colours = colour_map()
+    colors = color_map()
     x, y = np.meshgrid(surface.x, surface.y)
     drawn = ax.plot_surface(
-        x, y, surface.z, cmap=colours, rcount=40, ccount=100, linewidth=0, antialiased=True
+        x, y, surface.z, cmap=colors, rcount=40, ccount=100, linewidth=0, antialiased=True
     )
     for axis, name in zip(surface.axes, "xyz", strict=True):
         getattr(ax, f"set_{name}label")(axis.label, labelpad=8)

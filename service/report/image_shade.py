@@ -15,13 +15,13 @@ from service.report.figure import HeatMap, Strokes
 THIN, THICK = 0.7, 4.0  # points
 
 
-def colour_map() -> LinearSegmentedColormap:
+def color_map() -> LinearSegmentedColormap:
     """Return the ordered palette."""
     return LinearSegmentedColormap.from_list("cividis_steps", palette.CIVIDIS)
 
 
 def draw_shade(ax: Axes, shade: HeatMap | Strokes) -> None:
-    """Draw values as colours, with their scale beside the panel."""
+    """Draw values as colors, with their scale beside the panel."""
     drawn = _cells(ax, shade) if isinstance(shade, HeatMap) else _strokes(ax, shade)
     figure: Any = ax.get_figure()
     figure.colorbar(drawn, ax=ax, label=shade.label, pad=0.015, fraction=0.06, aspect=14)
@@ -31,7 +31,7 @@ def _cells(ax: Axes, shade: HeatMap) -> Any:
     """Draw a heat map."""
     z = np.ma.masked_invalid(shade.z)
     return ax.pcolormesh(
-        _edges(shade.x), _edges(shade.y), z, cmap=colour_map(), vmin=0.0, vmax=shade.largest, rasterized=True
+        _edges(shade.x), _edges(shade.y), z, cmap=color_map(), vmin=0.0, vmax=shade.largest, rasterized=True
     )
 
 
@@ -50,7 +50,7 @@ def _strokes(ax: Axes, shade: Strokes) -> Any:
     ax.add_collection(LineCollection(list(ends[bare]), colors=palette.MUTED, linewidths=THIN, alpha=0.6))
     loaded = LineCollection(
         list(ends[~bare]),
-        cmap=colour_map(),
+        cmap=color_map(),
         linewidths=THIN + (THICK - THIN) * value[~bare] / shade.largest,
         array=value[~bare],
         capstyle="butt",

@@ -20,7 +20,7 @@ from service.report.figure import (
     repeats_below,
     unit_of,
 )
-from service.report.interactive_shade import colour_scale, shade_traces
+from service.report.interactive_shade import color_scale, shade_traces
 
 Json = dict[str, Any]
 
@@ -28,7 +28,7 @@ _PANEL_HEIGHT, _SURFACE_HEIGHT, _BELOW, _BETWEEN = 280, 520, 60, 62  # pixels
 _LABEL = 26  # pixels of an axis label between panels
 _LEGEND_ROW = 22  # pixels
 _NOTE_ROW = 15  # pixels
-_BAND_ALPHA = "33"  # of an error band, after the six digits of its colour
+_BAND_ALPHA = "33"  # of an error band, after the six digits of its color
 _ROW_CHARACTERS, _HANDLE_CHARACTERS = 120, 7  # of the legend's type: across the page, beside a name
 _FONT = {"family": "system-ui, -apple-system, 'Segoe UI', 'Liberation Sans', sans-serif", "size": 14}
 
@@ -127,7 +127,7 @@ def _line(line: Line, suffix: str, show: bool) -> Json:
         "y": numbers(line.y),
         "xaxis": "x" + suffix,
         "yaxis": "y" + suffix,
-        "line": {"color": line.colour, "dash": line.dash, "width": line.width},
+        "line": {"color": line.color, "dash": line.dash, "width": line.width},
         "legendgroup": line.name,
         "showlegend": show,
     }
@@ -140,7 +140,7 @@ def _band(line: Line, suffix: str) -> list[Json]:
     edge: Json = {"type": "scatter", "mode": "lines", "line": {"width": 0}, "hoverinfo": "skip"}
     edge |= {"x": numbers(line.x), "xaxis": "x" + suffix, "yaxis": "y" + suffix}
     edge |= {"legendgroup": line.name, "showlegend": False}
-    filled = {"fill": "tonexty", "fillcolor": line.colour + _BAND_ALPHA}
+    filled = {"fill": "tonexty", "fillcolor": line.color + _BAND_ALPHA}
     return [edge | {"y": numbers(line.y - line.band)}, edge | filled | {"y": numbers(line.y + line.band)}]
 
 
@@ -194,7 +194,7 @@ def _surface(surface: Surface) -> Json:
         "x": numbers(surface.x),
         "y": numbers(surface.y),
         "z": [numbers(row) for row in surface.z],
-        "colorscale": colour_scale(),
+        "colorscale": color_scale(),
         "colorbar": {"title": {"text": unit_of(surface.axes[2].label)}, "thickness": 14, "len": 0.7},
     }
 

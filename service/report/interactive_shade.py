@@ -11,13 +11,13 @@ from service.report.figure import HeatMap, Strokes, number, numbers, unit_of
 
 Json = dict[str, Any]
 
-STEPS = 12  # colours of strokes: a curve of plotly has one colour
+STEPS = 12  # colors of strokes: a curve of plotly has one color
 THIN, THICK = 1.0, 6.0  # pixels
 
 
-def colour_scale() -> list[list[Any]]:
+def color_scale() -> list[list[Any]]:
     """Return the ordered palette."""
-    return [[i / (len(palette.CIVIDIS) - 1), colour] for i, colour in enumerate(palette.CIVIDIS)]
+    return [[i / (len(palette.CIVIDIS) - 1), color] for i, color in enumerate(palette.CIVIDIS)]
 
 
 def shade_traces(shade: HeatMap | Strokes, suffix: str, domain: list[float]) -> list[Json]:
@@ -27,7 +27,7 @@ def shade_traces(shade: HeatMap | Strokes, suffix: str, domain: list[float]) -> 
     return [place | trace for trace in traces]
 
 
-def _colour_bar(label: str, domain: list[float]) -> Json:
+def _color_bar(label: str, domain: list[float]) -> Json:
     """Place the scale beside its panel."""
     middle, length = 0.5 * (domain[0] + domain[1]), domain[1] - domain[0]
     return {
@@ -50,14 +50,14 @@ def _cells(shade: HeatMap, domain: list[float]) -> Json:
         "zmin": 0.0,
         "zmax": shade.largest,
         "hoverongaps": False,
-        "colorscale": colour_scale(),
-        "colorbar": _colour_bar(shade.label, domain),
+        "colorscale": color_scale(),
+        "colorbar": _color_bar(shade.label, domain),
         "hovertemplate": f"x %{{x:.4g}}<br>y %{{y:.4g}}<br>%{{z:.4g}} {unit_of(shade.label)}<extra></extra>",
     }
 
 
 def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:
-    """Draw strokes in steps of colour and width, and a scale for them."""
+    """Draw strokes in steps of color and width, and a scale for them."""
     step = np.ceil(STEPS * np.clip(shade.value / shade.largest, 0.0, 1.0)).astype(int)
     unit = unit_of(shade.label)
     traces = [_step(shade, step == k, k, unit) for k in range(STEPS + 1) if np.any(step == k)]
@@ -71,9 +71,9 @@ def _strokes(shade: Strokes, domain: list[float]) -> list[Json]:
             "color": [0.0],
             "cmin": 0.0,
             "cmax": shade.largest,
-            "colorscale": colour_scale(),
+            "colorscale": color_scale(),
             "showscale": True,
-            "colorbar": _colour_bar(shade.label, domain),
+            "colorbar": _color_bar(shade.label, domain),
         },
     }
     return [*traces, scale]

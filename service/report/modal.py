@@ -93,13 +93,13 @@ def _order_notes(found: ModalAnalysis, place: FloatArray, top: float) -> Iterato
 
 def _modes(found: ModalAnalysis, place: FloatArray) -> Iterator[Line]:
     """Every mode by its sense of whirl; points between two speeds take that of the first."""
-    for name, (colour, dash) in WHIRLS.items():
+    for name, (color, dash) in WHIRLS.items():
         for mode in range(found.frequency.shape[1]):
             here = np.array([whirl_name(w) == name for w in found.whirl[:, mode]])
             if not np.any(here):
                 continue
             shown = here | np.append(False, here[:-1])
-            yield Line(name, place, np.where(shown, found.frequency[:, mode], np.nan), colour, dash, 1.6)
+            yield Line(name, place, np.where(shown, found.frequency[:, mode], np.nan), color, dash, 1.6)
 
 
 def _energies(found: ModalAnalysis) -> Figure:

@@ -26,10 +26,10 @@ _COLOURS = {
 
 @dataclass(frozen=True)
 class ModeLine:
-    """A mode over the blocks of a diagram: its name in the legend, colour, and frequency (B,) in Hz."""
+    """A mode over the blocks of a diagram: its name in the legend, color, and frequency (B,) in Hz."""
 
     name: str
-    colour: str
+    color: str
     frequency: FloatArray
 
 

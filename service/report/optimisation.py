@@ -97,7 +97,7 @@ def _scattered(found: ShownOptimisation) -> str:
 def _ripple(found: ShownOptimisation) -> Panel:
     """Draw the expectation of both designs over torque, between the extremes of their nodes."""
     lines: list[Line] = []
-    for name, design, colour in (
+    for name, design, color in (
         ("before", found.start, palette.VERMILLION),
         ("after", found.optimum, palette.BLUE),
     ):
@@ -107,9 +107,9 @@ def _ripple(found: ShownOptimisation) -> Panel:
                 ("least", harris.peak_to_peak.min(0)),
                 ("largest", harris.peak_to_peak.max(0)),
             ):
-                lines.append(Line(f"{name}, {what}", harris.torque, values / UM, colour, "dot", 1.0))
-            lines.append(Line(f"{name}, no scatter", harris.torque, harris.nominal / UM, colour, "dash", 1.0))
-        lines.append(Line(name, harris.torque, harris.expected / UM, colour, "solid", 2.4, markers=True))
+                lines.append(Line(f"{name}, {what}", harris.torque, values / UM, color, "dot", 1.0))
+            lines.append(Line(f"{name}, no scatter", harris.torque, harris.nominal / UM, color, "dash", 1.0))
+        lines.append(Line(name, harris.torque, harris.expected / UM, color, "solid", 2.4, markers=True))
     counted = tuple(Reference("", float(torque)) for torque in found.torque)
     across = Axis("torque on the driving gear, N m")
     return Panel(across, Axis("peak to peak, µm"), tuple(lines), counted, title="Ripple over torque")

@@ -1,4 +1,4 @@
-"""Colours that stay apart for colour-blind readers and in grey print.
+"""Colors that stay apart for color-blind readers and in gray print.
 
 Categories take the palette of Okabe and Ito (2008); ordered values take dark-to-light steps of cividis, which
 rises evenly in lightness for normal and for red-green-blind eyes (Nunez, Anderton and Renslow 2018, PLoS ONE
@@ -27,22 +27,22 @@ _DARKEST, _LIGHTEST = 0.0, 0.82  # lighter than this vanishes on white paper
 
 
 def category(index: int) -> str:
-    """Return the colour of the index-th category; after six they repeat."""
+    """Return the color of the index-th category; after six they repeat."""
     return CATEGORIES[index % len(CATEGORIES)]
 
 
 def ordered(index: int, count: int) -> str:
-    """Return the colour of step `index` of `count` ordered values, dark for the first."""
+    """Return the color of step `index` of `count` ordered values, dark for the first."""
     return cividis(_DARKEST + (_LIGHTEST - _DARKEST) * index / max(count - 1, 1))
 
 
 def cividis(fraction: float) -> str:
-    """Return the colour at a fraction, 0 to 1, of the ordered palette."""
+    """Return the color at a fraction, 0 to 1, of the ordered palette."""
     low = min(int(fraction * 10), 9)
     return _blend(CIVIDIS[low], CIVIDIS[low + 1], fraction * 10 - low)
 
 
 def _blend(first: str, second: str, weight: float) -> str:
-    """Mix two hex colours."""
+    """Mix two hex colors."""
     parts = ((int(first[i : i + 2], 16), int(second[i : i + 2], 16)) for i in (1, 3, 5))
     return "#" + "".join(f"{round(a + (b - a) * weight):02X}" for a, b in parts)

@@ -52,8 +52,8 @@ def _harmonics(across: Axis, torque: FloatArray, curves: dict[int, Curve]) -> Pa
     lines, notes = [], []
     for order in kept:
         name, last = f"{order + 1}", int(np.flatnonzero(np.isfinite(levels[:, order]))[-1])
-        colour = palette.ordered(order, HARMONICS)
-        lines.append(Line(name, torque, levels[:, order], colour, markers=True))
+        color = palette.ordered(order, HARMONICS)
+        lines.append(Line(name, torque, levels[:, order], color, markers=True))
         notes.append(Note(float(torque[last]), float(levels[last, order]), name))
     names = placed(notes, across, axis, (low, high))
     return Panel(across, axis, tuple(lines), title=f"Mesh harmonics 1 to {HARMONICS}", notes=names)

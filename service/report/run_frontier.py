@@ -65,12 +65,12 @@ def run_frontier_page(found: Frontier, title: str) -> Page:
 def _panel(found: Frontier, title: str, label: str, which: int) -> Panel:
     """One panel: points by family, and the marks."""
     lines, notes = [], []
-    for name, family, colour in _FAMILIES:
+    for name, family, color in _FAMILIES:
         points = [r for r in found.results if r.family == family and r.errors[which] > 0.0]
         if points:
             time = np.array([r.cpu_seconds for r in points])
             error = 100.0 * np.array([r.errors[which] for r in points])
-            lines.append(Line(name, time, error, colour, width=0, markers=True))
+            lines.append(Line(name, time, error, color, width=0, markers=True))
         notes += [Note(r.cpu_seconds, 100.0 * r.errors[which], _note(found, r)) for r in points]
     return Panel(_time_axis(found), Axis(label, "log"), tuple(lines), title=title, notes=tuple(notes))
 

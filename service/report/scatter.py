@@ -38,8 +38,8 @@ def _distribution(found: ToleranceStudy) -> Panel:
         ordered = np.sort(found.peak_to_peak[:, k]) / UM
         part = np.arange(1, ordered.size + 1) / ordered.size
         kept = np.unique(np.linspace(0, ordered.size - 1, min(_STEPS, ordered.size)).astype(int))
-        colour = palette.ordered(k, found.torque.size)
-        lines.append(Line(f"{name} N m", ordered[kept], part[kept], colour))
+        color = palette.ordered(k, found.torque.size)
+        lines.append(Line(f"{name} N m", ordered[kept], part[kept], color))
     return Panel(Axis("peak to peak, µm"), Axis("part of all pairs"), tuple(lines), title="Distribution")
 
 
@@ -47,11 +47,11 @@ def _over_torque(found: ToleranceStudy) -> Panel:
     """Draw quantiles over torque."""
     lines = []
     for k, one in enumerate(found.quantiles):
-        colour, name = palette.category(k), f"{100 * one.fraction:g} %"
-        lines.append(Line(name, found.torque, one.value / UM, colour, markers=True))
+        color, name = palette.category(k), f"{100 * one.fraction:g} %"
+        lines.append(Line(name, found.torque, one.value / UM, color, markers=True))
         for what, bound in (("lower", one.low), ("upper", one.high)):
             if bound.all() and np.isfinite(bound).all():
-                lines.append(Line(f"{name}, {what}", found.torque, bound / UM, colour, "dot", 1.0))
+                lines.append(Line(f"{name}, {what}", found.torque, bound / UM, color, "dot", 1.0))
     lines.append(Line("as designed", found.torque, found.nominal / UM, palette.INK, "dash", markers=True))
     across = Axis("torque on the driving gear, N m")
     return Panel(across, Axis("peak to peak, µm"), tuple(lines), title="Quantiles")

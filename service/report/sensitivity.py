@@ -1,4 +1,4 @@
-"""Peak-to-peak transmission error over misalignment and centre distance, in per cent and in micrometres."""
+"""Peak-to-peak transmission error over misalignment and center distance, in per cent and in micrometers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from service.report import palette
 from service.report.figure import Axis, Dash, Figure, FloatArray, Line, Panel, Table, number
 
 _MISALIGNMENT = Axis("misalignment over the common face width, µm")
-_DISTANCE = Axis("change of the centre distance, %")
+_DISTANCE = Axis("change of the center distance, %")
 _PER_CENT, _MICROMETRES = Axis("change of peak to peak, %"), Axis("peak to peak, µm")
 _HEAD = ("pair", "corner contact", "deviation", "peak to peak, µm", "error, µm", "change, %")
 
@@ -28,13 +28,13 @@ def sensitivity_figure(studies: Sequence[PairStudy]) -> Figure:
     """
     return Figure(
         key="sensitivity",
-        title="Sensitivity of the transmission error to misalignment and centre distance",
-        caption="Peak-to-peak static transmission error against the aligned pair's, and in micrometres: per "
+        title="Sensitivity of the transmission error to misalignment and center distance",
+        caption="Peak-to-peak static transmission error against the aligned pair's, and in micrometers: per "
         "cents of a small ripple grow large. Dashed: contact ends where plain involutes leave each other.",
         alternative=_words(studies),
         content=(
             *_panels(studies, "Misalignment", _MISALIGNMENT, _over_misalignment),
-            *_panels(studies, "Centre distance", _DISTANCE, _over_distance),
+            *_panels(studies, "Center distance", _DISTANCE, _over_distance),
         ),
         table=sensitivity_table(studies),
     )
@@ -48,7 +48,7 @@ def sensitivity_table(studies: Sequence[PairStudy]) -> Table:
         for curves in study.curves
         for row in chain(
             _rows(_over_misalignment(study, curves), "misalignment {} µm"),
-            _rows(_over_distance(study, curves), "centre distance {} %"),
+            _rows(_over_distance(study, curves), "center distance {} %"),
         )
     ]
     return Table("Peak-to-peak transmission error", _HEAD, tuple(rows))
@@ -60,7 +60,7 @@ def _over_misalignment(_study: PairStudy, curves: Sensitivity) -> Curve:
 
 
 def _over_distance(study: PairStudy, curves: Sensitivity) -> Curve:
-    """Change of the centre distance in per cent, and its curve."""
+    """Change of the center distance in per cent, and its curve."""
     change = curves.center_distance_change
     return 100.0 * change.deviation / study.center_distance, change
 
@@ -68,16 +68,16 @@ def _over_distance(study: PairStudy, curves: Sensitivity) -> Curve:
 def _panels(
     studies: Sequence[PairStudy], title: str, x: Axis, curve_of: Callable[[PairStudy, Sensitivity], Curve]
 ) -> tuple[Panel, Panel]:
-    """One panel in per cent and one in micrometres over the same deviation."""
+    """One panel in per cent and one in micrometers over the same deviation."""
     relative, absolute = [], []
     for index, study in enumerate(studies):
         for curves in study.curves:
             at, curve = curve_of(study, curves)
             name = f"{study.name}, {'with' if curves.corner_contact else 'without'} corner contact"
             dash: Dash = "solid" if curves.corner_contact else "dash"
-            colour = palette.category(index)
-            relative.append(Line(name, at, 100.0 * curve.relative_change, colour, dash))
-            absolute.append(Line(name, at, 1e6 * curve.peak_to_peak, colour, dash))
+            color = palette.category(index)
+            relative.append(Line(name, at, 100.0 * curve.relative_change, color, dash))
+            absolute.append(Line(name, at, 1e6 * curve.peak_to_peak, color, dash))
     return Panel(x, _PER_CENT, tuple(relative), title=title), Panel(x, _MICROMETRES, tuple(absolute))
 
 
@@ -102,4 +102,4 @@ def _words(studies: Sequence[PairStudy]) -> str:
             )
             how = "with" if curves.corner_contact else "without"
             parts.append(f"{study.name} {how} corner contact {skew:+.0f} % and {distance:+.0f} %")
-    return f"Largest change with misalignment and with centre distance: {'; '.join(parts)}."
+    return f"Largest change with misalignment and with center distance: {'; '.join(parts)}."

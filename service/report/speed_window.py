@@ -34,9 +34,9 @@ def speed_window(position: FloatArray, speed: FloatArray, target: float, pitches
     target : float
         In the unit of `speed`.
     """
-    travelled = np.abs(position - position[0])
+    traveled = np.abs(position - position[0])
     passing = int(np.argmax(np.abs(speed) >= target)) or int(np.argmin(np.abs(np.abs(speed) - target)))
-    first = min(np.floor(travelled[passing] - pitches / 2), np.floor(travelled[-1]) - pitches)
-    start = int(np.searchsorted(travelled, max(first, 0.0)))
-    stop = int(np.searchsorted(travelled, max(first, 0.0) + pitches, side="right"))
+    first = min(np.floor(traveled[passing] - pitches / 2), np.floor(traveled[-1]) - pitches)
+    start = int(np.searchsorted(traveled, max(first, 0.0)))
+    stop = int(np.searchsorted(traveled, max(first, 0.0) + pitches, side="right"))
     return slice(start, max(stop, start + 2))

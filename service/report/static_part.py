@@ -69,7 +69,7 @@ def _across_face(database: SteDatabase) -> tuple[Section, ...]:
     """Show the deviations and the face, where the database has any of them."""
     figures = [deviation_curves(database)] if has_deviations(database) else []
     figures += [face_load(database)] if has_face_load(database) else []
-    title = "Misalignment, centre distance and the face"
+    title = "Misalignment, center distance and the face"
     return (Section(title, figures=tuple(figures)),) if figures else ()
 
 
@@ -170,5 +170,5 @@ def _band(estimate: Estimate) -> str:
 
 
 def _um(value: float, digits: int = 4) -> str:
-    """Write metres as micrometres."""
+    """Write meters as micrometers."""
     return number(1e6 * value, digits)

@@ -133,11 +133,11 @@ def _table(database: SteDatabase) -> Table:
 
 
 def _band(estimate: Estimate) -> str:
-    """Write a number in micrometres, with its error if that was estimated."""
+    """Write a number in micrometers, with its error if that was estimated."""
     value = _um(estimate.value)
     return value if np.isnan(estimate.error) else f"{value} ± {_um(estimate.error, 2)}"
 
 
 def _um(value: float, digits: int = 4) -> str:
-    """Write metres as micrometres."""
+    """Write meters as micrometers."""
     return number(value * 1e6, digits)

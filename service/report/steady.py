@@ -70,12 +70,12 @@ def _lines(found: SteadyStates, values: FloatArray) -> Iterator[Line]:
         style: Dash = "solid" if dash == "solid" else "dash"
         line = np.where(shown, values[on], np.nan)
         yield Line(name, found.speed[on] / RPM, line, palette.INK, style, 1.3)
-    for curve, name, colour in _SWEEPS:
+    for curve, name, color in _SWEEPS:
         there = np.flatnonzero(found.curve == curve)
         if there.size:
             few = there.size <= MARKED
             yield Line(
-                name, found.speed[there] / RPM, values[there], colour, width=0.0 if few else 1.4, markers=few
+                name, found.speed[there] / RPM, values[there], color, width=0.0 if few else 1.4, markers=few
             )
 
 

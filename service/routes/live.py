@@ -29,7 +29,7 @@ _REFUSED = documented(400, 409, 413, 415, 422, 429, 500, 503)
     responses={200: {"model": LiveOutput, "description": "The curves"}, **_REFUSED, **documented(404)},
 )
 async def live_ste(key: Key, body: LiveInput, context: Ctx) -> Response:
-    """Curves of the gears of a database with other flanks, torques, misalignment and centre distance.
+    """Curves of the gears of a database with other flanks, torques, misalignment and center distance.
 
     They come from the compliance in the cache, without finite elements, and say what they may be wrong by.
     """

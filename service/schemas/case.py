@@ -32,7 +32,7 @@ def _increasing(field: str, values: tuple[float, ...] | None) -> None:
 
 
 class PairInput(BoundaryModel):
-    """A pinion, an external wheel or a ring gear of the same basic rack, and their centre distance."""
+    """A pinion, an external wheel or a ring gear of the same basic rack, and their center distance."""
 
     normal_module_mm: float = Field(gt=0.0, le=100.0, description="Normal module in mm", examples=[4.0])
     normal_pressure_angle_deg: float = Field(
@@ -46,7 +46,7 @@ class PairInput(BoundaryModel):
         examples=[0.0],
     )
     center_distance_mm: float = Field(
-        gt=0.0, le=50_000.0, description="Centre distance in mm", examples=[80.0]
+        gt=0.0, le=50_000.0, description="Center distance in mm", examples=[80.0]
     )
     pinion: GearInput = Field(description="The driving gear")
     wheel: WheelInput = Field(description="The driven gear, external or a ring gear")
@@ -89,7 +89,7 @@ class ErrorsInput(BoundaryModel):
         examples=[[0.0, 30.0]],
     )
     center_distance_change_mm: CenterDistanceChanges = Field(
-        default=(0.0,), description="Changes of the centre distance in mm", examples=[[0.0]]
+        default=(0.0,), description="Changes of the center distance in mm", examples=[[0.0]]
     )
 
     @model_validator(mode="after")

@@ -33,7 +33,7 @@ class FlankPoint(BoundaryModel):
         default=None,
         ge=-10.0,
         le=10.0,
-        description="Change of the centre distance in mm; left out: the case's value nearest to 0",
+        description="Change of the center distance in mm; left out: the case's value nearest to 0",
         examples=[0.0],
     )
 

@@ -51,7 +51,7 @@ class LiveInput(BoundaryModel):
         default=0.0,
         ge=-10.0,
         le=10.0,
-        description="Change of the centre distance in mm; each new one is assembled first (0.2 to 1 s)",
+        description="Change of the center distance in mm; each new one is assembled first (0.2 to 1 s)",
         examples=[0.0],
     )
     pinion: FlankChange = Field(  # type: ignore[valid-type]
@@ -63,13 +63,13 @@ class LiveInput(BoundaryModel):
     derivatives: bool = Field(
         default=False,
         description="Also return the derivatives of every curve by its flanks, misalignment and torque, and "
-        "where on the flanks a micrometre matters",
+        "where on the flanks a micrometer matters",
         examples=[True],
     )
     condense: bool = Field(
         default=False,
         description="Compute the compliance first if this service has none in its cache, as of gears that "
-        "were analysed elsewhere (else refused, not-analysed); what a minute is too short for goes on when "
+        "were analyzed elsewhere (else refused, not-analysed); what a minute is too short for goes on when "
         "asked again",
         examples=[False],
     )
@@ -103,7 +103,7 @@ class CurveDerivative(BoundaryModel):
 
 
 class FlankDerivative(BoundaryModel):
-    """Change per micrometre removed at each node of a grid on a flank, bilinear between the nodes."""
+    """Change per micrometer removed at each node of a grid on a flank, bilinear between the nodes."""
 
     roll_length_mm: list[float] = Field(description="Rows of the grid: roll lengths", examples=[[4.0, 9.0]])
     face_position_mm: list[float] = Field(
@@ -138,14 +138,14 @@ class CurveDerivatives(BoundaryModel):
 class LiveCurve(BoundaryModel):
     """Transmission error over one period at one load, with what it may be wrong by.
 
-    An error covers the discretisation of the same model, all sources together; see docs/accuracy.md.
+    An error covers the discretization of the same model, all sources together; see docs/accuracy.md.
     """
 
     torque_n_m: float = Field(description="Torque on the driving gear in N m", examples=[100.0])
     normal_force_n: float = Field(description="Normal tooth force in N", examples=[2660.4])
     misalignment_um: float = Field(description="Misalignment in um", examples=[0.0])
     center_distance_change_mm: float = Field(
-        description="Change of the centre distance in mm", examples=[0.0]
+        description="Change of the center distance in mm", examples=[0.0]
     )
     period: int = Field(description="Base pitches after which all repeats", examples=[1])
     position: list[float] = Field(description="Base pitches; 0 = pitch point", examples=[[0.0, 0.5]])

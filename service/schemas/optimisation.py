@@ -177,7 +177,7 @@ class OptimisationInput(BoundaryModel):
     scatter: ScatterInput = Field(
         default=ScatterInput(), description="Deviations of assembly and manufacture"
     )
-    objective: ObjectiveInput = Field(default=ObjectiveInput(), description="What is minimised")
+    objective: ObjectiveInput = Field(default=ObjectiveInput(), description="What is minimized")
     limits: LimitsInput = Field(default=LimitsInput(), description="What has to be kept")
     search: SearchInput = Field(default=SearchInput(), description="How it is searched")
 

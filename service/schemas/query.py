@@ -66,7 +66,7 @@ class QueryInput(BoundaryModel):
     )
     center_distance_change_mm: _Changes = Field(
         default=0.0,
-        description="Change of the centre distance in mm, one value or one per point",
+        description="Change of the center distance in mm, one value or one per point",
         examples=[0.0],
     )
 

@@ -93,7 +93,7 @@ class MeshInput(BoundaryModel):
         default=0.0, ge=-1e4, le=1e4, description="Misalignment in um", examples=[0.0]
     )
     center_distance_change_mm: float = Field(
-        default=0.0, ge=-100.0, le=100.0, description="Change of the centre distance in mm", examples=[0.0]
+        default=0.0, ge=-100.0, le=100.0, description="Change of the center distance in mm", examples=[0.0]
     )
     friction: float | None = Field(
         default=None,

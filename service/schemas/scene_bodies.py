@@ -12,7 +12,7 @@ from service.schemas.scene_types import Coordinate, MatrixRows, Name, Number, Ro
 
 
 class InertiaInput(BoundaryModel):
-    """Inertia of a body of revolution about its own centre of mass."""
+    """Inertia of a body of revolution about its own center of mass."""
 
     mass_kg: float = Field(ge=0.0, le=1e9, description="Mass in kg", examples=[2.0])
     polar_kg_m2: float = Field(

@@ -14,7 +14,7 @@ Percent = Annotated[float, Field(ge=-10.0, le=10.0)]
 
 
 class DeviationsInput(BoundaryModel):
-    """Misalignments and changes of the centre distance, varied one at a time; zero is always added."""
+    """Misalignments and changes of the center distance, varied one at a time; zero is always added."""
 
     misalignment_um: Annotated[tuple[Misalignment, ...], Strict(False)] = Field(
         default=(0.0, 15.0, 30.0, 45.0, 60.0),
@@ -27,7 +27,7 @@ class DeviationsInput(BoundaryModel):
         default=(-0.2, -0.1, 0.0, 0.1, 0.2),
         min_length=1,
         max_length=64,
-        description="Changes of the centre distance in per cent of the nominal one, increasing",
+        description="Changes of the center distance in per cent of the nominal one, increasing",
         examples=[[-0.1, 0.0, 0.1]],
     )
 

@@ -1,7 +1,7 @@
 """Bodies that were right, spoiled at random: never a defect, every refusal a problem that says what is wrong.
 
 A few with every change, 10 000 at night. No worker runs what is accepted. Plans and live questions have a
-worker of their own: they are asked at night, of an analysed pair.
+worker of their own: they are asked at night, of an analyzed pair.
 """
 
 from __future__ import annotations

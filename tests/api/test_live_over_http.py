@@ -41,7 +41,7 @@ def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
         yield found
 
 
-def analysed(client: TestClient, asked: dict[str, Any]) -> str:
+def analyzed(client: TestClient, asked: dict[str, Any]) -> str:
     """Return the hash of the table of a case, computed as a job."""
     job = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": asked}}).json()
     where = f"/v1/jobs/{job['jobID']}"
@@ -52,13 +52,13 @@ def analysed(client: TestClient, asked: dict[str, Any]) -> str:
 
 @pytest.fixture(scope="module")
 def key(client: TestClient) -> str:
-    return analysed(client, case())
+    return analyzed(client, case())
 
 
 def test_a_live_curve_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:
     live = client.post(f"/v1/databases/{key}/ste", json={"torque_n_m": [0.5, 1.0], "pinion": RELIEF}).json()
     store = client.app.state.context.store  # type: ignore[attr-defined]
-    other = analysed(client, case(**RELIEF))
+    other = analyzed(client, case(**RELIEF))
     table = client.app.state.context.databases.get(store, other).database  # type: ignore[attr-defined]
     for curve in live["curves"]:
         whole = table.curve(torque=curve["torque_n_m"])
@@ -90,12 +90,12 @@ def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, ke
     LiveOutput.model_validate_json(json.dumps(first))
 
 
-def test_a_live_centre_distance_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:
+def test_a_live_center_distance_is_that_of_an_analysis_of_its_own(client: TestClient, key: str) -> None:
     question = {"torque_n_m": [1.0], "center_distance_change_mm": 0.05, "pinion": RELIEF}
     (curve,) = client.post(f"/v1/databases/{key}/ste", json=question).json()["curves"]
     asked = case(**RELIEF) | {"errors": {"center_distance_change_mm": [0.05]}}
     context = client.app.state.context  # type: ignore[attr-defined]
-    table = context.databases.get(context.store, analysed(client, asked)).database
+    table = context.databases.get(context.store, analyzed(client, asked)).database
     whole = table.curve(torque=1.0, center_distance_change=0.05e-3)
     assert curve["center_distance_change_mm"] == 0.05
     assert curve["ste_um"] == pytest.approx((1e6 * whole.ste).tolist(), rel=1e-12, abs=0.0)

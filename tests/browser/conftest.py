@@ -56,7 +56,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 @pytest.fixture(scope="session")
-def analysed(address: str) -> str:
+def analyzed(address: str) -> str:
     """Hash of the small case's table in that service."""
     return computed(address)
 

@@ -19,8 +19,8 @@ EDITED = "Edited since: pinion tip relief 0 µm → 7 µm"
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str, analysed: str) -> Iterator[Visit]:
-    seen = shown(browser, address, analysed)
+def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+    seen = shown(browser, address, analyzed)
     yield seen
     seen.page.close()
 
@@ -31,7 +31,7 @@ def type_relief(page: Page) -> None:
     expect(page.locator("#results-design")).to_contain_text(EDITED)
 
 
-def test_the_menu_leaves_the_result_in_the_address(visit: Visit, analysed: str) -> None:
+def test_the_menu_leaves_the_result_in_the_address(visit: Visit, analyzed: str) -> None:
     page = visit.page
     before = page.url
     for link in page.get_by_role("navigation").get_by_role("link").all():
@@ -56,7 +56,7 @@ def test_a_reload_shows_what_was_typed_and_moved(visit: Visit) -> None:
     assert visit.complaints == []
 
 
-def test_back_and_forward_show_what_they_showed(visit: Visit, analysed: str) -> None:
+def test_back_and_forward_show_what_they_showed(visit: Visit, analyzed: str) -> None:
     page = visit.page
     type_relief(page)
     page.locator("#example").select_option("internal_gear")
@@ -68,7 +68,7 @@ def test_back_and_forward_show_what_they_showed(visit: Visit, analysed: str) -> 
     page.go_forward()
     expect(page.locator("#f-pair-wheel-teeth")).to_have_value("96")
     assert page.locator("#example").input_value() == "internal_gear"
-    assert analysed in page.url
+    assert analyzed in page.url
 
 
 def test_a_result_says_of_which_design_it_is_and_leads_back(visit: Visit) -> None:
@@ -104,7 +104,7 @@ def test_a_job_under_way_goes_on_after_a_reload_and_is_left_by_the_way_back(
 
 
 def test_an_analysis_survives_a_reload_in_mid_job(
-    browser: Browser, address: str, analysed: str, tmp_path: Path
+    browser: Browser, address: str, analyzed: str, tmp_path: Path
 ) -> None:
     page = opened(browser, address).page
     choose_case(page, tmp_path)
@@ -114,7 +114,7 @@ def test_an_analysis_survives_a_reload_in_mid_job(
     page.unroute_all(behavior="ignoreErrors")
     page.reload()
     expect(page.locator("#live-body")).to_have_attribute("data-answers", re.compile(r"\d"))
-    assert analysed in page.url and "analyze=" not in page.url
+    assert analyzed in page.url and "analyze=" not in page.url
     expect(page.locator("#f-pair-pinion-teeth")).to_have_value("20")
     page.go_back()
     expect(page.locator("#results-none")).to_be_visible()
@@ -146,7 +146,7 @@ def test_an_unknown_address_is_said_on_the_first_screen(
 
 
 @pytest.mark.nightly
-def test_a_study_whose_answer_is_lost_is_asked_again(visit: Visit, address: str, analysed: str) -> None:
+def test_a_study_whose_answer_is_lost_is_asked_again(visit: Visit, address: str, analyzed: str) -> None:
     page = visit.page
     computed(address, "scatter", case=CASE, tolerance_class=8, samples=50)
     lost: list[Route] = []

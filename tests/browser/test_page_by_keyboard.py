@@ -20,8 +20,8 @@ FOCUS = """() => {
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analysed: str) -> Iterator[Visit]:
-    seen = shown(browser, address, analysed)
+def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+    seen = shown(browser, address, analyzed)
     seen.page.emulate_media(reduced_motion="reduce")  # a page that still glides is nowhere yet
     yield seen
     seen.page.close()
@@ -74,12 +74,12 @@ def test_a_slider_says_its_value_with_the_unit(visit: Visit) -> None:
     assert slider.get_attribute("aria-valuetext") == f"{value} µm"
 
 
-@pytest.mark.parametrize(("motion", "behaviour"), [("reduce", "auto"), ("no-preference", "smooth")])
-def test_nothing_glides_where_less_motion_is_asked_for(visit: Visit, motion: str, behaviour: str) -> None:
+@pytest.mark.parametrize(("motion", "behavior"), [("reduce", "auto"), ("no-preference", "smooth")])
+def test_nothing_glides_where_less_motion_is_asked_for(visit: Visit, motion: str, behavior: str) -> None:
     visit.page.emulate_media(reduced_motion=motion)  # type: ignore[arg-type]
     assert visit.page.evaluate("document.getAnimations().length") == 0
     style = "getComputedStyle(document.documentElement).scrollBehavior"
-    assert visit.page.evaluate(style) == behaviour
+    assert visit.page.evaluate(style) == behavior
     visit.page.emulate_media(reduced_motion="reduce")
 
 

@@ -26,8 +26,8 @@ def other(address: str) -> str:
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str, analysed: str) -> Visit:
-    return shown(browser, address, analysed)
+def visit(browser: Browser, address: str, analyzed: str) -> Visit:
+    return shown(browser, address, analyzed)
 
 
 def moved(page: Page, slider: str, key: str) -> None:
@@ -57,7 +57,7 @@ def change(page: Page) -> str:
 
 def test_flanks_are_compared_with_those_that_were_kept(visit: Visit, tmp_path: Path) -> None:
     page = visit.page
-    assert set(curves(page, tmp_path)) == {"as analysed", "now"}
+    assert set(curves(page, tmp_path)) == {"as analyzed", "now"}
     moved(page, "#live-pinion-tip_relief_um", "End")
     relieved = curves(page, tmp_path)["now"]
     count = answers(page)
@@ -71,7 +71,7 @@ def test_flanks_are_compared_with_those_that_were_kept(visit: Visit, tmp_path: P
     )
     found = curves(page, tmp_path)
     assert found["reference"] == relieved
-    assert found["now"] == found["as analysed"] != relieved
+    assert found["now"] == found["as analyzed"] != relieved
     bars = page.locator("[data-figure=live_harmonics] .barlayer .trace")
     assert bars.count() == 3
     count = answers(page)
@@ -119,7 +119,7 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
     kept = page.locator("#kept-words")
     expect(kept).to_contain_text("pinion helix crowning 30 µm, misalignment 50 µm")
     count = answers(page)
-    page.get_by_role("button", name="As analysed").press("Enter")
+    page.get_by_role("button", name="As analyzed").press("Enter")
     until(lambda: answers(page) > count)
     expect(kept).to_contain_text("pinion helix crowning 30 µm (now 0 µm), misalignment 50 µm (now 0 µm)")
     page.get_by_role("button", name="Compute flank pressure").press("Enter")
@@ -132,11 +132,11 @@ def test_in_three_dimensions_misalignment_and_crowning_act(
 
 
 @pytest.mark.nightly
-def test_one_button_computes_in_three_dimensions(browser: Browser, address: str, analysed: str) -> None:
-    visit = opened(browser, f"{address}/#database={analysed}")
+def test_one_button_computes_in_three_dimensions(browser: Browser, address: str, analyzed: str) -> None:
+    visit = opened(browser, f"{address}/#database={analyzed}")
     page = visit.page
-    page.get_by_role("button", name="Analyse in three dimensions").press("Enter")
+    page.get_by_role("button", name="Analyze in three dimensions").press("Enter")
     expect(page.locator("#live-misalignment_um")).to_be_enabled()
     expect(page.locator("#f-accuracy-model")).to_have_value("3d")
-    assert analysed not in page.url
+    assert analyzed not in page.url
     assert visit.complaints == []

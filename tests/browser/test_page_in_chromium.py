@@ -50,7 +50,7 @@ def tab_to(page: Page, target: str, most: int = 120) -> None:
 
 @pytest.fixture(scope="module")
 def visit(browser: Browser, address: str, tmp_path_factory: pytest.TempPathFactory) -> Visit:
-    """Walk the main path with the keyboard alone, but for the dialogue that opens a file."""
+    """Walk the main path with the keyboard alone, but for the dialog that opens a file."""
     seen = opened(browser, address, "light", 1400)
     page = seen.page
     choose_case(page, tmp_path_factory.mktemp("case"))
@@ -87,7 +87,7 @@ def test_a_slider_redraws_the_curve_by_arrow_keys(visit: Visit) -> None:
     expect(page.locator("#live-figures dd").first).not_to_have_text(before)
     now = page.locator("[data-figure=live_ste] .scatterlayer .trace path.js-line")
     until(lambda: now.nth(0).get_attribute("d") != now.nth(1).get_attribute("d"))  # drawn in a moment
-    page.get_by_role("button", name="As analysed").press("Enter")
+    page.get_by_role("button", name="As analyzed").press("Enter")
     expect(page.locator("#live-figures dd").first).to_have_text(before)
 
 

@@ -18,8 +18,8 @@ LONG = CASE | {"accuracy": {"level": "fine", "model": "3d", "positions": 512}}
 
 
 @pytest.fixture
-def visit(browser: Browser, address: str, analysed: str) -> Iterator[Visit]:
-    seen = shown(browser, address, analysed)
+def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+    seen = shown(browser, address, analyzed)
     yield seen
     seen.page.close()
 

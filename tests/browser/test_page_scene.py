@@ -15,19 +15,19 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "planetary_scene.toml"
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analysed: str) -> Iterator[Visit]:
-    seen = shown(browser, address, analysed)
+def visit(browser: Browser, address: str, analyzed: str) -> Iterator[Visit]:
+    seen = shown(browser, address, analyzed)
     yield seen
     seen.page.close()
 
 
-def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, analysed: str) -> None:
+def test_the_scene_of_the_pair_is_edited_and_computed_over_speed(visit: Visit, analyzed: str) -> None:
     page = visit.page
     page.get_by_role("button", name="Write the scene of the pair").press("Enter")
     text = page.get_by_label("Scene, TOML")
     expect(text).to_have_value(re.compile("database_hash"))
     scene = tomllib.loads(text.input_value())
-    assert scene["meshes"][0]["database_hash"] == analysed
+    assert scene["meshes"][0]["database_hash"] == analyzed
     text.fill(
         text.input_value().replace("radial_stiffness_n_per_m = 100000000.0", "radial_stiffness_n_per_m = 5e7")
     )

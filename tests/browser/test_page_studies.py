@@ -21,7 +21,7 @@ STUDIES = {
     ),
     "sensitivity": (
         "Sensitivity", "Study the sensitivity",
-        {"Misalignments": "0, 20", "Changes of the centre distance": "0, 0.5"}, ["sensitivity"], True,
+        {"Misalignments": "0, 20", "Changes of the center distance": "0, 0.5"}, ["sensitivity"], True,
     ),
     "optimise": (
         "Optimise the flanks", "Search better flanks",
@@ -42,8 +42,8 @@ EACH = [pytest.param(name, marks=[pytest.mark.nightly] * (name not in FEW)) for 
 
 
 @pytest.fixture(scope="module")
-def visit(browser: Browser, address: str, analysed: str) -> Visit:
-    return shown(browser, address, analysed)
+def visit(browser: Browser, address: str, analyzed: str) -> Visit:
+    return shown(browser, address, analyzed)
 
 
 def card(page: Page, title: str) -> Locator:

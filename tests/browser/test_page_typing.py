@@ -69,7 +69,7 @@ def test_what_is_missing_is_listed_with_the_plan_and_no_field_is_blamed(visit: V
     page = visit.page
     page.locator("#example").select_option("empty")
     missing = page.locator("#form-errors")
-    expect(missing).to_contain_text("Still to fill in: normal module, centre distance, pinion teeth")
+    expect(missing).to_contain_text("Still to fill in: normal module, center distance, pinion teeth")
     expect(page.locator("#drawing-state")).to_have_text("(not yet the pair as typed)")
     assert page.locator("[aria-invalid=true]").count() == 0
     assert found_inaccessible(page) == {}

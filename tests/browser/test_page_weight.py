@@ -60,16 +60,16 @@ def weight(session: CDPSession) -> tuple[float, float]:
 
 @pytest.mark.nightly
 def test_many_results_add_no_listeners_and_little_memory(
-    browser: Browser, address: str, analysed: str, other: str
+    browser: Browser, address: str, analyzed: str, other: str
 ) -> None:
     page = opened(browser, address).page
     session = page.context.new_cdp_session(page)
     session.send("Performance.enable")
-    for key in (analysed, other) * 2:  # what is made once is made
+    for key in (analyzed, other) * 2:  # what is made once is made
         visited(page, key)
     listeners, used = weight(session)
     for _ in range(ROUNDS // 2):
-        visited(page, analysed)
+        visited(page, analyzed)
         visited(page, other)
     later = weight(session)
     assert later[0] - listeners < ONE_PLOT

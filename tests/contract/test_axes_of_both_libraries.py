@@ -1,4 +1,4 @@
-"""A table over misalignment and centre distance, two evaluations: fe_contact in numpy, dynamics compiled."""
+"""A table over misalignment and center distance, two evaluations: fe_contact in numpy, dynamics compiled."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ def at(table, *query):
     return found
 
 
-@pytest.fixture(scope="module", params=["both axes", "misalignment", "centre distance"])
+@pytest.fixture(scope="module", params=["both axes", "misalignment", "center distance"])
 def table(request):
-    m = M if request.param != "centre distance" else (5e-6,)
+    m = M if request.param != "center distance" else (5e-6,)
     a = A if request.param != "misalignment" else (1e-4,)
     return sliced_database(m, a, positions=12).force_table()
 
@@ -77,7 +77,7 @@ def test_derivatives_are_those_of_force_and_energy(table, axis):
     energy = here[:, (6, 0, 7, 8)[axis]]
     for exact, column in ((force, 0), (energy, 5)):
         difference = (high[:, column] - low[:, column]) / (2.0 * step)
-        # a query whose neighbours lie on either side of a knot or of lift-off: second order is lost there
+        # a query whose neighbors lie on either side of a knot or of lift-off: second order is lost there
         np.testing.assert_allclose(difference, exact, rtol=1e-4, atol=2e-4 * np.abs(exact).max() + 1e-300)
 
 

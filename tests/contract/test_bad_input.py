@@ -22,7 +22,7 @@ from service.settings import Settings
 
 
 def names(cases: tuple[BadInput, ...]) -> Any:
-    """Parametrise by the cases' names."""
+    """Parametrize by the cases' names."""
     return pytest.mark.parametrize("bad", cases, ids=[case.name.replace(" ", "_") for case in cases])
 
 

@@ -20,7 +20,7 @@ from fe_contact.geometry import BoreSeat, FlankModification, Gear, GearBlank, Ge
 from service.problems import Fault
 
 FAR = 10.0**6
-"""Far off in SI: lengths of a thousand kilometres."""
+"""Far off in SI: lengths of a thousand kilometers."""
 
 PINION = Gear(
     20,

@@ -67,7 +67,7 @@ def test_force_and_stiffness_agree(database):
     # positions wrap with different rounding: 1e-15 pitches times the steepest slope
     slack = 1e-13 * np.abs(sample.position_slope).max()
     assert np.all(np.abs(compiled[:, 0] - sample.force) <= 1e-10 * table.level[-1] + slack)
-    # on a level either neighbour may answer; their stiffnesses are equal there
+    # on a level either neighbor may answer; their stiffnesses are equal there
     assert np.allclose(compiled[:, 1], sample.stiffness, rtol=1e-6, atol=1e-6 * sample.stiffness.max())
 
 

@@ -26,7 +26,7 @@ NOMINAL = 2660.0
 
 def compliance(rng: np.random.Generator, kind: str, n: int) -> np.ndarray:
     """Symmetric positive definite, of the size of teeth."""
-    if kind == "smooth":  # neighbours along a face
+    if kind == "smooth":  # neighbors along a face
         place = rng.uniform(size=n)
         matrix = 0.5 * np.exp(-np.abs(place[:, None] - place) * rng.uniform(1.0, 30.0)) + 0.1
     elif kind == "dense":  # either sign off the diagonal

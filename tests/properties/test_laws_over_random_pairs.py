@@ -193,5 +193,5 @@ def test_taking_material_off_never_lowers_the_deflection(case: Loaded, part: flo
     worn = replace(wheel, modification=replace(wheel.modification, profile_crowning=more))
     other = loaded(replace(case.pair, wheel=worn), case.load)
     there, here = (each.solve(corner_contact=True).deflection for each in (other, case))
-    # the touching point of a modified flank is found to parts of a nanometre
+    # the touching point of a modified flank is found to parts of a nanometer
     assert np.all(there - here >= -1e-6 * np.abs(here).max())

@@ -140,7 +140,7 @@ def deepest(
     fixed_teeth: int,
     zero: float,
 ) -> float:
-    """Largest arc by which a flank point of the mover, its centre at `height`, is inside the other gear."""
+    """Largest arc by which a flank point of the mover, its center at `height`, is inside the other gear."""
     sparse = mover[:, ::10]
     angle = (
         np.concatenate((sparse[0], -sparse[0])) + center + 2.0 * math.pi / teeth * np.arange(teeth)[:, None]

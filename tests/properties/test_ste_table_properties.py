@@ -55,7 +55,7 @@ def spaced(rng, count):
 
 
 def alignment(database, seed=1):
-    """Random misalignments and centre distances inside the table, one per query."""
+    """Random misalignments and center distances inside the table, one per query."""
     rng = np.random.default_rng(seed)
     axes = (database.misalignment, database.center_distance_change)
     return [rng.uniform(axis[0], axis[-1], QUERIES.size) for axis in axes]
@@ -115,7 +115,7 @@ def test_force_is_monotone_in_deflection(database):
 
 @SETTINGS
 @given(tables(alignments=((1, 1),)))
-def test_curves_stay_between_neighbouring_knots(database):
+def test_curves_stay_between_neighboring_knots(database):
     """No overshoot in position, whatever the steps."""
     levels = database.ste(QUERIES[:, None], database.force)
     stored = database.static_transmission_error[:, :, 0, 0]

@@ -1,4 +1,4 @@
-"""An STE database in closed form over misalignment and centre distance: independent slices of a face.
+"""An STE database in closed form over misalignment and center distance: independent slices of a face.
 
 The slice at t = z/b, -1/2..1/2, is pressed in by d - m t and carries k(x, a) (d - m t)^1.1 per unit of t, if
 that is above zero: the load's centroid, and the potential of force and moment, are known.

@@ -1,8 +1,8 @@
 """Flank compliances in closed form, so that laws of the contact can be tried on hundreds of random pairs.
 
 A tooth bends with the height of the load and of the point looked at, twists the body with all its
-neighbours, and gives way near the load. The matrix is symmetric, positive definite, the same for all teeth,
-and like that of finite elements free of any length: metres per N/m are 1/Pa.
+neighbors, and gives way near the load. The matrix is symmetric, positive definite, the same for all teeth,
+and like that of finite elements free of any length: meters per N/m are 1/Pa.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The service with all its processes, an analysed pair and an access key: what generated bodies are sent to.
+"""The service with all its processes, an analyzed pair and an access key: what generated bodies are sent to.
 
 Nothing that is submitted to it is worked on; live questions and plans are answered.
 """
@@ -59,7 +59,7 @@ class WholeService:
 
 
 def whole_service(directory: Path) -> WholeService:
-    """Analyse a small pair, and return a service that has it."""
+    """Analyze a small pair, and return a service that has it."""
     with TestClient(create_app(Settings(data_directory=directory))) as client:
         answer = client.post("/v1/processes/analyze/execution", json={"inputs": {"case": _CASE}})
         location = answer.headers["location"]

@@ -82,7 +82,7 @@ def test_contact_ratios_of_iso_tr_6336_30_example_1(record_figure: Any) -> None:
     record_figure("overlap ratio 17/103", pair.overlap_ratio, 1.083, "1", TR_30)
     assert pair.transverse_contact_ratio == pytest.approx(1.549, abs=5e-4)
     assert pair.overlap_ratio == pytest.approx(1.083, abs=5e-4)
-    # the centre distance is the one without backlash, rounded to 10 um
+    # the center distance is the one without backlash, rounded to 10 um
     assert 0.0 <= pair.normal_backlash < 1e-5
 
 

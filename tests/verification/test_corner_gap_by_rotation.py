@@ -1,7 +1,7 @@
 """Corner contact against brute force: exact profiles in place, the driven gear turned until they touch.
 
-Gear 1's centre is at the origin, its tooth up, seen so that its right flank is the loaded one. An external
-wheel's tooth points down from a centre on +y; a ring's stands on +y of a centre on -y and points down too, so
+Gear 1's center is at the origin, its tooth up, seen so that its right flank is the loaded one. An external
+wheel's tooth points down from a center on +y; a ring's stands on +y of a center on -y and points down too, so
 that its loaded flank is the left one here.
 """
 
@@ -111,7 +111,7 @@ def _clockwise(points: np.ndarray, angle: float) -> np.ndarray:
 
 
 def _polar_angle(each: Toothing, radius: np.ndarray) -> np.ndarray:
-    """Angle from the tooth's centre line at which the flank has a radius, by bisection on the profile."""
+    """Angle from the tooth's center line at which the flank has a radius, by bisection on the profile."""
     profile = tooth_profile(each)
     low, high = np.full(radius.shape, profile.s_form), np.full(radius.shape, profile.s_tip)
     for _ in range(50):

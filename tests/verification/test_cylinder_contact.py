@@ -38,7 +38,7 @@ def test_nafems_cylinder_on_plane(record_figure):
     ],
 )
 def test_two_cylinders(radii, load, width, pressure, approach):
-    # E 206 GPa, nu 0.3 both; approach centre to centre, Johnson (1985) section 5.6
+    # E 206 GPa, nu 0.3 both; approach center to center, Johnson (1985) section 5.6
     r1, r2 = (1e-3 * r for r in radii)
     radius, modulus = relative_radius(r1, r2), contact_modulus(STEEL_206, STEEL_206)
     assert 1e3 * half_width(1e3 * load, radius, modulus) == pytest.approx(width, abs=6e-9)

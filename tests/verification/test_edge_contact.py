@@ -4,7 +4,7 @@ Two routes, neither of which uses the inversion formula that `fe_contact.hertz.e
 
 - the logarithmic equation expanded in Chebyshev polynomials, where the end of the strip is found from the
   vanishing of its singularity;
-- boundary elements with the conditions of contact only (no tension, no penetration), where no end behaviour
+- boundary elements with the conditions of contact only (no tension, no penetration), where no end behavior
   and no contact length is assumed.
 
 A pressure q moves the surfaces together by -(2/(pi E*)) times the integral of q(s) ln|x - s| ds plus a

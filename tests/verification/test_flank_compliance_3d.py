@@ -20,15 +20,15 @@ HALF_WIDTH = 0.3 * GEAR.normal_module
 CORNERS = {(i, j): (i - 1.0, j - 1.0) for i in range(3) for j in range(3)}
 
 
-def profile_moments(s: np.ndarray, centre: float) -> np.ndarray:
-    """Moments 1, x, x^2 of a unit semi-ellipse about `centre` on each profile element, x from -1 to 1."""
+def profile_moments(s: np.ndarray, center: float) -> np.ndarray:
+    """Moments 1, x, x^2 of a unit semi-ellipse about `center` on each profile element, x from -1 to 1."""
     t, weight = np.polynomial.legendre.leggauss(16)
     moments = np.zeros((len(s) // 2, 3))
     for e, (low, high) in enumerate(pairwise(s[::2])):
-        first, last = (np.arcsin(np.clip((end - centre) / HALF_WIDTH, -1.0, 1.0)) for end in (low, high))
+        first, last = (np.arcsin(np.clip((end - center) / HALF_WIDTH, -1.0, 1.0)) for end in (low, high))
         angle = 0.5 * (first + last) + 0.5 * (last - first) * t
         share = (last - first) / np.pi * weight * np.cos(angle) ** 2
-        x = (2.0 * (centre + HALF_WIDTH * np.sin(angle)) - low - high) / (high - low)
+        x = (2.0 * (center + HALF_WIDTH * np.sin(angle)) - low - high) / (high - low)
         moments[e] = [np.sum(share), np.sum(share * x), np.sum(share * x**2)]
     return moments
 

@@ -18,17 +18,17 @@ STANDARD = MeshRecipe.standard(GEAR)
 WIDTH = 1.5 * STANDARD.flank_size  # half-width of the patch
 
 
-def semi_elliptic(s: np.ndarray, centre: float, half_width: float) -> np.ndarray:
+def semi_elliptic(s: np.ndarray, center: float, half_width: float) -> np.ndarray:
     """Consistent nodal forces of unit resultant: p ds = (2 / pi) sin^2(t) dt at c - a cos(t)."""
     corners = s[::2]
-    inside = corners[(corners > centre - half_width) & (corners < centre + half_width)]
-    edges = np.concatenate([[0.0], np.arccos((centre - inside) / half_width), [np.pi]])
+    inside = corners[(corners > center - half_width) & (corners < center + half_width)]
+    edges = np.concatenate([[0.0], np.arccos((center - inside) / half_width), [np.pi]])
     x, weight = np.polynomial.legendre.leggauss(16)
     forces = np.zeros(len(s))
     for low, high in pairwise(edges):
         t = 0.5 * (low + high) + 0.5 * (high - low) * x
         share = 0.5 * (high - low) * weight * 2.0 / np.pi * np.sin(t) ** 2
-        at = centre - half_width * np.cos(t)
+        at = center - half_width * np.cos(t)
         e = 2 * (int(np.searchsorted(corners, at.mean())) - 1)
         z = (at - s[e]) / (s[e + 2] - s[e])
         forces[e : e + 3] += [
@@ -39,8 +39,8 @@ def semi_elliptic(s: np.ndarray, centre: float, half_width: float) -> np.ndarray
     return forces
 
 
-def self_compliance(compliance: FlankCompliance, centres: np.ndarray) -> np.ndarray:
-    loads = np.array([semi_elliptic(compliance.s, centre, WIDTH) for centre in centres])
+def self_compliance(compliance: FlankCompliance, centers: np.ndarray) -> np.ndarray:
+    loads = np.array([semi_elliptic(compliance.s, center, WIDTH) for center in centers])
     return np.einsum("na,ab,nb->n", loads, compliance.block(0, 0), loads)
 
 
@@ -50,14 +50,14 @@ def compliances() -> dict[float, FlankCompliance]:
     return {f: flank_compliance(GEAR, STANDARD.refined(f), teeth=1) for f in (0.5, 1.0, 2.0)}
 
 
-def centres(compliance: FlankCompliance) -> np.ndarray:
+def centers(compliance: FlankCompliance) -> np.ndarray:
     return np.linspace(0.1, 0.85, 200) * compliance.s_tip
 
 
 def test_self_compliance_converges_at_the_rate_of_the_element(
     compliances: dict[float, FlankCompliance], record_figure: Callable[..., None]
 ) -> None:
-    mean = {f: self_compliance(c, centres(c)).mean() for f, c in compliances.items()}
+    mean = {f: self_compliance(c, centers(c)).mean() for f, c in compliances.items()}
     # The pressure ends in square roots: the energy of such a field converges with h^3, not h^4.
     steps = mean[1.0] - mean[0.5], mean[2.0] - mean[1.0]
     assert min(steps) > 0.0  # displacement elements are too stiff
@@ -72,11 +72,11 @@ def test_self_compliance_converges_at_the_rate_of_the_element(
     record_figure("self compliance of a patch: error, standard recipe", error, "at most 1e-3", "1", "limit")
 
 
-def test_position_noise_is_below_a_nanometre(
+def test_position_noise_is_below_a_nanometer(
     compliances: dict[float, FlankCompliance], record_figure: Callable[..., None]
 ) -> None:
     coarse, fine = compliances[1.0], compliances[2.0]
-    at = centres(coarse)
+    at = centers(coarse)
     line_load = 106.42e3  # N/m: 100 N m on the 20/20 pair
     error = line_load * (self_compliance(coarse, at) - self_compliance(fine, at))
     noise = float(np.std(error - np.polyval(np.polyfit(at, error, 3), at)))
@@ -87,7 +87,7 @@ def test_position_noise_is_below_a_nanometre(
 
 
 def test_result_does_not_hang_on_the_sizes_away_from_the_flank() -> None:
-    at = centres(flank_compliance(GEAR, STANDARD, teeth=1))
+    at = centers(flank_compliance(GEAR, STANDARD, teeth=1))
     reference = self_compliance(flank_compliance(GEAR, STANDARD, teeth=1), at).mean()
     for change in (
         {"body_size": 2.0 * STANDARD.body_size},

@@ -168,6 +168,6 @@ _INTEGER_OUTPUTS = (
         INTEGER,
         "output",
         "discrete",
-        "0 inside the table; plus 1 beyond its forces, 2 its misalignments, 4 its centre distances",
+        "0 inside the table; plus 1 beyond its forces, 2 its misalignments, 4 its center distances",
     ),
 )

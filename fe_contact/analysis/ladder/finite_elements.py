@@ -12,7 +12,7 @@ from fe_contact.analysis.request_check import check_asked
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.errors import InputError
 from fe_contact.planning import Accuracy
-from fe_contact.planning.discretisation import PLANE_REFINEMENT
+from fe_contact.planning.discretization import PLANE_REFINEMENT
 from fe_contact.progress import Progress
 from fe_contact.ste import SteDatabase
 

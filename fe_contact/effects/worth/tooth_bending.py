@@ -31,7 +31,7 @@ class ToothBending:
     tooth, foundation : ndarray, shape (n,)
         Displacement along the normal per line load of the tooth itself and of what it is clamped in, m/(N/m).
     depth : ndarray, shape (n,)
-        Distance in m along the normal from the flank to the tooth's centre line.
+        Distance in m along the normal from the flank to the tooth's center line.
     """
 
     s: FloatArray
@@ -59,7 +59,7 @@ def tooth_bending(gear: Toothing) -> ToothBending:
     half = narrow * half
     slope = narrow * gear.sign * normal[:, 1] / np.abs(normal[:, 0])
     cosine = 1.0 / np.sqrt(1.0 + slope**2)
-    # where the line of action crosses the centre line, above the root
+    # where the line of action crosses the center line, above the root
     lever = np.maximum(height - half * slope, 0.0)
     per_modulus = narrow * cosine**2 * (1.0 - gear.material.poissons_ratio**2) / gear.material.youngs_modulus
     root = 2.0 * half[0]

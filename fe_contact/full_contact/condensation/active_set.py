@@ -32,7 +32,7 @@ class ContactSystem:
     closing : (h,) array
         -d gap / d lag, m.
     lever : (h,) array
-        Moment about gear 1's centre by unit pressures, m^2.
+        Moment about gear 1's center by unit pressures, m^2.
     weight : (h,) array
         Of the hats, m: gap over weight is a length.
     """

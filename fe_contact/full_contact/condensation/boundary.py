@@ -139,7 +139,7 @@ def _divided(
 
 
 def _tip_land(right: FloatArray, left: FloatArray, fraction: FloatArray) -> FloatArray:
-    """Return points from one tip edge to the other along an arc about the centre."""
+    """Return points from one tip edge to the other along an arc about the center."""
     radii = [np.hypot(*right), np.hypot(*left)]
     start = np.arctan2(right[0], right[1])
     turned = np.arctan2(left[0] * right[1] - left[1] * right[0], left @ right)

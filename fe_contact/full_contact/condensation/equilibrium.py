@@ -31,7 +31,7 @@ def bore_checks(bodies: Bodies, solutions: Sequence[Solution]) -> list[tuple[flo
 
 
 def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tuple[FloatArray, FloatArray]:
-    """Return the moments of the bore's reactions about the centre, and the work of the forces, (T,)."""
+    """Return the moments of the bore's reactions about the center, and the work of the forces, (T,)."""
     body = bodies[number]
     forces = np.zeros((body.stiffness.shape[0], len(solutions)))
     for i, (contact, pressure, _) in enumerate(solutions):
@@ -45,6 +45,6 @@ def _of_body(bodies: Bodies, number: int, solutions: Sequence[Solution]) -> tupl
 
 
 def _moment(body: CondensedBody, forces: FloatArray) -> float:
-    """Return the moment of forces (2 k,) on the strips' nodes about the gear's centre, counter-clockwise."""
+    """Return the moment of forces (2 k,) on the strips' nodes about the gear's center, counter-clockwise."""
     arms = body.points - body.body.center
     return float(arms[:, 0] @ forces[1::2] - arms[:, 1] @ forces[0::2])

@@ -44,7 +44,7 @@ class Strip:
 
 @dataclass(frozen=True)
 class PlacedBody:
-    """One gear's mesh in the frame of the pair: gear 1's centre is the origin, the teeth meet on +y.
+    """One gear's mesh in the frame of the pair: gear 1's center is the origin, the teeth meet on +y.
 
     Attributes
     ----------

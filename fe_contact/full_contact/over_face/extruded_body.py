@@ -33,7 +33,7 @@ class ExtrudedBody:
     """One gear seen from its strips; unknown (2 i + c) f + l is function l of component c of node i.
 
     Functions are the f hats and bubbles of the layers; a bubble of a mid-side node is the mean of those of
-    its neighbours, so that the compliance has the rank of the mesh.
+    its neighbors, so that the compliance has the rank of the mesh.
 
     Attributes
     ----------

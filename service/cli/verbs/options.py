@@ -27,7 +27,7 @@ Misalignment = Annotated[
     float | None, typer.Option(help="Misalignment in um; default: the case's, nearest to 0.")
 ]
 CenterDistanceChange = Annotated[
-    float | None, typer.Option(help="Change of the centre distance in mm; default: likewise.")
+    float | None, typer.Option(help="Change of the center distance in mm; default: likewise.")
 ]
 TaskWorkers = Annotated[
     int, typer.Option("--workers", min=1, max=256, help="Processes here that share the tasks.")

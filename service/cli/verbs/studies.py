@@ -138,13 +138,13 @@ def sensitivity(
     ],
     misalignment_um: Annotated[str, typer.Option(help="Misalignments in um.")] = "0,15,30,45,60",
     center_distance_change_percent: Annotated[
-        str, typer.Option(help="Changes of the centre distance in per cent.")
+        str, typer.Option(help="Changes of the center distance in per cent.")
     ] = "-0.2,-0.1,0,0.1,0.2",
     workers: TaskWorkers = 1,
     dask: DaskScheduler = None,
     json: AsJson = False,
 ) -> None:
-    """Vary misalignment and centre distance of a case at its highest load: peak-to-peak STE."""
+    """Vary misalignment and center distance of a case at its highest load: peak-to-peak STE."""
     from service.cli.sensitivity import Varied, run_sensitivity  # noqa: PLC0415 (start-up time)
     from service.convert.task_workers import Hands  # noqa: PLC0415
 

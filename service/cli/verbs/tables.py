@@ -50,7 +50,7 @@ def ste(
     ] = None,
     misalignment_um: Annotated[float | None, typer.Option(help="Misalignment in um.")] = None,
     center_distance_change_mm: Annotated[
-        float | None, typer.Option(help="Change of the centre distance in mm.")
+        float | None, typer.Option(help="Change of the center distance in mm.")
     ] = None,
     csv: Annotated[bool, typer.Option("--csv", help="Print CSV.")] = False,
     json: AsJson = False,

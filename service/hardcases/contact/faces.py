@@ -32,7 +32,7 @@ def five_per_cent() -> Sequence[Measured]:
     position = even_positions(24)
     problem, solution = case.solve(position, case.plan.load)
     mirrored_problem, mirrored = other.solve(position, other.plan.load)
-    slices = case.plan.discretisation.slices
+    slices = case.plan.discretization.slices
     wedge = 0.5 * _MISALIGNMENT * (1.0 - 1.0 / (slices * POINTS))
     return (
         *soundness(problem, solution, 8),

@@ -132,13 +132,13 @@ GAP_BEYOND_DEFLECTION = HardScene(
     "contact",
     "Relief of 0.3 mm where teeth bend by 8 um: gaps and deflections differ by orders of magnitude, and "
     "most candidates never touch.",
-    "Out of reach means without effect: taking those candidates away, or a metre further, changes no bit.",
+    "Out of reach means without effect: taking those candidates away, or a meter further, changes no bit.",
     gap_beyond_deflection,
 )
 PITCH_ERROR = HardScene(
     "pitch_error_beyond_deflection",
     "contact",
-    "One tooth stands 50 um ahead where teeth bend by 8 um: its neighbours lose contact and STE jumps.",
+    "One tooth stands 50 um ahead where teeth bend by 8 um: its neighbors lose contact and STE jumps.",
     "The tooth ahead carries alone, on the curve shifted by its deviation on the line of action; all teeth "
     "ahead shift the whole curve (superposition of rigid offsets).",
     pitch_error_beyond_deflection,

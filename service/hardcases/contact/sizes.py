@@ -106,7 +106,7 @@ def _scaled(scale: float, model: str) -> Posed:
 
 
 def _helical(degrees: float) -> Posed:
-    """Return gears of the nominal teeth and another helix, at their own centre distance."""
+    """Return gears of the nominal teeth and another helix, at their own center distance."""
     helix = math.radians(degrees)
     pair = GearPair(nominal_gear(helix_angle=helix), nominal_gear(helix_angle=-helix))
     return posed(pair, model="3d")

@@ -1,4 +1,4 @@
-"""A free-form flank at random: heights with no law at all between neighbouring nodes."""
+"""A free-form flank at random: heights with no law at all between neighboring nodes."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ def measure(kind: Kind, seed: int) -> Sequence[Measured]:
 
 
 def judged(pair: ParallelAxes, arguments: Mapping[str, Any]) -> Sequence[Measured]:
-    """Analyse a pair and judge the table by what every table must obey."""
+    """Analyze a pair and judge the table by what every table must obey."""
     table = analyze(pair, **arguments)
     receipt = table.metadata.receipt
     predicted = float(receipt["prediction"]["cpu_seconds"])

@@ -139,7 +139,7 @@ def _along_the_axis(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
 
 
 def nearly_parallel() -> Sequence[Measured]:
-    """Keep loads apart whose curves run a picometre from each other over a square wave."""
+    """Keep loads apart whose curves run a picometer from each other over a square wave."""
     position = even_positions(48)
     force = 1000.0 + np.array([0.0, 1e-3, 2e-3, 1.0])
     ste = square_wave(position)[:, None] * force
@@ -149,7 +149,7 @@ def nearly_parallel() -> Sequence[Measured]:
     levels = table.ste(x[:, None], np.r_[0.0, force])
     return (
         Measured(
-            "least distance of neighbouring curves, m", float(np.diff(levels, axis=1).min()), least=1e-13
+            "least distance of neighboring curves, m", float(np.diff(levels, axis=1).min()), least=1e-13
         ),
         Measured(
             "curves off their knots, m",
@@ -237,7 +237,7 @@ OUTSIDE = HardScene(
 NEARLY_PARALLEL = HardScene(
     "nearly_parallel_curves",
     "table",
-    "Curves of neighbouring loads lie a picometre apart over a wave of microns: where they cross a force "
+    "Curves of neighboring loads lie a picometer apart over a wave of microns: where they cross a force "
     "has two values.",
     "Their order holds everywhere, and force and STE are inverse to each other.",
     nearly_parallel,

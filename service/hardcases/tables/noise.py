@@ -17,7 +17,7 @@ _AMPLITUDE = 0.4e-6
 
 
 def broken_monotonicity() -> Sequence[Measured]:
-    """Add noise of a fraction of a micrometre to a table of close loads; refuse it, then repair it."""
+    """Add noise of a fraction of a micrometer to a table of close loads; refuse it, then repair it."""
     position, force = even_positions(32), np.linspace(500.0, 3000.0, 26)
     clean = COMPLIANCE * force * (1.0 + 0.2 * np.cos(2.0 * np.pi * position))[:, None]
     noise = np.random.default_rng(_SEED).uniform(-_AMPLITUDE, _AMPLITUDE, clean.shape)

@@ -26,7 +26,7 @@ function outline(gear) {
 
 const circle = (radius) => `M${radius} 0A${radius} ${radius} 0 1 0 ${-radius} 0A${radius} ${radius} 0 1 0 ${radius} 0Z`;
 
-/** A gear as a group that turns about its centre: body with its bore, or rim with its outside. */
+/** A gear as a group that turns about its center: body with its bore, or rim with its outside. */
 function gearGroup(gear, kind, stroke) {
   const [x, y] = gear.centre_mm;
   const group = draw("g", { transform: `translate(${x} ${-y})`, "stroke-width": stroke });

@@ -1,4 +1,4 @@
-/** What the transmission error excites: run-up and modes of the analysed pair, and scenes of one's own. */
+/** What the transmission error excites: run-up and modes of the analyzed pair, and scenes of one's own. */
 
 import { card } from "./card.js";
 import { byId } from "./elements.js";
@@ -18,7 +18,7 @@ function brakeOf(known) {
   return torque >= 10 ? Math.round(torque) : Number(torque.toPrecision(2));
 }
 
-/** The scene of an analysed pair as it is offered first. */
+/** The scene of an analyzed pair as it is offered first. */
 export const usualScene = (known) => sceneOf(known, { top_rpm: 3000, duration_s: 1, torque_n_m: brakeOf(known) });
 
 const RUN_UP = {
@@ -47,7 +47,7 @@ export class Dynamics {
     );
   }
 
-  /** @param {object | null} known the analysed pair */
+  /** @param {object | null} known the analyzed pair */
   show(known) {
     this.known = known;
     const external = known !== null && !known.case.pair.wheel.internal;

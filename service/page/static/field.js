@@ -18,7 +18,7 @@ export function unitOf(name) {
 export function wordsOf(name) {
   const suffix = (UNITS.find(([ending]) => name.endsWith(ending)) || [""])[0];
   const bare = suffix ? name.slice(0, -suffix.length) : name;
-  const text = bare.replaceAll("_", " ").replace(/\bcenter\b/g, "centre");
+  const text = bare.replaceAll("_", " ");
   return text.charAt(0).toUpperCase() + text.slice(1);
 }
 

@@ -8,7 +8,7 @@ import { Reference } from "./reference.js";
 import { Sliders } from "./sliders.js";
 
 const STYLES = {
-  before: { name: "as analysed", color: "#767676", width: 1.8, dash: "dash" },
+  before: { name: "as analyzed", color: "#767676", width: 1.8, dash: "dash" },
   kept: { name: "reference", color: "#B34C00", width: 2, dash: "dot" },
   now: { name: "now", color: "#0072B2", width: 2.4, dash: "solid" },
 };
@@ -60,14 +60,14 @@ export class Live {
     const note = this.known.plane ? make(
       "div", {},
       make("p", { class: "hint" }, "Computed in the plane: misalignment, crowning and all else that acts across the face need three dimensions."),
-      make("button", { type: "button", onclick: () => this.actions.inThreeDimensions() }, "Analyse in three dimensions"),
+      make("button", { type: "button", onclick: () => this.actions.inThreeDimensions() }, "Analyze in three dimensions"),
     ) : null;
     const button = (text, action, id) => make("button", { type: "button", id, onclick: action }, text);
     byId("sliders").replaceChildren(
       ...this.sliders.blocks, note ?? "",
       make(
         "div", { class: "buttons" },
-        button("As analysed", () => this.sliders.reset()),
+        button("As analyzed", () => this.sliders.reset()),
         button("Take these flanks into the case", () => this.actions.take(this.sliders.flanks)),
         button("Keep as reference", () => this.keep(), "keep"),
         button("Forget the reference", () => this.forget(), "forget"),
@@ -154,7 +154,7 @@ export class Live {
     }
   }
 
-  /** The curve as analysed at this torque, to compare with. */
+  /** The curve as analyzed at this torque, to compare with. */
   async baseline(torque, key) {
     if (this.before?.asked === torque[0] && this.before?.key === key) return;
     const found = await post(`/v1/databases/${key}/ste`, { torque_n_m: torque, caller: `${this.caller}-before` });
@@ -184,7 +184,7 @@ export class Live {
   plots() {
     const block = (key, title, caption) => figureBlock({ key, title, caption, alternative: "", plot: { data: [], layout: {} } }, "h3");
     this.blocks = {
-      ste: block("live_ste", "Transmission error over two base pitches", "Grey: as analysed, at the same torque and aligned."),
+      ste: block("live_ste", "Transmission error over two base pitches", "Gray: as analyzed, at the same torque and aligned."),
       harmonics: block("live_harmonics", "Mesh harmonics", "Amplitudes of the mesh frequency and its multiples."),
       sharing: block("live_load_share", "Load sharing", "Part of the load on each pair of teeth."),
     };

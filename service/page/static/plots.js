@@ -1,4 +1,4 @@
-/** Plots by plotly.js: in the colours of the page, with their numbers beside them. */
+/** Plots by plotly.js: in the colors of the page, with their numbers beside them. */
 
 import { patiently } from "./api.js";
 import { csv, dataTable, folded, make, save } from "./elements.js";
@@ -11,25 +11,25 @@ const NARROW_LINE = 36; // characters
 const CONFIG = { responsive: true, displaylogo: false, displayModeBar: false };
 const shown = new Map();
 
-function channels(colour) {
-  return [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16) / 255);
+function channels(color) {
+  return [1, 3, 5].map((at) => parseInt(color.slice(at, at + 2), 16) / 255);
 }
 
-function luminance(colour) {
-  const [r, g, b] = channels(colour).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+function luminance(color) {
+  const [r, g, b] = channels(color).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
   return 0.2126 * r + 0.7152 * g + 0.0722 * b;
 }
 
-/** A colour that stays legible on dark paper: what is too dark has its lightness turned over. */
-export function onDark(colour) {
-  if (!/^#[0-9a-f]{6}([0-9a-f]{2})?$/i.test(colour) || luminance(colour) > 0.16) return colour;
-  const rgb = channels(colour);
+/** A color that stays legible on dark paper: what is too dark has its lightness turned over. */
+export function onDark(color) {
+  if (!/^#[0-9a-f]{6}([0-9a-f]{2})?$/i.test(color) || luminance(color) > 0.16) return color;
+  const rgb = channels(color);
   const shift = 1 - Math.max(...rgb) - Math.min(...rgb);
-  return `#${rgb.map((c) => Math.round(255 * Math.min(Math.max(c + shift, 0), 1)).toString(16).padStart(2, "0")).join("")}${colour.slice(7)}`;
+  return `#${rgb.map((c) => Math.round(255 * Math.min(Math.max(c + shift, 0), 1)).toString(16).padStart(2, "0")).join("")}${color.slice(7)}`;
 }
 
-function recoloured(value) {
-  if (Array.isArray(value)) return value.map(recoloured);
+function recolored(value) {
+  if (Array.isArray(value)) return value.map(recolored);
   if (typeof value === "string") {
     if (value === "rgba(255,255,255,0.8)") return "rgba(20,24,29,0.8)";
     return onDark(value);
@@ -37,12 +37,12 @@ function recoloured(value) {
   return value;
 }
 
-/** Colours in a trace or a layout, turned for dark paper; scales of surfaces and maps stay. */
+/** Colors in a trace or a layout, turned for dark paper; scales of surfaces and maps stay. */
 function darkened(content) {
   if (Array.isArray(content)) return content.map((item) => (typeof item === "object" && item ? darkened(item) : item));
   return Object.fromEntries(Object.entries(content).map(([key, value]) => {
     if (key === "colorscale") return [key, value];
-    if (/color$/.test(key)) return [key, recoloured(value)];
+    if (/color$/.test(key)) return [key, recolored(value)];
     return [key, value && typeof value === "object" && !["x", "y", "z"].includes(key) ? darkened(value) : value];
   }));
 }

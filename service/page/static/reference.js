@@ -4,7 +4,7 @@
 import { Problem, post } from "./api.js";
 import { differences, flankWords } from "./comparison.js";
 
-/** @typedef {{key: string, case: any}} Known an analysed pair */
+/** @typedef {{key: string, case: any}} Known an analyzed pair */
 /** @typedef {{misalignment_um: number, pinion: object, wheel: object}} Question its flanks and misalignment, as moved by the sliders */
 
 /** The case with the flanks that the sliders stand at. @param {Known} known @param {Question} question */

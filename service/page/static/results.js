@@ -18,7 +18,7 @@ export class Results {
    * @param {import("./address.js").Address} page.address
    * @param {import("./design.js").Design} page.design
    * @param {import("./live.js").Live} live
-   * @param {{show: (known: object | null) => void}[]} others what is offered for an analysed pair
+   * @param {{show: (known: object | null) => void}[]} others what is offered for an analyzed pair
    */
   constructor({ address, design }, live, others) {
     Object.assign(this, { address, design, live, others });

@@ -1,9 +1,9 @@
-/** A scene of dynamics around an analysed pair: two shafts, four elastic bearings, motor and brake. */
+/** A scene of dynamics around an analyzed pair: two shafts, four elastic bearings, motor and brake. */
 
 const SPAN = 200;
 
 /**
- * @param {object} known the analysed pair: its case and the hash of its table
+ * @param {object} known the analyzed pair: its case and the hash of its table
  * @param {{top_rpm: number, duration_s: number, torque_n_m: number}} wish torque of the brake on the driven gear
  */
 export function sceneOf(known, wish) {

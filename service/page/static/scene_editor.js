@@ -32,7 +32,7 @@ export class SceneEditor {
     ));
   }
 
-  /** @param {object | null} known the analysed pair, which a scene may be written for */
+  /** @param {object | null} known the analyzed pair, which a scene may be written for */
   show(known) {
     this.known = known;
     this.fromPair.disabled = known === null || known.case.pair.wheel.internal;

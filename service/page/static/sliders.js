@@ -31,7 +31,7 @@ function knobs(known, fields) {
 
 export class Sliders {
   /**
-   * @param {object} known the analysed pair
+   * @param {object} known the analyzed pair
    * @param {import("./field.js").Field[]} fields of a case
    * @param {() => void} changed called after every move
    */

@@ -39,10 +39,10 @@ export const STUDIES = [
   },
   {
     process: "sensitivity", title: "Sensitivity", action: "Study the sensitivity",
-    text: "Peak to peak over misalignment and centre distance, without and with corner contact, in three dimensions.",
+    text: "Peak to peak over misalignment and center distance, without and with corner contact, in three dimensions.",
     fields: [
       { name: "misalignment_um", label: "Misalignments, µm", value: "0, 15, 30, 45, 60", list: true },
-      { name: "center_distance_change_percent", label: "Changes of the centre distance, %", value: "-0.2, -0.1, 0, 0.1, 0.2", list: true },
+      { name: "center_distance_change_percent", label: "Changes of the center distance, %", value: "-0.2, -0.1, 0, 0.1, 0.2", list: true },
     ],
     inputs: (found, values) => ({ case: acrossTheFace(found), ...values }),
   },

@@ -35,7 +35,7 @@ NUMBER = r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 
 
 @dataclass(frozen=True)
-class InMillimetres(Reader):
+class InMillimeters(Reader):
     """A reader whose fields are lengths in mm."""
 
     knows_si: ClassVar[bool] = False
@@ -61,12 +61,12 @@ def test_limits_are_rounded_to_the_side_that_is_accepted_in_any_unit(limit: floa
 
 
 def test_a_limit_with_few_digits_is_written_with_few() -> None:
-    metre = Unit()
+    meter = Unit()
     written = (
-        metre.low(0.07),
-        metre.high(0.07),
-        metre.low(0.1 + 0.2),
-        metre.high(60.0),
+        meter.low(0.07),
+        meter.high(0.07),
+        meter.low(0.1 + 0.2),
+        meter.high(60.0),
         Unit("mm", 1e-3).low(5e-4),
     )
     assert written == ("0.07", "0.07", "0.3", "60", "0.5 mm")
@@ -76,7 +76,7 @@ def test_integers_are_written_out() -> None:
     assert str(integers(0, 2**62)) == f"an integer from 0 to {2**62}"
 
 
-@pytest.mark.parametrize("reader", [Reader("length"), InMillimetres("length")], ids=["si", "mm"])
+@pytest.mark.parametrize("reader", [Reader("length"), InMillimeters("length")], ids=["si", "mm"])
 def test_both_ends_of_a_range_are_accepted_as_written(reader: Reader) -> None:
     low, high = 1.0 / 3.0, 4.2333e-3 * 0.5 * 1e3
     with pytest.raises(RefusedValue) as caught:
@@ -91,7 +91,7 @@ def test_both_ends_of_a_range_are_accepted_as_written(reader: Reader) -> None:
 
 
 @pytest.mark.parametrize(
-    ("bound", "si", "millimetres"),
+    ("bound", "si", "millimeters"),
     [
         (above(0.0), "above 0", "above 0"),
         (
@@ -111,8 +111,8 @@ def test_both_ends_of_a_range_are_accepted_as_written(reader: Reader) -> None:
         (one_of(()), "absent", "absent"),
     ],
 )  # fmt: skip
-def test_a_bound_is_written_in_the_unit_of_its_field(bound: Bound, si: str, millimetres: str) -> None:
-    assert (str(bound), bound.worded(InMillimetres())) == (si, millimetres)
+def test_a_bound_is_written_in_the_unit_of_its_field(bound: Bound, si: str, millimeters: str) -> None:
+    assert (str(bound), bound.worded(InMillimeters())) == (si, millimeters)
 
 
 def test_numbers_in_words_are_converted_and_remarks_on_si_left_out() -> None:
@@ -120,7 +120,7 @@ def test_numbers_in_words_are_converted_and_remarks_on_si_left_out() -> None:
         "A key of ", Quantity(8e-3, "m"), " has ", Quantity(2.0 / 3.0, digits=2), ". ", SiNote("In m.")
     )
     assert str(text) == "A key of 0.008 m has 0.67. In m."
-    assert text.worded(InMillimetres()) == "A key of 8 mm has 0.67. "
+    assert text.worded(InMillimeters()) == "A key of 8 mm has 0.67. "
 
 
 def test_an_error_speaks_to_its_reader_also_inside_another() -> None:
@@ -128,7 +128,7 @@ def test_an_error_speaks_to_its_reader_also_inside_another() -> None:
     outer = RefusedValue("case", "a file", Text.of("free of: ", inner))
     assert str(outer) == "case = 'a file': must be free of: width = '0.03 m': must be at most 0.025 m. In m."
     said = "case_mm = 'a file': must be free of: width_mm = '30 mm': must be at most 25 mm"
-    assert outer.worded(InMillimetres()) == said
+    assert outer.worded(InMillimeters()) == said
 
 
 def test_an_error_crosses_process_boundaries_as_data() -> None:
@@ -140,4 +140,4 @@ def test_an_error_crosses_process_boundaries_as_data() -> None:
         error.bound,
         error.suggestion,
     )
-    assert copy.worded(InMillimetres()) == "seat.width_mm = 0.03: must be at most 25 mm. Try 20 mm."
+    assert copy.worded(InMillimeters()) == "seat.width_mm = 0.03: must be at most 25 mm. Try 20 mm."

@@ -35,13 +35,13 @@ def said_by(pair: GearPair, torque: float) -> tuple[SteDatabase, list[str]]:
     return database, plausible
 
 
-def test_millimetres_are_recognized(tmp_path: Path) -> None:
+def test_millimeters_are_recognized(tmp_path: Path) -> None:
     """A module of 4 is 4 m; scaled loads give the scaled table, and one warning, which the file keeps."""
     wrong, said = said_by(pair_of(4.0), 100.0e9)
     right, nothing = said_by(pair_of(4.0, 1e-3), 100.0)
     (message,) = said
     assert message.startswith("implausible: normal_module = 4 m: ")
-    assert message.endswith("Did you give millimetres, here and in all other lengths?")
+    assert message.endswith("Did you give millimeters, here and in all other lengths?")
     assert nothing == [] and right.warnings == ()
     assert wrong.warnings == (message.removeprefix("implausible: "),)
     np.testing.assert_allclose(
@@ -64,7 +64,7 @@ def test_the_warning_names_the_line_that_asked() -> None:
     assert {Path(one.filename).name for one in caught} == {Path(__file__).name}
 
 
-def test_torque_in_newton_millimetres_warns_once_of_each_consequence() -> None:
+def test_torque_in_newton_millimeters_warns_once_of_each_consequence() -> None:
     """What the estimates announce before the run is not said again of its results."""
     database, said = said_by(pair_of(4.0, 1e-3), 1e5)
     assert len(said) == len(set(said)) == 4

@@ -257,7 +257,7 @@ def test_the_key_depends_on_what_decides_the_result_and_on_nothing_else() -> Non
     assert content_key("analyze", "1", case_json(case(bore_diameter_mm=40.001))) != keys[0]
 
 
-def test_a_change_of_centre_distance_at_which_the_gears_do_not_mesh_is_refused_by_its_place() -> None:
+def test_a_change_of_center_distance_at_which_the_gears_do_not_mesh_is_refused_by_its_place() -> None:
     good = copy.deepcopy(GOOD) | {"errors": {"center_distance_change_mm": [0.0, 0.1]}}
     assert check_case(validated(Case, good)).center_distance == pytest.approx(0.08)
     wrong = copy.deepcopy(GOOD) | {"errors": {"center_distance_change_mm": [0.0, 8.0]}}

@@ -36,7 +36,7 @@ def test_it_holds_the_whole_table_and_says_so(database: Path, tmp_path: Path) ->
         assert 'start="1500.0"' in archive.read("modelDescription.xml").decode()
     again = loa(database, "-o", tmp_path / "m.fmu")
     assert again.exit_code == 0
-    assert "1 misalignments x 1 centre distances" in again.stdout
+    assert "1 misalignments x 1 center distances" in again.stdout
 
 
 def test_backlash_gives_it_a_coast_flank(database: Path, tmp_path: Path) -> None:

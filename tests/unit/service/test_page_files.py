@@ -94,7 +94,7 @@ def test_the_drawn_flanks_touch_at_the_pitch_point_and_nowhere_overlap(name: str
 
 
 def _depth(point: np.ndarray, gear: dict[str, Any]) -> float:
-    """Depth in mm of a point (from the gear's centre) inside a tooth, along the circle; < 0: outside."""
+    """Depth in mm of a point (from the gear's center) inside a tooth, along the circle; < 0: outside."""
     pitch = 2.0 * np.pi / gear["teeth"]
     angle = math.atan2(point[1], point[0]) - math.pi / 2 - math.radians(gear["angle_deg"])
     angle -= pitch * round(angle / pitch)

@@ -41,10 +41,10 @@ WIDE = {"pair.pinion.face_width_mm": 1000.0, "pair.wheel.face_width_mm": 1000.0}
 
 # name, changes, field, check (None: refused), unit asked about
 NONSENSE: list[tuple[str, dict[str, Any], str, str | None, str]] = [
-    ("the whole case in metres", METRES, "pair.normal_module_mm", "module", "metres"),
-    ("the module in metres", {"pair.normal_module_mm": 0.004}, "pair.pinion.bore_diameter_mm", None, ""),
+    ("the whole case in meters", METRES, "pair.normal_module_mm", "module", "meters"),
+    ("the module in meters", {"pair.normal_module_mm": 0.004}, "pair.pinion.bore_diameter_mm", None, ""),
     ("the module in inches", {"pair.normal_module_mm": 0.157}, "pair.pinion.bore_diameter_mm", None, ""),
-    ("the centre distance in metres", {"pair.center_distance_mm": 0.08}, "pair.center_distance_mm", None, ""),
+    ("the center distance in meters", {"pair.center_distance_mm": 0.08}, "pair.center_distance_mm", None, ""),
     ("torque in kN m", {"load.torque_n_m": [0.01, 0.1]}, "load.torque_n_m[1]", "light_load", "kN m"),
     ("torque in N mm", {"load.torque_n_m": [1e4, 1e5]}, "load.torque_n_m[1]", "line_load", "N mm"),
     (
@@ -64,11 +64,11 @@ NONSENSE: list[tuple[str, dict[str, Any], str, str | None, str]] = [
     ("force in kN", {"load": {"normal_force_n": [2.66]}}, "load.normal_force_n[0]", "light_load", "kN"),
     ("a face of 1000 mm", WIDE, "pair.pinion.face_width_mm", "face_width", ""),
     (
-        "a face in metres",
+        "a face in meters",
         {"pair.pinion.face_width_mm": 0.025, "pair.wheel.face_width_mm": 0.025},
         "pair.pinion.face_width_mm",
         "face_width",
-        "metres",
+        "meters",
     ),
     (
         "Young's modulus in MPa",
@@ -91,30 +91,30 @@ NONSENSE: list[tuple[str, dict[str, Any], str, str | None, str]] = [
         "youngs_modulus",
         "MPa",
     ),
-    ("relief in mm", {RELIEF: 0.02, LENGTH: 1.5}, RELIEF, "relief_amount", "millimetres"),
-    ("relief in m", {RELIEF: 2e-5, LENGTH: 1.5}, RELIEF, "relief_amount", "metres"),
+    ("relief in mm", {RELIEF: 0.02, LENGTH: 1.5}, RELIEF, "relief_amount", "millimeters"),
+    ("relief in m", {RELIEF: 2e-5, LENGTH: 1.5}, RELIEF, "relief_amount", "meters"),
     ("relief in tenths of um", {RELIEF: 900.0, LENGTH: 1.5}, RELIEF, "relief_over_module", ""),
-    ("length of the relief in m", {RELIEF: 20.0, LENGTH: 0.0015}, LENGTH, "relief_length", "metres"),
+    ("length of the relief in m", {RELIEF: 20.0, LENGTH: 0.0015}, LENGTH, "relief_length", "meters"),
     (
         "allowance in mm",
         {"pair.pinion.thickness_allowance_um": 0.05},
         "pair.pinion.thickness_allowance_um",
         "relief_amount",
-        "millimetres",
+        "millimeters",
     ),
     (
         "crowning in mm",
         {"pair.wheel.helix_crowning_um": 0.01},
         "pair.wheel.helix_crowning_um",
         "relief_amount",
-        "millimetres",
+        "millimeters",
     ),
     (
         "misalignment in mm",
         {"errors": {"misalignment_um": [0.0, 0.02]}},
         "errors.misalignment_um[1]",
         "misalignment",
-        "millimetres",
+        "millimeters",
     ),
     (
         "misalignment in nm",
@@ -124,14 +124,14 @@ NONSENSE: list[tuple[str, dict[str, Any], str, str | None, str]] = [
         "",
     ),
     (
-        "centre distance change in m",
+        "center distance change in m",
         {"errors": {"center_distance_change_mm": [0.0, 5e-5]}},
         "errors.center_distance_change_mm[1]",
         "center_distance_change",
-        "metres",
+        "meters",
     ),
     (
-        "centre distance change in um",
+        "center distance change in um",
         {"errors": {"center_distance_change_mm": [0.0, 50.0]}},
         "errors.center_distance_change_mm[1]",
         None,
@@ -145,11 +145,11 @@ NONSENSE: list[tuple[str, dict[str, Any], str, str | None, str]] = [
         "",
     ),
     (
-        "a bore in metres",
+        "a bore in meters",
         {"pair.pinion.bore_diameter_mm": 0.04},
         "pair.pinion.bore_diameter_mm",
         "bore",
-        "metres",
+        "meters",
     ),
     (
         "helix in radians",
@@ -170,7 +170,7 @@ NONSENSE: list[tuple[str, dict[str, Any], str, str | None, str]] = [
         {"pair.pinion.shaft": SHAFT | {"length_mm": 0.2, "position_mm": 0.1}},
         "pair.pinion.shaft.length_mm",
         "shaft_slenderness",
-        "metres",
+        "meters",
     ),
     (
         "bearing stiffness in N/mm",
@@ -226,10 +226,10 @@ def test_at_least_25_cases_are_nonsense() -> None:
     assert len(NONSENSE) >= 25
 
 
-def test_a_case_in_metres_is_one_warning_for_all_its_lengths() -> None:
+def test_a_case_in_meters_is_one_warning_for_all_its_lengths() -> None:
     """Loads and faces follow from the lengths: they would hide the cause."""
     (warning,) = case_warnings(changed(METRES))
-    assert warning["message"].endswith("Did you give metres, here and in all other lengths?")
+    assert warning["message"].endswith("Did you give meters, here and in all other lengths?")
     assert (warning["value"], warning["unit"]) == (0.004, "mm")
 
 

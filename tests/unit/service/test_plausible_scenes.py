@@ -126,7 +126,7 @@ NONSENSE: list[tuple[str, dict[str, Any], dict[str, Any], str, str | None, str]]
         {},
         "bushings[0].rolling_contact.radial_clearance_um",
         "clearance",
-        "millimetres",
+        "millimeters",
     ),
     (
         "backlash in mm",
@@ -134,7 +134,7 @@ NONSENSE: list[tuple[str, dict[str, Any], dict[str, Any], str, str | None, str]]
         {},
         "meshes[0].coast_flank.backlash_um",
         "backlash",
-        "millimetres",
+        "millimeters",
     ),
     (
         "misalignment in mm",
@@ -142,7 +142,7 @@ NONSENSE: list[tuple[str, dict[str, Any], dict[str, Any], str, str | None, str]]
         {},
         "meshes[0].misalignment_um",
         "mesh_misalignment",
-        "millimetres",
+        "millimeters",
     ),
     ("friction in per cent", {"meshes.0.friction": 0.9}, {}, "meshes[0].friction", "friction", "per cent"),
 ]

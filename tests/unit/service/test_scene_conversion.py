@@ -192,7 +192,7 @@ def test_a_gear_in_two_meshes_must_be_the_same_in_both() -> None:
 
 
 def ring_table() -> Any:
-    """The small table as that of 20 teeth in a ring of 60, at the same centre distance and base pitch."""
+    """The small table as that of 20 teeth in a ring of 60, at the same center distance and base pitch."""
     from dataclasses import replace  # noqa: PLC0415
 
     table = small_table()

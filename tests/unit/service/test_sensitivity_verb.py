@@ -164,7 +164,7 @@ def test_the_figure_has_a_line_per_pair_and_model_in_four_panels() -> None:
     relative, absolute, *_ = figure.content
     assert isinstance(relative, Panel) and isinstance(absolute, Panel)
     assert [line.dash for line in relative.lines] == ["dash", "solid", "dash", "solid"]
-    assert relative.lines[0].colour == relative.lines[1].colour != relative.lines[2].colour
+    assert relative.lines[0].color == relative.lines[1].color != relative.lines[2].color
     assert relative.lines[0].y == pytest.approx([0.0, 150.0])
     assert absolute.lines[2].y == pytest.approx([4.0, 10.0])
     assert absolute.lines[2].x == pytest.approx([0.0, 30.0])
@@ -174,7 +174,7 @@ def test_the_figure_has_a_line_per_pair_and_model_in_four_panels() -> None:
 def test_the_table_has_every_point() -> None:
     rows = sensitivity_table([study()]).rows
     assert rows[1] == ("pair a", "off", "misalignment 30 µm", "5.000", "0.20", "+150.0")
-    assert rows[2] == ("pair a", "off", "centre distance -0.1 %", "1.000", "0.30", "-50.0")
+    assert rows[2] == ("pair a", "off", "center distance -0.1 %", "1.000", "0.30", "-50.0")
     assert len(rows) == 8
 
 
@@ -189,7 +189,7 @@ def test_the_picture_is_large_enough_to_read(
 
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
 def test_the_examples_run_at_every_deviation(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Both pairs of the paper's Table 2 exist from -0.2 to +0.2 % of the centre distance."""
+    """Both pairs of the paper's Table 2 exist from -0.2 to +0.2 % of the center distance."""
     asked = {}
 
     def study_nothing(pair: object, **options: object) -> tuple[()]:

@@ -48,7 +48,7 @@ def test_a_second_interrupt_is_not_held_back():
 def test_a_run_says_which_effects_are_on_and_what_the_others_are_worth():
     entries = [
         {"effect": "flexible_shafts", "part": "input", "on": False, "worth": 2e-6, "reason": "switched off"},
-        {"effect": "tilt", "part": "input", "on": False, "worth": 0.0, "reason": "centred"},
+        {"effect": "tilt", "part": "input", "on": False, "worth": 0.0, "reason": "centered"},
         {"effect": "lateral", "part": "input", "on": True, "worth": 1.33e-5, "reason": "pushed aside"},
     ]
     assert effect_lines({"entries": entries}) == [

@@ -48,7 +48,7 @@ def loa(*arguments: object) -> Result:
 
 @pytest.fixture
 def case(tmp_path: Path) -> Path:
-    """A case whose tip relief is in millimetres."""
+    """A case whose tip relief is in millimeters."""
     file = tmp_path / "case.toml"
     file.write_text(CASE.format(relief="tip_relief_um = 0.02\ntip_relief_length_mm = 1.5"))
     return file

@@ -23,7 +23,7 @@ SOURCE = "contact in three dimensions and in plane strain on one mesh of the sec
 
 @dataclass(frozen=True)
 class Scene:
-    """A spur pair without profile shift of the sum, so that it has the reference centre distance."""
+    """A spur pair without profile shift of the sum, so that it has the reference center distance."""
 
     teeth: tuple[int, int]
     modules: float
@@ -75,11 +75,11 @@ def in_space(pair: ParallelAxes, force: float) -> tuple[np.ndarray, np.ndarray]:
     """STE in three dimensions, and in plane strain on the same section."""
     asked = check_request(pair, normal_forces=[force], level="draft", model="3d")
     plan = make_plan(pair, asked.request.load, asked.request.accuracy, asked.model)
-    gears, recipes = (pair.pinion, pair.wheel), plan.discretisation.recipes
+    gears, recipes = (pair.pinion, pair.wheel), plan.discretization.recipes
     solid = as_they_face(pair, flank_compliances_3d(gears, recipes))
     flat = [replace(recipe, layers=1, merge_rows=()) for recipe in recipes]
     held = as_they_face(pair, flank_compliances_3d(gears, flat, support=PlaneStrain()))
-    one_slice = replace(plan, discretisation=replace(plan.discretisation, slices=1))
+    one_slice = replace(plan, discretization=replace(plan.discretization, slices=1))
     return (
         solved(PairContact(pair, plan, face=solid), asked.model, force),
         solved(PairContact(pair, one_slice, face=held), asked.model, force),

@@ -151,7 +151,7 @@ def test_by_the_length_of_a_relief_curves_change_as_differences_say(pair, conden
     assert np.median(off) < 2e-4 and off.max() < 1e-2
 
 
-def test_by_misalignment_torque_and_centre_distance_curves_change_as_differences_say(condensed):
+def test_by_misalignment_torque_and_center_distance_curves_change_as_differences_say(condensed):
     bodies, pair = condensed("helical"), helical()
     found = curve_derivatives(bodies, pair, TORQUES, ["misalignment", "torque", "center_distance_change"])
     base = bodies.solve(pair, TORQUES)[3].deflection

@@ -51,7 +51,7 @@ def springs(pair: GearPair, *gaps: object) -> LoadDistribution:
     model = ContactModel(gaps=gaps)
     slices = Slices.of_pair(pair, COUNT, 1)
     plain = contact_candidates(pair, model, np.zeros(1), PatchRule(1e-3, 1e-4), slices)
-    # one point a slice that moves with its own slice alone: no curve through the means of its neighbours
+    # one point a slice that moves with its own slice alone: no curve through the means of its neighbors
     plain = dataclasses.replace(plain, blend=np.eye(COUNT))
     candidates = with_gaps(pair, plain, model)
     only = candidates.pair == 0

@@ -22,7 +22,7 @@ from fe_contact.geometry import (
     RingGear,
 )
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning import Accuracy, FaceDiscretisation, make_plan
+from fe_contact.planning import Accuracy, FaceDiscretization, make_plan
 from fe_contact.ste import SteDatabase
 
 MODULE, WIDTH = 2e-3, 20e-3
@@ -38,7 +38,7 @@ def table(pair: ParallelAxes, model: str = "plane_strain", **more: Any) -> SteDa
     return analyze(pair, torques=TORQUES, level="draft", positions=16, model=model, **more)
 
 
-def test_conjugate_flanks_have_no_error_without_load_at_any_centre_distance() -> None:
+def test_conjugate_flanks_have_no_error_without_load_at_any_center_distance() -> None:
     tight = replace(PAIR, center_distance=PAIR.center_distance - 20e-6)
     found = analyze(
         tight,
@@ -56,7 +56,7 @@ def test_conjugate_flanks_have_no_error_without_load_at_any_centre_distance() ->
 
 
 def test_planetary_set_has_finite_tables_that_keep_the_laws() -> None:
-    """Sun 24, planet 36, ring 96: both meshes share the planet and the centre distance."""
+    """Sun 24, planet 36, ring 96: both meshes share the planet and the center distance."""
     assert SUN.center_distance == pytest.approx(PAIR.center_distance, rel=1e-12)
     for pair, model in ((SUN, "plane_strain"), (PAIR, "plane_strain"), (PAIR, "3d")):
         found = table(pair, model)
@@ -144,8 +144,8 @@ def misaligned(pair: ParallelAxes, growth: float = 20e-6) -> tuple[np.ndarray, n
     recipe = SectorRecipe(
         **{name: part * MODULE for name, part in sizes.items()}, layers=6, merge_rows=(), land_elements=1
     )
-    made = FaceDiscretisation((recipe, recipe), (recipe, recipe), slices=11, most_slices=11)
-    contact = pair_contact(pair, replace(plan, discretisation=made), cache=None)
+    made = FaceDiscretization((recipe, recipe), (recipe, recipe), slices=11, most_slices=11)
+    contact = pair_contact(pair, replace(plan, discretization=made), cache=None)
     problem, solution = contact.solve(model, np.array([0.3, 0.45, 0.6]), load)
     force, face = solution.force[:, 0], problem.candidates.face_position
     return solution.deflection[:, 0], force @ face / force.sum(axis=1) / WIDTH

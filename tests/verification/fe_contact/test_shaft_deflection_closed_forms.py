@@ -38,7 +38,7 @@ def loaded(
     """Deflection and line load of one pair at the pitch point, at each normal force."""
     slices = Slices.of_pair(PAIR, COUNT, 1)
     candidates = contact_candidates(PAIR, ContactModel(), np.zeros(1), PatchRule(1e-3, 1e-4), slices)
-    # one point a slice that moves with its own slice alone: no curve through the means of its neighbours
+    # one point a slice that moves with its own slice alone: no curve through the means of its neighbors
     candidates = dataclasses.replace(candidates, blend=np.eye(COUNT))
     only = candidates.pair == 0
     gap = np.where(only, candidates.gap, np.inf)

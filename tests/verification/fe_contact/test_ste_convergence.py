@@ -26,9 +26,9 @@ def contact(tmp_path_factory):
     plan = make_plan(pair, LOAD, Accuracy(), model)
 
     def solve(factor: float, position: np.ndarray, load: np.ndarray) -> np.ndarray:
-        first, second = (recipe.refined(factor) for recipe in plan.discretisation.recipes)
-        made = dataclasses.replace(plan.discretisation, recipes=(first, second))
-        contact = pair_contact(pair, dataclasses.replace(plan, discretisation=made), cache)
+        first, second = (recipe.refined(factor) for recipe in plan.discretization.recipes)
+        made = dataclasses.replace(plan.discretization, recipes=(first, second))
+        contact = pair_contact(pair, dataclasses.replace(plan, discretization=made), cache)
         return contact.solve(model, position, load)[1].deflection
 
     return solve
@@ -43,7 +43,7 @@ def test_rate_and_level(contact, record_figure):
     left = float(second / (2**rate - 1.0) / ste[2].max())
     record_figure("STE under mesh refinement, rate", rate, "at least 2", "-", "quadratic elements")
     record_figure(
-        "STE, discretisation error of the standard mesh", 100 * left, "below 0.1 %", "%", "Richardson"
+        "STE, discretization error of the standard mesh", 100 * left, "below 0.1 %", "%", "Richardson"
     )
     assert rate > 2.0
     assert left < 1e-3

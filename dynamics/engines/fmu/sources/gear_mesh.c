@@ -69,7 +69,7 @@ static int drive(const mesh_table *table, mesh_values *values) {
     return elastic.force > 0.0;
 }
 
-/* The backs of the teeth: turned by pi about the line of centres the pair is itself driven in the other sense, at
+/* The backs of the teeth: turned by pi about the line of centers the pair is itself driven in the other sense, at
    the driver's thickness less the position; the gap of a misalignment grows towards the other end. */
 static int coast(const mesh_table *table, mesh_values *values, double rate) {
     double *real = values->real;

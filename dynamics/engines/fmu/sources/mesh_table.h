@@ -32,7 +32,7 @@ void free_mesh_table(mesh_table *table);
 /* Position less whole periods, which drop exactly: in [0, period). */
 double wrapped(double position, double period);
 
-/* Force at a position (base pitches), a deflection, a misalignment and a change of centre distance (m). Outside
+/* Force at a position (base pitches), a deflection, a misalignment and a change of center distance (m). Outside
    the axes the nearest place is used; above the last level the force goes straight on. Both are flagged. */
 table_force look_up(const mesh_table *table, double position, double deflection, double misalignment,
                     double distance);

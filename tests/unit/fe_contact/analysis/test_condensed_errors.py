@@ -41,7 +41,7 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def pair(cache: Path) -> CondensedPair:
-    """Return the corrected plane, analysed with a full receipt."""
+    """Return the corrected plane, analyzed with a full receipt."""
     return condensed(analyze(PAIR, torques=TORQUES, level="draft", positions=64, cache=cache), cache)
 
 
@@ -63,7 +63,7 @@ def figures(table: SteDatabase) -> tuple[FloatArray, FloatArray]:
 
 
 @pytest.mark.parametrize("model", ["auto", "3d"])
-def test_errors_of_the_discretisation_are_those_of_an_analysis_of_its_own(cache: Path, model: str) -> None:
+def test_errors_of_the_discretization_are_those_of_an_analysis_of_its_own(cache: Path, model: str) -> None:
     count = 64 if model == "3d" else 192
     wish = {"torques": TORQUES, "level": "draft", "model": model, "cache": cache, "effects": CORNERS}
     bodies = condensed(analyze(PAIR, positions=16, **wish), cache)  # type: ignore[arg-type]
@@ -170,6 +170,6 @@ def test_nothing_is_assembled_for_a_second_question(pair: CondensedPair) -> None
 
 
 def _contacts(pair: CondensedPair) -> list[PairContact]:
-    """Return the contacts of the corrected plane on all its discretisations."""
+    """Return the contacts of the corrected plane on all its discretizations."""
     every = pair.contacts
     return [each for each in (every.own, every.plane, every.coarse, every.patched) if each is not None]

@@ -27,7 +27,7 @@ def with_flank(pair: GearPair, modification: FlankModification) -> GearPair:
 
 
 def table_of(pair: GearPair, cache: Path, model: str = "plane_strain", **wish: object) -> SteDatabase:
-    """Analyse at the positions of a condensed pair."""
+    """Analyze at the positions of a condensed pair."""
     return analyze(
         pair,
         torques=TORQUES,
@@ -47,7 +47,7 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def condensed(pair: GearPair, cache: Path, model: str = "plane_strain") -> CondensedPair:
-    """Analyse, then fetch what that left in the cache."""
+    """Analyze, then fetch what that left in the cache."""
     found = condensed_pair(pair, table_of(pair, cache, model), {}, cache)
     assert found is not None
     return found
@@ -79,7 +79,7 @@ def test_what_is_assembled_once_serves_all_flanks(cache: Path) -> None:
     assert pair.contact._problems == kept and len(kept) == 1
 
 
-def test_another_centre_distance_has_the_curve_of_its_own_analysis(cache: Path) -> None:
+def test_another_center_distance_has_the_curve_of_its_own_analysis(cache: Path) -> None:
     pair = condensed(PAIR, cache)
     for change in (1e-5, 3e-5, 2e-5):
         quick = pair.table(with_flank(PAIR, RELIEF), TORQUES, center_distance_change=change)
@@ -91,7 +91,7 @@ def test_another_centre_distance_has_the_curve_of_its_own_analysis(cache: Path) 
     assert np.abs(nominal.static_transmission_error / quick.static_transmission_error - 1.0).max() > 1e-3
 
 
-def test_a_centre_distance_at_which_more_teeth_touch_is_refused(
+def test_a_center_distance_at_which_more_teeth_touch_is_refused(
     cache: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pair = condensed(PAIR, cache)
@@ -112,7 +112,7 @@ def test_a_plane_holds_nothing_across_the_face(cache: Path) -> None:
 
 def test_other_bodies_and_loads_beyond_the_patches_are_refused(cache: Path) -> None:
     pair = condensed(PAIR, cache)
-    with pytest.raises(InputError, match="gears and the centre distance"):
+    with pytest.raises(InputError, match="gears and the center distance"):
         pair.table(replace(PAIR, center_distance=20.01e-3), TORQUES)
     with pytest.raises(InputError, match="at most 2: 2 times"):
         pair.table(PAIR, np.array([2.001]))

@@ -14,7 +14,7 @@ from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.curve_error_estimate import HARMONIC_SHARE
 from fe_contact.analysis.model_choice import decide
 from fe_contact.planning import LEVELS
-from fe_contact.planning.discretisation import SLICE_ORDER, face_discretisation
+from fe_contact.planning.discretization import SLICE_ORDER, face_discretization
 from fe_contact.ste.curve_errors import SOURCES
 from fe_contact.ste.fields import DIMENSIONS
 
@@ -74,7 +74,7 @@ def test_slices_of_a_helical_pair_are_a_source_of_ripple(cache):
     ripple = float(table.peak_to_peak(force=FORCE))
     assert 1e-4 * ripple < slices[1] < 0.02 * ripple
     assert slices[0] < 0.01 * float(table.mean(force=FORCE))
-    made = face_discretisation(helical(), "draft")
+    made = face_discretization(helical(), "draft")
     assert made.coarse_slices == made.slices // 2
     assert made.remaining_slices == pytest.approx(
         1.0 / ((made.slices / made.coarse_slices) ** SLICE_ORDER - 1.0)
@@ -92,7 +92,7 @@ def test_what_few_slices_change_is_carried_on_along_the_curve(cache):
     )
     checked = check_request(quiet, normal_forces=[FORCE], level="draft", positions=32)
     decided = decide(checked)
-    made = decided.plan.discretisation
+    made = decided.plan.discretization
     table, few = (
         compute_database(checked, {}, lambda *_: None, cache, decided.in_slices(count))
         for count in (made.slices, made.coarse_slices)
@@ -121,7 +121,7 @@ def test_what_a_coarse_mesh_leaves_follows_the_layers_it_has():
         for level in LEVELS:
             gear = dataclasses.replace(helical().pinion, face_width=width * 3e-3)
             mate = dataclasses.replace(gear, helix_angle=-gear.helix_angle)
-            made = face_discretisation(GearPair(gear, mate, helical().center_distance), level)
+            made = face_discretization(GearPair(gear, mate, helical().center_distance), level)
             ratio = made.recipes[0].layers / made.coarse_recipes[0].layers
             assert 4.0 / 3.0 <= ratio <= 1.6
             assert made.remaining == pytest.approx(1.0 / (min(ratio, 1.5) ** 2 - 1.0))

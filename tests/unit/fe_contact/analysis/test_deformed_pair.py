@@ -193,7 +193,7 @@ def test_the_wheel_lags_by_the_transmission_error_along_the_line_of_action(found
     pair, one = helical_pair(), found[0]
     alpha = pair.working_pressure_angle
     along = np.array([math.cos(alpha), math.sin(alpha), 0.0])
-    arm = one.wheel.points - np.array(one.wheel_centre)
+    arm = one.wheel.points - np.array(one.wheel_center)
     distance = arm @ np.array([math.sin(alpha), -math.cos(alpha), 0.0])  # from the wheel's axis
     expected = -one.deflection * distance / pair.wheel.base_radius
     assert one.wheel_lag @ along == pytest.approx(expected, abs=1e-15)

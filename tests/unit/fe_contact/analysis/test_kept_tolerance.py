@@ -24,7 +24,7 @@ PLANE = {"torques": [2.0, 5.0], "model": "plane_strain"}
 
 
 @pytest.fixture(autouse=True)
-def nothing_but_discretisation(monkeypatch) -> None:
+def nothing_but_discretization(monkeypatch) -> None:
     """No refinement mends what the method and plane strain leave out: it would end every run here."""
     for name in ("FLOOR", "LARGE_DISPLACEMENT", "TILT"):
         monkeypatch.setattr(model_error, name, (0.0, 0.0, 0.0))

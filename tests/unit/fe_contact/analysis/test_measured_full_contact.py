@@ -110,7 +110,7 @@ def test_what_it_cannot_hold_is_said() -> None:
     beside = check_request(GearPair(GEAR, wider, 40e-3), normal_forces=[9.0], misalignments=[0.0, 1e-5])
     assert "unlike or offset faces" in str(full_contact_refusal(beside))
     apart = check_request(PAIR, normal_forces=[9.0], center_distance_changes=[0.0, 1e-5])
-    assert "centre distance" in str(full_contact_refusal(apart))
+    assert "center distance" in str(full_contact_refusal(apart))
     helical = [dataclasses.replace(GEAR, helix_angle=angle) for angle in (0.2, -0.2)]
     tilted = GearPair(*helical, center_distance=2.0 * helical[0].reference_radius)
     assert "helical" in str(full_contact_refusal(check_request(tilted, normal_forces=[9.0])))

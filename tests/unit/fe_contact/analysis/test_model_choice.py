@@ -106,7 +106,7 @@ def test_helical_pairs_get_the_cheapest_mesh_and_slices_that_are_exact_enough():
     found = [decided(pair(0.3), tolerance=t) for t in (0.1, 0.01)]
     assert found[0].mesh.level == "draft"
     assert found[1].mesh.option.error.total < 0.01 < found[0].mesh.option.error.total
-    assert found[1].plan.discretisation.slices == found[1].mesh.slices
+    assert found[1].plan.discretization.slices == found[1].mesh.slices
 
 
 def test_a_small_ripple_asks_for_more():

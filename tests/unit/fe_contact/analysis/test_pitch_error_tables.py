@@ -131,7 +131,7 @@ def test_a_misalignment_axis_shortens_the_longest_period():
     assert check_request(pair, **options, positions=8).cycle.alignments == 40
 
 
-def test_the_judged_pitches_span_the_differences_between_neighbours():
+def test_the_judged_pitches_span_the_differences_between_neighbors():
     error = np.where(np.arange(20) == 7, 9e-6, 0.0) + np.where(np.arange(20) > 12, 1e-6, 0.0)
     scene = ContactScene(GearPair(gear(20, error), gear(23)), np.array([100.0]))
     windows = judged_windows(compose(scene, {}, EFFECTS)[0], 3)
@@ -150,7 +150,7 @@ def steps(position):
     return np.interp(pitches, [-1.0, 0.213, 0.741, 2.0], [0.0, 0.0, 1.0, 1.0])[..., None]
 
 
-def test_nodes_of_one_pitch_among_others_join_its_neighbours():
+def test_nodes_of_one_pitch_among_others_join_its_neighbors():
     """A pitch that ends higher than it starts is no jump, for the next one goes on from there."""
     nodes = adaptive_nodes(NodeRule(16, 0.002, 768), steps)
     assert nodes.position.size < 200

@@ -75,7 +75,7 @@ def test_the_prediction_fails_with_the_square_of_the_spacing_or_faster():
         for nodes in (np.arange(n) / n for n in (32, 64))
     )
     assert np.all(many < 0.3 * few)
-    even = np.arange(7) / 7  # an odd number closes with two neighbours of the same set
+    even = np.arange(7) / 7  # an odd number closes with two neighbors of the same set
     assert predicted_failure(Axis(even, 1.0), np.ones((7, 2))).max() < 1e-15
 
 

@@ -73,7 +73,7 @@ def test_one_pair_alone_gives_stress_in_proportion_to_the_load(cache: Path) -> N
     one, five = (solved(SPUR, cache, normal_force=f, at=[0.0]).pinion for f in (FORCE, 5.0 * FORCE))
     assert np.abs(five.stress - 5.0 * one.stress).max() < 1e-9 * np.abs(five.stress).max()
     own = np.abs(one.stress).max(axis=(0, 2, 3, 4, 5))
-    assert own[one.pair == 0] > 2.0 * own[one.pair != 0].max()  # neighbours share the tooth spaces
+    assert own[one.pair == 0] > 2.0 * own[one.pair != 0].max()  # neighbors share the tooth spaces
     assert own.min() > 0.0
 
 

@@ -41,7 +41,7 @@ def test_other_bodies_are_laid_out_as_afresh(laid_out):
         assert place.contact.plan is bodies.plan
 
 
-def test_places_of_one_centre_distance_share_their_compliance_on_other_bodies(laid_out):
+def test_places_of_one_center_distance_share_their_compliance_on_other_bodies(laid_out):
     first, _, bodies = laid_out
     found = first.on_bodies(bodies)
     contacts = np.array([id(place.contact) for place in found.places]).reshape(found.shape)

@@ -149,7 +149,7 @@ def test_linear_displacement_gives_its_constant_plane_stress(
 
 @SOLIDS
 def test_solids_are_whole_and_right_side_out(gear: Toothing) -> None:
-    """Each point is used; neighbours share their cut; volumes are positive; tips are where they belong."""
+    """Each point is used; neighbors share their cut; volumes are positive; tips are where they belong."""
     recipe = coarse_sector(gear)
     size = flank_compliance_3d(gear, recipe, reach=0).blocks.shape[1]
     load = {1: -random_load(size, 5)}

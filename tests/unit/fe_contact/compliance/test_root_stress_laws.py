@@ -221,7 +221,7 @@ def test_one_layer_without_axial_displacement_is_the_plane() -> None:
             stress = found.stress[len(found.distance) // 2 + distance, :, 0] @ patch(found, PLANE)
             across = stress.mean(axis=-1) * width
             sums.append(np.array([np.interp(fillet, found.station_s, side) for side in across]))
-        # straight lines between the stations; what a neighbour passes on is a tenth of it
+        # straight lines between the stations; what a neighbor passes on is a tenth of it
         assert relative(sums[0], sums[1]) < (0.015 if distance == 0 else 0.03)
 
 

@@ -73,7 +73,7 @@ def test_a_box_over_the_whole_face_sums_to_the_plane_patch():
     assert force @ coordinates(mesh)[:, 0] ** 2 == pytest.approx(plane @ mesh.s**2, rel=1e-12)
 
 
-def test_neighbouring_boxes_add_up_to_one():
+def test_neighboring_boxes_add_up_to_one():
     mesh = grid()
     whole = dense(mesh, (4e-3, 1e-3, 0.0, -4e-3, 6e-3))[0]
     parts = dense(mesh, (4e-3, 1e-3, 0.0, -4e-3, -1e-3), (4e-3, 1e-3, 0.0, -1e-3, 6e-3))

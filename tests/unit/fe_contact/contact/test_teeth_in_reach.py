@@ -13,20 +13,20 @@ RULE = PatchRule(half_width=3e-4, edge_length=2e-4)
 COMMON = {"normal_module": 1e-3, "face_width": 10e-3, "bore_diameter": 15e-3}
 
 
-def off_centre() -> GearPair:
+def off_center() -> GearPair:
     """Contact ratio below two, but A more than one base pitch before the pitch point."""
     pinion = Gear(teeth=42, profile_shift_coefficient=-0.4, **COMMON)
     return GearPair(pinion, Gear(teeth=57, profile_shift_coefficient=0.4, **COMMON))
 
 
-def nearly_off_centre() -> GearPair:
-    """A lies one base pitch before the pitch point here, and nearer to it at a larger centre distance."""
+def nearly_off_center() -> GearPair:
+    """A lies one base pitch before the pitch point here, and nearer to it at a larger center distance."""
     pinion = Gear(teeth=42, profile_shift_coefficient=-0.2, **COMMON)
     return GearPair(pinion, Gear(teeth=57, profile_shift_coefficient=0.2, **COMMON))
 
 
 @pytest.mark.parametrize(
-    "pair", [off_centre(), off_centre().swapped(), GearPair(*2 * [Gear(teeth=20, **COMMON)])]
+    "pair", [off_center(), off_center().swapped(), GearPair(*2 * [Gear(teeth=20, **COMMON)])]
 )
 @pytest.mark.parametrize("corners", [False, True])
 def test_no_candidate_lies_beyond_the_teeth_in_reach(pair: GearPair, corners: bool) -> None:
@@ -41,8 +41,8 @@ def test_usual_pairs_need_what_their_contact_ratio_says() -> None:
     assert teeth_in_reach(GearPair(gear, gear)) == 5
 
 
-def test_a_path_of_contact_off_the_pitch_point_is_analysed() -> None:
-    pair = off_centre()
+def test_a_path_of_contact_off_the_pitch_point_is_analyzed() -> None:
+    pair = off_center()
     assert pair.transverse_contact_ratio < 2.0
     path = pair.path_of_contact
     assert path.pitch_point - path.start > path.base_pitch
@@ -50,8 +50,8 @@ def test_a_path_of_contact_off_the_pitch_point_is_analysed() -> None:
     assert table.n_failed == 0
 
 
-def test_so_is_one_that_only_another_centre_distance_moves_there() -> None:
-    near = nearly_off_centre()
+def test_so_is_one_that_only_another_center_distance_moves_there() -> None:
+    near = nearly_off_center()
     far = near.at_center_distance(near.center_distance + 0.1e-3)
     assert teeth_in_reach(near) == 7 and teeth_in_reach(far) == 5
     table = analyze(

@@ -56,7 +56,7 @@ def test_an_explicit_model_decides(options: dict[str, object], across: bool, cor
     on = {entry.name: entry.on for entry in checked.ledger}
     assert (on["face_load_distribution"], on["finite_width"]) == (across, corrected)
     plan = make_plan(PAIR, checked.request.load, checked.request.accuracy, checked.model)
-    assert plan.discretisation.corrected is corrected
+    assert plan.discretization.corrected is corrected
     assert ("finite_width" in plan.to_json()) is corrected
 
 

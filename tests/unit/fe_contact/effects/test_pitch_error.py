@@ -144,7 +144,7 @@ def test_an_early_tooth_of_a_ring_gear_lowers_the_error_by_itself(solved):
 
 
 def test_a_late_tooth_raises_the_error_by_itself_where_it_must_carry_alone(solved, perfect):
-    """In single contact; in double contact its neighbour takes the load and nothing rises."""
+    """In single contact; in double contact its neighbor takes the load and nothing rises."""
     error, tooth = 0.5e-6, 7
     late = solved(GearPair(gear(Z1, one_tooth(Z1, tooth, -error)), gear(Z2)), [6, 7])[..., 0]
     rise = late - perfect[:, 0]

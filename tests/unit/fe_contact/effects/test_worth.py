@@ -60,7 +60,7 @@ def test_springs_are_as_soft_as_finite_elements() -> None:
 
 
 def test_springs_of_helical_teeth_are_as_soft_as_finite_elements(tmp_path: Path) -> None:
-    """A force with an axial part bends the discs: without that teeth move their neighbours half as far."""
+    """A force with an axial part bends the discs: without that teeth move their neighbors half as far."""
     narrow = {name: replace(getattr(HELICAL, name), face_width=4 * M) for name in ("pinion", "wheel")}
     checked = check_request(replace(HELICAL, **narrow), normal_forces=[2000.0], level="draft", positions=8)
     request = checked.request

@@ -1,4 +1,4 @@
-"""Gears that cannot exist are refused by the name of what is wrong; their neighbours that can are not."""
+"""Gears that cannot exist are refused by the name of what is wrong; their neighbors that can are not."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fe_contact.geometry import FlankModification, Gear
 
 SHIFT = "profile_shift_coefficient"
 INFEASIBLE: list[tuple[str, str, dict[str, Any], dict[str, Any]]] = [
-    # name, field, refused, and its feasible neighbour
+    # name, field, refused, and its feasible neighbor
     ("pointed tooth", "tip_diameter", {"tip_diameter": 0.0925}, {"tip_diameter": 0.0922}),
     ("pointed tooth", "tip_diameter", {"teeth": 8, SHIFT: 0.6}, {"teeth": 8, SHIFT: 0.5}),
     ("bore", "bore_diameter", {"bore_diameter": 0.07}, {"bore_diameter": 0.0699}),

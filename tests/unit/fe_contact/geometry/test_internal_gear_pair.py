@@ -72,7 +72,7 @@ def test_both_flanks_touch_at_one_point_of_the_line_of_action() -> None:
     first, second = pair.roll_lengths(position)
     height = pair.pinion.base_radius / math.cos(pair.working_pressure_angle)
     for gear_, roll, center in ((pair.pinion, first, 0.0), (pair.wheel, second, -pair.center_distance)):
-        # the normals touch the base circle on one ray from the gear's centre, where the line of action starts
+        # the normals touch the base circle on one ray from the gear's center, where the line of action starts
         angle = pair.working_pressure_angle
         foot = gear_.base_radius * np.array([-math.sin(angle), math.cos(angle)])
         point = foot + roll[:, None] * np.array([math.cos(angle), math.sin(angle)]) + np.array([0.0, center])
@@ -132,7 +132,7 @@ def test_default_distance_leaves_the_allowances_as_backlash_and_closing_in_adds_
     assert rate == pytest.approx(-2.0 * math.sin(middle.working_pressure_angle), rel=1e-6)
 
 
-def test_opposite_shifts_leave_the_centre_distance() -> None:
+def test_opposite_shifts_leave_the_center_distance() -> None:
     pair = InternalGearPair(gear(profile_shift_coefficient=0.3), ring(profile_shift_coefficient=-0.3))
     assert pair.center_distance == pytest.approx(0.5 * 50 * MODULE, rel=1e-13)
     assert pair.transverse_base_backlash == pytest.approx(0.0, abs=1e-16)
@@ -236,7 +236,7 @@ def test_refusal_of_a_tip_tells_the_tip_diameter_that_fits() -> None:
 
 
 @pytest.mark.parametrize("distance", [0.0, -0.1, math.nan, "0.1"])
-def test_centre_distance_that_is_no_length_is_refused(distance: float) -> None:
+def test_center_distance_that_is_no_length_is_refused(distance: float) -> None:
     with pytest.raises(InputError) as caught:
         InternalGearPair(gear(), ring(), distance)
     assert caught.value.field == "center_distance"

@@ -57,15 +57,15 @@ def outline(profile: ToothProfile) -> FloatArray:
     return polar[np.argsort(polar[:, 1])]
 
 
-def overlap(pair: InternalGearPair, turn: float, withdrawn: float = 0.0, centred: float = 0.0) -> float:
+def overlap(pair: InternalGearPair, turn: float, withdrawn: float = 0.0, centered: float = 0.0) -> float:
     """Largest arc in m by which an outline point of one gear lies inside the other; negative: all apart.
 
-    The driving flanks touch, the pinion `turn` past its pitch point; then it is turned back by `centred`
-    of the backlash and withdrawn along the line of centres.
+    The driving flanks touch, the pinion `turn` past its pitch point; then it is turned back by `centered`
+    of the backlash and withdrawn along the line of centers.
     """
     first, second = outline(tooth_profile(pair.pinion)), outline(tooth_profile(pair.wheel))
     working = involute_function(pair.working_pressure_angle)
-    lag = centred * pair.transverse_base_backlash / pair.pinion.base_radius
+    lag = centered * pair.transverse_base_backlash / pair.pinion.base_radius
     center_1 = turn - pair.pinion.base_thickness_half_angle + working - lag
     center_2 = turn / pair.speed_ratio + pair.wheel.base_thickness_half_angle + working
     height = pair.center_distance - withdrawn
@@ -83,10 +83,10 @@ def inside(
     fixed_teeth: int,
     zero: float,
 ) -> float:
-    """Largest depth of the mover's flanks, its centre at `height`, in the teeth of the other gear."""
+    """Largest depth of the mover's flanks, its center at `height`, in the teeth of the other gear."""
     sparse, radius = outline_points(mover)
     turn = center + 2.0 * math.pi / teeth * np.arange(teeth)[:, None]
-    along = sparse[0] * np.cos(turn) - sparse[1] * np.sin(turn)  # towards the line of centres, of all teeth
+    along = sparse[0] * np.cos(turn) - sparse[1] * np.sin(turn)  # towards the line of centers, of all teeth
     square = height**2 + radius**2 + 2.0 * height * along
     within = (square >= fixed[0, 1] ** 2) & (square <= fixed[-1, 1] ** 2)  # few teeth are near the other gear
     tooth, point = np.nonzero(within)
@@ -98,7 +98,7 @@ def inside(
 
 
 def outline_points(flank: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Points (along, across) of both flanks of a tooth on the line of centres, and their radii."""
+    """Points (along, across) of both flanks of a tooth on the line of centers, and their radii."""
     sparse = flank[:: len(flank) // 300]
     angle, radius = np.concatenate((sparse[:, 0], -sparse[:, 0])), np.tile(sparse[:, 1], 2)
     return np.stack((radius * np.cos(angle), radius * np.sin(angle))), radius
@@ -238,7 +238,7 @@ def radially_blocked(pair: InternalGearPair) -> bool:
     """Whether some phase of the pinion, in the middle of its backlash, cannot be withdrawn radially."""
     turns = 2.0 * math.pi / pair.pinion.teeth * np.linspace(-0.5, 0.5, 31)
     ways = pair.center_distance * np.linspace(0.0, 1.0, 41)[1:]
-    return any(overlap(pair, turn, way, centred=0.5) > 1e-9 for turn in turns for way in ways)
+    return any(overlap(pair, turn, way, centered=0.5) > 1e-9 for turn in turns for way in ways)
 
 
 @pytest.mark.parametrize(("shortening", "blocked"), [(0.05e-3, True), (-0.05e-3, False)])

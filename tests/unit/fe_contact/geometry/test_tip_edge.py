@@ -33,13 +33,13 @@ def flank_and_inwards(gear: Toothing, s: float) -> tuple[np.ndarray, np.ndarray]
 def test_a_rounding_touches_the_involute_and_the_tip_circle(
     make_gear: Callable[..., Gear], kind: str
 ) -> None:
-    """The circle about a centre inside the tooth is tangent to both: its distances are the radius."""
+    """The circle about a center inside the tooth is tangent to both: its distances are the radius."""
     radius = 0.3e-3
     gear = gear_of(kind, make_gear, tip_rounding=radius)
     s_form = gear.sign * gear.tip_form_roll_length**2 / (2.0 * gear.base_radius)
     point, inwards = flank_and_inwards(gear, s_form)
-    centre = point + radius * inwards
-    assert abs(gear.tip_radius - np.linalg.norm(centre)) == pytest.approx(radius, rel=1e-10)
+    center = point + radius * inwards
+    assert abs(gear.tip_radius - np.linalg.norm(center)) == pytest.approx(radius, rel=1e-10)
     assert np.linalg.norm(point) == pytest.approx(gear.tip_form_radius, rel=1e-13)
     # the involute leaves the circle by what is removed, along the normal there
     profile = tooth_profile(gear)
@@ -48,7 +48,7 @@ def test_a_rounding_touches_the_involute_and_the_tip_circle(
         at, inside = profile.flank(np.array(s)), -profile.normal(np.array(s))
         roll = math.sqrt(2.0 * gear.base_radius * abs(s))
         removed = float(gear.modification.material_removed(gear, roll))
-        away = np.linalg.norm(at + removed * inside - centre) - radius
+        away = np.linalg.norm(at + removed * inside - center) - radius
         assert abs(away) < 0.6 * fraction**2 * removed
 
 

@@ -41,12 +41,12 @@ def clearance_to_tool_rounding(gear: Gear, point: np.ndarray) -> float:
     alpha, beta = gear.normal_pressure_angle, gear.helix_angle
     depth = gear.normal_module * (gear.dedendum_coefficient - gear.profile_shift_coefficient)
     half_tooth = 0.5 * gear.tooth_thickness * math.cos(beta)
-    centre_x = half_tooth + (depth - rho) * math.tan(alpha) + rho / math.cos(alpha)
+    center_x = half_tooth + (depth - rho) * math.tan(alpha) + rho / math.cos(alpha)
 
     def distance(turn: Any) -> Any:
         across = point[0] * np.cos(turn) - point[1] * np.sin(turn) + reference * turn
         up = point[0] * np.sin(turn) + point[1] * np.cos(turn) - reference
-        return np.hypot(across * math.cos(beta) - centre_x, up + depth - rho)
+        return np.hypot(across * math.cos(beta) - center_x, up + depth - rho)
 
     turns = np.linspace(-1.2, 1.2, 2001) * min(1.0, 12.0 / gear.teeth)
     nearest, step = turns[np.argmin(distance(turns))], turns[1] - turns[0]

@@ -68,7 +68,7 @@ def test_lengths_and_loads_scale_with_size_at_equal_pressure():
 
 def test_local_approach_is_the_difference_of_two_half_plane_solutions():
     # A half-plane under pressure q moves by -(2 (1 - nu^2)/(pi E)) * integral of q ln|x - s| ds + constant.
-    # Hertz strip: at its centre; patch of the finite-element model: mean weighted by it; same constant.
+    # Hertz strip: at its center; patch of the finite-element model: mean weighted by it; same constant.
     p, a, b = 1e5, 3e-4, 1e-4
     k = 2.0 / (math.pi * STEEL.plane_strain_modulus)
 

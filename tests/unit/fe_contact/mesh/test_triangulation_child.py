@@ -87,7 +87,7 @@ def test_clockwise_triangles_are_turned() -> None:
     ("code", "complaint"),
     [
         ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", "killed by SIGKILL"),
-        ("raise ValueError('no licence to mesh')", "no licence to mesh"),
+        ("raise ValueError('no license to mesh')", "no license to mesh"),
         ("import sys; sys.exit(3)", "exit code 3"),
         ("print('not json')", "unusable answer"),
         ("print('{}')", "unusable answer"),

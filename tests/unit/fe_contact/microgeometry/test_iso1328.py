@@ -64,7 +64,7 @@ def test_tolerances_are_those_of_the_formulas(
         (10.5, 11.0),
     ],
 )
-def test_rounding_is_to_tenths_halves_and_whole_micrometres(exact: float, told: float) -> None:
+def test_rounding_is_to_tenths_halves_and_whole_micrometers(exact: float, told: float) -> None:
     assert rounded(exact) == told
 
 

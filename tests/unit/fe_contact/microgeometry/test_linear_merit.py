@@ -1,4 +1,4 @@
-"""Merits to first order: the programme's least is the least of the linear curves and limits themselves."""
+"""Merits to first order: the program's least is the least of the linear curves and limits themselves."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def some(objective: Objective, seed: int, limits: int = 1) -> LinearMerit:
 
 
 def value(merit: LinearMerit, step: np.ndarray) -> float:
-    """Merit at a step, without any programme."""
+    """Merit at a step, without any program."""
     ripple = np.ptp(merit.curves + merit.by @ step, axis=1)
     found = float((merit.load_weight @ (merit.node_weight @ ripple)).max())
     for rows, by in merit.limits:

@@ -292,7 +292,7 @@ def test_what_cannot_be_optimised_is_refused_by_name(
 @pytest.mark.parametrize(
     ("name", "low", "high", "field"),
     [
-        ("pinion.colour", 0.0, 1e-5, "variables.pinion.colour"),
+        ("pinion.color", 0.0, 1e-5, "variables.pinion.color"),
         ("sun.tip_relief", 0.0, 1e-5, "variables.sun.tip_relief"),
         (RELIEF, -1e-6, 1e-5, f"variables.{RELIEF}.low"),
         (RELIEF, 1e-5, 1e-5, f"variables.{RELIEF}.high"),

@@ -56,7 +56,7 @@ class Bowl:
         value = 1.0 + float(((place - self.bottom) ** 2).sum())
         return Judged(value, 0.0, value)
 
-    def linearise(self, place: FloatArray) -> tuple[Judged, Tangent]:
+    def linearize(self, place: FloatArray) -> tuple[Judged, Tangent]:
         return self.judge(place), Tangent(place - self.bottom)
 
     def rough(self, positions: int) -> Bowl:

@@ -14,7 +14,7 @@ from fe_contact.analysis.model_choice import TRIED, decide
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
-from fe_contact.planning.discretisation import SLICE_ORDER
+from fe_contact.planning.discretization import SLICE_ORDER
 from fe_contact.planning.plan import CLOSEST, FACE_NODES, PLANE_NODES, POSITION_SHARE
 
 FACTOR = 3.0

@@ -1,4 +1,4 @@
-"""Accuracy to discretisation, and the receipt."""
+"""Accuracy to discretization, and the receipt."""
 
 import time
 from dataclasses import replace
@@ -10,7 +10,7 @@ from fe_contact import AllowedError, Gear, GearPair
 from fe_contact.contact import ContactModel
 from fe_contact.errors import InputError
 from fe_contact.hertz import half_width, relative_radius
-from fe_contact.planning import Accuracy, FaceDiscretisation, Plan, make_plan
+from fe_contact.planning import Accuracy, FaceDiscretization, Plan, make_plan
 from fe_contact.stage_clock import StageClock
 
 
@@ -26,13 +26,13 @@ def plan(pair, model: ContactModel | None = None, **accuracy: object) -> Plan:
 
 def test_levels_are_nested_refinements(pair):
     sizes = [
-        plan(pair, level=name).discretisation.recipes[0].flank_size for name in ("draft", "standard", "fine")
+        plan(pair, level=name).discretization.recipes[0].flank_size for name in ("draft", "standard", "fine")
     ]
     assert sizes[0] > sizes[1] > sizes[2]
 
 
 def test_the_coarse_mesh_is_half_as_fine(pair):
-    made = plan(pair).discretisation
+    made = plan(pair).discretization
     assert made.coarse_recipes[1].flank_size == pytest.approx(2.0 * made.recipes[1].flank_size)
 
 
@@ -52,8 +52,8 @@ def test_patches_are_wider_than_the_contact_under_the_largest_load(pair):
 def test_three_dimensions_have_fewer_slices_than_half_layers(pair):
     """More slices than freedoms along the face would make the compliance between them singular."""
     for level in ("draft", "standard", "fine"):
-        made = plan(pair, ContactModel(across_face=True), level=level).discretisation
-        assert isinstance(made, FaceDiscretisation)
+        made = plan(pair, ContactModel(across_face=True), level=level).discretization
+        assert isinstance(made, FaceDiscretization)
         assert made.slices <= min(2 * recipe.layers for recipe in made.recipes)
         assert made.coarse_recipes[0].layers < made.recipes[0].layers
 
@@ -61,7 +61,7 @@ def test_three_dimensions_have_fewer_slices_than_half_layers(pair):
 def test_slices_are_no_narrower_than_layers_of_the_wider_gear_allow(pair):
     """Layers are of each gear's own face; slices of the common one."""
     wide = replace(pair, pinion=replace(pair.pinion, face_width=4.0 * pair.wheel.face_width))
-    made = plan(wide, ContactModel(across_face=True), level="draft").discretisation
+    made = plan(wide, ContactModel(across_face=True), level="draft").discretization
     layer = wide.pinion.face_width / made.recipes[0].layers
     assert wide.face_width / made.slices >= 0.66 * layer
     assert wide.face_width / (made.slices + 1) < 0.67 * layer

@@ -241,8 +241,8 @@ def test_memory_grows_with_meshes_positions_and_slices():
         assert cost_model.PROCESS_BYTES < sizes[0] < sizes[1] < sizes[2]
     assert predicted_memory(face, positions=4096) > 1.3 * predicted_memory(face, positions=64)
     plan = decide(check_request(face, normal_forces=[1000.0], level="draft")).plan
-    finer = replace(plan, discretisation=replace(plan.discretisation, slices=61))
-    ratio = 61 / plan.discretisation.slices
+    finer = replace(plan, discretization=replace(plan.discretization, slices=61))
+    ratio = 61 / plan.discretization.slices
     assert ratio < contact_bytes(face, finer) / contact_bytes(face, plan) < ratio**2
 
 

@@ -90,7 +90,7 @@ def test_stiffness_is_the_inverse_tangent_compliance_in_the_transverse_plane(hel
 
 
 def test_stiffness_is_cut_to_three_times_the_secant(make):
-    """A tangent that contradicts the neighbouring levels must not make the force fall."""
+    """A tangent that contradicts the neighboring levels must not make the force fall."""
     wild = make().tangent_compliance.copy()
     wild[7, 2] /= 100.0
     # with one and the same number of pairs everywhere no levels are inserted

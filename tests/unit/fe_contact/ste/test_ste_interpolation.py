@@ -108,7 +108,7 @@ def test_few_knots(count, period):
 
 
 def test_square_wave_steps_are_as_sharp_as_their_knots():
-    """Between flat knots the curve is flat: the step does not leak into its neighbours."""
+    """Between flat knots the curve is flat: the step does not leak into its neighbors."""
     knots = np.arange(20) / 20
     values = np.where(knots < 0.5, 1.0, 0.0)
     quiet = np.linspace(0.05, 0.45, 101)

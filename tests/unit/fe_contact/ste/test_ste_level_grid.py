@@ -13,7 +13,7 @@ SEEDS = range(8)
 
 
 def axes(rng):
-    """Position (periodic), misalignment, centre distance."""
+    """Position (periodic), misalignment, center distance."""
     return (
         Axis(np.sort(rng.uniform(0, 1, 7)), 1.0),
         Axis(np.cumsum(rng.uniform(0.1, 1.0, 4))),

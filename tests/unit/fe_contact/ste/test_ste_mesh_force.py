@@ -195,7 +195,7 @@ def test_pulling_is_refused(spur):
 
 
 class TestFourAxes:
-    """The same laws with misalignment and centre distance as axes."""
+    """The same laws with misalignment and center distance as axes."""
 
     m = RNG.uniform(-30e-6, 60e-6, X.size)
     c = RNG.uniform(-2e-4, 1.5e-4, X.size)

@@ -46,7 +46,7 @@ class TestWithoutFailed:
 
 
 def noisy(make, size, seed=2):
-    """A table with closely spaced loads and noise of `size` metres."""
+    """A table with closely spaced loads and noise of `size` meters."""
     database = make(force=2660.0 * (1.0 + 0.01 * np.arange(8)))
     noise = np.random.default_rng(seed).normal(scale=size, size=(64, 8, 1, 1))
     return replace(database, static_transmission_error=database.static_transmission_error + noise)

@@ -52,7 +52,7 @@ def test_a_text_at_the_top_goes_below_its_point():
 
 
 def test_a_text_at_the_bottom_stays_above_the_axis():
-    """Its usual places are taken by its neighbours'."""
+    """Its usual places are taken by its neighbors'."""
     names = ("3d draft 61 (chosen)", "3d standard 61 (knee)", "3d fine (reference)")
     notes = [Note(1.0 + k, 0.01, name) for k, name in enumerate(names)]
     assert min(note.row for note in placed(notes, X, Y, RANGE)) >= 0

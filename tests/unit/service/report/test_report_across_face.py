@@ -1,4 +1,4 @@
-"""Figures over misalignment, centre distance and the face: what they draw, and when."""
+"""Figures over misalignment, center distance and the face: what they draw, and when."""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ from service.report.static_part import static_results
 SKEW = np.array([-20e-6, 0.0, 40e-6])
 CHANGE = np.array([0.0, 0.1e-3])
 RIPPLE = np.array([[1.5, 1.2], [1.0, 0.8], [3.0, 2.4]])
-"""Factor of the whole curve, and so of its peak-to-peak, at each misalignment and centre distance."""
+"""Factor of the whole curve, and so of its peak-to-peak, at each misalignment and center distance."""
 
 
 @pytest.fixture
@@ -61,7 +61,7 @@ def test_an_axis_of_one_value_has_no_panel(deviating: SteDatabase) -> None:
         **cut,
     )
     (panel,) = deviation_curves(narrow).content  # type: ignore[misc]
-    assert panel.x.label == "change of the centre distance, mm"
+    assert panel.x.label == "change of the center distance, mm"
 
 
 def test_the_table_names_every_deviation_with_its_unit(deviating: SteDatabase) -> None:
@@ -69,7 +69,7 @@ def test_the_table_names_every_deviation_with_its_unit(deviating: SteDatabase) -
     assert table is not None
     assert [row[0] for row in table.rows] == [
         "misalignment -20.0 µm", "misalignment 0 µm", "misalignment 40.0 µm",
-        "change of the centre distance 0 mm", "change of the centre distance 0.100 mm",
+        "change of the center distance 0 mm", "change of the center distance 0.100 mm",
     ]  # fmt: skip
     assert table.head == ("deviation", "10 N m", "100 N m", "400 N m")
 

@@ -168,9 +168,9 @@ def test_a_legend_stays_within_the_sheet(count: int, length: int) -> None:
         assert legend._ncols == 1
 
 
-def test_ordered_colours_lighten_and_stay_visible_on_white() -> None:
-    def luminance(colour: str) -> float:
-        parts = (int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5))
+def test_ordered_colors_lighten_and_stay_visible_on_white() -> None:
+    def luminance(color: str) -> float:
+        parts = (int(color[i : i + 2], 16) / 255 for i in (1, 3, 5))
         linear = [p / 12.92 if p <= 0.04045 else ((p + 0.055) / 1.055) ** 2.4 for p in parts]
         return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 

@@ -36,9 +36,9 @@ def test_a_window_holds_whole_pitches_around_the_speed(target: float, sign: floa
     speed = sign * 191.0 * time
     position = sign * 20 * 191.0 / 60 * time**2 / 2
     chosen = speed_window(position, speed, target)
-    travelled = np.abs(position[chosen])
-    assert np.ptp(travelled) == pytest.approx(3.0, abs=0.02)
-    assert travelled[0] % 1.0 == pytest.approx(0.0, abs=0.02)
+    traveled = np.abs(position[chosen])
+    assert np.ptp(traveled) == pytest.approx(3.0, abs=0.02)
+    assert traveled[0] % 1.0 == pytest.approx(0.0, abs=0.02)
     assert np.abs(speed[chosen]).min() <= target <= np.abs(speed[chosen]).max()
 
 

@@ -44,7 +44,7 @@ def panels_of(database: SteDatabase) -> tuple[Panel, ...]:
     return content
 
 
-def test_the_ripple_and_the_whole_are_drawn_in_micrometres_for_the_loads_asked_for(
+def test_the_ripple_and_the_whole_are_drawn_in_micrometers_for_the_loads_asked_for(
     database: SteDatabase,
 ) -> None:
     """What is drawn above is what is drawn below less its mean."""

@@ -1,4 +1,4 @@
-"""Write docs/licences.md: the dependencies of the lock files with the licences of what is installed."""
+"""Write docs/licenses.md: the dependencies of the lock files with the licenses of what is installed."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGE = ROOT / "docs" / "licences.md"
-_HEAD = """# Dependencies and their licences
+PAGE = ROOT / "docs" / "licenses.md"
+_HEAD = """# Dependencies and their licenses
 
-Every package of `requirements-dev.lock` with the licence that its own metadata state, and what asks for it:
-the service itself, an extra, or the tests alone. Written by `scripts/licences.py`. lineofaction is licensed
+Every package of `requirements-dev.lock` with the license that its own metadata state, and what asks for it:
+the service itself, an extra, or the tests alone. Written by `scripts/licenses.py`. lineofaction is licensed
 GPL-3.0-or-later, because gmsh is GPL-2.0-or-later. The extras `exudyn` (BSD-3-Clause) and `fast` are not
 locked. MKL, which comes with `fast` alone, is proprietary (Intel Simplified Software License): it is never in
 the image, and who passes on a program with both has to see that he may. The image also holds packages of its
-Debian base, under their own licences.
+Debian base, under their own licenses.
 
-| package | version | licence | asked for by |
+| package | version | license | asked for by |
 |---|---|---|---|
 """
 _LINE = re.compile(r"(?P<name>[A-Za-z0-9._-]+)==(?P<version>[^ ;]+)")
@@ -40,8 +40,8 @@ def locked() -> dict[str, list[str]]:
     return found
 
 
-def licence(name: str) -> str:
-    """Return the licence of an installed package."""
+def license_of(name: str) -> str:
+    """Return the license of an installed package."""
     if name in _STATED_ELSEWHERE:
         return _STATED_ELSEWHERE[name]
     facts = metadata.metadata(name)
@@ -91,7 +91,7 @@ def _follow(requirement: str, group: str, found: dict[str, str]) -> None:
 
 
 def _plain(name: str) -> str:
-    """Return the normalised name of a package."""
+    """Return the normalized name of a package."""
     return re.sub(r"[-_.]+", "-", name).lower()
 
 
@@ -101,7 +101,7 @@ def main() -> int:
     rows = []
     for name, versions in sorted(locked().items()):
         try:
-            text = licence(name)
+            text = license_of(name)
         except metadata.PackageNotFoundError:
             print(f"{name} is not installed", file=sys.stderr)
             return 1

@@ -34,14 +34,14 @@ COARSER = 1.5
 
 
 @dataclass(frozen=True)
-class PlaneDiscretisation:
+class PlaneDiscretization:
     """Transverse sections.
 
     Attributes
     ----------
     hypothesis : PlaneHypothesis
     recipes, coarse_recipes : (MeshRecipe, MeshRecipe)
-        Driving and driven gear; the coarse ones are half as fine, for the discretisation error.
+        Driving and driven gear; the coarse ones are half as fine, for the discretization error.
     finite_width : (SectorRecipe, SectorRecipe) or None
         Solids of half the face that give what a finite width adds; None: the plane alone.
     """
@@ -77,13 +77,13 @@ class PlaneDiscretisation:
 
 
 @dataclass(frozen=True)
-class FaceDiscretisation:
+class FaceDiscretization:
     """Tooth sectors over the face width.
 
     Attributes
     ----------
     recipes, coarse_recipes : (SectorRecipe, SectorRecipe)
-        Driving and driven gear; the coarse ones for the discretisation error.
+        Driving and driven gear; the coarse ones for the discretization error.
     slices : int
         Of the common face width.
     most_slices : int
@@ -108,7 +108,7 @@ class FaceDiscretisation:
         ratio = min(COARSER, *(fine.layers / coarse.layers for fine, coarse in pairs))
         return 1.0 / (ratio**2 - 1.0)
 
-    def in_slices(self, count: int) -> FaceDiscretisation:
+    def in_slices(self, count: int) -> FaceDiscretization:
         """Return the same meshes in another number of slices, or in `most_slices`."""
         return replace(self, slices=min(count, self.most_slices))
 
@@ -139,18 +139,18 @@ class FaceDiscretisation:
         return {"model": "3d", "mesh": [asdict(recipe) for recipe in self.recipes], "slices": self.slices}
 
 
-Discretisation = PlaneDiscretisation | FaceDiscretisation
+Discretization = PlaneDiscretization | FaceDiscretization
 
 
-def plane_discretisation(
+def plane_discretization(
     pair: ParallelAxes, level: str, hypothesis: PlaneHypothesis, finite_width: bool = False
-) -> PlaneDiscretisation:
+) -> PlaneDiscretization:
     """Choose the sections of both gears, and the solids that correct them for their finite width."""
     factor = PLANE_REFINEMENT[level]
     standard = (MeshRecipe.standard(pair.pinion), MeshRecipe.standard(pair.wheel))
     first, second = (recipe if factor == 1.0 else recipe.refined(factor) for recipe in standard)
     solids = (SectorRecipe.even_load(pair.pinion), SectorRecipe.even_load(pair.wheel))
-    return PlaneDiscretisation(
+    return PlaneDiscretization(
         hypothesis,
         (first, second),
         (first.refined(0.5), second.refined(0.5)),
@@ -158,12 +158,12 @@ def plane_discretisation(
     )
 
 
-def face_discretisation(pair: ParallelAxes, level: str, slices: int | None = None) -> FaceDiscretisation:
+def face_discretization(pair: ParallelAxes, level: str, slices: int | None = None) -> FaceDiscretization:
     """Choose the sectors of both gears and, unless they are given, the slices."""
     first, second = (SECTOR_RECIPE[level](gear) for gear in (pair.pinion, pair.wheel))
     coarse = _coarser(first, pair.pinion), _coarser(second, pair.wheel)
     most = min(_most_slices(pair, *one) for one in ((pair.pinion, first), (pair.wheel, second)))
-    return FaceDiscretisation((first, second), coarse, min(slices or SLICES, most), most)
+    return FaceDiscretization((first, second), coarse, min(slices or SLICES, most), most)
 
 
 def _most_slices(pair: ParallelAxes, gear: Toothing, recipe: SectorRecipe) -> int:

@@ -33,7 +33,7 @@ _POINT = 1e-9
 
 
 @dataclass(frozen=True)
-class LinearisedDesign:
+class LinearizedDesign:
     """One design at S nodes of the scatter and L loads, to first order in d variables.
 
     Attributes
@@ -86,9 +86,9 @@ class _Node:
         return force_changes(self.problem, self.solution, apart)
 
 
-def linearised(
+def linearized(
     evaluator: Evaluator, values: Mapping[str, float], names: Sequence[str], limits: Limits
-) -> LinearisedDesign:
+) -> LinearizedDesign:
     """Solve a design, ``gear.quantity`` to m, and differentiate it by the variables named."""
     nodes = [_node(*solved, tuple(names)) for solved in evaluator.solved(values)]
     rows = [_limit_rows(node, limits) for node in nodes]
@@ -97,7 +97,7 @@ def linearised(
         for each in zip(*rows, strict=True)
     )
     curves = np.stack([np.moveaxis(node.ste, 0, -1) for node in nodes])
-    return LinearisedDesign(evaluation(node.figures for node in nodes), curves, joined)
+    return LinearizedDesign(evaluation(node.figures for node in nodes), curves, joined)
 
 
 def _node(
