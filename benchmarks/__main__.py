@@ -10,17 +10,18 @@ from pathlib import Path
 from benchmarks import (
     corrected_plane,
     derivatives,
-    dynamic_worth_estimates,
+    dynamic_influence_estimates,
     dynamics_cost,
-    effects_off,
     error_coverage,
     finite_width,
     full_contact_cost,
     full_contact_coverage,
     full_contact_over_face,
     full_contact_picture,
+    influence_estimates,
     live_coverage,
     long_phase,
+    neglected_effects,
     other_engine,
     page_redraw,
     predicted_errors,
@@ -35,7 +36,6 @@ from benchmarks import (
     static_table,
     tolerance_kept,
     worker_cost,
-    worth_estimates,
 )
 from benchmarks.machine import describe
 from benchmarks.page import page, with_figures
@@ -63,10 +63,10 @@ SUBJECTS = (
     live_coverage,
     derivatives,
     tolerance_kept,
-    worth_estimates,
+    influence_estimates,
     quiet_helical,
-    dynamic_worth_estimates,
-    effects_off,
+    dynamic_influence_estimates,
+    neglected_effects,
     page_redraw,
     service_queries,
     worker_cost,
@@ -102,12 +102,12 @@ def main(arguments: Sequence[str]) -> int:
             tolerance_kept.publish(tolerance_kept.assessed())
         if "predicted_errors" in record:
             predicted_errors.publish(predicted_errors.assessed())
-        if "worth_estimates" in record:
-            worth_estimates.publish(worth_estimates.judged(), machine)
+        if "influence_estimates" in record:
+            influence_estimates.publish(influence_estimates.assessed(), machine)
         if "quiet_helical" in record:
-            quiet_helical.publish(quiet_helical.judged(), machine)
-        if "dynamic_worth_estimates" in record:
-            dynamic_worth_estimates.publish(dynamic_worth_estimates.assessed(), machine)
+            quiet_helical.publish(quiet_helical.assessed(), machine)
+        if "dynamic_influence_estimates" in record:
+            dynamic_influence_estimates.publish(dynamic_influence_estimates.assessed(), machine)
     measured = [figure for part in record.values() for figure in part.figures]
     return 0 if all(figure.met is not False for figure in measured) else 1
 

@@ -58,7 +58,7 @@ def switched_off(path: str) -> dict[str, dict[str, float]]:
     able = {
         "backlash": (_with_mesh(scene, coast=CoastFlank(50e-6)), {"backlash": "off"}),
         "friction": (_with_mesh(scene, friction=0.05, table=_with_axes(table)), {"friction": "off", **axes}),
-        "places on a table's axes": (_with_mesh(scene, table=_with_axes(table)), axes),
+        "operating points on a table's axes": (_with_mesh(scene, table=_with_axes(table)), axes),
     }
     found = {}
     for name, (given, choice) in able.items():

@@ -1,4 +1,4 @@
-"""Cost of time integration: 24 freedoms, over duration and number of meshes, of effects that are off."""
+"""Cost of time integration: 24 freedoms, over duration and number of meshes, of neglected effects."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ def figures() -> list[Figure]:
         Figure(SUBJECT, "1 to 8 meshes: exponent of steps", _exponent(MESHES, meshes["steps"]), "-"),
         Figure(SUBJECT, "1 to 8 meshes: exponent of time per step", _per_step(meshes), "-", 1.05),
         *(
-            Figure("effects that are off", f"{name}: time over a scene without", _ratio(times), "%", 105.0)
+            Figure("neglected effects", f"{name}: time over a scene without", _ratio(times), "%", 105.0)
             for name, times in off.items()
         ),
         *(
-            Figure("effects that are off", f"{name}: results that differ", 1.0 - times["same"], "-", 0.0)
+            Figure("neglected effects", f"{name}: results that differ", 1.0 - times["same"], "-", 0.0)
             for name, times in off.items()
         ),
     ]

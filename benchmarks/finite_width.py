@@ -33,7 +33,7 @@ predicted = sum(predict_cost(g, getattr(SectorRecipe, {level!r})(g)).seconds for
 cold, database = table()
 stages = database.metadata.receipt["stages"]
 spent = stages["compliance"]["cpu_seconds"]
-judging = 100 * stages["error estimate"]["cpu_seconds"] / cold
+assessing = 100 * stages["error estimate"]["cpu_seconds"] / cold
 cached, _ = table()
 crowned = dataclasses.replace(pinion, modification=FlankModification(helix_crowning=5e-6))
 start = cpu()
@@ -54,7 +54,7 @@ curve = cpu() - start
 aligned = database.curve(force=6000.0, misalignment=0.0)
 mean, ripple = aligned.mean, aligned.peak_to_peak
 measured = {{
-    "prediction": predicted / spent, "judging": judging,
+    "prediction": predicted / spent, "assessing": assessing,
     "cold": cold, "cached": cached, "fresh": fresh, "curve": curve, "failed": database.n_failed,
     "peak": database.metadata.receipt["peak_memory_bytes"],
     "mean_error": 100 * mean.error / mean.value, "ripple_error": 100 * ripple.error / ripple.value,
@@ -82,7 +82,7 @@ def _level(level: str) -> list[Figure]:
             _TARGETS[level],
         ),
         Figure(subject, "compliance: predicted over spent", run["prediction"], "-"),
-        Figure(subject, "error estimates, in parts of the cold run", run["judging"], "%", 30.0),
+        Figure(subject, "error estimates, in parts of the cold run", run["assessing"], "%", 30.0),
         Figure(subject, "with cached compliance", run["cached"], "CPU s", 3.0),
         Figure(subject, "a new crowning: a database of 64 positions", run["fresh"], "CPU s"),
         Figure(

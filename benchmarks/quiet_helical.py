@@ -1,4 +1,4 @@
-"""Is the influence of effects estimated well where the ripple is small? Quiet helical pairs, judged in um."""
+"""Is the influence of effects estimated well where the ripple is small? Quiet helical pairs, in um."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.assessed_influence import FACTOR, FLOOR, SHARE, within_factor
 from benchmarks.figures import Figure
-from benchmarks.judged_worth import FACTOR, FLOOR, SHARE, within_factor
+from benchmarks.influence_estimates import PAGE
 from benchmarks.marked_section import replace_section
 from benchmarks.quiet_helical_cases import QuietPair, quiet_pairs
-from benchmarks.worth_estimates import PAGE
 from fe_contact.analysis import check_request
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.effect_ledger import switched_over
 from fe_contact.analysis.influences import estimated_influences
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
-from fe_contact.effects.worth import Influence
-from fe_contact.effects.worth.influence import RIPPLE_FLOOR, signed
+from fe_contact.effects.influence import Influence
+from fe_contact.effects.influence.influence import RIPPLE_FLOOR, signed
 
 SECTION = "quiet helical"
 SUBJECT = "influence of effects on quiet helical pairs"
@@ -32,7 +32,7 @@ EFFECTS = ("tooth_coupling", "corner_contact", "profile_modification", "lead_mod
 
 
 @dataclass(frozen=True)
-class JudgedInfluence:
+class AssessedInfluence:
     """One effect of one pair, estimated and computed."""
 
     pair: QuietPair
@@ -54,31 +54,31 @@ class JudgedInfluence:
 def figures() -> list[Figure]:
     """Return how often the estimates are right, on pairs seen and unseen when they were made."""
     rows = []
-    for title, group in groups(judged()).items():
+    for title, group in groups(assessed()).items():
         count = f"{title} pairs: beyond a factor {FACTOR:g}, of {len(group)} effects"
         rows.append(Figure(SUBJECT, count, 100.0 - share_right(group), "%", 100.0 - SHARE))
     return rows
 
 
-def groups(found: Sequence[JudgedInfluence]) -> dict[str, list[JudgedInfluence]]:
+def groups(found: Sequence[AssessedInfluence]) -> dict[str, list[AssessedInfluence]]:
     """Return the effects of the pairs on which the estimates were worked on, and of the others."""
     titles = {"unseen": True, "seen": False}
     return {title: [one for one in found if one.pair.unseen is unseen] for title, unseen in titles.items()}
 
 
-def share_right(found: Sequence[JudgedInfluence]) -> float:
+def share_right(found: Sequence[AssessedInfluence]) -> float:
     """Return how many per cent are right in mean and peak-to-peak."""
     return 100.0 * float(np.mean([all(one.right) for one in found])) if found else 100.0
 
 
 @cache
-def judged() -> tuple[JudgedInfluence, ...]:
+def assessed() -> tuple[AssessedInfluence, ...]:
     """Switch the effects of all pairs over, once: about four CPU minutes."""
     with tempfile.TemporaryDirectory() as folder:
-        return tuple(one for pair in quiet_pairs() for one in judged_pair(pair, Path(folder)))
+        return tuple(one for pair in quiet_pairs() for one in assessed_pair(pair, Path(folder)))
 
 
-def judged_pair(quiet: QuietPair, folder: Path) -> list[JudgedInfluence]:
+def assessed_pair(quiet: QuietPair, folder: Path) -> list[AssessedInfluence]:
     """Switch the effects of one pair over at its nominal load, on draft meshes in 15 slices."""
     sys.stderr.write(f"  {quiet.name}\n")
     checked = check_request(
@@ -101,7 +101,7 @@ def judged_pair(quiet: QuietPair, folder: Path) -> list[JudgedInfluence]:
         computed = Influence(
             quiet.torque, quiet.misalignment, other[0] - whole[0], other[1] - whole[1], whole[0], whole[1]
         )
-        found.append(JudgedInfluence(quiet, name, estimate, computed))
+        found.append(AssessedInfluence(quiet, name, estimate, computed))
     return found
 
 
@@ -113,7 +113,7 @@ def _curve(checked: Checked, folder: Path) -> tuple[float, float]:
     return float(curve.mean.value), float(curve.peak_to_peak.value)
 
 
-def markdown(found: Sequence[JudgedInfluence]) -> str:
+def markdown(found: Sequence[AssessedInfluence]) -> str:
     """Return the section of docs/effects/influence.md."""
     said = ", ".join(
         f"{share_right(group):.0f} % of {len(group)} on pairs {title} when they were made"
@@ -132,7 +132,7 @@ def markdown(found: Sequence[JudgedInfluence]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _row(one: JudgedInfluence) -> str:
+def _row(one: AssessedInfluence) -> str:
     """One effect."""
     cells = []
     for name, right in zip(("mean", "peak_to_peak"), one.right, strict=True):
@@ -143,7 +143,7 @@ def _row(one: JudgedInfluence) -> str:
     return f"| {name} | {ripple} | {one.effect} | {cells[0]} | {cells[1]} |"
 
 
-def publish(found: Sequence[JudgedInfluence], machine: dict[str, str]) -> None:
+def publish(found: Sequence[AssessedInfluence], machine: dict[str, str]) -> None:
     """Write the section of the page between its marks."""
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
     replace_section(PAGE, SECTION, f"{markdown(found)}\nMeasured with {versions}.\n")

@@ -26,7 +26,7 @@ class QuietPair:
     misalignment : float
         m.
     unseen : bool
-        Whether nothing about the estimates was decided on this pair: it judges them.
+        Whether nothing about the estimates was decided on this pair: it assesses them.
     """
 
     name: str
@@ -42,7 +42,7 @@ class QuietPair:
 
 
 def quiet_pairs() -> list[QuietPair]:
-    """Return the pairs, those that judge the estimates last."""
+    """Return the pairs, those that assess the estimates last."""
     return [*_seen(), *_unseen()]
 
 

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 
 from fe_contact.types import Json
-from fe_contact.workers.spent import Spent
+from fe_contact.workers.run_cost import RunCost
 from host import children_cpu_seconds, children_peak_memory, peak_memory
 
 
@@ -26,13 +26,13 @@ class StageClock:
 
     Parameters
     ----------
-    elsewhere : Spent, optional
+    remote : RunCost, optional
         What tasks cost that others do for this process: it counts beside its own time and its children's.
     """
 
-    def __init__(self, elsewhere: Spent | None = None) -> None:
+    def __init__(self, remote: RunCost | None = None) -> None:
         self.stages: list[Stage] = []
-        self._elsewhere = elsewhere or Spent()
+        self._remote = remote or RunCost()
         self._last = self._reading()
 
     @contextmanager
@@ -78,4 +78,4 @@ class StageClock:
     def _reading(self) -> tuple[float, float]:
         """CPU seconds of this process, its finished children and others' tasks, and wall seconds."""
         own = time.process_time() + children_cpu_seconds()
-        return own + self._elsewhere.cpu_seconds, time.perf_counter()
+        return own + self._remote.cpu_seconds, time.perf_counter()

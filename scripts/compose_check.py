@@ -1,4 +1,4 @@
-"""Run compose.yaml and judge it: keys, PostgreSQL, two schedulers of which one is killed, a clean stop."""
+"""Run compose.yaml and assess it: keys, PostgreSQL, two schedulers of which one is killed, a clean stop."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import uuid
 from pathlib import Path
 
 import httpx2
-from containers import STOP_S, await_health, free_port, judge, podman, same_table, the_case, tried
+from containers import STOP_S, assess, await_health, free_port, podman, same_table, the_case, tried
 
 from service.client import JobState, LineOfActionClient
 from service.problems import Unauthorised
@@ -78,7 +78,7 @@ class Composition:
 
 
 def stopped(run: Composition) -> list[bool]:
-    """Judge how long the program's containers take to end on SIGTERM."""
+    """Assess how long the program's containers take to end on SIGTERM."""
     verdicts = []
     for service in ("service", "work"):
         for container in run.containers(service):
@@ -86,12 +86,12 @@ def stopped(run: Composition) -> list[bool]:
             podman("stop", "--time", "30", container)
             taken = time.monotonic() - begin
             what = f"stop of {service} on SIGTERM, s (within {STOP_S:g})"
-            verdicts.append(judge(what, f"{taken:.1f}", good=taken < STOP_S))
+            verdicts.append(assess(what, f"{taken:.1f}", good=taken < STOP_S))
     return verdicts
 
 
 def live(run: Composition, client: LineOfActionClient, key: str) -> bool:
-    """Judge whether the serving container answers live from what a worker condensed."""
+    """Assess whether the serving container answers live from what a worker condensed."""
     table = client.analyze(the_case()).metadata.content_hash
     answer = httpx2.post(
         f"{run.url}/v1/databases/{table}/ste",
@@ -100,11 +100,11 @@ def live(run: Composition, client: LineOfActionClient, key: str) -> bool:
         timeout=60.0,
     )
     found = answer.status_code if answer.status_code == 200 else answer.text[:300]
-    return judge("status of a live answer", found, good=answer.status_code == 200)
+    return assess("status of a live answer", found, good=answer.status_code == 200)
 
 
 def shared(run: Composition, client: LineOfActionClient, case: Case) -> list[bool]:
-    """Kill one of two schedulers while both work; judge that every job ends."""
+    """Kill one of two schedulers while both work; assess that every job ends."""
     jobs = [client.submit_case(_with_teeth(case, teeth)) for teeth in _TEETH]
     _until(lambda: sum(state.status == "running" for state in _states(client, jobs)) == 2, run)
     both = len(run.containers("work"))
@@ -113,8 +113,8 @@ def shared(run: Composition, client: LineOfActionClient, case: Case) -> list[boo
     ends = [state.status for state in _states(client, jobs)]
     done = ends.count("successful")
     return [
-        judge("schedulers that worked at the same time", both, good=both == 2),
-        judge(f"of {len(ends)} jobs done, one scheduler killed", done, good=done == len(ends)),
+        assess("schedulers that worked at the same time", both, good=both == 2),
+        assess(f"of {len(ends)} jobs done, one scheduler killed", done, good=done == len(ends)),
     ]
 
 
@@ -142,19 +142,19 @@ def _until(condition: object, run: Composition) -> None:
 
 
 def verdicts_of(run: Composition, scratch: Path) -> list[bool]:
-    """Judge one life of the services, and a second on the same volumes."""
+    """Assess one life of the services, and a second on the same volumes."""
     once = ("run", "--rm", "--no-deps", "-T", "service")
     printed = run.compose(*once, "loa", "keys", "add", "check", "--json")
     key = json.loads(printed.splitlines()[-1])
     first = run.start()
-    verdicts = [judge("all of it answers after, s", f"{first:.1f}", good=True)]
+    verdicts = [assess("all of it answers after, s", f"{first:.1f}", good=True)]
     with LineOfActionClient(run.url, cache_dir=scratch / "nobody", key="none") as nobody:
         try:
             nobody.submit_case(the_case())
             refused = False
         except Unauthorised:
             refused = True
-    verdicts.append(judge("a caller without its key is refused", refused, good=refused))
+    verdicts.append(assess("a caller without its key is refused", refused, good=refused))
     with LineOfActionClient(run.url, cache_dir=scratch / "first", key=key["key"]) as client:
         verdicts.append(same_table(client, the_case()))
         verdicts.append(live(run, client, key["key"]))
@@ -166,12 +166,12 @@ def verdicts_of(run: Composition, scratch: Path) -> list[bool]:
         again = client.submit_case(the_case())
         client.fetch_file(client.result(again.id).key)
         found = again.status == "successful"
-        verdicts.append(judge("table of before served after a restart", again.message, good=found))
+        verdicts.append(assess("table of before served after a restart", again.message, good=found))
     return verdicts
 
 
 def main() -> int:
-    """Judge compose.yaml as it stands."""
+    """Assess compose.yaml as it stands."""
     run = Composition()
     try:
         with tempfile.TemporaryDirectory() as scratch:

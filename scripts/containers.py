@@ -31,7 +31,7 @@ def tried(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(["podman", *words], check=False, capture_output=True, text=True)
 
 
-def judge(what: str, figure: object, *, good: bool) -> bool:
+def assess(what: str, figure: object, *, good: bool) -> bool:
     """Print one line of the verdict."""
     print(f"{'ok  ' if good else 'FAIL'}  {what}: {figure}", flush=True)
     return good
@@ -62,9 +62,9 @@ def the_case() -> Case:
 
 
 def same_table(client: LineOfActionClient, case: Case) -> bool:
-    """Judge a table computed in containers against one computed here."""
+    """Assess a table computed in containers against one computed here."""
     here = analyze(check_case(case), **analysis_arguments(case), case=case_json(case))
     there = client.analyze(case)
     ours, theirs = (np.asarray(t.to_xarray()["static_transmission_error"]) for t in (here, there))
     apart = float(np.max(np.abs(theirs - ours)) / np.max(np.abs(ours)))
-    return judge(f"table off the one computed here (below {_SAME:g})", f"{apart:.1e}", good=apart < _SAME)
+    return assess(f"table off the one computed here (below {_SAME:g})", f"{apart:.1e}", good=apart < _SAME)

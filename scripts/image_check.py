@@ -1,4 +1,4 @@
-"""Run the image as compose does and judge it: size, rights, answers, a clean stop, nothing lost."""
+"""Run the image as compose does and assess it: size, rights, answers, a clean stop, nothing lost."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import uuid
 from collections.abc import Sequence
 from pathlib import Path
 
-from containers import STOP_S, await_health, free_port, judge, podman, same_table, the_case, tried
+from containers import STOP_S, assess, await_health, free_port, podman, same_table, the_case, tried
 
 from service.client import LineOfActionClient
 from service.schemas import Case
@@ -51,27 +51,27 @@ class Service:
 
 
 def rights(service: Service) -> list[bool]:
-    """Judge what the process may do."""
+    """Assess what the process may do."""
     lines = service.inside("cat", "/proc/1/status").stdout.splitlines()
     status = dict(line.split(":\t", 1) for line in lines if ":\t" in line)
     user = status["Uid"].split()[0]
     healthy = tried("healthcheck", "run", service.name).returncode
     writing = service.inside("touch", "/opt/x").returncode
     return [
-        judge("user of the service", user, good=user != "0"),
-        judge("capabilities", status["CapEff"], good=int(status["CapEff"], 16) == 0),
-        judge("new privileges refused", status["NoNewPrivs"], good=status["NoNewPrivs"] == "1"),
-        judge("exit code of writing to the root file system", writing, good=writing != 0),
-        judge("exit code of the image's health check", healthy, good=healthy == 0),
+        assess("user of the service", user, good=user != "0"),
+        assess("capabilities", status["CapEff"], good=int(status["CapEff"], 16) == 0),
+        assess("new privileges refused", status["NoNewPrivs"], good=status["NoNewPrivs"] == "1"),
+        assess("exit code of writing to the root file system", writing, good=writing != 0),
+        assess("exit code of the image's health check", healthy, good=healthy == 0),
     ]
 
 
 def drawn(service: Service) -> bool:
-    """Judge whether the container draws the pictures of its table."""
+    """Assess whether the container draws the pictures of its table."""
     draw = "loa report $(find /data -name '*.nc' | head -1) -o /data/page.html --images /data/pictures"
     done = service.inside("sh", "-c", f"{draw} && ls /data/pictures")
     count = done.stdout.count(".png") if done.returncode == 0 else 0
-    return judge("pictures drawn of the table", count or done.stderr[-500:], good=count > 2)
+    return assess("pictures drawn of the table", count or done.stderr[-500:], good=count > 2)
 
 
 def interrupted(service: Service, client: LineOfActionClient, case: Case) -> tuple[str, list[bool]]:
@@ -83,29 +83,29 @@ def interrupted(service: Service, client: LineOfActionClient, case: Case) -> tup
     state = client.status(job).status
     seconds, code = service.stop()
     return job, [
-        judge("stopped in the middle of a job", state, good=state == "running"),
-        judge(f"stop on SIGTERM, s (within {STOP_S:g})", f"{seconds:.1f}", good=seconds < STOP_S),
-        judge("exit code of the stop", code, good=code in (0, 143)),
+        assess("stopped in the middle of a job", state, good=state == "running"),
+        assess(f"stop on SIGTERM, s (within {STOP_S:g})", f"{seconds:.1f}", good=seconds < STOP_S),
+        assess("exit code of the stop", code, good=code in (0, 143)),
     ]
 
 
 def resumed(client: LineOfActionClient, job: str, case: Case) -> list[bool]:
-    """Judge what the next container makes of the jobs and results of the one before."""
+    """Assess what the next container makes of the jobs and results of the one before."""
     ended = client.wait(job, timeout=300.0)
     first = client.submit_case(case)
     client.fetch_file(client.result(first.id).key)  # verified by its digest
     return [
-        judge("interrupted job after the restart", ended.kind, good=ended.kind == "database"),
-        judge("table of before served from the volume", first.message, good=first.status == "successful"),
+        assess("interrupted job after the restart", ended.kind, good=ended.kind == "database"),
+        assess("table of before served from the volume", first.message, good=first.status == "successful"),
     ]
 
 
 def verdicts_of(image: str, volume: str, scratch: Path) -> list[bool]:
-    """Judge two containers, one after the other, on one volume."""
+    """Assess two containers, one after the other, on one volume."""
     case = the_case()
     first = Service(image, volume)
     try:
-        verdicts = [judge("first answer after, s", f"{first.start_s:.1f}", good=True), *rights(first)]
+        verdicts = [assess("first answer after, s", f"{first.start_s:.1f}", good=True), *rights(first)]
         with LineOfActionClient(first.url, cache_dir=scratch / "first") as client:
             verdicts += [same_table(client, case), drawn(first)]
             job, stopped = interrupted(first, client, case)
@@ -114,20 +114,20 @@ def verdicts_of(image: str, volume: str, scratch: Path) -> list[bool]:
         first.remove()
     second = Service(image, volume)
     try:
-        verdicts.append(judge("answer after a restart, s", f"{second.start_s:.1f}", good=True))
+        verdicts.append(assess("answer after a restart, s", f"{second.start_s:.1f}", good=True))
         with LineOfActionClient(second.url, cache_dir=scratch / "second") as client:
             verdicts += resumed(client, job, case)
-        verdicts.append(judge("stop when idle, s", f"{second.stop()[0]:.1f}", good=True))
+        verdicts.append(assess("stop when idle, s", f"{second.stop()[0]:.1f}", good=True))
     finally:
         second.remove()
     return verdicts
 
 
 def main(words: Sequence[str]) -> int:
-    """Judge the image named on the command line."""
+    """Assess the image named on the command line."""
     (image,) = words
     size_mb = int(podman("image", "inspect", "--format", "{{.Size}}", image)) / 1e6
-    small = judge(f"size, MB (at most {_LARGEST_MB:g})", f"{size_mb:.0f}", good=size_mb <= _LARGEST_MB)
+    small = assess(f"size, MB (at most {_LARGEST_MB:g})", f"{size_mb:.0f}", good=size_mb <= _LARGEST_MB)
     volume = f"lineofaction-{uuid.uuid4().hex[:8]}"
     try:
         with tempfile.TemporaryDirectory() as scratch:

@@ -10,7 +10,7 @@ from fastapi import FastAPI
 
 from service.access import open_keyring
 from service.jobs.catalogue import default_registry
-from service.jobs.live_desk import live_desk, reading_desk
+from service.jobs.live_pool import live_pool, reading_pool
 from service.jobs.machinery import job_machinery
 from service.jobs.process import Registry
 from service.jobs.workload import WorkloadReader
@@ -120,8 +120,8 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:
     """Open the store and put the parts together."""
     parts = job_machinery(settings, registry, works=works)
-    desks, engine = (live_desk(settings), reading_desk(settings)), parts.engine
+    pools, engine = (live_pool(settings), reading_pool(settings)), parts.engine
     writes = WriteCheck(Deployment(engine, parts.store))
     return Context(
-        settings, registry, parts.submissions, parts.scheduler, parts.store, *desks, engine, writes
+        settings, registry, parts.submissions, parts.scheduler, parts.store, *pools, engine, writes
     )

@@ -16,7 +16,7 @@ from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked, check_request
 from fe_contact.effects import EFFECTS, LedgerEntry
-from fe_contact.effects.worth import Influence
+from fe_contact.effects.influence import Influence
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import planned, predict_run

@@ -1,4 +1,4 @@
-"""What a run took for granted, checked on its solution: effects that are off, ranges of its models."""
+"""What a run took for granted, checked on its solution: neglected effects, ranges of its models."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.across_face import across_face
 from fe_contact.effects.corner_contact import CornerContact
+from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
 from fe_contact.effects.misalignment import MisalignmentGap
-from fe_contact.effects.worth import Worth, estimate_worth
 from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.planning import Plan, left_out
 from fe_contact.types import FloatArray, Json
@@ -38,7 +38,7 @@ class Assumption:
     what : str
         The assumption.
     holds : bool or None
-        None: it could not be judged.
+        None: it could not be assessed.
     change : float
         Largest change of mean or peak-to-peak that it can make, in parts of the size that the tolerance
         counts by (`AllowedError.scale`), as far as that is known; NaN else.
@@ -88,7 +88,7 @@ def check_assumptions(run: SolvedTable) -> tuple[Assumption, ...]:
     """Check everything that a table took for granted on what it computed."""
     return (
         *_tip_edges(run, _ripples(run)),
-        *_spared(run),
+        *_neglected(run),
         *_plane(run),
         *_coast_flanks(run),
         *_printed_data(run),
@@ -119,7 +119,7 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     is at most how far the deflection exceeds the gap, over `size` (L, places) in m.
     """
     request = run.checked.request
-    if run.checked.model.corner_contact or CornerContact.name in request.spared:
+    if run.checked.model.corner_contact or CornerContact.name in request.neglected:
         return
     assemble_edges(run.places, run.solved)
     pairs = zip(run.places.places, run.solved, strict=True)
@@ -134,22 +134,22 @@ def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:
     )
 
 
-def _spared(run: SolvedTable) -> Iterator[Assumption]:
-    """Effects left off for the tolerance: their worth beside what was computed."""
+def _neglected(run: SolvedTable) -> Iterator[Assumption]:
+    """Effects neglected for the tolerance: their influence beside what was computed."""
     request = run.checked.request
-    for name in request.spared:
-        worth = estimate_worth(*run.checked.judging(name), name, EFFECTS)
-        if worth is not None:
-            change = _relative(worth, run)
+    for name in request.neglected:
+        influence = estimate_influence(*run.checked.assessing(name), name, EFFECTS)
+        if influence is not None:
+            change = _relative(influence, run)
             reason = f"estimated at {100 * change:.2g} % of the computed mean or peak-to-peak"
             holds = change <= allowed(run).relative
             yield Assumption(name, "too small to be seen", holds, change, reason)
 
 
-def _relative(worth: Worth, run: SolvedTable) -> float:
+def _relative(influence: EstimatedInfluence, run: SolvedTable) -> float:
     """Return the larger of both estimated changes over the computed values, at the worst load and place."""
-    mean = np.abs(worth.mean)[:, None] / allowed(run).scale(_means(run))
-    ripple = np.abs(worth.peak_to_peak)[:, None] / allowed(run).scale(_ripples(run))
+    mean = np.abs(influence.mean)[:, None] / allowed(run).scale(_means(run))
+    ripple = np.abs(influence.peak_to_peak)[:, None] / allowed(run).scale(_ripples(run))
     return float(np.max(np.maximum(mean, ripple)))
 
 
@@ -164,7 +164,7 @@ def _plane(run: SolvedRun) -> Iterator[Assumption]:
     yield Assumption(name, "load even over the face", not reasons, float("nan"), found)
     missing = left_out(run.places.places[0].contact.pair, run.plan.discretization)
     if missing:
-        reason = f"the finite width is worth about {100 * missing:.2g} % of the mean"
+        reason = f"the finite width changes about {100 * missing:.2g} % of the mean"
         holds = missing <= allowed(run).relative
         yield Assumption(FiniteWidth.name, "plane strain stands for the whole face", holds, missing, reason)
 
@@ -175,7 +175,7 @@ def _coast_flanks(run: SolvedRun) -> Iterator[Assumption]:
     for place, (_, solution) in zip(run.places.places, run.solved, strict=True):
         pair = place.contact.pair
         if pair.transverse_base_backlash <= LEAST_BACKLASH:
-            reason = "the teeth as given have no backlash: coast flanks were not judged"
+            reason = "the teeth as given have no backlash: coast flanks were not assessed"
             yield Assumption("", "coast flanks stay apart", None, float("nan"), reason)
             return
         room.append(pair.transverse_base_backlash + float(np.min(solution.no_load)) - _closing(place))

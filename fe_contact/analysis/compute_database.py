@@ -9,11 +9,11 @@ from importlib.metadata import version
 from pathlib import Path
 
 from bounds import Finding
+from fe_contact.analysis.assessed_table import assessed_table, unassessed_table
 from fe_contact.analysis.assumptions import check_assumptions
 from fe_contact.analysis.contact_receipt import contact_receipt
 from fe_contact.analysis.decided import Decided
 from fe_contact.analysis.effect_ledger import effect_ledger
-from fe_contact.analysis.judged_table import judged_table, unjudged_table
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.solved_table import SolvedTable, condensed_bodies, solve_table
@@ -85,7 +85,7 @@ def compute_pass(
     SolveError
         An assumption of the run does not hold and `on_violation` is "fail".
     """
-    clock, before = clock or StageClock(workers.spent), replace(workers.spent)
+    clock, before = clock or StageClock(workers.cost), replace(workers.cost)
     full = checked.request.accuracy.receipt == "full"
     planned = solve_table(checked, clock, report, cache, decided=decided, workers=workers)
     run, found, repeated = settled(
@@ -98,29 +98,33 @@ def compute_pass(
     )
     with clock.stage("contact"):
         contact = contact_receipt(run.solved, run.support, condition=full, known=run.condition)
-    judged = unjudged_table(run.table, run.places, run.plan)
+    assessed = unassessed_table(run.table, run.places, run.plan)
     if full:
         bodies = condensed_bodies(run.checked, run.plan, clock, report, cache, coarse=True, workers=workers)
         with clock.stage("error estimate"):
             coarse = run.places.on_bodies(bodies)
-            judged = judged_table(run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan)
-    elsewhere = workers.spent.since(before)
-    if not repeated and not elsewhere.tasks:
+            assessed = assessed_table(
+                run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan
+            )
+    remote = workers.cost.since(before)
+    if not repeated and not remote.tasks:
         spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
         record(cache, run.prediction.logged, spent)
     with clock.stage("effect ledger"):
         ledger = effect_ledger(
             run.checked, cache, found, plan=run.plan, planned_request=planned.checked, estimates=full
         )
-    metadata = _metadata(case, run, clock, judged.to_json() | contact, ledger)
+    metadata = _metadata(case, run, clock, assessed.to_json() | contact, ledger)
     metadata.receipt["assumptions"] = [one.to_json() for one in found]
     metadata.receipt["repeated"] = repeated
     request = run.checked.request
     findings = merged(request.findings, solved_findings(request, run.table))
     metadata.warnings.extend(finding.to_json() for finding in findings)
-    if elsewhere.tasks or elsewhere.lost:
-        metadata.receipt["elsewhere"] = asdict(elsewhere)
-    table = replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+    if remote.tasks or remote.lost:
+        metadata.receipt["elsewhere"] = asdict(remote)
+    table = replace(
+        run.table, error_estimate=assessed.band, curve_error=assessed.curve_error, metadata=metadata
+    )
     if request.accuracy.tolerance is not None:
         kept = tolerance_receipt(table, request.accuracy.tolerance)
         metadata.receipt["tolerance"] = kept

@@ -23,13 +23,13 @@ class CondensedRun:
     solved: Sequence[tuple[ContactProblem, ContactSolution]]
 
 
-def check_condensed(run: SolvedRun, spared: Mapping[str, str]) -> tuple[Assumption, ...]:
+def check_condensed(run: SolvedRun, neglected: Mapping[str, str]) -> tuple[Assumption, ...]:
     """Check what can be checked on the solution alone.
 
     Parameters
     ----------
     run : SolvedRun
-    spared : mapping of str to str
+    neglected : mapping of str to str
         Effects of the bodies that the tolerance of the table's case left off, and why: they are off here too.
 
     Returns
@@ -37,7 +37,7 @@ def check_condensed(run: SolvedRun, spared: Mapping[str, str]) -> tuple[Assumpti
     tuple of Assumption
         What was not checked has no verdict (`holds` None) and says so.
     """
-    return (*check_cheaply(run), *_edges(run), *_spared(spared))
+    return (*check_cheaply(run), *_edges(run), *_neglected(neglected))
 
 
 def _edges(run: SolvedRun) -> Iterator[Assumption]:
@@ -47,8 +47,8 @@ def _edges(run: SolvedRun) -> Iterator[Assumption]:
         yield Assumption(CornerContact.name, "tip edges stay clear", None, float("nan"), reason)
 
 
-def _spared(spared: Mapping[str, str]) -> Iterator[Assumption]:
-    """Effects of the bodies that were left off for a tolerance, judged by the flanks of the case."""
-    for name, why in spared.items():
+def _neglected(neglected: Mapping[str, str]) -> Iterator[Assumption]:
+    """Effects of the bodies that were left off for a tolerance, assessed by the flanks of the case."""
+    for name, why in neglected.items():
         reason = f"not checked on these flanks: {why}"
         yield Assumption(name, "too small to be seen", None, float("nan"), reason)

@@ -12,11 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from fe_contact.analysis.assessed_table import AssessedTable
 from fe_contact.analysis.condensed_contacts import CondensedContacts
 from fe_contact.analysis.curve_error_estimate import curve_errors, with_axes
 from fe_contact.analysis.error_estimate import Nested, estimate_errors
 from fe_contact.analysis.halved_positions import errors_by_halves
-from fe_contact.analysis.judged_table import JudgedTable
 from fe_contact.analysis.pair_contact import PairContact
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.table_places import Places
@@ -39,7 +39,7 @@ def condensed_errors(
     contacts: CondensedContacts,
     sample: TableSample,
     plan: Plan,
-) -> JudgedTable:
+) -> AssessedTable:
     """Estimate the errors of a table of one alignment.
 
     Parameters
@@ -56,7 +56,7 @@ def condensed_errors(
 
     Returns
     -------
-    JudgedTable
+    AssessedTable
         Between the loads nothing is estimated (NaN): the table is of the loads asked.
     """
 
@@ -80,7 +80,7 @@ def condensed_errors(
         errors[BY_MESH] = np.hypot(errors[BY_MESH], _changed(sample, own, wider, part))
         band = sample.spread_points(part * np.nan_to_num(np.abs(own - wider)))
         sources = replace(sources, discretization=sources.discretization + band)
-    return JudgedTable(sources.total, with_axes(errors, {}), sources.to_json(), {})
+    return AssessedTable(sources.total, with_axes(errors, {}), sources.to_json(), {})
 
 
 def _changed(sample: TableSample, one: FloatArray, other: FloatArray, part: float) -> FloatArray:
@@ -93,7 +93,7 @@ def _changed(sample: TableSample, one: FloatArray, other: FloatArray, part: floa
 def _expected(table: SteDatabase, plan: Plan, contact: PairContact) -> tuple[FloatArray, FloatArray]:
     """Return what the level of the meshes is known to leave, (22, F, 1, 1), and its band (1, F, 1, 1), m.
 
-    A harmonic may be wrong by as much as peak-to-peak. A pair that is askew leads at no load, and so may its
+    A harmonic may be wrong by as much as peak-to-peak. A misaligned pair leads at no load, and so may its
     mean: what the meshes are wrong by then hangs on what the load adds.
     """
     ste = np.nan_to_num(table.static_transmission_error)

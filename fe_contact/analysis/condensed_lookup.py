@@ -56,7 +56,7 @@ def condensed_pair(
     if compute or bodies_are_kept(pair, plan, cache, changes, coarse=True):
         coarse = pair_contact(pair, plan, cache, True, changes)
     contacts = CondensedContacts.of(pair_contact(pair, plan, cache, False, changes), coarse)
-    return CondensedPair(checked, contacts, _spared(database))
+    return CondensedPair(checked, contacts, _neglected(database))
 
 
 def _as_computed(
@@ -82,7 +82,7 @@ def _as_computed(
     return checked, make_plan(pair, request.load, accuracy, checked.model, choice["level"], choice["slices"])
 
 
-def _spared(database: SteDatabase) -> dict[str, str]:
+def _neglected(database: SteDatabase) -> dict[str, str]:
     """Return the effects of the bodies that the scene called for and nobody switched off, and why."""
     entries = [entry for entry in database.metadata.effect_ledger if isinstance(entry, dict)]
     return {

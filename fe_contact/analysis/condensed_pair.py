@@ -57,13 +57,13 @@ class CondensedPair:
         What the table was asked, its model bound to the bodies it had.
     contacts : CondensedContacts
         At the nominal center distance; they keep what was assembled for the positions.
-    spared : mapping of str to str
+    neglected : mapping of str to str
         Effects of the bodies that the tolerance of the table left off, and why.
     """
 
     checked: Checked
     contacts: CondensedContacts
-    spared: Mapping[str, str] = field(default_factory=dict)
+    neglected: Mapping[str, str] = field(default_factory=dict)
     _apart: OrderedDict[float, CondensedContacts] = field(default_factory=OrderedDict, repr=False)
 
     @property
@@ -122,13 +122,15 @@ class CondensedPair:
             solved = places.places[0].solve_pitches(nodes.position, load, np.arange(places.period))
             table = assembled_table(checked.request, places, nodes, [solved], [])
         with clock.stage("error estimate"):
-            judged = condensed_errors(table, places, solved[1], contacts, sample, plan)
-        found = check_condensed(CondensedRun(checked, plan, places, [solved]), self.spared)
-        receipt = condensed_receipt(plan, solved[1], judged, found, clock)
+            assessed = condensed_errors(table, places, solved[1], contacts, sample, plan)
+        found = check_condensed(CondensedRun(checked, plan, places, [solved]), self.neglected)
+        receipt = condensed_receipt(plan, solved[1], assessed, found, clock)
         receipt["discretisation_error"] = "expected" if contacts.coarse is None else "measured"
         ledger = [{"name": entry.name, "on": entry.on} for entry in checked.ledger]
         metadata = Metadata(effect_ledger=ledger, receipt=receipt)
-        return replace(table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+        return replace(
+            table, error_estimate=assessed.band, curve_error=assessed.curve_error, metadata=metadata
+        )
 
     def solve(
         self,

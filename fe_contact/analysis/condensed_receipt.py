@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from fe_contact.analysis.assessed_table import AssessedTable
 from fe_contact.analysis.assumptions import Assumption
 from fe_contact.analysis.contact_receipt import failed_points
 from fe_contact.analysis.error_estimate import worst_residual
-from fe_contact.analysis.judged_table import JudgedTable
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import Plan
 from fe_contact.stage_clock import StageClock
@@ -18,12 +18,12 @@ from fe_contact.types import Json
 def condensed_receipt(
     plan: Plan,
     solution: ContactSolution,
-    judged: JudgedTable,
+    assessed: AssessedTable,
     assumptions: Sequence[Assumption],
     clock: StageClock,
 ) -> Json:
     """Return the receipt of a table at the loads that were asked, between which nothing is told."""
-    errors = judged.to_json()
+    errors = assessed.to_json()
     missing = [name for name in errors["not_estimated"] if name not in BETWEEN_NODES]
     known = {name: value for name, value in errors["curve_error"].items() if name not in BETWEEN_NODES}
     return (

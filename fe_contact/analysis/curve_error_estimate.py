@@ -131,7 +131,7 @@ def _shared(change: FloatArray) -> FloatArray:
 def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray:
     """Append the interpolation along the axes: (9, 22, F, M, D).
 
-    What was judged at one alignment stands for all of them. An interval that was not judged has NaN.
+    What was assessed at one alignment stands for all of them. An interval that was not assessed has NaN.
     """
     shape = at_nodes.shape[1:]
     between = []

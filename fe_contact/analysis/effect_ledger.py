@@ -12,7 +12,7 @@ from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked
 from fe_contact.effects import LedgerEntry
 from fe_contact.effects.flipping import flipped
-from fe_contact.effects.worth import Influence
+from fe_contact.effects.influence import Influence
 from fe_contact.errors import InputError
 from fe_contact.planning import Plan, make_plan, planned, predict_run
 from fe_contact.types import Json
@@ -124,7 +124,7 @@ def switched_over(checked: Checked, name: str, choice: str) -> Checked:
     # choices of every effect are explicit now, so that an explicit model has no say about them any more
     model = "plane_stress" if request.accuracy.model == "plane_stress" else "auto"
     accuracy = replace(request.accuracy, model=model if asked["face_load_distribution"] == "off" else "auto")
-    spared = {one: reason for one, reason in request.spared.items() if one != name}
+    neglected = {one: reason for one, reason in request.neglected.items() if one != name}
     return check_asked(
-        replace(request, effects=asked, accuracy=accuracy, spared=spared, turned_on={}), spare=False
+        replace(request, effects=asked, accuracy=accuracy, neglected=neglected, turned_on={}), spare=False
     )

@@ -119,7 +119,7 @@ def estimate_errors(
         The table's.
     nested : Nested
     positions : PositionErrors
-        The largest of the judged places stand for every place.
+        The largest of the assessed places stand for every place.
     plan : Plan
     """
     made, pair = plan.discretization, places.places[0].contact.pair

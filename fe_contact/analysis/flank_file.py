@@ -1,4 +1,4 @@
-"""Flank results as netCDF-4 files, with the contact patterns for those who read them elsewhere."""
+"""Flank results as netCDF-4 files, with the contact patterns for other readers."""
 
 from __future__ import annotations
 

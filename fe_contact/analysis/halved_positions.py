@@ -24,7 +24,7 @@ positions on the same meshes."""
 
 
 def errors_by_halves(knots: FloatArray, values: FloatArray, period: int) -> PositionErrors:
-    """Judge even positions by themselves.
+    """Assess even positions by themselves.
 
     Parameters
     ----------

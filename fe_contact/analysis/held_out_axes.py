@@ -22,7 +22,7 @@ LOAD_PROBES, MIDDLE = np.arange(1, WIDE_PROBES + 1) / (WIDE_PROBES + 1), np.arra
 """Held-out loads in every interval, on a logarithmic scale: a kink rounds the curve anywhere in it. Of more
 than four intervals the middles alone: those are short."""
 POSITIONS = 16
-"""Positions at which an interval of center distances is judged: each needs a compliance of its own."""
+"""Positions at which an interval of center distances is assessed: each needs a compliance of its own."""
 
 Curves = tuple[FloatArray, FloatArray]
 """Interpolant and solutions, (positions, L) in m."""
@@ -42,7 +42,7 @@ class AxisError:
         table; of the held-out loads themselves for the axis of loads. NaN where a solution did not converge.
     change : ndarray, shape (22, I, L) or (22, I, 1)
         What that does to mean, peak-to-peak and harmonics, m; bounds of it from `error` for center distances,
-        which are not judged at all positions.
+        which are not assessed at all positions.
     """
 
     at: FloatArray
@@ -61,9 +61,9 @@ def held_out_axes(
     """Solve one held-out point in every interval of every axis that has one.
 
     Positions are some of the table's, so that the axis alone is interpolated; what is missed between
-    positions `table_nodes` measures. Loads and misalignments are judged at 32 of them or more; center
+    positions `table_nodes` measures. Loads and misalignments are assessed at 32 of them or more; center
     distances at those where the curves of the neighboring nodes differ most. On the other axes the point
-    stands at the node nearest to zero; a longer period is judged in its first pitch.
+    stands at the node nearest to zero; a longer period is assessed in its first pitch.
 
     Parameters
     ----------
@@ -87,19 +87,19 @@ def held_out_axes(
     if table.n_failed:
         return {}
     table = _first_pitch(table)
-    judged = _Judged(table, some_positions(table.position.size), places, scene, choices, solved)
+    assessed = _Assessed(table, some_positions(table.position.size), places, scene, choices, solved)
     axes = {
-        "force": (table.force, judged.force),
-        "misalignment": (table.misalignment, judged.misalignment),
-        "center_distance_change": (table.center_distance_change, judged.center_distance_change),
+        "force": (table.force, assessed.force),
+        "misalignment": (table.misalignment, assessed.misalignment),
+        "center_distance_change": (table.center_distance_change, assessed.center_distance_change),
     }
-    several = {name: judge for name, (nodes, judge) in axes.items() if nodes.size > 1}
+    several = {name: assess for name, (nodes, assess) in axes.items() if nodes.size > 1}
     try:
         if several:
             table.ste(table.position[0], table.force[0])
     except DatabaseError:
         return {}
-    return {name: judge() for name, judge in several.items()}
+    return {name: assess() for name, assess in several.items()}
 
 
 def _first_pitch(table: SteDatabase) -> SteDatabase:
@@ -116,7 +116,7 @@ def _first_pitch(table: SteDatabase) -> SteDatabase:
 
 
 @dataclass(frozen=True)
-class _Judged:
+class _Assessed:
     """The first pitch of a table that is held against solutions at some of its positions."""
 
     table: SteDatabase
@@ -127,7 +127,7 @@ class _Judged:
     solved: Solved
 
     def force(self) -> AxisError:
-        """Judge the loads."""
+        """Assess the loads."""
         force = self.table.force
         (m,), (d,) = self._nearest("misalignment"), self._nearest("center_distance_change")
         place = self.places.places[self._place(int(np.searchsorted(self.table.misalignment, m)), d)]
@@ -140,7 +140,7 @@ class _Judged:
         return AxisError(np.sqrt(force[1:] * force[:-1]), error[:, None], change[..., None])
 
     def misalignment(self) -> AxisError:
-        """Judge the misalignments, at some loads."""
+        """Assess the misalignments, at some loads."""
         force, some = self.table.force, sample_of(self.table.force.size, LOADS)
         middles, d = _middles(self.table.misalignment), self._nearest("center_distance_change")
         places = self._held_out(middles, d)
@@ -152,7 +152,7 @@ class _Judged:
         return AxisError(middles, spread(force, some, error, 1), spread(force, some, change, 2))
 
     def center_distance_change(self) -> AxisError:
-        """Judge the changes of the center distance, at some loads and at the positions that tell most."""
+        """Assess the changes of the center distance, at some loads and at the positions that tell most."""
         force, some = self.table.force, sample_of(self.table.force.size, LOADS)
         middles, m = _middles(self.table.center_distance_change), self._nearest("misalignment")
         position = [self.table.position[rows] for rows in _telling(self.table)]
@@ -201,7 +201,7 @@ class _Judged:
         return nodes[[int(np.argmin(np.abs(nodes)))]]
 
     def _keep_rows(self, place: Place) -> None:
-        """Let a place take the compliance at the judged positions from that at all of the table's."""
+        """Let a place take the compliance at the assessed positions from that at all of the table's."""
         place.contact.keep_rows(place.model, self.table.position, self.rows)
 
     def _held_out(self, misalignment: FloatArray, change: FloatArray) -> tuple[Place, ...]:

@@ -6,7 +6,12 @@ from collections.abc import Iterable
 
 from fe_contact.analysis.request import Checked
 from fe_contact.effects import EFFECTS, ContactScene
-from fe_contact.effects.worth import Influence, Worth, estimate_worth, estimate_worths
+from fe_contact.effects.influence import (
+    EstimatedInfluence,
+    Influence,
+    estimate_influence,
+    estimate_influences,
+)
 
 
 def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -> dict[str, Influence | None]:
@@ -25,18 +30,21 @@ def estimated_influences(checked: Checked, names: Iterable[str] | None = None) -
         had, as a plane with what acts across the face, or the springs do not know it.
     """
     wanted = [effect.name for effect in EFFECTS] if names is None else list(names)
-    spared = [name for name in wanted if name in checked.request.spared]
-    own = [name for name in wanted if name not in spared]
-    worths = estimate_worths(checked.request.scene.at_nominal_load, checked.decided, own, EFFECTS)
-    for name in spared:
-        scene, decided = checked.judging(name)
-        worths[name] = estimate_worth(scene.at_nominal_load, decided, name, EFFECTS)
+    neglected = [name for name in wanted if name in checked.request.neglected]
+    own = [name for name in wanted if name not in neglected]
+    influences = estimate_influences(checked.request.scene.at_nominal_load, checked.decided, own, EFFECTS)
+    for name in neglected:
+        scene, decided = checked.assessing(name)
+        influences[name] = estimate_influence(scene.at_nominal_load, decided, name, EFFECTS)
     asked = checked.request.whole_scene
-    return {name: None if worth is None else _influence(worth, asked) for name, worth in worths.items()}
+    return {
+        name: None if influence is None else _influence(influence, asked)
+        for name, influence in influences.items()
+    }
 
 
-def _influence(worth: Worth, scene: ContactScene) -> Influence:
+def _influence(influence: EstimatedInfluence, scene: ContactScene) -> Influence:
     """Return an estimate at the nominal load of a scene."""
-    changes = (worth.mean, worth.peak_to_peak, worth.whole.mean, worth.whole.peak_to_peak)
+    changes = (influence.mean, influence.peak_to_peak, influence.whole.mean, influence.whole.peak_to_peak)
     torque, misalignment = float(scene.torque[-1]), scene.largest_misalignment
     return Influence(torque, misalignment, *(float(values[-1]) for values in changes))

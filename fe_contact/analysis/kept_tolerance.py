@@ -38,7 +38,7 @@ class _Run:
 
     def first(self, checked: Checked) -> Pass:
         """Run what the accuracy is expected to ask for."""
-        clock = StageClock(self.workers.spent)
+        clock = StageClock(self.workers.cost)
         with clock.stage("planning"):
             decided = decide(checked, self.cache, tried=True)
         shared = (self.case, self.report, self.cache)
@@ -106,7 +106,7 @@ def _passes(checked: Checked, run: _Run) -> SteDatabase:
     assert best.table is not None
     table = best.table
     while True:
-        clock = StageClock(run.workers.spent)
+        clock = StageClock(run.workers.cost)
         with clock.stage("planning"):
             made = _following(table, best)
             reason = made if isinstance(made, str) else _ended(made, passes, run.cache)

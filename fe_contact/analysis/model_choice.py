@@ -16,7 +16,7 @@ from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.ripple import expected_curves
 from fe_contact.effects import EFFECTS
-from fe_contact.effects.worth import estimate_worth
+from fe_contact.effects.influence import estimate_influence
 from fe_contact.planning import (
     LEVELS,
     Accuracy,
@@ -119,10 +119,10 @@ def alternatives(checked: Checked) -> list[Checked]:
     """Return the request with every model that may stand in for its own; itself where it is bound."""
     request = checked.request
     chosen = {name for name in _TELL if request.asked_choices.get(name, "auto") != "auto"}
-    decided = set(_TELL) & {*request.spared, *request.turned_on}
+    decided = set(_TELL) & {*request.neglected, *request.turned_on}
     if not _wishes(checked) or chosen or decided or checked.model.across_face:
         return [checked]
-    plain = replace(request, spared={**request.spared, WIDTH: "left out"})
+    plain = replace(request, neglected={**request.neglected, WIDTH: "left out"})
     solid = replace(request, turned_on={**request.turned_on, FACE: "taken"})
     flat = [_again(plain)] if _width_is_small(checked) else []
     return [*flat, checked, _again(solid)]
@@ -136,10 +136,12 @@ def next_model(checked: Checked) -> Decided | None:
     request = checked.request
     if checked.model.across_face or any(request.asked_choices.get(name, "auto") != "auto" for name in _TELL):
         return None
-    spared = {name: reason for name, reason in request.spared.items() if name not in _TELL}
+    neglected = {name: reason for name, reason in request.neglected.items() if name not in _TELL}
     kept = {name: reason for name, reason in request.turned_on.items() if name not in _TELL}
-    effects = (WIDTH, FACE) if WIDTH in request.spared else (FACE,)
-    models = [_again(replace(request, spared=spared, turned_on={**kept, name: "taken"})) for name in effects]
+    effects = (WIDTH, FACE) if WIDTH in request.neglected else (FACE,)
+    models = [
+        _again(replace(request, neglected=neglected, turned_on={**kept, name: "taken"})) for name in effects
+    ]
     curves = expected_curves(checked)
     found = [(one, _mesh(one, curves, None)) for one in models]
     return next((_planned(*_said(one)) for one in found if one[1].met), None)
@@ -154,12 +156,12 @@ def _width_is_small(checked: Checked) -> bool:
     tolerance = checked.request.accuracy.tolerance
     if tolerance is None:
         return True
-    worth = estimate_worth(*checked.judging(WIDTH), WIDTH, EFFECTS, tolerance.least_scale)
-    return worth is not None and worth.largest <= WIDTH_SHARE * tolerance.relative
+    influence = estimate_influence(*checked.assessing(WIDTH), WIDTH, EFFECTS, tolerance.least_scale)
+    return influence is not None and influence.largest <= WIDTH_SHARE * tolerance.relative
 
 
 def _again(request: Request) -> Checked:
-    """Compose a request anew; nothing more is spared."""
+    """Compose a request anew; nothing more is neglected."""
     return check_asked(request, spare=False)
 
 
@@ -190,13 +192,13 @@ def _said(found: tuple[Checked, MeshChoice]) -> tuple[Checked, MeshChoice]:
     checked, mesh = found
     request, error = checked.request, mesh.option.error
     parts = f"{100.0 * error.total:.2g} %, of which the model {100.0 * error.model:.2g} %"
-    spared, turned_on = (
+    neglected, turned_on = (
         {name: _reason(name, text, parts) for name, text in overrides.items()}
-        for overrides in (request.spared, request.turned_on)
+        for overrides in (request.neglected, request.turned_on)
     )
-    if (spared, turned_on) == (dict(request.spared), dict(request.turned_on)):
+    if (neglected, turned_on) == (dict(request.neglected), dict(request.turned_on)):
         return found
-    return _again(replace(request, spared=spared, turned_on=turned_on)), mesh
+    return _again(replace(request, neglected=neglected, turned_on=turned_on)), mesh
 
 
 def _reason(name: str, text: str, parts: str) -> str:

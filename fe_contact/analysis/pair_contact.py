@@ -115,7 +115,7 @@ class PairContact:
         return self._located(model, position) if kept is None else kept.candidates
 
     def take(self, model: ContactModel, problem: ContactProblem) -> None:
-        """Keep a problem of plain involutes that was assembled elsewhere."""
+        """Keep a problem of plain involutes that was assembled remotely."""
         self._store(model, problem)
 
     def keep_rows(self, model: ContactModel, position: FloatArray, rows: IntArray) -> None:

@@ -1,4 +1,4 @@
-"""What is worth its time: the front of error against time, and its knee."""
+"""The front of error against time, and its knee."""
 
 from __future__ import annotations
 

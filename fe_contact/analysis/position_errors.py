@@ -40,7 +40,7 @@ NEXT_SPACING = 0.25
 
 @dataclass(frozen=True)
 class PositionErrors:
-    """Errors for lack of positions, the largest of the judged places at each load.
+    """Errors for lack of positions, the largest of the assessed places at each load.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class PositionErrors:
 def position_errors(
     nodes: PositionNodes, places: Places, solutions: list[ContactSolution], plan: Plan
 ) -> PositionErrors:
-    """Judge the positions of a table.
+    """Assess the positions of a table.
 
     Parameters
     ----------
@@ -83,12 +83,12 @@ def _measured(
     position: FloatArray, places: Places, solutions: list[ContactSolution], plan: Plan, some: IntArray
 ) -> tuple[PositionNodes, FloatArray]:
     """Solve the middles of intervals at some loads, in all base pitches; see `measured_nodes`."""
-    judged, pitches = places.judged_indices, np.arange(places.period)
-    value = np.concatenate([solutions[k].deflection[:, some] for k in judged], axis=1)
+    assessed, pitches = places.assessed_indices, np.arange(places.period)
+    value = np.concatenate([solutions[k].deflection[:, some] for k in assessed], axis=1)
 
     def solve(middles: FloatArray) -> FloatArray:
         curves = deflected_places(
-            places.judged, [middles] * len(judged), plan.load[some], pitches, places.workers
+            places.assessed, [middles] * len(assessed), plan.load[some], pitches, places.workers
         )
         return np.concatenate(curves, axis=1)
 
@@ -102,7 +102,7 @@ def measured_nodes(
     period: int,
     rule: NodeRule,
 ) -> tuple[PositionNodes, FloatArray]:
-    """Measure the error between positions where it is largest, and bound it elsewhere.
+    """Measure the error between positions where it is largest, and bound it at the others.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def _by_bands(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray
 
 
 def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionErrors:
-    """Take the largest of the judged places at each load."""
+    """Take the largest of the assessed places at each load."""
     band: FloatArray = nodes.error.reshape(len(nodes.error), -1, loads).max(axis=1)
     worst: FloatArray = curves.reshape(QUANTITIES, -1, loads).max(axis=1)
     return PositionErrors(band, worst)

@@ -162,7 +162,7 @@ def next_pass(decided: Decided, shares: FloatArray) -> Refinement | str:
     Returns
     -------
     Refinement or str
-        Why none is worth while.
+        Why none pays.
     """
     plan = decided.plan
     begun = _Resolution(

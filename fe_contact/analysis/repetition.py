@@ -63,6 +63,6 @@ def with_effects(checked: Checked, needed: Mapping[str, str], *, whole_table: bo
     """Return the request with effects switched on that a run showed to be needed."""
     request = checked.request
     reasons = {name: f"on after a run without it: {reason}" for name, reason in needed.items()}
-    spared = {name: reason for name, reason in request.spared.items() if name not in needed}
+    neglected = {name: reason for name, reason in request.neglected.items() if name not in needed}
     turned_on = {**request.turned_on, **reasons}
-    return check_asked(replace(request, spared=spared, turned_on=turned_on), whole_table=whole_table)
+    return check_asked(replace(request, neglected=neglected, turned_on=turned_on), whole_table=whole_table)

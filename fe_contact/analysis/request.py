@@ -9,7 +9,7 @@ from functools import cached_property
 from bounds import Finding
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth, LedgerEntry, compose
-from fe_contact.effects.sparing import WITHOUT
+from fe_contact.effects.neglect import WITHOUT
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import Accuracy, CycleCost
@@ -37,7 +37,7 @@ class Request:
         Base pitches that the table shall cover where teeth differ; None: until all repeats.
     on_violation : str
         What to do where an assumption of the run turns out wrong: "repeat", "fail" or "report".
-    spared, turned_on : mapping of str to str
+    neglected, turned_on : mapping of str to str
         Automatic effects that are left off because the asked accuracy does not need them, or on because a run
         without them showed that it does, and why.
     loads_as : str
@@ -52,7 +52,7 @@ class Request:
     effects: Mapping[str, str] = field(default_factory=dict)
     pitches: int | None = None
     on_violation: str = "repeat"
-    spared: Mapping[str, str] = field(default_factory=dict)
+    neglected: Mapping[str, str] = field(default_factory=dict)
     turned_on: Mapping[str, str] = field(default_factory=dict)
     loads_as: str = "torques"
 
@@ -78,15 +78,15 @@ class Request:
 
     @property
     def whole_scene(self) -> ContactScene:
-        """What the effects judge by, before any was spared."""
+        """What the effects assess by, before any was neglected."""
         alignments = self.misalignment, self.center_distance_change
         return ContactScene(self.pair, self.torque, *alignments, pitches=self.pitches)
 
     @property
     def scene(self) -> ContactScene:
-        """What the effects judge by: what is spared is not in it."""
+        """What the effects assess by: what is neglected is not in it."""
         scene = self.whole_scene
-        for name in self.spared:
+        for name in self.neglected:
             scene = WITHOUT[name](scene)
         return scene
 
@@ -102,8 +102,8 @@ class Request:
 
     @property
     def choices(self) -> dict[str, str]:
-        """Choice of each effect, those that are spared or turned on included."""
-        decided = dict.fromkeys(self.spared, "off") | dict.fromkeys(self.turned_on, "on")
+        """Choice of each effect, those that are neglected or turned on included."""
+        decided = dict.fromkeys(self.neglected, "off") | dict.fromkeys(self.turned_on, "on")
         return self.asked_choices | decided
 
     def to_json(self) -> Json:
@@ -137,14 +137,14 @@ class Checked:
         """Every effect "on" or "off", as the whole request decides it."""
         return {entry.name: "on" if entry.on else "off" for entry in self.ledger}
 
-    def judging(self, name: str) -> tuple[ContactScene, dict[str, str]]:
-        """Return the scene and the decisions by which the worth of an effect is estimated.
+    def assessing(self, name: str) -> tuple[ContactScene, dict[str, str]]:
+        """Return the scene and the decisions by which the influence of an effect is estimated.
 
-        Those of a spared effect are of the scene with everything in it: without it there may be no model
+        Those of a neglected effect are of the scene with everything in it: without it there may be no model
         left that can show it.
         """
         request = self.request
-        if name not in request.spared:
+        if name not in request.neglected:
             return request.scene, self.decided
         _, ledger = compose(request.whole_scene, request.asked_choices, EFFECTS)
         return request.whole_scene, {entry.name: "on" if entry.on else "off" for entry in ledger}

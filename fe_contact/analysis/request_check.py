@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from bounds import Text, at_least, warn_of
 from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.neglected_effects import neglected_effects
 from fe_contact.analysis.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request import Checked, Request
-from fe_contact.analysis.spared_effects import spared_effects
 from fe_contact.analysis.table_axes import axis, load_levels
 from fe_contact.checks import integer
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
@@ -109,13 +109,15 @@ def check_one_load(
 def check_asked(request: Request, *, whole_table: bool = True, spare: bool = True) -> Checked:
     """Compose the model of a request and refuse what it cannot hold; parameters of `check_request`.
 
-    With a tolerance, automatic effects that it does not need are then spared.
+    With a tolerance, automatic effects that it does not need are then neglected.
     """
     composed, ledger = _composed(request)
     refuse_beyond_plane(request.scene, composed)
-    if spare and not (request.spared or request.turned_on):
-        request = replace(request, spared=spared_effects(request.scene, ledger, request.accuracy.tolerance))
-        composed, ledger = _composed(request) if request.spared else (composed, ledger)
+    if spare and not (request.neglected or request.turned_on):
+        request = replace(
+            request, neglected=neglected_effects(request.scene, ledger, request.accuracy.tolerance)
+        )
+        composed, ledger = _composed(request) if request.neglected else (composed, ledger)
     if composed.across_face:
         _refuse_thin_discs(request.pair, request.accuracy.level)
     _refuse_distances(request)
@@ -125,13 +127,13 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
 
 
 def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
-    """Compose the model; the ledger says what was asked for, and of what is spared what the scene held."""
+    """Compose the model; the ledger says what was asked for, and of what is neglected what the scene held."""
     composed, ledger = compose(request.scene, request.choices, EFFECTS)
-    asked, overrides = request.asked_choices, {**request.spared, **request.turned_on}
+    asked, overrides = request.asked_choices, {**request.neglected, **request.turned_on}
     whole = {
         effect.name: effect.called_for(request.whole_scene)
         for effect in EFFECTS
-        if effect.name in request.spared
+        if effect.name in request.neglected
     }
     return composed, tuple(
         replace(

@@ -89,7 +89,7 @@ def deflected_places(
     return [by_place[k] for k in range(len(places))]
 
 
-def assemble_elsewhere(places: Places, models: Sequence[ContactModel], position: FloatArray) -> None:
+def assemble_remotely(places: Places, models: Sequence[ContactModel], position: FloatArray) -> None:
     """Let workers assemble what places are about to be asked with other models; nothing without workers."""
     asked = [Place(place.contact, model) for place, model in zip(places.places, models, strict=True)]
     lines = _sent_lines(places.workers, asked, [position] * len(asked), (), None)

@@ -18,7 +18,7 @@ from fe_contact.analysis.solved_places import Solved, solve_places
 from fe_contact.analysis.table_nodes import table_nodes
 from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
-from fe_contact.compliance.condensed_elsewhere import condense_elsewhere
+from fe_contact.compliance.remote_condensation import condense_remotely
 from fe_contact.geometry import ParallelAxes
 from fe_contact.planning import FaceDiscretization, Plan, Prediction, predict_run
 from fe_contact.stage_clock import StageClock
@@ -150,7 +150,7 @@ def _condensed(
     with TemporaryDirectory() as folder:
         kept = cache or Path(folder)
         recipes = made.coarse_recipes if coarse else made.recipes
-        condense_elsewhere(plan.bodies(pair), recipes, kept, workers)
+        condense_remotely(plan.bodies(pair), recipes, kept, workers)
         return pair_contact(pair, plan, kept, coarse, changes)
 
 

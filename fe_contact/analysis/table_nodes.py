@@ -19,13 +19,13 @@ from fe_contact.types import FloatArray, IntArray
 
 
 def table_nodes(places: Places, plan: Plan) -> PositionNodes:
-    """Place the positions: the number asked for, or where the curves of judged places and pitches bend.
+    """Place the positions: the number asked for, or where the curves of assessed places and pitches bend.
 
     What is missed between fixed ones is not measured here (`position_errors`).
     """
     if plan.positions is not None:
-        return unmeasured_nodes(plan.positions, len(places.judged) * plan.load.size)
-    windows = judged_windows(places.places[0].model, plan.nodes.judged_pitches)
+        return unmeasured_nodes(plan.positions, len(places.assessed) * plan.load.size)
+    windows = assessed_windows(places.places[0].model, plan.nodes.assessed_pitches)
 
     def solve(position: FloatArray) -> FloatArray:
         """STE (W, P, windows x places x L) in m."""
@@ -37,8 +37,8 @@ def table_nodes(places: Places, plan: Plan) -> PositionNodes:
     return adaptive_nodes(replace(plan.nodes, most=most), solve)
 
 
-def judged_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
-    """Return base pitches to judge, each with its neighbors.
+def assessed_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
+    """Return base pitches to assess, each with its neighbors.
 
     Where all teeth are alike, the one pitch there is: ``([0],)``. Else ``[m - 1, m, m + 1]`` of pitches m, at
     most `most`, evenly taken from all in the order of how much the gaps of their three pairs differ, both
@@ -54,7 +54,9 @@ def judged_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
 
 
 def _curves(places: Places, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
-    """STE (T, P, places x L) in m of the judged places in the given pitches."""
-    found = deflected_places(places.judged, [position] * len(places.judged), load, pitches, places.workers)
+    """STE (T, P, places x L) in m of the assessed places in the given pitches."""
+    found = deflected_places(
+        places.assessed, [position] * len(places.assessed), load, pitches, places.workers
+    )
     shape = (pitches.size, position.size, -1)
     return np.concatenate([curve.reshape(shape) for curve in found], axis=2)

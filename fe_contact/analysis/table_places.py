@@ -69,12 +69,12 @@ class Places:
         return self.places[0].model.period
 
     @property
-    def judged(self) -> tuple[Place, ...]:
+    def assessed(self) -> tuple[Place, ...]:
         """First, middle and last place: by them the positions of the table are chosen."""
-        return tuple(self.places[i] for i in self.judged_indices)
+        return tuple(self.places[i] for i in self.assessed_indices)
 
     @property
-    def judged_indices(self) -> tuple[int, ...]:
+    def assessed_indices(self) -> tuple[int, ...]:
         """Where those stand among all places."""
         last = len(self.places) - 1
         return tuple(sorted({0, last // 2, last}))

@@ -7,20 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.analysis.solved_places import assemble_elsewhere
+from fe_contact.analysis.solved_places import assemble_remotely
 from fe_contact.analysis.table_places import Place, Places
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
 
 OUTSIDE = 1e-3
-"""Base pitches before A and after E at which the gap of an edge is judged: it grows from there on."""
+"""Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
 
 
 def assemble_edges(places: Places, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
     """Let workers assemble the compliance at the tip edges of all places, as `edge_depth` needs it."""
     models = [replace(place.model, corner_contact=True) for place in places.places]
-    assemble_elsewhere(places, models, _phase(solved[0][0]))
+    assemble_remotely(places, models, _phase(solved[0][0]))
 
 
 def deepest_edge(

@@ -18,7 +18,7 @@ from fe_contact.types import FloatArray
 
 @dataclass(frozen=True)
 class ContactScene:
-    """What the effects judge by.
+    """What the effects assess by.
 
     Attributes
     ----------
@@ -84,7 +84,7 @@ class Effect(Protocol):
     valid_for: ClassVar[str]
 
     def called_for(self, scene: ContactScene) -> Verdict:
-        """Judge whether `scene` needs this effect, and why."""
+        """Assess whether `scene` needs this effect, and why."""
         ...
 
     def contribute(self, scene: ContactScene, model: ContactModel) -> ContactModel:

@@ -5,7 +5,7 @@ from fe_contact.microgeometry.curve_derivatives import CurveDerivatives, FlankDe
 from fe_contact.microgeometry.harris_map import HarrisMap
 from fe_contact.microgeometry.iso1328 import iso1328_tolerances
 from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
-from fe_contact.microgeometry.optimisation import Optimisation, Outcome, StepAside
+from fe_contact.microgeometry.optimisation import Optimisation, Outcome, Perturbation
 from fe_contact.microgeometry.optimise import optimise
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import Ended, Search, SearchRun
@@ -35,13 +35,13 @@ __all__ = [
     "Objective",
     "Optimisation",
     "Outcome",
+    "Perturbation",
     "Scatter",
     "ScatterNodes",
     "Search",
     "SearchRun",
     "SequentialLinearProgramming",
     "SobolSample",
-    "StepAside",
     "ToleranceStudy",
     "Tolerances",
     "WeightedMean",

@@ -1,4 +1,4 @@
-"""The best design of all searches, judged by full analyses of it and of the design to begin with."""
+"""The best design of all searches, assessed by full analyses of it and of the design to begin with."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from fe_contact.microgeometry.confirmation import ConfirmedDesign, confirm
 from fe_contact.microgeometry.design_memory import DesignMemory
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
-from fe_contact.microgeometry.optimisation import StepAside
+from fe_contact.microgeometry.optimisation import Perturbation
 from fe_contact.microgeometry.request import OptimisationRequest
 from fe_contact.microgeometry.scatter import Scatter
 from fe_contact.microgeometry.search import Cancel, Search, SearchRun, search_from
@@ -37,7 +37,7 @@ class Choice:
     Attributes
     ----------
     problem : DesignProblem
-        By which `run` was judged.
+        By which `run` was assessed.
     start, optimum : ConfirmedDesign
     runs : tuple of SearchRun
     best : int
@@ -59,7 +59,7 @@ class Choice:
 def posed(study: DesignStudy, asked: OptimisationRequest, memory: Path | None) -> DesignProblem:
     """Return the problem of the search, its scale the start inside the bounds.
 
-    `memory` is a directory of designs that were judged before.
+    `memory` is a directory of designs that were assessed before.
 
     Raises
     ------
@@ -69,12 +69,12 @@ def posed(study: DesignStudy, asked: OptimisationRequest, memory: Path | None) -
     problem = DesignProblem(study.evaluator, asked.variables, asked.objective, asked.limits, 1.0)
     if memory is not None:
         problem = replace(problem, memory=DesignMemory.of(memory, asked, study.evaluator))
-    judged = problem.judge(problem.place(asked.own))
-    if not np.isfinite(judged.objective) or judged.objective <= 0.0:
+    assessed = problem.assess(problem.place(asked.own))
+    if not np.isfinite(assessed.objective) or assessed.objective <= 0.0:
         raise SolveError(
             "the contact of the design to begin with cannot be solved at every position and load"
         )
-    return replace(problem, scale=judged.objective)
+    return replace(problem, scale=assessed.objective)
 
 
 def choose(
@@ -98,13 +98,13 @@ def choose(
     cache : Path, optional
     cancel : callable
     """
-    best = min(range(len(runs)), key=lambda i: runs[i].judged.order)
+    best = min(range(len(runs)), key=lambda i: runs[i].assessed.order)
     with clock.stage("confirmation"):
         start = confirm(problem, dict(zip(problem.names, asked.own, strict=True)), study, cache)
         optimum = confirm(problem, problem.values(runs[best].place), study, cache)
     found = Choice(problem, start, optimum, runs, best)
     for _ in range(ROUNDS):
-        if found.optimum.violation <= SLACK or found.run.judged.violation > SLACK or cancel():
+        if found.optimum.violation <= SLACK or found.run.assessed.violation > SLACK or cancel():
             break
         found = _refined(found, asked.search, study, clock, cache, cancel)
     return found
@@ -129,7 +129,9 @@ def _refined(
     return Choice(problem, found.start, optimum, (*found.runs, run), len(found.runs))
 
 
-def step_aside(problem: DesignProblem, run: SearchRun, scatter: Scatter, one: DesignVariable) -> StepAside:
+def perturbation(
+    problem: DesignProblem, run: SearchRun, scatter: Scatter, one: DesignVariable
+) -> Perturbation:
     """Take a step of one variable from the best design of a run to both sides."""
     values = problem.values(run.place)
     step = scatter.modification.get(one.name, STEP * (one.high - one.low))
@@ -137,5 +139,5 @@ def step_aside(problem: DesignProblem, run: SearchRun, scatter: Scatter, one: De
     found = []
     for end in ends:
         evaluation = problem.evaluator.evaluate(values | {one.name: end})
-        found.append(problem.objective.of(problem.evaluator.expected(evaluation)) - run.judged.objective)
-    return StepAside(one.name, *ends, *found)
+        found.append(problem.objective.of(problem.evaluator.expected(evaluation)) - run.assessed.objective)
+    return Perturbation(one.name, *ends, *found)

@@ -1,4 +1,4 @@
-"""What came of an optimisation, in words: what it is worth, how it ended, and what was not tried."""
+"""What came of an optimisation, in words: the gain, how it ended, and what was not tried."""
 
 from __future__ import annotations
 
@@ -66,7 +66,7 @@ def not_tried(choice: Choice, asked: OptimisationRequest, study: DesignStudy) ->
         f"wider bounds of {', '.join(bounds)}, which the optimum lies on" if bounds else "",
         f"other values of {', '.join(kept)}" if kept else "",
         f"scatter of anything but {', '.join(spread)}" if spread else "scatter of anything",
-        f"effects that are off: {', '.join(off)}" if off else "",
+        f"neglected effects: {', '.join(off)}" if off else "",
         f"other searches than {starts} of {asked.search.method.to_json()['method'].replace('_', ' ')}; "
         "ripple has many local minima",
         "other center distances, and torques but those that count",

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from fe_contact.microgeometry.design_problem import DesignProblem, Judged
+from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.linear_merit import LinearMerit
 from fe_contact.types import FloatArray
 
 
-class Spent(Exception):
+class BudgetUsed(Exception):
     """All designs that may be evaluated were."""
 
 
@@ -40,12 +40,12 @@ class Budget:
 
         Raises
         ------
-        Spent, Cancelled
+        BudgetUsed, Cancelled
         """
         if self._cancel():
             raise Cancelled
         if self.used >= min(most, self.total):
-            raise Spent
+            raise BudgetUsed
         self.used += 1
 
     def tell(self) -> None:
@@ -61,40 +61,43 @@ class CountedMerit:
     problem : DesignProblem
     budget : Budget
     most : int
-        It raises `Spent` when so many designs of the budget are used.
+        It raises `BudgetUsed` when so many designs of the budget are used.
 
     Attributes
     ----------
-    best : tuple of Judged and ndarray, or None
+    best : tuple of Assessed and ndarray, or None
         Of its designs, by their order; None before the first.
     count : int
         Its designs.
     least, largest : float
-        Of the objectives of its designs that could be judged, m.
+        Of the objectives of its designs that could be assessed, m.
     """
 
     def __init__(self, problem: DesignProblem, budget: Budget, most: int) -> None:
-        self.best: tuple[Judged, FloatArray] | None = None
+        self.best: tuple[Assessed, FloatArray] | None = None
         self.count, self.least, self.largest = 0, np.inf, -np.inf
         self._problem, self._budget, self._most = problem, budget, most
 
     def __call__(self, place: FloatArray) -> float:
-        """Judge a design."""
+        """Assess a design."""
         self._budget.take(self._most)
-        return self._counted(self._problem.judge(place), place)
+        return self._counted(self._problem.assess(place), place)
 
     def linearize(self, place: FloatArray) -> tuple[float, LinearMerit]:
-        """Judge a design, and return its merit with what is known about it to first order."""
+        """Assess a design, and return its merit with what is known about it to first order."""
         self._budget.take(self._most)
-        judged, merit = self._problem.linearize(place)
-        return self._counted(judged, place), merit
+        assessed, merit = self._problem.linearize(place)
+        return self._counted(assessed, place), merit
 
-    def _counted(self, judged: Judged, place: FloatArray) -> float:
+    def _counted(self, assessed: Assessed, place: FloatArray) -> float:
         """Count and remember a design; return its merit."""
         self.count += 1
-        if self.best is None or judged.order < self.best[0].order:
-            self.best = judged, np.clip(place, 0.0, 1.0)
-        if np.isfinite(judged.objective):
-            self.least, self.largest = min(self.least, judged.objective), max(self.largest, judged.objective)
+        if self.best is None or assessed.order < self.best[0].order:
+            self.best = assessed, np.clip(place, 0.0, 1.0)
+        if np.isfinite(assessed.objective):
+            self.least, self.largest = (
+                min(self.least, assessed.objective),
+                max(self.largest, assessed.objective),
+            )
         self._budget.tell()
-        return judged.merit
+        return assessed.merit

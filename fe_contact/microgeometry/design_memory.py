@@ -1,7 +1,7 @@
-"""Judged designs on disk: a search that was killed, or is asked for more, goes on where it was.
+"""Assessed designs on disk: a search that was killed, or is asked for more, goes on where it was.
 
 A search is repeatable, so it asks for the same designs again; those that are known cost nothing. What a file
-holds depends on all that decides how a design is judged, down to the bits of the compliance, and on nothing
+holds depends on all that decides how a design is assessed, down to the bits of the compliance, and on nothing
 of the search.
 """
 

@@ -20,7 +20,7 @@ PENALTY = 10.0
 
 
 @dataclass(frozen=True)
-class Judged:
+class Assessed:
     """One design: its objective in m, by how much it exceeds the limits, and the merit that is minimized."""
 
     objective: float
@@ -47,7 +47,7 @@ class Memory(Protocol):
 
 @dataclass(frozen=True)
 class DesignProblem:
-    """What is varied, how it is judged, and the scale of the merit.
+    """What is varied, how it is assessed, and the scale of the merit.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class DesignProblem:
     scale : float
         m; merits are in parts of it.
     memory : Memory, optional
-        Of designs that were judged before.
+        Of designs that were assessed before.
     """
 
     evaluator: Evaluator
@@ -90,18 +90,18 @@ class DesignProblem:
             return self
         return replace(self, evaluator=self.evaluator.at(np.arange(positions) / positions))
 
-    def judge(self, place: FloatArray) -> Judged:
+    def assess(self, place: FloatArray) -> Assessed:
         """Evaluate the design at a place; one whose contact cannot be solved has an infinite merit."""
         return self._with_merit(*self._figures(self.values(place)))
 
-    def linearize(self, place: FloatArray) -> tuple[Judged, LinearMerit]:
+    def linearize(self, place: FloatArray) -> tuple[Assessed, LinearMerit]:
         """Evaluate the design at a place (d,) with its derivatives; the memory learns of it.
 
         Its merit to first order has NaN where the contact cannot be solved.
         """
         values = self.values(place)
         found = linearized(self.evaluator, values, self.names, self.limits)
-        objective, violation = self._judged(found.evaluation, values)
+        objective, violation = self._assessed(found.evaluation, values)
         ranges = np.array([one.high - one.low for one in self.variables])
         merit = LinearMerit(
             found.evaluation.ste / self.scale,
@@ -113,11 +113,11 @@ class DesignProblem:
         )
         return self._with_merit(objective, violation), merit
 
-    def _with_merit(self, objective: float, violation: float) -> Judged:
+    def _with_merit(self, objective: float, violation: float) -> Assessed:
         """Return a design of this objective in m and violation."""
         if not math.isfinite(objective):
-            return Judged(math.inf, math.inf, math.inf)
-        return Judged(objective, violation, objective / self.scale + PENALTY * violation)
+            return Assessed(math.inf, math.inf, math.inf)
+        return Assessed(objective, violation, objective / self.scale + PENALTY * violation)
 
     def _figures(self, values: dict[str, float]) -> tuple[float, float]:
         """Return objective in m and violation of a design, from the memory if it is there."""
@@ -125,9 +125,9 @@ class DesignProblem:
         known = None if self.memory is None else self.memory.find(key, position)
         if known is not None:
             return known
-        return self._judged(self.evaluator.evaluate(values), values)
+        return self._assessed(self.evaluator.evaluate(values), values)
 
-    def _judged(self, evaluated: Evaluation, values: dict[str, float]) -> tuple[float, float]:
+    def _assessed(self, evaluated: Evaluation, values: dict[str, float]) -> tuple[float, float]:
         """Return objective in m and violation of an evaluated design, and have the memory keep them."""
         objective = self.objective.of(self.evaluator.expected(evaluated))
         violation = evaluated.violation(self.limits) if math.isfinite(objective) else math.inf

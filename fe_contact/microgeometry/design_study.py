@@ -30,7 +30,7 @@ from fe_contact.types import FloatArray, IntArray
 
 @dataclass(frozen=True)
 class DesignStudy:
-    """A pair whose designs can be judged.
+    """A pair whose designs can be assessed.
 
     Attributes
     ----------
@@ -159,7 +159,7 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
     """Return model and mesh by the asked accuracy, every effect decided for good."""
     decided = decide(checked, cache)
     request = decided.checked.request
-    fixed = replace(request, effects=decided.checked.decided, spared={}, turned_on={})
+    fixed = replace(request, effects=decided.checked.decided, neglected={}, turned_on={})
     return replace(decided, checked=check_asked(fixed, spare=False))
 
 

@@ -1,4 +1,4 @@
-"""Judge designs of one pair on one compliance: only the gaps are new, and the contact is solved."""
+"""Assess designs of one pair on one compliance: only the gaps are new, and the contact is solved."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ def _in_all_pitches(problem: ContactProblem, model: ContactModel) -> ContactProb
 
 @dataclass(frozen=True)
 class NodeFigures:
-    """What one node of the scatter is judged by.
+    """What one node of the scatter is assessed by.
 
     Attributes
     ----------

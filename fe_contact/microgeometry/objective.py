@@ -1,4 +1,4 @@
-"""What a design is judged by: expected peak-to-peak over the loads, and limits it has to keep."""
+"""What a design is assessed by: expected peak-to-peak over the loads, and limits it has to keep."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an optimisation found: both designs, what the gain is worth, and how it was come by."""
+"""What an optimisation found: both designs, the gain, and how it was come by."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Outcome(StrEnum):
 
 
 @dataclass(frozen=True)
-class StepAside:
+class Perturbation:
     """What a small step of one variable from the optimum changes.
 
     Attributes
@@ -73,7 +73,7 @@ class Optimisation:
         One for each start, and one more each time the best design had to be brought back within the limits;
         `best_run` is the index of the one that counts.
     best_run : int
-    sensitivity : tuple of StepAside
+    sensitivity : tuple of Perturbation
     not_tried : tuple of str
         What the optimum is the best without: assumptions that were left as they are, in words.
     cost : dict
@@ -92,7 +92,7 @@ class Optimisation:
     optimum: ConfirmedDesign
     runs: tuple[SearchRun, ...]
     best_run: int
-    sensitivity: tuple[StepAside, ...]
+    sensitivity: tuple[Perturbation, ...]
     not_tried: tuple[str, ...]
     cost: Json
     asked: Json

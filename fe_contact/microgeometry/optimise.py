@@ -7,11 +7,11 @@ from pathlib import Path
 
 from fe_contact.allowed_error import AllowedError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.choice import Choice, choose, posed, step_aside
+from fe_contact.microgeometry.choice import Choice, choose, perturbation, posed
 from fe_contact.microgeometry.conclusion import conclusion, not_tried
 from fe_contact.microgeometry.design_study import Accuracies, DesignStudy, design_study
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Objective, WeightedMean
-from fe_contact.microgeometry.optimisation import Optimisation, StepAside
+from fe_contact.microgeometry.optimisation import Optimisation, Perturbation
 from fe_contact.microgeometry.request import OptimisationRequest
 from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter
 from fe_contact.microgeometry.search import Cancel, Search, never
@@ -72,14 +72,14 @@ def optimise(
         Further torques of the Harris maps, N m; default: up to 1.25 times the largest that counts.
     tolerance, level, time_budget, model, effects, progress, cache
         See `analyze`. Effects are decided once, for a design in which every variable is at the middle of its
-        bounds, misaligned as it scatters: all designs are judged by one model.
+        bounds, misaligned as it scatters: all designs are assessed by one model.
     workers : Workers
         Who searches from the starts; the result does not depend on it.
     cancel : callable, optional
         Asked before every design whether to end the search: the best so far is then analyzed in full, and
-        the reason says so. Workers elsewhere end their starts first.
+        the reason says so. Remote workers end their starts first.
     memory : Path, optional
-        Directory of designs that were judged before: a search that was killed, or is repeated with more
+        Directory of designs that were assessed before: a search that was killed, or is repeated with more
         evaluations, goes on where it was, and finds what it would have found without. Only of searches in
         this process.
 
@@ -96,8 +96,8 @@ def optimise(
     """
     clock, report, cancelled = StageClock(), progress or silent, cancel or never
     accuracy = Accuracies(tolerance, level, time_budget, model, effects)
-    judged = scatter, misalignment, objective, limits
-    asked = OptimisationRequest(pair, torques, tuple(variables), *judged, search, accuracy, map_torques)
+    assessed = scatter, misalignment, objective, limits
+    asked = OptimisationRequest(pair, torques, tuple(variables), *assessed, search, accuracy, map_torques)
     asked.check()
     wanted = asked.acting, scatter, misalignment, search.positions, accuracy
     study = design_study(pair, torques, asked.further_torques, *wanted, clock, report, cache)
@@ -107,7 +107,7 @@ def optimise(
     choice = choose(problem, runs, asked, study, clock, cache, cancelled)
     report("confirmation", 1.0)
     with clock.stage("sensitivity"):
-        aside = tuple(step_aside(choice.problem, choice.run, scatter, one) for one in asked.variables)
+        aside = tuple(perturbation(choice.problem, choice.run, scatter, one) for one in asked.variables)
     return _result(asked, study, choice, aside, clock)
 
 
@@ -115,7 +115,7 @@ def _result(
     asked: OptimisationRequest,
     study: DesignStudy,
     choice: Choice,
-    aside: tuple[StepAside, ...],
+    aside: tuple[Perturbation, ...],
     clock: StageClock,
 ) -> Optimisation:
     """Put together what was found."""

@@ -163,7 +163,7 @@ NO_SCATTER = Scatter()
 
 @dataclass(frozen=True)
 class ScatterNodes:
-    """Nodes at which a design is judged.
+    """Nodes at which a design is assessed.
 
     Attributes
     ----------

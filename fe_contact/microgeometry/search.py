@@ -10,8 +10,8 @@ from enum import StrEnum
 import numpy as np
 
 from fe_contact.checks import integer
-from fe_contact.microgeometry.counted_merit import Budget, Cancelled, CountedMerit, Spent
-from fe_contact.microgeometry.design_problem import DesignProblem, Judged
+from fe_contact.microgeometry.counted_merit import Budget, BudgetUsed, Cancelled, CountedMerit
+from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.search_method import Method, SequentialLinearProgramming
 from fe_contact.types import FloatArray, Json
 
@@ -80,7 +80,7 @@ class SearchRun:
     ----------
     place : ndarray, shape (d,)
         Best design, in parts of the ranges of the variables.
-    judged : Judged
+    assessed : Assessed
     evaluations : int
     ended : Ended
     cpu_seconds : float
@@ -91,7 +91,7 @@ class SearchRun:
     """
 
     place: FloatArray
-    judged: Judged
+    assessed: Assessed
     evaluations: int
     ended: Ended
     cpu_seconds: float
@@ -106,8 +106,8 @@ class SearchRun:
     def to_json(self) -> Json:
         """Return plain JSON."""
         return {
-            "objective_m": self.judged.objective,
-            "violation": self.judged.violation,
+            "objective_m": self.assessed.objective,
+            "violation": self.assessed.violation,
             "evaluations": self.evaluations,
             "explored": self.explored,
             "converged": self.converged,
@@ -150,24 +150,24 @@ def search_from(
     ended = Ended.CONVERGED
     try:
         search.method.minimize(merit, rough, start, np.random.SeedSequence((search.seed, index)))
-    except Spent:
+    except BudgetUsed:
         ended = Ended.SPENT
     except ending:
         ended = Ended.CANCELLED
-    judged, place = _best(problem, merit, rough, start)
+    assessed, place = _best(problem, merit, rough, start)
     seconds = time.process_time() - begun
     spread = max(0.0, merit.largest - merit.least)
-    return SearchRun(place, judged, budget.used, ended, seconds, rough.count, spread)
+    return SearchRun(place, assessed, budget.used, ended, seconds, rough.count, spread)
 
 
 def _best(
     problem: DesignProblem, merit: CountedMerit, rough: CountedMerit, start: FloatArray
-) -> tuple[Judged, FloatArray]:
-    """Return the best design; where exploration was cut short its best has yet to be judged in full."""
+) -> tuple[Assessed, FloatArray]:
+    """Return the best design; where exploration was cut short its best has yet to be assessed in full."""
     known = [] if merit.best is None else [merit.best]
     if merit.count <= 1 and rough.best is not None:
-        known.append((problem.judge(rough.best[1]), rough.best[1]))
-    return min(known, key=lambda one: one[0].order) if known else (problem.judge(start), start)
+        known.append((problem.assess(rough.best[1]), rough.best[1]))
+    return min(known, key=lambda one: one[0].order) if known else (problem.assess(start), start)
 
 
 def never() -> bool:

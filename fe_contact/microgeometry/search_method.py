@@ -12,7 +12,7 @@ from scipy.optimize import Bounds, differential_evolution, minimize
 from scipy.stats import qmc
 
 from fe_contact.checks import integer
-from fe_contact.microgeometry.counted_merit import CountedMerit, Spent
+from fe_contact.microgeometry.counted_merit import BudgetUsed, CountedMerit
 from fe_contact.types import FloatArray, Json
 
 SIMPLEX_SIZE, SIMPLEX_MERIT = 1e-3, 1e-4
@@ -46,7 +46,7 @@ class Method(Protocol):
 
         Raises
         ------
-        Spent, Cancelled
+        BudgetUsed, Cancelled
             By the merit: the search is over.
         """
         ...
@@ -138,7 +138,7 @@ class SequentialLinearProgramming:
     def _best(self, rough: CountedMerit, dimensions: int, seed: np.random.SeedSequence) -> list[FloatArray]:
         """Return the best points of the sequence, as far as the designs reach."""
         found: list[tuple[float, FloatArray]] = []
-        with suppress(Spent):
+        with suppress(BudgetUsed):
             sequence = qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
             for place in sequence.random_base2((self.sample - 1).bit_length())[: self.sample]:
                 found.append((rough(place), place))
@@ -209,7 +209,7 @@ class DifferentialEvolution:
     ) -> None:
         """Search; the start is one of the first population."""
         merit(start)
-        with suppress(Spent):
+        with suppress(BudgetUsed):
             differential_evolution(
                 rough,
                 Bounds(np.zeros(start.size), np.ones(start.size)),

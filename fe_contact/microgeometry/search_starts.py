@@ -34,8 +34,8 @@ def search_all(
     if isinstance(workers, InProcess):
         runs = _here(problem, search, begins, report, cancel)
     else:
-        runs = _elsewhere(problem, search, begins, workers, report, cancel)
-    return tuple(runs) or (SearchRun(first, problem.judge(first), 1, Ended.CANCELLED, 0.0),)
+        runs = _remote(problem, search, begins, workers, report, cancel)
+    return tuple(runs) or (SearchRun(first, problem.assess(first), 1, Ended.CANCELLED, 0.0),)
 
 
 def _here(
@@ -58,7 +58,7 @@ def _here(
     return runs
 
 
-def _elsewhere(
+def _remote(
     problem: DesignProblem,
     search: Search,
     begins: list[tuple[int, FloatArray]],

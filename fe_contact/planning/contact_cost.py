@@ -27,7 +27,7 @@ _JUDGED = 3
 _SOLVED_MIDDLES = 0.25
 """Part of the intervals between fixed positions whose middles are solved, at most."""
 _HELD_OUT_DISTANCES = 16
-"""Positions at which an interval of center distances is judged."""
+"""Positions at which an interval of center distances is assessed."""
 _PLANE_CHECK = 6e-3
 """CPU seconds that the estimate of errors takes beside its solutions."""
 _TABLE_POINT = 2e-6
@@ -64,13 +64,13 @@ def contact_seconds(
     """CPU seconds of the contact, and of what is solved once more for the error estimate."""
     kept, loads = expected_positions(plan), plan.load.size
     places, distances = alignments[0] * alignments[1], alignments[1]
-    judged, rows = min(places, _JUDGED), model.period * places
+    assessed, rows = min(places, _JUDGED), model.period * places
     tried = 0
     if plan.positions is None:
         begun = plan.nodes.start
         tried = _TRIED_PER_START * begun + _TRIED_PER_NODE * max(kept - begun, 0)
     work = unit_work(pair, plan, plan.discretization.slices)
-    contact = work.of(tried * distances, tried * judged * loads)
+    contact = work.of(tried * distances, tried * assessed * loads)
     contact += work.of(kept * distances, kept * rows * (loads + plan.support.size))
     return contact, _errors(pair, plan, model.period, alignments) if with_errors else 0.0
 
@@ -86,8 +86,8 @@ def _errors(pair: ParallelAxes, plan: Plan, period: int, alignments: tuple[int, 
     skews, distances = (min(count, ALIGNMENTS) for count in alignments)
     seconds = sum(w.of(rows * distances, rows * period * skews * distances * some) for w in again)
     if plan.positions is not None:
-        middles, judged = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
-        seconds += work.of(middles * alignments[1], middles * period * judged * some)
+        middles, assessed = _SOLVED_MIDDLES * kept, min(alignments[0] * alignments[1], _JUDGED)
+        seconds += work.of(middles * alignments[1], middles * period * assessed * some)
     held = rows * (held_out_loads(loads) + (alignments[0] - 1) * some)
     apart = _HELD_OUT_DISTANCES * (alignments[1] - 1)
     seconds += work.of(apart, held + apart * some)

@@ -17,7 +17,7 @@ MOST_ROWS = 150_000
 # measured on tables of 4 to 186 candidates, 3 to 109 us a point
 _SECONDS_PER_POINT, _SECONDS_PER_CANDIDATE = 3e-6, 0.55e-6
 _BYTES_PER_ROW = 7000
-# the search for the positions solves the judged pitches and their neighbors about four times
+# the search for the positions solves the assessed pitches and their neighbors about four times
 _SEARCH = 12
 # where positions are placed adaptively, teeth out of their places ask for about three times the least number
 _ADAPTIVE = 3
@@ -60,9 +60,9 @@ def cycle_cost(pair: ParallelAxes, plan: Plan, pitches: int, alignments: int) ->
     positions = plan.positions or plan.nodes.start
     pairs = math.ceil(pair.transverse_contact_ratio + pair.overlap_ratio) + 2
     candidates = pairs * plan.discretization.slices
-    judged = min(alignments, _JUDGED_ALIGNMENTS) * plan.load.size
+    assessed = min(alignments, _JUDGED_ALIGNMENTS) * plan.load.size
     solves = pitches * alignments * (2 * plan.load.size + plan.support.size)  # the loads on both meshes
-    solves += judged * (2 * pitches + _SEARCH * min(plan.nodes.judged_pitches, pitches))
+    solves += assessed * (2 * pitches + _SEARCH * min(plan.nodes.assessed_pitches, pitches))
     per_point = _SECONDS_PER_POINT + _SECONDS_PER_CANDIDATE * candidates
     return CycleCost(
         pitches, positions, alignments, _expected(plan, pitches * alignments) * solves * per_point

@@ -51,7 +51,7 @@ class NodeRule:
         Interpolation error to keep, as a fraction of each load's peak-to-peak STE.
     most : int
         Largest number of nodes.
-    judged_pitches : int
+    assessed_pitches : int
         Base pitches of a longer period that are looked at.
     least_ripple : float
         Peak-to-peak STE in m that smaller ones count as.
@@ -60,7 +60,7 @@ class NodeRule:
     start: int
     tolerance: float
     most: int
-    judged_pitches: int = 3
+    assessed_pitches: int = 3
     least_ripple: float = 0.0
 
     def for_tolerance(self, allowed: AllowedError) -> NodeRule:

@@ -1,6 +1,6 @@
 """Plausibility of gear pairs and their results: named checks with limits and sources.
 
-A check warns and changes no number. What cannot be is refused elsewhere, with an `InputError`.
+A check warns and changes no number. What cannot be is refused by `InputError`, with an `InputError`.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ def pair_findings(
     )
 
 
-def judged(
+def assessed(
     check: str,
     field: str,
     value: float,
@@ -80,12 +80,12 @@ def judged(
 def _sizes(pair: ParallelAxes) -> Iterator[Finding]:
     """Check module and angles, which both gears share."""
     gear = pair.pinion
-    yield from judged(
+    yield from assessed(
         "module", "normal_module", gear.normal_module, "m", whole=", here and in all other lengths"
     )
-    yield from judged("pressure_angle", "normal_pressure_angle", gear.normal_pressure_angle, "rad")
+    yield from assessed("pressure_angle", "normal_pressure_angle", gear.normal_pressure_angle, "rad")
     if gear.helix_angle:
-        yield from judged("helix_angle", "helix_angle", gear.helix_angle, "rad")
+        yield from assessed("helix_angle", "helix_angle", gear.helix_angle, "rad")
 
 
 def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
@@ -93,12 +93,12 @@ def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
     yield from _material(name, gear.material)
     module = gear.normal_module
     ratio = f"{gear.face_width / module:.3g} modules are no common face width"
-    yield from judged("face_width", f"{name}.face_width", gear.face_width, "m", scale=module, reason=ratio)
+    yield from assessed("face_width", f"{name}.face_width", gear.face_width, "m", scale=module, reason=ratio)
     bore = getattr(gear, "bore_diameter", None)
     if bore is not None:
         root = 2.0 * gear.root_radius
         reason = f"{bore / root:.2g} of the root diameter is no common bore"
-        for finding in judged("bore", f"{name}.bore_diameter", bore, "m", scale=root, reason=reason):
+        for finding in assessed("bore", f"{name}.bore_diameter", bore, "m", scale=root, reason=reason):
             yield replace(finding, high=root)
     shape = gear.modification
     amounts = {field: float(getattr(shape, field)) for field in fields_of(*DEPTHS)}
@@ -112,7 +112,7 @@ def _gear(name: str, gear: Toothing) -> Iterator[Finding]:
     for field in fields_of(Kind.LENGTH):
         if getattr(shape, field.removesuffix("_length")) and FLANK_FIELDS[field].along is Direction.PROFILE:
             length = float(getattr(shape, field))
-            yield from judged("relief_length", f"{name}.{field}", length, "m", scale=module)
+            yield from assessed("relief_length", f"{name}.{field}", length, "m", scale=module)
 
 
 def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
@@ -120,18 +120,18 @@ def _amount(field: str, amount: float, module: float) -> Iterator[Finding]:
     if not amount:
         return
     low, high = CHECKS["relief_amount"].low or 0.0, CHECKS["relief_over_module"].high or math.inf
-    found = [*judged("relief_amount", field, amount, "m", reason="smaller than can be made or measured")]
+    found = [*assessed("relief_amount", field, amount, "m", reason="smaller than can be made or measured")]
     if not field.endswith("thickness_allowance"):
         reason = f"{abs(amount) / module:.2g} modules are no modification"
-        found += judged("relief_over_module", field, amount, "m", scale=module, reason=reason)
+        found += assessed("relief_over_module", field, amount, "m", scale=module, reason=reason)
     for finding in found:
         yield replace(finding, low=low, high=high * module)
 
 
 def _material(name: str, material: Material) -> Iterator[Finding]:
     """Check stiffness and density."""
-    yield from judged("youngs_modulus", f"{name}.material.youngs_modulus", material.youngs_modulus, "Pa")
-    yield from judged("density", f"{name}.material.density", material.density, "kg/m^3")
+    yield from assessed("youngs_modulus", f"{name}.material.youngs_modulus", material.youngs_modulus, "Pa")
+    yield from assessed("density", f"{name}.material.density", material.density, "kg/m^3")
 
 
 def _shafts(pair: ParallelAxes) -> Iterator[Finding]:
@@ -144,11 +144,11 @@ def _shafts(pair: ParallelAxes) -> Iterator[Finding]:
 def _shaft(name: str, shaft: Shaft) -> Iterator[Finding]:
     """Check one shaft between its bearings."""
     reason = f"{shaft.length / shaft.diameter:.2g} diameters between the bearings are no common shaft"
-    yield from judged(
+    yield from assessed(
         "shaft_slenderness", f"{name}.length", shaft.length, "m", scale=shaft.diameter, reason=reason
     )
     if shaft.bearing_stiffness is not None:
-        yield from judged("bearing_stiffness", f"{name}.bearing_stiffness", shaft.bearing_stiffness, "N/m")
+        yield from assessed("bearing_stiffness", f"{name}.bearing_stiffness", shaft.bearing_stiffness, "N/m")
 
 
 def _deviations(pair: ParallelAxes, skew: FloatArray, change: FloatArray) -> Iterator[Finding]:
@@ -164,11 +164,11 @@ def _deviations(pair: ParallelAxes, skew: FloatArray, change: FloatArray) -> Ite
         reason = "smaller than anybody aligns or measures"
         name = f"{field}[{index}]"
         usual = 0.002 * pair.face_width if check == "misalignment" else pair.pinion.normal_module
-        for finding in judged(check, name, value, "m", reason=reason):
+        for finding in assessed(check, name, value, "m", reason=reason):
             yield replace(finding, high=usual)
         if check == "misalignment":
             reason = f"{1e3 * abs(value) / pair.face_width:.3g} mrad of misalignment"
-            for finding in judged(
+            for finding in assessed(
                 "misalignment_over_face", name, value, "m", scale=pair.face_width, reason=reason
             ):
                 yield replace(finding, low=CHECKS["misalignment"].low or 0.0)
@@ -194,5 +194,5 @@ def _loads(pair: ParallelAxes, load: FloatArray, loads_as: str) -> Iterator[Find
         ("root_stress", stress, f"a nominal root stress of {stress / 1e9:.3g} GPa"),
         ("transmission_error", deflection, f"teeth that yield by {deflection:.2g} modules"),
     ):
-        for finding in judged(check, "", amount, CHECKS[check].unit, reason=reason):
+        for finding in assessed(check, "", amount, CHECKS[check].unit, reason=reason):
             yield replace(finding, field=field, value=value, unit=unit, low=low, high=high)

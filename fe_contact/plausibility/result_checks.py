@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from bounds import Finding
-from fe_contact.plausibility.pair_checks import judged
+from fe_contact.plausibility.pair_checks import assessed
 from fe_contact.types import FloatArray
 
 
@@ -34,7 +34,7 @@ def flank_findings(max_pressure: float) -> tuple[Finding, ...]:
 def root_findings(gear: str, stress: float) -> tuple[Finding, ...]:
     """Return what is implausible about the peak stress (Pa) of the roots of a gear ("pinion", "wheel")."""
     reason = f"a tooth-root stress of {stress / 1e9:.3g} GPa is beyond the strength of any steel"
-    return tuple(judged("root_stress", f"{gear}.root_stress", stress, "Pa", reason=reason))
+    return tuple(assessed("root_stress", f"{gear}.root_stress", stress, "Pa", reason=reason))
 
 
 def _transmission_error(values: FloatArray, module: float) -> Iterator[Finding]:
@@ -42,11 +42,11 @@ def _transmission_error(values: FloatArray, module: float) -> Iterator[Finding]:
     solved = np.where(np.isfinite(values), values, 0.0)
     largest = float(np.max(np.mean(solved, axis=0), initial=0.0))
     reason = f"teeth that yield by {largest / module:.2g} modules are beyond linear elasticity"
-    yield from judged("transmission_error", "transmission_error", largest, "m", scale=module, reason=reason)
+    yield from assessed("transmission_error", "transmission_error", largest, "m", scale=module, reason=reason)
 
 
 def _pressure(values: FloatArray) -> Iterator[Finding]:
     """Check the largest pressure."""
     largest = float(np.max(values[np.isfinite(values)], initial=0.0))
     reason = f"a contact pressure of {largest / 1e9:.3g} GPa is beyond the strength of any steel"
-    yield from judged("hertz_pressure", "max_pressure", largest, "Pa", reason=reason)
+    yield from assessed("hertz_pressure", "max_pressure", largest, "Pa", reason=reason)

@@ -97,7 +97,7 @@ class Metadata:
     case : dict
         The case with all defaults echoed.
     effect_ledger : dict or list
-        For each registered effect: on or off, why, worth and cost.
+        For each registered effect: on or off, why, influence and cost.
     receipt : dict
         Time and memory by stage, error estimate by source.
     content_hash : str

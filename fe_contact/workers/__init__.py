@@ -9,6 +9,6 @@ from fe_contact.workers.executor import ByExecutor
 from fe_contact.workers.in_process import InProcess, Workers
 from fe_contact.workers.or_here import OrHere
 from fe_contact.workers.remembering import Remembering
-from fe_contact.workers.spent import Spent
+from fe_contact.workers.run_cost import RunCost
 
-__all__ = ["ByDask", "ByExecutor", "InProcess", "OrHere", "Remembering", "Spent", "Workers", "dask_workers"]
+__all__ = ["ByDask", "ByExecutor", "InProcess", "OrHere", "Remembering", "RunCost", "Workers", "dask_workers"]

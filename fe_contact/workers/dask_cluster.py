@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from fe_contact.errors import InputError, WorkersLost
 from fe_contact.workers.packed import KEPT, Packed
-from fe_contact.workers.spent import Spent, do_task
+from fe_contact.workers.run_cost import RunCost, do_task
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -38,12 +38,12 @@ class ByDask:
         Stays the caller's to close.
     patience : float
         Seconds without any worker after which the run is given up.
-    spent : Spent
+    cost : RunCost
     """
 
     client: Client
     patience: float = PATIENCE_S
-    spent: Spent = field(default_factory=Spent, compare=False)
+    cost: RunCost = field(default_factory=RunCost, compare=False)
     _sent: dict[int, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
@@ -74,7 +74,7 @@ class ByDask:
         """Yield the results; cancel the rest when the caller stops or a task fails."""
         try:
             for count, future in enumerate(futures):
-                yield self.spent.add(self._result(future, f"{count} of {len(futures)} tasks were done"))
+                yield self.cost.add(self._result(future, f"{count} of {len(futures)} tasks were done"))
         finally:
             for future in () if self._gone else futures:
                 future.cancel()

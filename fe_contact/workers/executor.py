@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 from fe_contact.errors import WorkersLost
 from fe_contact.workers.packed import KEPT, Packed, PassedFiles
-from fe_contact.workers.spent import Spent, do_task
+from fe_contact.workers.run_cost import RunCost, do_task
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -27,11 +27,11 @@ class ByExecutor:
     ----------
     executor : concurrent.futures.Executor
         Processes are to be spawned, not forked: compiled code and numerical libraries do not survive a fork.
-    spent : Spent
+    cost : RunCost
     """
 
     executor: Executor
-    spent: Spent = field(default_factory=Spent, compare=False)
+    cost: RunCost = field(default_factory=RunCost, compare=False)
     _folder: PassedFiles = field(default_factory=PassedFiles, compare=False, repr=False)
     _packed: dict[int, tuple[object, Packed]] = field(default_factory=dict, compare=False, repr=False)
 
@@ -67,7 +67,7 @@ class ByExecutor:
                     done = future.result()
                 except BrokenExecutor as error:
                     raise _lost(count, len(futures)) from error
-                yield self.spent.add(done)
+                yield self.cost.add(done)
         finally:
             for future in futures:
                 future.cancel()

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeVar
 
-from fe_contact.workers.spent import Spent
+from fe_contact.workers.run_cost import RunCost
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -17,8 +17,8 @@ class Workers(Protocol):
     """Runs independent tasks."""
 
     @property
-    def spent(self) -> Spent:
-        """What tasks have cost elsewhere, beside the CPU time of this process."""
+    def cost(self) -> RunCost:
+        """What remote tasks have cost, beside the CPU time of this process."""
         ...
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
@@ -40,9 +40,9 @@ class InProcess:
     """One task after the other, here."""
 
     @property
-    def spent(self) -> Spent:
+    def cost(self) -> RunCost:
         """Nothing: all is done here."""
-        return Spent()
+        return RunCost()
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Yield results as they are computed."""

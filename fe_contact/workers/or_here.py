@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from fe_contact.errors import WorkersLost
 from fe_contact.workers.in_process import Workers
-from fe_contact.workers.spent import Spent
+from fe_contact.workers.run_cost import RunCost
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -30,20 +30,20 @@ class OrHere:
     told: Callable[[WorkersLost], None]
 
     @property
-    def spent(self) -> Spent:
+    def cost(self) -> RunCost:
         """What the others did."""
-        return self.others.spent
+        return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Yield the results of the others, and from where they are lost those of this process."""
         done = 0
-        if not self.spent.lost:
+        if not self.cost.lost:
             try:
                 for result in self.others.run(function, shared, items):
                     yield result
                     done += 1
             except WorkersLost as error:
-                self.spent.lost = str(error)
+                self.cost.lost = str(error)
                 self.told(error)
         for item in items[done:]:
             yield function(shared, item)

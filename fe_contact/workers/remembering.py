@@ -13,7 +13,7 @@ from typing import Any, TypeVar
 
 from fe_contact.workers.content import content_digest
 from fe_contact.workers.in_process import Workers
-from fe_contact.workers.spent import Spent
+from fe_contact.workers.run_cost import RunCost
 
 S = TypeVar("S")
 T = TypeVar("T")
@@ -44,9 +44,9 @@ class Remembering:
     _digests: dict[int, tuple[object, str]] = field(default_factory=dict, compare=False, repr=False)
 
     @property
-    def spent(self) -> Spent:
+    def cost(self) -> RunCost:
         """What the others did this time."""
-        return self.others.spent
+        return self.others.cost
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Yield what is kept, and what the others find; that is kept."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from dynamics.ablation import Ablation as SceneAblation
 from fe_contact.analysis.ablation import Ablation
-from service.cli.judged_case import judged_case
+from service.cli.assessed_case import assessed_case
 from service.cli.output import Report, check_writable, console, print_json, progress_bar, table
 from service.cli.scene_tables import scene_with_tables
 from service.cli.warned import messages, warnings_so_far
@@ -50,7 +50,7 @@ def _found(file: Path, only: list[str] | None, report: Report) -> Ablation | Sce
     if "meshes" in read_table(file):
         scene, folder = scene_of(file)
         return ablation_of_scene(scene_with_tables(scene, folder, None, report), only, report)
-    return ablation_of_case(judged_case(file), only, cache_home() / "compliance", report)
+    return ablation_of_case(assessed_case(file), only, cache_home() / "compliance", report)
 
 
 def _write(found: Ablation | SceneAblation, output: Path) -> None:

@@ -8,8 +8,8 @@ from typing import Any
 from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
+from service.cli.assessed_case import assessed_case
 from service.cli.effects import assumption_lines, ledger_lines
-from service.cli.judged_case import judged_case
 from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar, table
 from service.cli.tolerance_lines import print_draft, tolerance_lines, tolerance_warnings
 from service.cli.warned import warn
@@ -17,7 +17,7 @@ from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
 from service.convert.plausibility import phrased_database
-from service.convert.task_workers import Hands, working_hands
+from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home
 from service.problems import JobFailed
 from service.schemas import Case
@@ -26,11 +26,11 @@ from service.units import UM
 _SHOWN_HARMONICS = 3
 
 
-def run_analyze(file: Path, output: Path, hands: Hands, *, as_json: bool) -> None:
+def run_analyze(file: Path, output: Path, executor: ExecutorChoice, *, as_json: bool) -> None:
     """Compute, write, print."""
-    case = judged_case(file)
+    case = assessed_case(file)
     check_netcdf_output(output)
-    with working_hands(hands) as workers, progress_bar() as report:
+    with open_executor(executor) as workers, progress_bar() as report:
         database = analyzed(case, report, workers)
     warn([*database.metadata.warnings, *tolerance_warnings(database.metadata.receipt)])
     database.to_netcdf(output)

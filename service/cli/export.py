@@ -8,7 +8,7 @@ import numpy as np
 
 from fe_contact.analysis import DeformedPair, deformed_pairs
 from fe_contact.types import FloatArray
-from service.cli.judged_case import judged_case
+from service.cli.assessed_case import assessed_case
 from service.cli.output import console, print_json, progress_bar, table
 from service.cli.ste import positions
 from service.convert.case import boundary_errors
@@ -28,7 +28,7 @@ def run_export(
 ) -> None:
     """Solve, expand, write, print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
-    case = judged_case(file, chosen)
+    case = assessed_case(file, chosen)
     where = positions(at)
     if len(where) > _MOST_POSITIONS:
         raise BadInput.of("--at", f"{len(where)} positions", f"at most {_MOST_POSITIONS} positions")

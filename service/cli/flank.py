@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from service.cli.assessed_case import assessed_case
 from service.cli.effects import assumption_lines
-from service.cli.judged_case import judged_case
 from service.cli.output import check_netcdf_output, console, print_json, progress_bar
 from service.cli.warned import warn
 from service.convert.checks import check_case
@@ -20,7 +20,7 @@ from service.schemas.flank import FlankPoint
 def run_flank(file: Path, output: Path, point: dict[str, float | None], *, as_json: bool) -> None:
     """Compute, write, print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
-    case = judged_case(file, chosen)
+    case = assessed_case(file, chosen)
     check_netcdf_output(output)
     check_case(case, whole_table=False)
     with progress_bar() as report:

@@ -63,11 +63,11 @@ def _named(rungs: str, *, of_scene: bool) -> list[str]:
 
 def _of_case(file: Path, names: list[str] | None, full_contact: int | None, report: Report) -> _Climbed:
     """Climb the ladder of transmission errors."""
-    from service.cli.judged_case import judged_case  # noqa: PLC0415 (start-up time)
+    from service.cli.assessed_case import assessed_case  # noqa: PLC0415 (start-up time)
     from service.convert.frontier import frontier_of  # noqa: PLC0415
     from service.report.frontier import frontier_figure, frontier_page, frontier_table  # noqa: PLC0415
 
-    found = frontier_of(judged_case(file), names, report, full_contact=full_contact)
+    found = frontier_of(assessed_case(file), names, report, full_contact=full_contact)
     page = frontier_page(found, _TITLE)
     return _Climbed(found.to_json(), found.left_out, frontier_table(found), frontier_figure(found), page)
 

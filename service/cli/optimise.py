@@ -7,13 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fe_contact.microgeometry import Optimisation
+from service.cli.assessed_case import assessed_case
 from service.cli.interrupt import until_interrupted
-from service.cli.judged_case import judged_case
 from service.cli.output import console, output_files, print_json, progress_bar, table
 from service.cli.warned import messages, warnings_so_far
 from service.convert.optimisation import boundary_values, optimisation_json, optimisation_of
 from service.convert.stamp import stamp
-from service.convert.task_workers import Hands, working_hands
+from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home
 from service.report.image import png
 from service.report.optimisation import (
@@ -27,11 +27,13 @@ from service.schemas import read_model
 from service.schemas.optimisation import OptimisationInput
 
 
-def run_optimise(case: Path, study: Path, output: Path | None, hands: Hands, *, as_json: bool) -> None:
+def run_optimise(
+    case: Path, study: Path, output: Path | None, executor: ExecutorChoice, *, as_json: bool
+) -> None:
     """Optimise, write, print."""
-    given, wanted = judged_case(case), read_model(OptimisationInput, study)
+    given, wanted = assessed_case(case), read_model(OptimisationInput, study)
     targets = [] if output is None else output_files(output, "optimum", tuple(_WRITERS))
-    with working_hands(hands) as workers, progress_bar() as report, until_interrupted() as cancel:
+    with open_executor(executor) as workers, progress_bar() as report, until_interrupted() as cancel:
         home = cache_home()
         kept = home / "compliance", report, workers, cancel, home / "searches"
         found = optimisation_of(given, wanted, *kept)

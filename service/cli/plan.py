@@ -6,8 +6,8 @@ from pathlib import Path
 
 from fe_contact.analysis.run_plan import RunPlan
 from fe_contact.planning.cost_model import STAGES
+from service.cli.assessed_case import assessed_case
 from service.cli.effects import ledger_lines
-from service.cli.judged_case import judged_case
 from service.cli.output import console, print_json, table
 from service.convert.plan import plan_of
 from service.directories import cache_home
@@ -16,7 +16,7 @@ from service.units import UM
 
 def run_plan(file: Path, time_budget_s: float | None, *, as_json: bool) -> None:
     """Plan, print."""
-    found = plan_of(judged_case(file), time_budget_s, cache_home() / "compliance")
+    found = plan_of(assessed_case(file), time_budget_s, cache_home() / "compliance")
     if as_json:
         print_json(found.to_json())
     else:

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from service.cli.assessed_case import assessed_case
 from service.cli.effects import assumption_lines
-from service.cli.judged_case import judged_case
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.cli.warned import warn
 from service.convert.checks import check_case
@@ -29,7 +29,7 @@ def run_root_stress(
 ) -> None:
     """Compute, draw and print; `point` holds the fields of `FlankPoint` that were given."""
     chosen = validated(FlankPoint, {name: value for name, value in point.items() if value is not None})
-    case = judged_case(file, chosen)
+    case = assessed_case(file, chosen)
     if image is not None:
         check_writable(image)
     check_case(case)

@@ -7,15 +7,15 @@ from typing import Any
 
 
 def effect_lines(ledger: Mapping[str, Any]) -> list[str]:
-    """Return a line per effect that is on, or off though it moves something: part, worth in um, why.
+    """Return a line per effect that is on, or off though it moves something: part, influence in um, why.
 
-    `ledger` is that of a run: worth is the static displacement along the line of action, in m. Then the price
-    of choices against the scene, and what leaving an effect out in all its parts is estimated to change.
+    `ledger` is that of a run: influence is the static displacement along the line of action, in m. Then
+    the price of choices, and what leaving an effect out in all its parts is estimated to change.
     """
     entries = [entry for entry in ledger.get("entries", ()) if entry["on"] or entry["worth"] > 0.0]
     lines = [
         f"effect {entry['effect']}, {entry['part']}: {'on' if entry['on'] else 'off'}, "
-        f"worth {1e6 * entry['worth']:.3g} um: {entry['reason']}"
+        f"influence {1e6 * entry['worth']:.3g} um: {entry['reason']}"
         for entry in entries
     ]
     prices = [
@@ -23,8 +23,8 @@ def effect_lines(ledger: Mapping[str, Any]) -> list[str]:
         for entry in entries
         if entry.get("price")
     ]
-    worths = [
+    influences = [
         f"without {name} about {one['words']} ({one['freedoms']:+d} freedoms, {one['rows']:+d} rows with it)"
         for name, one in ledger.get("worths", {}).items()
     ]
-    return [*lines, *prices, *worths]
+    return [*lines, *prices, *influences]

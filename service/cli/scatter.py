@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fe_contact.microgeometry import ToleranceStudy
-from service.cli.judged_case import judged_case
+from service.cli.assessed_case import assessed_case
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.cli.warned import messages, warnings_so_far
 from service.convert.scatter import Sampling, scatter_json, scatter_of_case
 from service.convert.stamp import stamp
-from service.convert.task_workers import Hands, working_hands
+from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home
 from service.problems import BadInput
 from service.report.image import png
@@ -26,18 +26,18 @@ class Wanted:
     """What is sampled, and by whom."""
 
     sampling: Sampling
-    hands: Hands
+    executor: ExecutorChoice
 
 
 def run_scatter(case: Path, output: Path | None, wanted: Wanted, *, as_json: bool) -> None:
     """Sample, write, print."""
-    given = judged_case(case)
+    given = assessed_case(case)
     if output is not None:
         if output.suffix not in _WRITERS:
             endings = ", ".join(_WRITERS)
             raise BadInput.of("output", str(output), f"a file ending in one of {endings}")
         check_writable(output)
-    with working_hands(wanted.hands) as workers, progress_bar() as report:
+    with open_executor(wanted.executor) as workers, progress_bar() as report:
         found = scatter_of_case(given, wanted.sampling, cache_home() / "compliance", report, workers)
     if output is not None:
         _WRITERS[output.suffix](found, output)

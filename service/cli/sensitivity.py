@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from service.cli.judged_case import judged_case
+from service.cli.assessed_case import assessed_case
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.cli.warned import messages, warnings_so_far
 from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
 from service.convert.sensitivity_file import write_studies
 from service.convert.stamp import stamp
-from service.convert.task_workers import Hands, working_hands
+from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home
 from service.problems import BadInput
 from service.report.image import png
@@ -45,15 +45,15 @@ class Varied:
 
 
 def run_sensitivity(
-    files: Sequence[Path], output: Path, varied: Varied, hands: Hands, *, as_json: bool
+    files: Sequence[Path], output: Path, varied: Varied, executor: ExecutorChoice, *, as_json: bool
 ) -> None:
     """Study every case, write, print."""
     deviations = varied.deviations
     names = _names(files)
-    cases = [judged_case(file) for file in files]
+    cases = [assessed_case(file) for file in files]
     targets = _targets(output)
     cache = cache_home() / "compliance"
-    with working_hands(hands) as workers, progress_bar() as report:
+    with open_executor(executor) as workers, progress_bar() as report:
         studies = [
             study_case(name, case, deviations, cache, report, workers)
             for name, case in zip(names, cases, strict=True)

@@ -14,7 +14,7 @@ from service.problems import BadInput
 
 
 @dataclass(frozen=True)
-class Hands:
+class ExecutorChoice:
     """A number of processes here, or the address of a Dask scheduler."""
 
     workers: int = 1
@@ -22,7 +22,7 @@ class Hands:
 
 
 @contextmanager
-def working_hands(hands: Hands) -> Iterator[Workers]:
+def open_executor(choice: ExecutorChoice) -> Iterator[Workers]:
     """Provide the workers, and send those of this machine home at the end.
 
     Raises
@@ -30,16 +30,16 @@ def working_hands(hands: Hands) -> Iterator[Workers]:
     BadInput
         Both are given, or nobody answers at the address.
     """
-    if hands.dask is not None and hands.workers != 1:
-        raise BadInput.of("--workers", hands.workers, "left out with --dask", "The cluster has its own.")
-    if hands.dask is not None:
+    if choice.dask is not None and choice.workers != 1:
+        raise BadInput.of("--workers", choice.workers, "left out with --dask", "The cluster has its own.")
+    if choice.dask is not None:
         with boundary_errors():
-            cluster = dask_workers(hands.dask)
+            cluster = dask_workers(choice.dask)
         with cluster.client:
             yield cluster
-    elif hands.workers == 1:
+    elif choice.workers == 1:
         yield InProcess()
     else:
         # spawn: compiled code and numerical libraries do not survive a fork
-        with ProcessPoolExecutor(hands.workers, mp_context=get_context("spawn")) as executor:
+        with ProcessPoolExecutor(choice.workers, mp_context=get_context("spawn")) as executor:
             yield ByExecutor(executor)

@@ -1,4 +1,4 @@
-"""Hard scenes that the libraries must master: named, judged by physics, run by users and by the tests.
+"""Hard scenes that the libraries must master: named, assessed by physics, run by users and by the tests.
 
 A scene is a `HardScene` in the file of its family under `contact/` or `tables/`, and a line in `registry`.
 """

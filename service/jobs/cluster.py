@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from typing import TypeVar
 
 from fe_contact.analysis.compute_database import SOLVER_VERSION
-from fe_contact.compliance.condensed_elsewhere import condense
+from fe_contact.compliance.remote_condensation import condense
 from fe_contact.errors import InputError, WorkersLost
-from fe_contact.workers import ByDask, InProcess, OrHere, Remembering, Spent, Workers, dask_workers
+from fe_contact.workers import ByDask, InProcess, OrHere, Remembering, RunCost, Workers, dask_workers
 from service.jobs.order import WorkOrder
 from service.version import solver_version
 
@@ -64,25 +64,25 @@ class _WhenNeeded:
     ----------
     scheduler : str
         Its address.
-    spent : Spent
+    cost : RunCost
     connected : list of ByDask
         The cluster, once it is.
     """
 
     scheduler: str
-    spent: Spent = field(default_factory=Spent, compare=False)
+    cost: RunCost = field(default_factory=RunCost, compare=False)
     connected: list[ByDask] = field(default_factory=list, compare=False)
 
     def run(self, function: Callable[[S, T], R], shared: S, items: Sequence[T]) -> Iterator[R]:
         """Connect if that was not done, and run there."""
         if not self.connected:
-            self.connected.append(_connected(self.scheduler, self.spent))
+            self.connected.append(_connected(self.scheduler, self.cost))
         return self.connected[0].run(function, shared, items)
 
 
-def _connected(scheduler: str, spent: Spent) -> ByDask:
+def _connected(scheduler: str, cost: RunCost) -> ByDask:
     """Connect."""
     try:
-        return replace(dask_workers(scheduler), spent=spent)
+        return replace(dask_workers(scheduler), cost=cost)
     except InputError as error:
         raise WorkersLost(str(error)) from None

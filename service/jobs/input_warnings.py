@@ -32,7 +32,7 @@ def input_warnings(inputs: str) -> tuple[Json, ...]:
 
 
 def _warnings(given: Json) -> list[Json]:
-    """Judge a case or a scene."""
+    """Assess a case or a scene."""
     if given.get("scene") is not None:
         return _of_scene(SceneInput.model_validate_json(json.dumps(given["scene"])))
     if given.get("case") is not None:
@@ -41,12 +41,12 @@ def _warnings(given: Json) -> list[Json]:
 
 
 def warnings_of_case(case: Json) -> list[Json]:
-    """Judge a normalized case."""
+    """Assess a normalized case."""
     return case_warnings(Case.model_validate_json(json.dumps(case)))
 
 
 def _of_scene(scene: SceneInput) -> list[Json]:
-    """Judge the cases of all meshes, and the scene itself where no mesh takes a stored table."""
+    """Assess the cases of all meshes, and the scene itself where no mesh takes a stored table."""
     cases = {mesh.name: mesh.case for mesh in scene.meshes if mesh.case is not None}
     found = [
         within(warning, f"meshes[{index}]")

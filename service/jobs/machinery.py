@@ -8,9 +8,9 @@ from sqlalchemy import Engine
 
 from host import require_sessions
 from service.jobs.claims import Claims
-from service.jobs.elsewhere import WorkElsewhere
 from service.jobs.housekeeper import Housekeeper
 from service.jobs.process import Registry
+from service.jobs.remote_work import RemoteWork
 from service.jobs.retention import Retention
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
@@ -28,14 +28,14 @@ class Machinery:
     engine : Engine
     store : ResultStore
     submissions : Submissions
-    scheduler : Scheduler or WorkElsewhere
+    scheduler : Scheduler or RemoteWork
         Not started.
     """
 
     engine: Engine
     store: ResultStore
     submissions: Submissions
-    scheduler: Scheduler | WorkElsewhere
+    scheduler: Scheduler | RemoteWork
 
     def close(self) -> None:
         """Close what is open; it opens again when it is needed."""
@@ -65,7 +65,7 @@ def job_machinery(settings: Settings, registry: Registry, *, works: bool = True)
     except BaseException:
         engine.dispose()
         raise
-    scheduler: Scheduler | WorkElsewhere = WorkElsewhere()
+    scheduler: Scheduler | RemoteWork = RemoteWork()
     if works:
         claims = Claims(engine, identity_of(settings.data_directory), settings.lease_s)
         scheduler = Scheduler(settings, registry, claims, store, _housekeeper(settings, engine, store))

@@ -9,7 +9,7 @@ import numpy as np
 from dynamics.ablation import Ablation as SceneAblation
 from dynamics.ablation import RunFigures
 from fe_contact.analysis.ablation import Ablation, EffectAblation
-from fe_contact.effects.worth.influence import TRIFLE, Influence, signed
+from fe_contact.effects.influence.influence import TRIFLE, Influence, signed
 from service.report import palette
 from service.report.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.report.note_places import placed
@@ -19,7 +19,7 @@ _CASE_HEAD = (
     "peak to peak, %", "estimated", "first harmonic, µm", "cost, x",
 )  # fmt: skip
 _SCENE_HEAD = (
-    "effect", "scene has it", "worth, µm", "mean DTE, µm", "estimated", "peak to peak, µm", "estimated",
+    "effect", "scene has it", "influence, µm", "mean DTE, µm", "estimated", "peak to peak, µm", "estimated",
     "order 1, µm", "bearing force, order 1, N", "cost, x",
 )  # fmt: skip
 _SMALLEST = 1e-3  # um; smaller changes are nothing

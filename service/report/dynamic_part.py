@@ -120,15 +120,17 @@ def _contact(run: RunResult) -> Table:
 def _effects(run: RunResult) -> Section:
     """Tabulate what was simulated and what the model leaves out."""
     entries = run.effect_ledger.get("entries", ())
-    rows = [{title: entry.get(name) for name, title in _LEDGER.items()} | _worth(entry) for entry in entries]
+    rows = [
+        {title: entry.get(name) for name, title in _LEDGER.items()} | _influence(entry) for entry in entries
+    ]
     left_out = run.effect_ledger.get("left_out", {})
     tables = (records("Effect ledger of the run", rows), facts("Not in this model", left_out))
     return Section("Effects in the run", tables=tables)
 
 
-def _worth(entry: dict[str, Any]) -> dict[str, str]:
+def _influence(entry: dict[str, Any]) -> dict[str, str]:
     """Write what an effect moves the mesh by."""
-    return {"worth at the line of action": f"{number(1e6 * float(entry['worth']), 3)} µm"}
+    return {"influence at the line of action": f"{number(1e6 * float(entry['worth']), 3)} µm"}
 
 
 def _accuracy(run: RunResult) -> Table:

@@ -23,7 +23,7 @@ _FAMILIES = (
     ("2-D finite elements", ("plane_strain", "corrected_draft", "corrected", "corrected_fine"), palette.BLUE),
     ("3-D finite elements", ("3d_draft", "3d_standard", "3d_fine"), palette.GREEN),
 )
-Judged = RungResult | MeasuredFullContact
+Assessed = RungResult | MeasuredFullContact
 
 
 def frontier_figure(found: Frontier) -> Figure:
@@ -68,7 +68,7 @@ def frontier_page(found: Frontier, title: str) -> Page:
 
 
 def _panel(
-    found: Frontier, title: str, label: str, error: Callable[[Judged], float], *, with_peer: bool = False
+    found: Frontier, title: str, label: str, error: Callable[[Assessed], float], *, with_peer: bool = False
 ) -> Panel:
     """One panel: points by family, the peer, and the marks."""
     lines = []
@@ -79,8 +79,8 @@ def _panel(
             lines.append(Line(name, time, _percent([error(r) for r in points]), color, width=0, markers=True))
     if with_peer:
         lines += full_contact.known_cost(found)
-    judged = float("nan") if found.full_contact is None else error(found.full_contact)
-    live, named = full_contact.live_point(found, judged)
+    assessed = float("nan") if found.full_contact is None else error(found.full_contact)
+    live, named = full_contact.live_point(found, assessed)
     lines += live
     notes = [Note(r.cpu_seconds, 100.0 * error(r), _note(found, r)) for r in found.results if error(r) > 0.0]
     notes += named

@@ -30,7 +30,7 @@ def hardcases_page(outcomes: Sequence[Outcome]) -> Page:
         of_family = [outcome for outcome in outcomes if outcome.scene.family == family]
         sections.append(_section(family, of_family))
     alarms = tuple(f"{o.scene.name} failed: {o.failure}" for o in outcomes if not o.passed)
-    lead = "Scenes that are known to break solvers, each judged by laws that hold whatever the numbers are."
+    lead = "Scenes that are known to break solvers, each assessed by laws that hold whatever the numbers are."
     return Page("Hard scenes", lead, heads, tuple(sections), alarms)
 
 

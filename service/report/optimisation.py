@@ -1,4 +1,4 @@
-"""Harris maps before and after, ripple over torque with its scatter, and what the optimum is worth."""
+"""Harris maps before and after, ripple over torque with its scatter, and the gain."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def _value(value: float, error: float) -> tuple[str, str]:
 
 
 def optimum_table(found: ShownOptimisation) -> Table:
-    """Return the variables, and what a step aside changes."""
+    """Return the variables, and what a perturbation changes."""
     rows = []
     for one, step in zip(found.variables, found.sensitivity, strict=True):
         name = boundary_name(one.name)
@@ -153,7 +153,7 @@ def optimum_table(found: ShownOptimisation) -> Table:
         )
         rows.append((name, *(number(value / unit, 4) for value in values), *aside))
     head = ("variable", "start", "optimum", "least", "most", "lower, µm", "higher, µm")
-    return Table("Design, and the change of the objective by a step aside", head, tuple(rows))
+    return Table("Design, and the change of the objective by a perturbation", head, tuple(rows))
 
 
 def node_table(found: ShownOptimisation) -> Table:
@@ -177,7 +177,7 @@ def run_table(found: ShownOptimisation) -> Table:
     rows = tuple(
         (
             str(k),
-            number(run.judged.objective / UM, 4),
+            number(run.assessed.objective / UM, 4),
             f"{run.evaluations}, {run.explored} of them at few positions"
             if run.explored
             else str(run.evaluations),

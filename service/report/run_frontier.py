@@ -34,7 +34,7 @@ def run_frontier_figure(found: Frontier) -> Figure:
         caption=f"Root of the sum of squared differences to the finest rung ({reference.title}), "
         f"relative, over {found.blocks} blocks of the run and {found.orders} mesh orders; the point of that "
         "rung is what its steps leave, by the rate at which errors fall towards it. All rungs share the "
-        "tables: a third of what every second position node is worth stands for their own error.",
+        "tables: a third of what every second position node changes is their own error.",
         alternative=_words(found),
         content=tuple(_panel(found, *panel) for panel in _PANELS),
         table=run_frontier_table(found),

@@ -10,7 +10,7 @@ from dynamics.ablation import RunFigures
 from dynamics.influence import Influence as SceneInfluence
 from dynamics.influence.linear_figures import LinearFigures
 from fe_contact.analysis.ablation import Ablation, EffectAblation, Figures
-from fe_contact.effects.worth import Influence
+from fe_contact.effects.influence import Influence
 from service.report.figure import FloatArray
 from service.report.stored_ladder import Json
 from service.units import UM
@@ -102,13 +102,13 @@ def _scene_effect(content: Json) -> SceneEffect:
         content["on"],
         content["reason"],
         content["worth_um"] * UM,
-        None if told is None else _scene_worth(told, on=content["on"]),
+        None if told is None else _scene_influence(told, on=content["on"]),
         _scene_figures(content["with"]),
         _scene_figures(content["without"]),
     )
 
 
-def _scene_worth(told: Json, *, on: bool) -> SceneInfluence:
+def _scene_influence(told: Json, *, on: bool) -> SceneInfluence:
     """Return an estimate."""
     mean, force = _lengths(told["mean_um"]), np.asarray(told["bearing_force_n"], dtype=float)
     unknown, apart = np.full_like(mean, np.nan), np.full_like(force, np.nan)

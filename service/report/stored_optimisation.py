@@ -8,8 +8,8 @@ from typing import Protocol
 
 import numpy as np
 
-from fe_contact.microgeometry import DesignVariable, Ended, HarrisMap, ScatterNodes, SearchRun, StepAside
-from fe_contact.microgeometry.design_problem import Judged
+from fe_contact.microgeometry import DesignVariable, Ended, HarrisMap, Perturbation, ScatterNodes, SearchRun
+from fe_contact.microgeometry.design_problem import Assessed
 from fe_contact.types import Estimate
 from service.report.figure import FloatArray
 from service.report.stored_ladder import Json
@@ -68,8 +68,8 @@ class ShownOptimisation(Protocol):
         """One for each start."""
 
     @property
-    def sensitivity(self) -> Sequence[StepAside]:
-        """What a step aside changes."""
+    def sensitivity(self) -> Sequence[Perturbation]:
+        """What a perturbation changes."""
 
     @property
     def not_tried(self) -> Sequence[str]:
@@ -109,7 +109,7 @@ class StoredOptimisation:
     start: StoredDesign
     optimum: StoredDesign
     runs: tuple[SearchRun, ...]
-    sensitivity: tuple[StepAside, ...]
+    sensitivity: tuple[Perturbation, ...]
     not_tried: tuple[str, ...]
     cost: Json
     gain: Estimate
@@ -127,7 +127,7 @@ def stored_optimisation(content: Json) -> StoredOptimisation:
         for one in content["variables"]
     )
     asides = (
-        StepAside(
+        Perturbation(
             _library(one["name"]), *_si(one["name"], one["values"]), *(UM * x for x in one["change_um"])
         )
         for one in content["sensitivity"]
@@ -135,7 +135,7 @@ def stored_optimisation(content: Json) -> StoredOptimisation:
     runs = (
         SearchRun(
             np.full(len(content["variables"]), np.nan),
-            Judged(one["objective_um"] * UM, one["violation"], np.nan),
+            Assessed(one["objective_um"] * UM, one["violation"], np.nan),
             one["evaluations"],
             Ended(one["ended"]),
             one["cpu_seconds"],

@@ -10,9 +10,9 @@ from sqlalchemy import Engine
 
 from service.access import AccessKey
 from service.jobs.caller import ANYBODY, Caller
-from service.jobs.elsewhere import WorkElsewhere
-from service.jobs.live_desk import LiveDesk
+from service.jobs.live_pool import LivePool
 from service.jobs.process import Registry
+from service.jobs.remote_work import RemoteWork
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
 from service.routes.open_databases import OpenDatabases
@@ -29,10 +29,10 @@ class Context:
     settings: Settings
     registry: Registry
     submissions: Submissions
-    scheduler: Scheduler | WorkElsewhere
+    scheduler: Scheduler | RemoteWork
     store: ResultStore
-    live: LiveDesk
-    reader: LiveDesk
+    live: LivePool
+    reader: LivePool
     engine: Engine
     writes: WriteCheck
     databases: OpenDatabases = field(default_factory=OpenDatabases)

@@ -180,7 +180,7 @@ class LiveAssumption(BoundaryModel):
 
     effect: str = Field(description="The effect that would not need it; empty if there is none")
     assumption: str = Field(description="What", examples=["coast flanks stay apart"])
-    holds: bool | None = Field(description="Null: not checked, or it could not be judged", examples=[True])
+    holds: bool | None = Field(description="Null: not checked, or it could not be assessed", examples=[True])
     reason: str = Field(description="What was found", examples=["the least room is 12 um"])
     change: float | None = Field(
         default=None, description="Largest relative change of mean or peak-to-peak that it can make"

@@ -1,4 +1,4 @@
-"""What a micro-geometry optimisation varies, how it scatters, and what it is judged by."""
+"""What a micro-geometry optimisation varies, how it scatters, and what it is assessed by."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ class SceneAccuracyInput(BoundaryModel):
         ge=1e-6,
         le=0.5,
         description="Relative, on mean and peak-to-peak transmission error and on bearing forces: effects "
-        "worth less are left off, those worth more are on; left out: as the scene calls for them",
+        "of less influence are neglected, those of more are on; left out: as the scene calls for them",
         examples=[0.01],
     )
 

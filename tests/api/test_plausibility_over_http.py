@@ -35,7 +35,7 @@ def messages(body: dict[str, Any]) -> list[str]:
     return [warning["message"].partition(":")[0] for warning in body["warnings"]]
 
 
-def test_a_case_is_judged_from_plan_to_result(served: tuple[LineOfActionClient, TestClient]) -> None:
+def test_a_case_is_assessed_from_plan_to_result(served: tuple[LineOfActionClient, TestClient]) -> None:
     client, http = served
     said = ["pair.pinion.tip_relief_um = 0.02 um"]
     inputs = {"inputs": {"case": CASE}}

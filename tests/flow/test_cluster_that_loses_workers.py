@@ -20,7 +20,7 @@ from fe_contact import Gear, GearPair, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis import contact_lines, solved_places
 from fe_contact.errors import WorkersLost
 from fe_contact.microgeometry import Tolerances, scatter
-from fe_contact.workers import ByDask, InProcess, OrHere, Spent, Workers
+from fe_contact.workers import ByDask, InProcess, OrHere, RunCost, Workers
 
 distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
 pytestmark = pytest.mark.filterwarnings("ignore")
@@ -68,8 +68,8 @@ class Losing:
     killed: list[float] = field(default_factory=list)
 
     @property
-    def spent(self) -> Spent:
-        return self.others.spent
+    def cost(self) -> RunCost:
+        return self.others.cost
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         for count, result in enumerate(self.others.run(function, shared, items), 1):
@@ -142,7 +142,7 @@ def test_a_table_of_three_workers_one_of_which_is_killed(
     assert_same(alone, table(cache, workers))
     assert workers.killed and workers.killed[0] < 0.5
     assert len(cluster.alive) == 2
-    assert workers.spent.cpu_seconds > 0.0 and not workers.spent.lost
+    assert workers.cost.cpu_seconds > 0.0 and not workers.cost.lost
 
 
 @pytest.mark.nightly

@@ -66,8 +66,8 @@ def test_the_table_says_which_failed_and_why(both) -> None:
     assert "3 of" in damaged.summary() and "position 0.25" in damaged.summary()
     assert "SINGULAR" in damaged.summary()
     assert damaged.metadata.receipt["failed_points"] == {"SINGULAR": len(TORQUES)}
-    judged = "error estimate" in damaged.metadata.receipt["stages"]
-    assert (damaged.metadata.receipt["condition_number_max"] is not None) == judged
+    assessed = "error estimate" in damaged.metadata.receipt["stages"]
+    assert (damaged.metadata.receipt["condition_number_max"] is not None) == assessed
     assert sound.metadata.receipt["failed_points"] == {}
     json.dumps(damaged.metadata.receipt, allow_nan=False)
 

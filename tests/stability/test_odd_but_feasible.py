@@ -14,7 +14,7 @@ from fe_contact.analysis import analyze
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, PitchDeviation
 from fe_contact.material import Material
-from service.hardcases.sweep.sweep_case import judged
+from service.hardcases.sweep.sweep_case import assessed
 
 MM, UM, DEG = 1e-3, 1e-6, math.pi / 180.0
 Fields = dict[str, Any]
@@ -160,7 +160,7 @@ ODD = (
 
 @pytest.mark.parametrize("odd", ODD, ids=lambda odd: odd.name)
 def test_what_is_odd_but_feasible_is_computed(odd: Odd) -> None:
-    figures = judged(odd.pair(), odd.arguments())
+    figures = assessed(odd.pair(), odd.arguments())
     assert all(f.passed for f in figures if f.name != "CPU time, s"), [
         str(f) for f in figures if not f.passed
     ]

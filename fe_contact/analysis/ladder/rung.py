@@ -20,7 +20,7 @@ class Rung(Protocol):
     title : str
         In words.
     family, element_size
-        What a convergence is judged by.
+        What a convergence is assessed by.
     """
 
     @property

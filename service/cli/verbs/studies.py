@@ -1,4 +1,4 @@
-"""Verbs on what results are worth: plans, ladders, effects switched over, sensitivity, hard scenes."""
+"""Verbs on accuracy: plans, accuracy studies, effects toggled, sensitivity, hard scenes."""
 
 from __future__ import annotations
 
@@ -89,9 +89,9 @@ def optimise(
 ) -> None:
     """Choose flank modifications for the least peak-to-peak STE over torques and scatter."""
     from service.cli.optimise import run_optimise  # noqa: PLC0415 (start-up time)
-    from service.convert.task_workers import Hands  # noqa: PLC0415
+    from service.convert.task_workers import ExecutorChoice  # noqa: PLC0415
 
-    run_optimise(case, study, output, Hands(workers, dask), as_json=json)
+    run_optimise(case, study, output, ExecutorChoice(workers, dask), as_json=json)
 
 
 @verbs.command(
@@ -121,11 +121,11 @@ def scatter(
     """Draw pairs within tolerances (Monte Carlo): distribution of peak-to-peak STE with confidence bounds."""
     from service.cli.scatter import Wanted, run_scatter  # noqa: PLC0415 (start-up time)
     from service.convert.scatter import Sampling  # noqa: PLC0415
-    from service.convert.task_workers import Hands  # noqa: PLC0415
+    from service.convert.task_workers import ExecutorChoice  # noqa: PLC0415
 
     distribution: Literal["uniform", "normal"] = "uniform" if uniform else "normal"
     sampling = Sampling(tolerance_class, misalignment_um, distribution, samples, seed)
-    run_scatter(case, output, Wanted(sampling, Hands(workers, dask)), as_json=json)
+    run_scatter(case, output, Wanted(sampling, ExecutorChoice(workers, dask)), as_json=json)
 
 
 @verbs.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")
@@ -146,10 +146,10 @@ def sensitivity(
 ) -> None:
     """Vary misalignment and center distance of a case at its highest load: peak-to-peak STE."""
     from service.cli.sensitivity import Varied, run_sensitivity  # noqa: PLC0415 (start-up time)
-    from service.convert.task_workers import Hands  # noqa: PLC0415
+    from service.convert.task_workers import ExecutorChoice  # noqa: PLC0415
 
     varied = Varied(misalignment_um, center_distance_change_percent)
-    run_sensitivity(cases, output, varied, Hands(workers, dask), as_json=json)
+    run_sensitivity(cases, output, varied, ExecutorChoice(workers, dask), as_json=json)
 
 
 @verbs.command(epilog="Example: loa hardcases --only table -o hardcases.html")
@@ -163,7 +163,7 @@ def hardcases(
     ] = None,
     json: AsJson = False,
 ) -> None:
-    """Run the hard scenes: cases known to break solvers, each judged by laws of physics."""
+    """Run the hard scenes: cases known to break solvers, each assessed by laws of physics."""
     from service.cli.hardcases import run_hardcases  # noqa: PLC0415 (start-up time)
 
     run_hardcases(only or [], output, as_json=json)

@@ -33,9 +33,9 @@ def analyze(
 ) -> None:
     """Compute the STE database of a case."""
     from service.cli.analyze import run_analyze  # noqa: PLC0415 (start-up time)
-    from service.convert.task_workers import Hands  # noqa: PLC0415
+    from service.convert.task_workers import ExecutorChoice  # noqa: PLC0415
 
-    run_analyze(case, output, Hands(workers, dask), as_json=json)
+    run_analyze(case, output, ExecutorChoice(workers, dask), as_json=json)
 
 
 @verbs.command(epilog="Example: loa ste ste.nc --torque 100 --at 0,0.25,0.5")

@@ -17,9 +17,9 @@ from fe_contact.types import FloatArray
 from host import kill, processes_in
 from service.hardcases.scene import TIME_LIMIT
 from service.jobs.catalogue import ANALYZE, default_registry
-from service.jobs.elsewhere import WorkElsewhere
 from service.jobs.job import Job
 from service.jobs.machinery import job_machinery
+from service.jobs.remote_work import RemoteWork
 from service.jobs.scheduler import Scheduler
 from service.jobs.submissions import Submissions
 from service.schemas import Case, validated
@@ -50,7 +50,7 @@ class JobService:
     directory: Path
     submissions: Submissions
     store: ResultStore
-    scheduler: Scheduler | WorkElsewhere
+    scheduler: Scheduler | RemoteWork
     log: list[Any]
 
     def submit(self, case: dict[str, Any]) -> Job:

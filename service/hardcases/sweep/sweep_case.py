@@ -40,11 +40,11 @@ def measure(kind: Kind, seed: int) -> Sequence[Measured]:
     """Compute the table that `seed` picks; what a process does once is done before."""
     warm_up(across_face=kind == "face")
     pair, arguments = random_request(kind, seed)
-    return judged(pair, arguments)
+    return assessed(pair, arguments)
 
 
-def judged(pair: ParallelAxes, arguments: Mapping[str, Any]) -> Sequence[Measured]:
-    """Analyze a pair and judge the table by what every table must obey."""
+def assessed(pair: ParallelAxes, arguments: Mapping[str, Any]) -> Sequence[Measured]:
+    """Analyze a pair and assess the table by what every table must obey."""
     table = analyze(pair, **arguments)
     receipt = table.metadata.receipt
     predicted = float(receipt["prediction"]["cpu_seconds"])

@@ -166,7 +166,7 @@ def _inverse(table: SteDatabase, x: FloatArray) -> tuple[Measured, ...]:
     force = rng.uniform(0.0, float(table.force[-1]), x.size)
     deflection = table.ste(x, force)
     sample = table.force_at(x, deflection)
-    # what one rounding of the deflection is worth, at the steepest of the table
+    # what one rounding of the deflection changes, at the steepest of the table
     steepest = float(np.diff(table.force_table().level).max() / np.diff(table.force_table().deflection).min())
     rounding = 32.0 * np.spacing(np.abs(deflection)) * max(steepest, float(sample.stiffness.max()))
     off = np.maximum(np.abs(sample.force - force) - rounding, 0.0) / table.force[-1]

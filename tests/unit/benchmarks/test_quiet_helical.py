@@ -1,4 +1,4 @@
-"""The study of quiet helical pairs judges in um what has no per cent."""
+"""The study of quiet helical pairs assesses in um what has no per cent."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import pytest
 
-from benchmarks.quiet_helical import JudgedInfluence, groups, markdown, share_right
+from benchmarks.quiet_helical import AssessedInfluence, groups, markdown, share_right
 from benchmarks.quiet_helical_cases import quiet_pairs
-from fe_contact.effects.worth import Influence
+from fe_contact.effects.influence import Influence
 
 RIPPLE = Influence(50.0, 0.0, -1e-6, 0.1e-6, 10e-6, 0.2e-6)
 
@@ -27,13 +27,13 @@ def test_below_twenty_nm_a_change_of_the_ripple_is_nothing(
     estimated: float, computed: float, right: bool
 ) -> None:
     one, other = (replace(RIPPLE, peak_to_peak=1e-6 * value) for value in (estimated, computed))
-    assert JudgedInfluence(quiet_pairs()[0], "", one, other).right == (True, right)
+    assert AssessedInfluence(quiet_pairs()[0], "", one, other).right == (True, right)
 
 
-def test_pairs_that_judge_are_told_apart() -> None:
+def test_pairs_that_assess_are_told_apart() -> None:
     wrong = replace(RIPPLE, mean=1e-6)
     found = [
-        JudgedInfluence(pair, "tooth_coupling", RIPPLE, wrong if pair.unseen else RIPPLE)
+        AssessedInfluence(pair, "tooth_coupling", RIPPLE, wrong if pair.unseen else RIPPLE)
         for pair in quiet_pairs()
     ]
     sizes = {title: (len(group), share_right(group)) for title, group in groups(found).items()}

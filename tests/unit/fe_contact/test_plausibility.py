@@ -98,27 +98,27 @@ def test_the_nominal_root_stress_is_that_of_iso_6336_3() -> None:
 
 
 @pytest.mark.parametrize(("pressure", "checks"), [(3.9e9, []), (4.1e9, ["hertz_pressure"])])
-def test_pressures_are_judged_at_4_gpa(pressure: float, checks: list[str]) -> None:
+def test_pressures_are_assessed_at_4_gpa(pressure: float, checks: list[str]) -> None:
     assert [finding.check for finding in flank_findings(pressure)] == checks
     table = np.full((8, 1, 1, 1), 1e-6)
     assert [finding.check for finding in table_findings(table, 0.0 * table + pressure, 4e-3)] == checks
 
 
 @pytest.mark.parametrize(("stress", "count"), [(1.9e9, 0), (2.1e9, 1)])
-def test_roots_are_judged_at_2_gpa(stress: float, count: int) -> None:
+def test_roots_are_assessed_at_2_gpa(stress: float, count: int) -> None:
     assert len(root_findings("wheel", stress)) == count
 
 
 @pytest.mark.parametrize(("mean", "count"), [(0.39e-3, 0), (0.41e-3, 1)])
-def test_transmission_errors_are_judged_at_a_tenth_of_the_module(mean: float, count: int) -> None:
+def test_transmission_errors_are_assessed_at_a_tenth_of_the_module(mean: float, count: int) -> None:
     table = np.full((8, 1, 1, 1), mean)
     assert len(table_findings(table, 0.0 * table, 4e-3)) == count
 
 
-def test_failed_points_are_not_judged() -> None:
+def test_failed_points_are_not_assessed() -> None:
     table = np.full((8, 1, 1, 1), np.nan)
     assert table_findings(table, table, 4e-3) == ()
 
 
-def test_a_pair_alone_is_judged_without_loads() -> None:
+def test_a_pair_alone_is_assessed_without_loads() -> None:
     assert pair_findings(pair_of(4.0, 1e-3)) == ()

@@ -15,7 +15,7 @@ import pytest
 from fe_contact import Gear, GearPair, PitchDeviation, analyze
 from fe_contact.analysis import contact_lines, solved_places
 from fe_contact.geometry import FlankModification, Shaft
-from fe_contact.workers import Remembering, Spent
+from fe_contact.workers import Remembering, RunCost
 from fe_contact.workers.content import content_digest
 
 ASKED: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "positions": 24, "pitches": 1}
@@ -30,7 +30,7 @@ class Here:
     """Workers of this process that count their tasks, and stop for good after so many."""
 
     most: int = 1_000_000
-    spent: Spent = field(default_factory=Spent)
+    cost: RunCost = field(default_factory=RunCost)
     tasks: list[str] = field(default_factory=list)
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:

@@ -79,7 +79,7 @@ def test_starts_searched_in_a_pool_find_the_same_designs(
         )
         for workers in (InProcess(), pool)
     )  # fmt: skip
-    assert [run.judged for run in there.runs] == [run.judged for run in here.runs]
+    assert [run.assessed for run in there.runs] == [run.assessed for run in here.runs]
     assert there.optimum.values == here.optimum.values
     assert there.optimum.objective == here.optimum.objective
 
@@ -113,7 +113,7 @@ def test_what_tasks_share_is_packed_once_and_passed_by_a_file(monkeypatch: pytes
         folder = workers._folder.path
         assert packed == [id(shared) for shared in many]
         assert len(list(folder.iterdir())) == 2  # the last ones
-        assert workers.spent.tasks == 6
+        assert workers.cost.tasks == 6
     del workers
     gc.collect()
     assert not folder.exists()

@@ -49,7 +49,7 @@ def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_case_gives_table_json_and_picture(case: Path, tmp_path: Path) -> None:
-    picture = tmp_path / "worth.png"
+    picture = tmp_path / "influence.png"
     only = "tooth_coupling,profile_modification,misalignment"
     run = CliRunner().invoke(app, ["ablate", str(case), "--only", only, "-o", str(picture), "--json"])
     assert run.exit_code == 0, run.output
@@ -89,7 +89,7 @@ def test_a_scene_gives_orders_of_errors_and_bearing_forces() -> None:
 
 
 @pytest.mark.parametrize(
-    ("more", "field"), [(["--only", "windage"], "only"), (["-o", "worth.gif"], "output")]
+    ("more", "field"), [(["--only", "windage"], "only"), (["-o", "influence.gif"], "output")]
 )
 def test_what_cannot_be_done_is_refused_by_name(case: Path, more: list[str], field: str) -> None:
     run = CliRunner().invoke(app, ["ablate", str(case), *more])

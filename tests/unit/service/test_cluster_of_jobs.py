@@ -17,7 +17,7 @@ from structlog.testing import capture_logs
 
 from fe_contact.analysis import contact_lines, solved_places
 from fe_contact.ste import SteDatabase
-from fe_contact.workers import Spent, dask_cluster
+from fe_contact.workers import RunCost, dask_cluster
 from service.jobs import cluster
 from service.jobs.catalogue import ANALYZE, OPTIMISE, SCATTER, SENSITIVITY
 from service.jobs.claims import Claim
@@ -99,7 +99,7 @@ def test_these_jobs_give_their_tasks_to_the_cluster(
 ) -> None:
     recording = Recording()
 
-    def connected(address: str, spent: Spent) -> Any:
+    def connected(address: str, spent: RunCost) -> Any:
         assert address == ADDRESS
         return recording
 
@@ -138,7 +138,7 @@ class Dying(Recording):
 
     def __init__(self, most: int) -> None:
         super().__init__()
-        self.most, self.done, self.spent = most, 0, Spent()
+        self.most, self.done, self.cost = most, 0, RunCost()
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
         for item in items:

@@ -8,7 +8,7 @@ from service.cli.effects import assumption_lines, ledger_lines, run_lines
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 
 
-def test_decisions_worth_price_and_what_does_not_hold_are_told() -> None:
+def test_decisions_influence_price_and_what_does_not_hold_are_told() -> None:
     relieved = Gear(
         teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3,
         modification=FlankModification(tip_relief=0.3e-6, tip_relief_length=1e-3),

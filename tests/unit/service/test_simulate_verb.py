@@ -45,15 +45,15 @@ def test_a_second_interrupt_is_not_held_back():
     assert signal.getsignal(signal.SIGINT) is before
 
 
-def test_a_run_says_which_effects_are_on_and_what_the_others_are_worth():
+def test_a_run_says_which_effects_are_on_and_what_the_others_change():
     entries = [
         {"effect": "flexible_shafts", "part": "input", "on": False, "worth": 2e-6, "reason": "switched off"},
         {"effect": "tilt", "part": "input", "on": False, "worth": 0.0, "reason": "centered"},
         {"effect": "lateral", "part": "input", "on": True, "worth": 1.33e-5, "reason": "pushed aside"},
     ]
     assert effect_lines({"entries": entries}) == [
-        "effect flexible_shafts, input: off, worth 2 um: switched off",
-        "effect lateral, input: on, worth 13.3 um: pushed aside",
+        "effect flexible_shafts, input: off, influence 2 um: switched off",
+        "effect lateral, input: on, influence 13.3 um: pushed aside",
     ]
 
 

@@ -155,8 +155,11 @@ def test_by_misalignment_torque_and_center_distance_curves_change_as_differences
     bodies, pair = condensed("helical"), helical()
     found = curve_derivatives(bodies, pair, TORQUES, ["misalignment", "torque", "center_distance_change"])
     base = bodies.solve(pair, TORQUES)[3].deflection
-    askew = [bodies.solve(pair, TORQUES, way * 1e-9)[3].deflection for way in (1.0, -1.0)]
-    assert np.median(np.abs(found.by[0] - (askew[0] - askew[1]) / 2e-9)) < 1e-6 * np.abs(found.by[0]).max()
+    misaligned = [bodies.solve(pair, TORQUES, way * 1e-9)[3].deflection for way in (1.0, -1.0)]
+    assert (
+        np.median(np.abs(found.by[0] - (misaligned[0] - misaligned[1]) / 2e-9))
+        < 1e-6 * np.abs(found.by[0]).max()
+    )
     more, less = (bodies.solve(pair, TORQUES * (1.0 + way * 1e-6))[3].deflection for way in (1.0, -1.0))
     assert found.by[1] == pytest.approx((more - less) / (2e-6 * TORQUES), rel=1e-4)
     apart = bodies.solve(pair, TORQUES, 0.0, 2e-6)[3].deflection

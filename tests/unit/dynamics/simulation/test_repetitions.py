@@ -1,4 +1,4 @@
-"""What a repetition goes on from, and the checks of effects that are off for a tolerance or by name."""
+"""What a repetition goes on from, and the checks of neglected effects for a tolerance or by name."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, Shaft, analyze
-from fe_contact.analysis import check_request, spared_effects
+from fe_contact.analysis import check_request, neglected_effects
 from fe_contact.errors import InputError, SolveError
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
@@ -104,16 +104,16 @@ def test_what_moves_all_teeth_alike_closes_no_edge(cache: Path) -> None:
     assert assumption(found, "corner_contact")["holds"] is True
 
 
-def test_an_effect_below_the_tolerance_is_spared_and_its_model_with_it(cache: Path) -> None:
-    spared, aligned = (table(PAIR, cache, **(TINY | more)) for more in ({}, {"misalignments": [0.0]}))
-    same(spared, aligned)
-    assert spared.metadata.receipt["plan"]["model"] == aligned.metadata.receipt["plan"]["model"]
-    entry = next(one for one in spared.metadata.effect_ledger if one["name"] == "misalignment")
+def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache: Path) -> None:
+    neglected, aligned = (table(PAIR, cache, **(TINY | more)) for more in ({}, {"misalignments": [0.0]}))
+    same(neglected, aligned)
+    assert neglected.metadata.receipt["plan"]["model"] == aligned.metadata.receipt["plan"]["model"]
+    entry = next(one for one in neglected.metadata.effect_ledger if one["name"] == "misalignment")
     assert not entry["on"]
     assert entry["called_for"]
     assert entry["decision"].startswith("left off")
     assert 0.0 < abs(entry["influence"]["relative_mean"]) < 0.1 * 0.02
-    assert assumption(spared, "misalignment")["holds"] is True
+    assert assumption(neglected, "misalignment")["holds"] is True
 
 
 @pytest.mark.parametrize(
@@ -131,10 +131,10 @@ def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more: Json) 
     assert checked.model.across_face
 
 
-def test_an_effect_spared_in_error_is_set_right(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_effect_neglected_in_error_is_set_right(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = TINY | {"misalignments": [10e-6]}
     right = table(PAIR, cache, **asked)
-    monkeypatch.setattr(spared_effects, "SHARE", 1e3)
+    monkeypatch.setattr(neglected_effects, "SHARE", 1e3)
     only = dict.fromkeys(("corner_contact", "tooth_coupling", "finite_width"), "on")
     del only["finite_width"]
     wrong = table(PAIR, cache, **asked, effects=only)

@@ -1,4 +1,4 @@
-"""Flank results and root stress check what they took for granted; tip edges are judged at handovers too."""
+"""Flank results and root stress check what they took for granted; tip edges are assessed at handovers too."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_root_stress_is_repeated_too(cache: Path) -> None:
 
 
 def test_positions_that_pass_a_handover_by_miss_no_edge(cache: Path) -> None:
-    """Sixteen positions and five hundred judge the edges alike: the gap is least where pairs change."""
+    """Sixteen positions and five hundred assess the edges alike: the gap is least where pairs change."""
     pair = GearPair(GEAR, GEAR)
     asked = {"torques": [100.0], "level": "draft", "effects": {"corner_contact": "off"}, "cache": cache}
     bends = []

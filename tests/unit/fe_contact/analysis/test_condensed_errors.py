@@ -132,9 +132,9 @@ def test_without_coarse_meshes_errors_are_those_usual_of_the_level(
 def test_a_pair_so_askew_that_it_leads_is_wrong_by_more_than_nothing(tmp_path: Path) -> None:
     asked = {"level": "draft", "model": "3d", "positions": 8, "receipt": "minimal"}
     alone = condensed(analyze(PAIR, torques=TORQUES, cache=tmp_path, **asked), tmp_path)
-    askew = alone.table(PAIR, TORQUES, 50e-6)
-    assert np.all(askew.static_transmission_error.mean(axis=0) < 0.0)
-    assert np.all(figures(askew)[1] > 0.0)
+    misaligned = alone.table(PAIR, TORQUES, 50e-6)
+    assert np.all(misaligned.static_transmission_error.mean(axis=0) < 0.0)
+    assert np.all(figures(misaligned)[1] > 0.0)
 
 
 def test_plane_strain_that_stands_in_for_a_finite_width_is_an_error(cache: Path) -> None:
@@ -142,7 +142,7 @@ def test_plane_strain_that_stands_in_for_a_finite_width_is_an_error(cache: Path)
     wide = replace(PAIR, pinion=replace(GEAR, face_width=60e-3), wheel=replace(GEAR, face_width=60e-3))
     table = analyze(wide, torques=15.0 * TORQUES, tolerance=0.05, positions=16, cache=cache)
     found = condensed_pair(wide, table, {}, cache)
-    assert found is not None and list(found.spared) == ["finite_width"]
+    assert found is not None and list(found.neglected) == ["finite_width"]
     quick = found.table(wide, 15.0 * TORQUES)
     source = AT_NODES.index("finite_width")
     mean = figures(quick)[0][:, 0]

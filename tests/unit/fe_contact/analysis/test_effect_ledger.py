@@ -1,4 +1,4 @@
-"""The effect ledger: every effect with its decision, worth, cost, price and check."""
+"""The effect ledger: every effect with its decision, influence, cost, price and check."""
 
 from __future__ import annotations
 

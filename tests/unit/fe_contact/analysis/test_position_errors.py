@@ -25,7 +25,7 @@ def waves(position: np.ndarray) -> np.ndarray:
     return np.cos(2.0 * np.pi * (position[:, None] - 0.13)) * HEIGHT
 
 
-def judged(curves, count):
+def assessed(curves, count):
     """Errors beside each of `count` even positions, what was left unsolved, and how much was solved."""
     asked = []
 
@@ -48,7 +48,7 @@ def missed(curves, count):
 
 @pytest.mark.parametrize("count", [32, 64, 65, 128])
 def test_kinks_are_found_and_solved_where_they_are(count):
-    found, left, solved = judged(trapezoids, count)
+    found, left, solved = assessed(trapezoids, count)
     true = missed(trapezoids, count)
     assert 0 < solved <= count // 4
     # a kink is missed most anywhere in its interval, not at its middle
@@ -59,9 +59,9 @@ def test_kinks_are_found_and_solved_where_they_are(count):
 
 
 @pytest.mark.parametrize("count", [64, 96])
-def test_smooth_curves_are_judged_without_a_solution(count):
+def test_smooth_curves_are_assessed_without_a_solution(count):
     """Their error is what the cut of the slopes at the extrema leaves; it depends on where knots lie."""
-    found, left, solved = judged(waves, count)
+    found, left, solved = assessed(waves, count)
     true = missed(waves, count)
     assert solved == 0
     assert np.array_equal(found.interval_error, left)
@@ -81,4 +81,4 @@ def test_the_prediction_fails_with_the_square_of_the_spacing_or_faster():
 
 def test_fixed_positions_state_a_larger_error_than_placed_ones():
     placed = adaptive_nodes(NodeRule(32, TOLERANCE, 768), lambda position: trapezoids(position)[None])
-    assert np.all(judged(trapezoids, 32)[0].error.max(axis=0) > placed.error.max(axis=0))
+    assert np.all(assessed(trapezoids, 32)[0].error.max(axis=0) > placed.error.max(axis=0))

@@ -179,7 +179,7 @@ def test_three_dimensions_replace_a_correction_only_where_they_are_expected_to_e
 
 def test_a_width_that_was_left_out_is_corrected_for():
     loose = ran(pair(), "draft", tolerance=AllowedError(0.05, 0.0))
-    assert "finite_width" in loose.checked.request.spared
+    assert "finite_width" in loose.checked.request.neglected
     made = refined(loose, finite_width=1.5)
     assert made.steps == ("model plane strain -> plane strain corrected for the finite width",)
     assert made.decided.checked.model.finite_width

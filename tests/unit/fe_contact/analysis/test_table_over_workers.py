@@ -15,7 +15,7 @@ import pytest
 from fe_contact import Gear, GearPair, PitchDeviation, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis import contact_lines, solved_places
 from fe_contact.geometry import FlankModification, Shaft
-from fe_contact.workers import InProcess, Spent
+from fe_contact.workers import InProcess, RunCost
 
 SKEWED = {"misalignments": [-10e-6, 25e-6], "center_distance_changes": [0.0, 80e-6]}
 OF_TIME = ("stages", "cpu_seconds", "wall_seconds", "peak_memory_bytes", "prediction", "elsewhere")
@@ -25,7 +25,7 @@ OF_TIME = ("stages", "cpu_seconds", "wall_seconds", "peak_memory_bytes", "predic
 class Elsewhere:
     """Workers at whom everything arrives pickled, as at those of another machine; they keep a list."""
 
-    spent: Spent = field(default_factory=Spent)
+    cost: RunCost = field(default_factory=RunCost)
     tasks: list[str] = field(default_factory=list)
 
     def run(self, function: Callable[[Any, Any], Any], shared: Any, items: Sequence[Any]) -> Iterator[Any]:
@@ -33,7 +33,7 @@ class Elsewhere:
         for item in items:
             self.tasks.append(function.__name__)
             result = function(received, pickle.loads(pickle.dumps(item)))
-            self.spent.tasks, self.spent.cpu_seconds = self.spent.tasks + 1, self.spent.cpu_seconds + 100.0
+            self.cost.tasks, self.cost.cpu_seconds = self.cost.tasks + 1, self.cost.cpu_seconds + 100.0
             yield pickle.loads(pickle.dumps(result))
 
 
@@ -117,7 +117,7 @@ def test_gears_condensed_elsewhere_are_the_same(cache: Path) -> None:
 
 def test_the_receipt_counts_the_time_of_all(cache: Path) -> None:
     """Every task is said to have cost 100 s: they show in the stages they were part of, and nowhere else."""
-    workers = Elsewhere(Spent(tasks=7, cpu_seconds=900.0))  # what other runs spent before
+    workers = Elsewhere(RunCost(tasks=7, cpu_seconds=900.0))  # what other runs spent before
     asked: dict[str, Any] = {"torques": [60.0, 150.0], "level": "draft", "positions": 16, "cache": cache}
     receipt = analyze(helical(), **asked, workers=workers).metadata.receipt
     in_contact = 100.0 * workers.tasks.count("solve_block")

@@ -18,7 +18,7 @@ from fe_contact.contact import (
     contact_candidates,
     solve_contact,
 )
-from fe_contact.effects.worth.slice_model import Springs
+from fe_contact.effects.influence.slice_model import Springs
 
 M = 3e-3
 GEAR = Gear(teeth=24, normal_module=M, face_width=8 * M, bore_diameter=12 * M, helix_angle=0.3)

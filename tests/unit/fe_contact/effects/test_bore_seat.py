@@ -1,4 +1,4 @@
-"""Bore seat: called for by a seat, worth the turn on it, and nothing for fixed bores."""
+"""Bore seat: called for by a seat, changes the turn on it, and nothing for fixed bores."""
 
 from __future__ import annotations
 

@@ -133,7 +133,7 @@ def test_corner_contact_is_called_for_where_steep_relief_only_moves_the_touching
     assert verdict.on
 
 
-def test_coupling_is_always_called_for_and_worth_more_with_more_pairs():
+def test_coupling_is_always_called_for_and_changes_more_with_more_pairs():
     verdict = ToothCoupling().called_for(scene())
     assert verdict.on
     assert "1.557" in verdict.reason

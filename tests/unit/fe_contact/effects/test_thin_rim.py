@@ -1,4 +1,4 @@
-"""Thin rim: called for by a web, worth what the closed forms say, and nothing for solid bodies."""
+"""Thin rim: called for by a web, changes what the closed forms say, and nothing for solid bodies."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ def test_off_is_the_solid_pair_and_on_for_it_changes_no_bit() -> None:
         found = analyze(pair, **COARSE, model="plane_strain", effects={"thin_rim": choice})  # type: ignore[arg-type]
         assert np.array_equal(found.static_transmission_error, solid.static_transmission_error)
     webbed = analyze(WEBBED, **COARSE, model="plane_strain")  # type: ignore[arg-type]
-    worth = webbed.mean(torque=100.0).value - solid.mean(torque=100.0).value
+    change = webbed.mean(torque=100.0).value - solid.mean(torque=100.0).value
     least = 100.0 / PINION.base_radius * web_compliance(WHEEL)
-    assert least < worth < 6.0 * least
+    assert least < change < 6.0 * least
 
 
 def test_a_web_acts_across_the_face() -> None:

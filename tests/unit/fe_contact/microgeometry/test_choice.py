@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact.microgeometry import DesignVariable, Limits, Search, SearchRun, WeightedMean, choice
-from fe_contact.microgeometry.design_problem import DesignProblem, Judged
+from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.search import Ended
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
@@ -26,7 +26,7 @@ class Places:
         return Places(position)
 
 
-RUN = SearchRun(np.array([0.5]), Judged(1e-6, 0.0, 1.0), 10, Ended.CONVERGED, 0.0)
+RUN = SearchRun(np.array([0.5]), Assessed(1e-6, 0.0, 1.0), 10, Ended.CONVERGED, 0.0)
 VARIABLE = DesignVariable("pinion.profile_slope", -1e-6, 1e-6)
 
 

@@ -66,7 +66,7 @@ def test_a_stopped_search_goes_on_where_it_was(
     again = run(pair, compliances, tmp_path)
     assert again.optimum.values == plain.optimum.values
     assert again.optimum.objective == plain.optimum.objective
-    assert [one.judged for one in again.runs] == [one.judged for one in plain.runs]
+    assert [one.assessed for one in again.runs] == [one.assessed for one in plain.runs]
     assert whole - 44 <= solved[0] <= whole - 39  # those before the stop, and its best in full, were known
 
 
@@ -77,12 +77,12 @@ def test_more_evaluations_go_on_from_fewer(
     solved[0] = 0
     run(pair, compliances, tmp_path)
     confirming, solved[0] = solved[0], 0
-    assert confirming < 20  # of 60: both designs in full, and steps aside
+    assert confirming < 20  # of 60: both designs in full, and perturbations
     run(pair, compliances, tmp_path, search=replace(SEARCH, evaluations=90))
     assert confirming < solved[0] < confirming + 60
 
 
-def test_what_is_judged_otherwise_is_not_taken(
+def test_what_is_assessed_otherwise_is_not_taken(
     pair: GearPair, compliances: Path, tmp_path: Path, solved: list[int]
 ) -> None:
     run(pair, compliances, tmp_path)

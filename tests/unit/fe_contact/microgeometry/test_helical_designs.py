@@ -1,4 +1,4 @@
-"""Designs of a helical pair in three dimensions, assembled askew: symmetries, and what helps against what."""
+"""Designs of a helical pair in three dimensions, misaligned: symmetries, and what helps against what."""
 
 from __future__ import annotations
 
@@ -63,13 +63,13 @@ def evaluator(
 
 
 def searched(
-    judged: Evaluator,
+    assessed: Evaluator,
     variables: tuple[DesignVariable, ...],
     begin: tuple[float, ...],
     limits: Limits = NO_LIMITS,
 ) -> tuple[dict[str, float], SearchRun]:
     """Search with a simplex, whose moves are those of a mirrored problem mirrored."""
-    problem = DesignProblem(judged, variables, WeightedMean(), limits, 1e-6)
+    problem = DesignProblem(assessed, variables, WeightedMean(), limits, 1e-6)
     search = Search(NelderMead(), evaluations=60, positions=POSITIONS)
     run = search_from(problem, search, problem.place(begin), 0)
     return problem.values(run.place), run
@@ -77,11 +77,11 @@ def searched(
 
 def test_every_node_is_a_whole_table_of_the_pair_made_so(pair: GearPair, compliances: Path) -> None:
     scatter = Scatter(4e-6, {"wheel.helix_slope": 5e-6, RELIEF: 2e-6}, GaussHermite(2))
-    judged = evaluator(pair, compliances, SKEW, scatter)
-    found = judged.evaluate(DESIGN)
+    assessed = evaluator(pair, compliances, SKEW, scatter)
+    found = assessed.evaluate(DESIGN)
     for node in (0, 5):
-        skew, *amounts = judged.nodes.deviation[node]
-        away = dict(zip(judged.nodes.names[1:], amounts, strict=True))
+        skew, *amounts = assessed.nodes.deviation[node]
+        away = dict(zip(assessed.nodes.names[1:], amounts, strict=True))
         made = modified(pair, {name: DESIGN.get(name, 0.0) + away.get(name, 0.0) for name in DESIGN | away})
         table = analyze(
             made, torques=[150.0], misalignments=[SKEW + skew], positions=POSITIONS, level="draft",
@@ -114,13 +114,15 @@ def test_mirrored_hand_and_misalignment_give_the_mirrored_design(pair: GearPair,
     # rounding may turn a late decision of the simplex: as far as it has converged
     assert abs(left[0][SLOPE] + right[0][SLOPE]) <= SIMPLEX_SIZE * 60e-6
     assert abs(left[0][CROWNING] - right[0][CROWNING]) <= SIMPLEX_SIZE * 20e-6
-    assert left[1].judged.objective == pytest.approx(right[1].judged.objective, rel=SIMPLEX_MERIT, abs=0.0)
+    assert left[1].assessed.objective == pytest.approx(
+        right[1].assessed.objective, rel=SIMPLEX_MERIT, abs=0.0
+    )
     assert right[0][SLOPE] < -4e-6
 
 
 def test_the_helix_slope_takes_up_a_fixed_misalignment(pair: GearPair, compliances: Path) -> None:
-    """Both open the flanks linearly over the face, so the best slope moves by what the axes are askew."""
-    straight, askew = (
+    """Both open the flanks linearly over the face, so the best slope moves by the misalignment."""
+    straight, misaligned = (
         searched(
             evaluator(pair, compliances, skew, Scatter(5e-6, rule=GaussHermite(3))),
             (DesignVariable(SLOPE, -20e-6 - skew, 20e-6 - skew), DesignVariable(CROWNING, 0.0, 20e-6)),
@@ -128,8 +130,10 @@ def test_the_helix_slope_takes_up_a_fixed_misalignment(pair: GearPair, complianc
         )
         for skew in (0.0, SKEW)
     )
-    assert askew[0][SLOPE] == pytest.approx(straight[0][SLOPE] - SKEW, rel=1e-6, abs=1e-11)
-    assert askew[1].judged.objective == pytest.approx(straight[1].judged.objective, rel=1e-9, abs=0.0)
+    assert misaligned[0][SLOPE] == pytest.approx(straight[0][SLOPE] - SKEW, rel=1e-6, abs=1e-11)
+    assert misaligned[1].assessed.objective == pytest.approx(
+        straight[1].assessed.objective, rel=1e-9, abs=0.0
+    )
 
 
 def test_crowning_that_evens_the_load_grows_with_the_scatter(pair: GearPair, compliances: Path) -> None:
@@ -145,11 +149,11 @@ def test_crowning_that_evens_the_load_grows_with_the_scatter(pair: GearPair, com
     ]
     needed = [values[CROWNING] for values, _ in found]
     assert needed[0] == 0.0 and 1e-6 < needed[1] < needed[2] < 10e-6
-    assert found[0][1].judged.violation == 0.0 and found[1][1].judged.violation == 0.0
-    assert found[0][1].judged.objective < found[1][1].judged.objective
+    assert found[0][1].assessed.violation == 0.0 and found[1][1].assessed.violation == 0.0
+    assert found[0][1].assessed.objective < found[1][1].assessed.objective
 
 
-def test_a_pair_askew_is_judged_by_whole_tables(pair: GearPair, compliances: Path) -> None:
+def test_a_pair_askew_is_assessed_by_whole_tables(pair: GearPair, compliances: Path) -> None:
     free = [DesignVariable(SLOPE, -30e-6, 30e-6), DesignVariable("wheel.profile_crowning", 0.0, 20e-6)]
     best = optimise(
         pair, [300.0], free, Scatter(5e-6, rule=GaussHermite(2)), misalignment=SKEW, map_torques=[300.0],

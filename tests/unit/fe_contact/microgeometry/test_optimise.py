@@ -1,4 +1,4 @@
-"""Optimised micro-geometry against scans, known trends, and the analysis that judges it in the end."""
+"""Optimised micro-geometry against scans, known trends, and the analysis that assesses it in the end."""
 
 from __future__ import annotations
 
@@ -57,19 +57,19 @@ def test_no_design_of_a_fine_scan_is_better(
         float(study.evaluator.evaluate(dict(zip(names, values, strict=True))).peak_to_peak[0, 0])
         for values in itertools.product(np.linspace(0.0, 60e-6, 25), repeat=2)
     ]
-    assert found.runs[0].judged.objective <= min(scan)
-    assert found.runs[0].judged.objective > 0.5 * min(scan)  # the scan is fine
+    assert found.runs[0].assessed.objective <= min(scan)
+    assert found.runs[0].assessed.objective > 0.5 * min(scan)  # the scan is fine
 
 
-def test_it_is_judged_by_what_analyze_finds(
+def test_it_is_assessed_by_what_analyze_finds(
     found: Optimisation, long_reliefs: GearPair, compliances: Path
 ) -> None:
     for design in (found.start, found.optimum):
         made = modified(long_reliefs, design.values)
-        judged = analyze(made, torques=[TORQUE], cache=compliances, **DRAFT).peak_to_peak(torque=TORQUE)
+        assessed = analyze(made, torques=[TORQUE], cache=compliances, **DRAFT).peak_to_peak(torque=TORQUE)
         # the objective is read off the nodes, the curve also between them
-        assert abs(design.objective.value - judged.value) <= judged.error
-        assert design.objective.error == pytest.approx(judged.error, rel=1e-2, abs=0.0)
+        assert abs(design.objective.value - assessed.value) <= assessed.error
+        assert design.objective.error == pytest.approx(assessed.error, rel=1e-2, abs=0.0)
 
 
 def test_a_relieved_spur_pair_loses_most_of_its_ripple(found: Optimisation) -> None:
@@ -104,12 +104,14 @@ def test_wider_bounds_never_end_worse(found: Optimisation, long_reliefs: GearPai
     narrow = [replace(one, low=5e-6, high=9e-6) for one in AMOUNTS]
     held = optimise(long_reliefs, [TORQUE], narrow, search=QUICK, cache=compliances, **DRAFT, **NONE)
     assert all(v.low <= held.optimum.values[v.name] <= v.high for v in held.variables)
-    assert found.runs[0].judged.objective < held.runs[0].judged.objective
+    assert found.runs[0].assessed.objective < held.runs[0].assessed.objective
     assert "wider bounds of pinion.tip_relief, wheel.tip_relief" in held.not_tried[0]
     best = modified(long_reliefs, held.optimum.values)
     once = Search(NelderMead(), evaluations=1, positions=32)
     further = optimise(best, [TORQUE], AMOUNTS, search=once, cache=compliances, **DRAFT, **NONE)
-    assert further.runs[0].judged.objective == pytest.approx(held.runs[0].judged.objective, rel=1e-9, abs=0.0)
+    assert further.runs[0].assessed.objective == pytest.approx(
+        held.runs[0].assessed.objective, rel=1e-9, abs=0.0
+    )
 
 
 def test_equal_seeds_give_equal_results(
@@ -136,7 +138,7 @@ def test_equal_seeds_give_equal_results(
 def test_the_best_of_all_starts_is_taken(pair: GearPair, compliances: Path) -> None:
     search = Search(NelderMead(), starts=3, evaluations=60, positions=32)
     best = optimise(pair, [TORQUE], FREE, search=search, cache=compliances, **DRAFT, **NONE)
-    reached = [run.judged.objective for run in best.runs]
+    reached = [run.assessed.objective for run in best.runs]
     assert len(set(reached)) > 1
     assert best.best_run == int(np.argmin(reached))
     assert best.evaluations == sum(run.evaluations for run in best.runs) <= 180
@@ -173,7 +175,7 @@ def test_a_pressure_limit_is_kept(found: Optimisation, long_reliefs: GearPair, c
         long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
     )
     assert held.optimum.figures.pressure.max() < reached
-    assert held.runs[0].judged.violation < found.optimum.figures.violation(limits)
+    assert held.runs[0].assessed.violation < found.optimum.figures.violation(limits)
     assert (held.outcome is Outcome.LIMITS_EXCEEDED) == (held.optimum.violation > 0.005)
 
 
@@ -215,8 +217,8 @@ def test_an_interrupted_search_gives_the_best_so_far_in_full(
     assert best.evaluations == 60 and not best.runs[0].converged
     assert found.optimum.objective.value < best.optimum.objective.value < best.start.objective.value
     made = modified(long_reliefs, best.optimum.values)
-    judged = analyze(made, torques=[TORQUE], cache=compliances, **DRAFT).peak_to_peak(torque=TORQUE)
-    assert abs(best.optimum.objective.value - judged.value) <= judged.error
+    assessed = analyze(made, torques=[TORQUE], cache=compliances, **DRAFT).peak_to_peak(torque=TORQUE)
+    assert abs(best.optimum.objective.value - assessed.value) <= assessed.error
 
 
 def test_few_positions_explore_as_well_as_many(
@@ -227,13 +229,13 @@ def test_few_positions_explore_as_well_as_many(
         long_reliefs, [TORQUE], AMOUNTS, search=replace(FEW, exploration=FEW.positions), cache=compliances,
         **DRAFT, **NONE,
     )  # fmt: skip
-    reached = found.runs[0].judged.objective
-    assert reached == pytest.approx(full.runs[0].judged.objective, rel=0.01, abs=0.0)
+    reached = found.runs[0].assessed.objective
+    assert reached == pytest.approx(full.runs[0].assessed.objective, rel=0.01, abs=0.0)
 
 
 def test_what_was_not_tried_is_said(found: Optimisation) -> None:
     told = "; ".join(found.not_tried)
-    assert "scatter of anything" in told and "effects that are off: " in told and "pitch_error" in told
+    assert "scatter of anything" in told and "neglected effects: " in told and "pitch_error" in told
     kept = next(line for line in found.not_tried if line.startswith("other values of "))
     assert "pinion.helix_crowning" in kept and "pinion.tip_relief," not in kept
     assert "wider bounds" not in told

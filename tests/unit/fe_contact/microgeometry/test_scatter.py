@@ -83,11 +83,11 @@ def test_nothing_that_scatters_is_one_node() -> None:
 
 def test_every_node_is_the_pair_as_it_comes_out(pair: GearPair, compliances: Path) -> None:
     """Two deviations at once, against whole tables of pairs made so; crowning does not become negative."""
-    judged = evaluator(
+    assessed = evaluator(
         pair, Scatter(0.0, {SLOPE: 5e-6, CROWNING: 3e-6}, GaussHermite(2)), compliances, "plane_strain"
     )
-    found = judged.evaluate({CROWNING: 2e-6})
-    for node, (slope, crowning) in enumerate(judged.nodes.deviation):
+    found = assessed.evaluate({CROWNING: 2e-6})
+    for node, (slope, crowning) in enumerate(assessed.nodes.deviation):
         made = modified(pair, {SLOPE: slope, CROWNING: max(0.0, 2e-6 + crowning)})
         table = analyze(
             made, torques=[200.0], positions=16, model="plane_strain", level="draft", receipt="minimal",
@@ -95,21 +95,21 @@ def test_every_node_is_the_pair_as_it_comes_out(pair: GearPair, compliances: Pat
         )  # fmt: skip
         np.testing.assert_array_equal(found.ste[node, :, 0], table.static_transmission_error[:, 0, 0, 0])
         assert found.pressure[node, 0] == pytest.approx(table.max_pressure.max(), rel=1e-12, abs=0.0)
-    assert judged.expected(found)[0] == pytest.approx(found.peak_to_peak.mean(), rel=1e-12, abs=0.0)
+    assert assessed.expected(found)[0] == pytest.approx(found.peak_to_peak.mean(), rel=1e-12, abs=0.0)
 
 
 def test_a_symmetric_pair_is_as_loud_misaligned_either_way(pair: GearPair, compliances: Path) -> None:
-    judged = evaluator(
+    assessed = evaluator(
         pair, Scatter(20e-6, rule=GaussHermite(3)), compliances, "3d", ("pinion.helix_crowning",)
     )
-    plain = judged.evaluate({})
+    plain = assessed.evaluate({})
     left, aligned, right = plain.peak_to_peak[:, 0]
     assert left == pytest.approx(right, rel=1e-6, abs=0.0)
     factor = plain.face_load_factor[:, 0]
     assert factor[0] == pytest.approx(factor[2], rel=1e-6, abs=0.0)
     assert factor[0] > 1.5 * factor[1]
     # crowned flanks bear nearer to the middle when misaligned, and less evenly when aligned
-    crowned = judged.evaluate({"pinion.helix_crowning": 10e-6}).face_load_factor[:, 0]
+    crowned = assessed.evaluate({"pinion.helix_crowning": 10e-6}).face_load_factor[:, 0]
     assert crowned[0] < factor[0] and crowned[1] > factor[1]
     assert aligned > 0.0
 

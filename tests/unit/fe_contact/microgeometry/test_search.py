@@ -17,7 +17,7 @@ from fe_contact.microgeometry import (
     Search,
     SequentialLinearProgramming,
 )
-from fe_contact.microgeometry.design_problem import DesignProblem, Judged
+from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.search import EXPLORED, search_from
 from fe_contact.microgeometry.search_starts import search_all, search_one
 from fe_contact.types import FloatArray
@@ -49,15 +49,15 @@ class Bowl:
     interrupt_at: int = 0
     memory: None = None
 
-    def judge(self, place: FloatArray) -> Judged:
+    def assess(self, place: FloatArray) -> Assessed:
         self.seen.append(place)
         if len(self.seen) == self.interrupt_at:
             raise KeyboardInterrupt
         value = 1.0 + float(((place - self.bottom) ** 2).sum())
-        return Judged(value, 0.0, value)
+        return Assessed(value, 0.0, value)
 
-    def linearize(self, place: FloatArray) -> tuple[Judged, Tangent]:
-        return self.judge(place), Tangent(place - self.bottom)
+    def linearize(self, place: FloatArray) -> tuple[Assessed, Tangent]:
+        return self.assess(place), Tangent(place - self.bottom)
 
     def rough(self, positions: int) -> Bowl:
         self.roughened = Bowl(self.bottom + 0.02)
@@ -83,10 +83,10 @@ def test_evolution_explores_roughly_and_a_simplex_settles_it() -> None:
 
 def test_the_simplex_keeps_its_part_of_the_designs() -> None:
     run = searched(Bowl(), Search(EVOLUTION, seed=1, evaluations=200))
-    assert run.explored + 1 == int(EXPLORED * 200)  # the start is judged in full
+    assert run.explored + 1 == int(EXPLORED * 200)  # the start is assessed in full
     assert run.evaluations == 200 and run.ended is Ended.SPENT
     longer = searched(Bowl(), Search(EVOLUTION, seed=1, evaluations=400))
-    assert longer.judged.objective <= run.judged.objective
+    assert longer.assessed.objective <= run.assessed.objective
 
 
 def test_programmes_follow_the_best_of_a_sample() -> None:
@@ -94,13 +94,13 @@ def test_programmes_follow_the_best_of_a_sample() -> None:
     run = searched(bowl, Search(SequentialLinearProgramming(sample=32, trials=2), seed=1))
     assert run.ended is Ended.CONVERGED and run.explored == 32
     np.testing.assert_allclose(run.place, BOTTOM, atol=0.02)  # a bowl is flat to first order at its bottom
-    assert run.judged.objective < 1.0 + 1e-3
+    assert run.assessed.objective < 1.0 + 1e-3
     ranked = bowl.roughened
     assert ranked is not None
-    best = min(tuple(ranked.seen), key=lambda place: ranked.judge(place).objective)
+    best = min(tuple(ranked.seen), key=lambda place: ranked.assess(place).objective)
     assert any(np.array_equal(best, place) for place in bowl.seen)
     alone = searched(Bowl(), Search(SequentialLinearProgramming(sample=0), seed=1))
-    assert alone.explored == 0 and alone.judged.objective < 1.0 + 1e-3
+    assert alone.explored == 0 and alone.assessed.objective < 1.0 + 1e-3
 
 
 @pytest.mark.parametrize("method", [DifferentialEvolution(), NelderMead(), SequentialLinearProgramming()])
@@ -109,7 +109,7 @@ def test_a_search_of_hardly_any_design_keeps_the_best(method: Any, evaluations: 
     bowl = Bowl()
     run = searched(bowl, Search(method, evaluations=evaluations))
     assert run.ended is Ended.SPENT and run.evaluations == evaluations
-    assert run.judged.objective == min(bowl.judge(place).objective for place in bowl.seen[:])
+    assert run.assessed.objective == min(bowl.assess(place).objective for place in bowl.seen[:])
 
 
 @pytest.mark.parametrize("after", [1, 20, 150])
@@ -122,10 +122,10 @@ def test_a_cancelled_search_keeps_the_best_so_far(after: int) -> None:
 
     run = searched(bowl, Search(EVOLUTION, seed=2, evaluations=2000), cancel)
     assert run.ended is Ended.CANCELLED and run.evaluations == after
-    told = Bowl().judge(run.place)  # in full, whatever it was ranked by
-    assert run.judged == told
+    told = Bowl().assess(run.place)  # in full, whatever it was ranked by
+    assert run.assessed == told
     if after > 1:
-        assert told.objective < Bowl().judge(START).objective
+        assert told.objective < Bowl().assess(START).objective
 
 
 def test_interrupted_in_a_worker_it_gives_what_it_has() -> None:
@@ -134,7 +134,7 @@ def test_interrupted_in_a_worker_it_gives_what_it_has() -> None:
     bowl = Bowl(interrupt_at=30)
     run = search_one((cast(DesignProblem, bowl), search), (0, START))
     assert run.ended is Ended.CANCELLED and run.evaluations == 30
-    assert run.judged.objective == min(Bowl().judge(place).objective for place in bowl.seen[:29])
+    assert run.assessed.objective == min(Bowl().assess(place).objective for place in bowl.seen[:29])
     with pytest.raises(KeyboardInterrupt):  # here it is the caller's
         searched(Bowl(interrupt_at=30), search)
 
@@ -167,7 +167,7 @@ def test_starts_that_have_ended_survive_an_interruption() -> None:
         kept = search_all(cast(DesignProblem, Bowl()), search, tuple(START), workers, _ignore, once_one_ended)
         assert len(kept) == 2
         for one, whole in zip(kept, every, strict=False):
-            assert one.judged == whole.judged
+            assert one.assessed == whole.assessed
     with pytest.raises(RuntimeError):
         search_all(cast(DesignProblem, Bowl()), search, tuple(START), Failing(2), _ignore, lambda: False)
 

@@ -89,7 +89,7 @@ def test_harmonics_of_a_longer_period_are_those_of_the_mesh() -> None:
 
 
 @pytest.fixture
-def judged(spur: SteDatabase) -> SteDatabase:
+def assessed(spur: SteDatabase) -> SteDatabase:
     """The stand-in table with errors of every source: source number in nm, times the load's number."""
     shape = spur.static_transmission_error.shape[1:]
     errors = np.zeros((len(SOURCES), QUANTITIES, *shape))
@@ -99,38 +99,40 @@ def judged(spur: SteDatabase) -> SteDatabase:
     return replace(spur, curve_error=errors)
 
 
-def test_the_error_is_that_of_independent_sources(judged: SteDatabase) -> None:
-    for k, force in enumerate(judged.force):
-        curve = judged.curve(force=float(force))
+def test_the_error_is_that_of_independent_sources(assessed: SteDatabase) -> None:
+    for k, force in enumerate(assessed.force):
+        curve = assessed.curve(force=float(force))
         for found in (curve.mean, curve.peak_to_peak, *curve.harmonics):
             assert found.error == pytest.approx(math.sqrt(55.0) * 1e-9 * (k + 1), rel=1e-12, abs=0.0)
 
 
-def test_between_two_loads_their_interpolation_is_added(judged: SteDatabase) -> None:
-    middle = 0.5 * float(judged.force[0] + judged.force[1])
+def test_between_two_loads_their_interpolation_is_added(assessed: SteDatabase) -> None:
+    middle = 0.5 * float(assessed.force[0] + assessed.force[1])
     expected = math.hypot(1.5 * math.sqrt(55.0), 7.0) * 1e-9
-    assert judged.mean(force=middle).error == pytest.approx(expected, rel=1e-9, abs=0.0)
+    assert assessed.mean(force=middle).error == pytest.approx(expected, rel=1e-9, abs=0.0)
 
 
-def test_what_was_not_estimated_is_no_number(judged: SteDatabase) -> None:
-    errors = judged.curve_error.copy()
+def test_what_was_not_estimated_is_no_number(assessed: SteDatabase) -> None:
+    errors = assessed.curve_error.copy()
     errors[1] = np.nan
-    assert math.isnan(replace(judged, curve_error=errors).peak_to_peak(force=float(judged.force[0])).error)
+    assert math.isnan(
+        replace(assessed, curve_error=errors).peak_to_peak(force=float(assessed.force[0])).error
+    )
 
 
-def test_files_keep_the_errors_and_older_ones_have_bands(judged: SteDatabase, spur, tmp_path) -> None:
-    judged.to_netcdf(tmp_path / "new.nc")
+def test_files_keep_the_errors_and_older_ones_have_bands(assessed: SteDatabase, spur, tmp_path) -> None:
+    assessed.to_netcdf(tmp_path / "new.nc")
     spur.to_netcdf(tmp_path / "old.nc")
-    assert SteDatabase.from_netcdf(tmp_path / "new.nc").identical(judged)
+    assert SteDatabase.from_netcdf(tmp_path / "new.nc").identical(assessed)
     old = SteDatabase.from_netcdf(tmp_path / "old.nc")
     assert old.curve_error.size == 0
     assert old.mean(force=float(old.force[0])) == spur.mean(force=float(old.force[0]))
-    assert not judged.identical(spur)
+    assert not assessed.identical(spur)
 
 
-def test_files_of_schema_1_state_no_error_of_the_model(judged: SteDatabase, tmp_path) -> None:
+def test_files_of_schema_1_state_no_error_of_the_model(assessed: SteDatabase, tmp_path) -> None:
     source = AT_NODES.index("model")
-    before = replace(judged, curve_error=np.delete(judged.curve_error, source, axis=0))
+    before = replace(assessed, curve_error=np.delete(assessed.curve_error, source, axis=0))
     before.to_netcdf(tmp_path / "one.nc")
     found = SteDatabase.from_netcdf(tmp_path / "one.nc")
     assert not found.curve_error[source].any()
@@ -139,16 +141,16 @@ def test_files_of_schema_1_state_no_error_of_the_model(judged: SteDatabase, tmp_
     assert SteDatabase.from_netcdf(tmp_path / "again.nc").identical(found)
 
 
-def test_damaged_errors_are_refused(judged: SteDatabase, tmp_path) -> None:
-    judged.to_netcdf(tmp_path / "ste.nc")
+def test_damaged_errors_are_refused(assessed: SteDatabase, tmp_path) -> None:
+    assessed.to_netcdf(tmp_path / "ste.nc")
     with h5netcdf.File(tmp_path / "ste.nc", "a") as file:
         file.variables["curve_error"][0, 0, 0, 0, 0] = 1.0
     with pytest.raises(DatabaseError, match="checksum"):
         SteDatabase.from_netcdf(tmp_path / "ste.nc")
 
 
-def test_errors_below_zero_or_of_another_table_are_refused(judged: SteDatabase) -> None:
+def test_errors_below_zero_or_of_another_table_are_refused(assessed: SteDatabase) -> None:
     with pytest.raises(DatabaseError, match="curve_error must be >= 0"):
-        replace(judged, curve_error=-judged.curve_error)
+        replace(assessed, curve_error=-assessed.curve_error)
     with pytest.raises(DatabaseError, match="curve_error must have the dimensions"):
-        replace(judged, curve_error=judged.curve_error[:, :, :1])
+        replace(assessed, curve_error=assessed.curve_error[:, :, :1])

@@ -9,7 +9,7 @@ from service.problems import ServiceError
 from service.problems.error import last_part
 
 
-class Relayed(ServiceError):
+class PropagatedError(ServiceError):
     """A problem as the live worker found it."""
 
     def __init__(self, facts: dict[str, Any]) -> None:
@@ -26,6 +26,6 @@ class Relayed(ServiceError):
         return self._facts
 
 
-def relayed(body: bytes) -> Relayed:
+def propagated(body: bytes) -> PropagatedError:
     """Return the error in the problem details `body`."""
-    return Relayed(json.loads(body))
+    return PropagatedError(json.loads(body))

@@ -15,8 +15,8 @@ R = TypeVar("R")
 
 
 @dataclass
-class Spent:
-    """What tasks done elsewhere have cost so far; the one thing here that changes.
+class RunCost:
+    """What remote tasks have cost so far; the one thing here that changes.
 
     Work that is lost with its worker is not in it: nobody can tell.
 
@@ -37,10 +37,10 @@ class Spent:
     peak_memory_bytes: int = 0
     lost: str = ""
 
-    def since(self, before: Spent) -> Spent:
+    def since(self, before: RunCost) -> RunCost:
         """Return what was spent after another reading of the same; the peak is that of all."""
         cpu_seconds = self.cpu_seconds - before.cpu_seconds
-        return Spent(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
+        return RunCost(self.tasks - before.tasks, cpu_seconds, self.peak_memory_bytes, self.lost)
 
     def add(self, done: Done[R]) -> R:
         """Count a task, and return its result."""

@@ -1,4 +1,4 @@
-"""Gear pairs on which the worth of effects is estimated and measured."""
+"""Gear pairs on which the influence of effects is estimated and measured."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SKEW = 15e-6
 """Misalignment, m."""
 
 
-def worth_cases() -> list[PairCase]:
+def influence_cases() -> list[PairCase]:
     """Return pairs in which every effect has something to do, each twice or more."""
     named = {case.name: case for case in (*plane_cases(), *face_cases())}
     return [replace(case, loads=LOADS) for case in (*named.values(), *_further(named))]

@@ -76,5 +76,5 @@ def test_every_registry_of_the_analysis_is_replaced() -> None:
                or "EFFECTS," in file.read_text()}  # fmt: skip
     told = {module.__name__.rpartition(".")[2] for module in REGISTRIES}
     assert (
-        reading - {"ablation", "model_choice", "spared_effects"} == told
+        reading - {"ablation", "model_choice", "neglected_effects"} == told
     )  # those run with a tolerance or by name

@@ -1,12 +1,12 @@
-"""The study of worth estimates counts what it says it counts."""
+"""The study of influence estimates counts what it says it counts."""
 
 from __future__ import annotations
 
 import pytest
 
-from benchmarks.judged_worth import within_factor
-from benchmarks.worth_cases import worth_cases
-from benchmarks.worth_estimates import STUDY, LoadedWorth, markdown
+from benchmarks.assessed_influence import within_factor
+from benchmarks.influence_cases import influence_cases
+from benchmarks.influence_estimates import STUDY, LoadedInfluence, markdown
 from fe_contact.analysis import check_request
 from fe_contact.effects import EFFECTS
 
@@ -17,12 +17,12 @@ from fe_contact.effects import EFFECTS
 )
 def test_a_factor_of_two_is_asked_of_what_can_be_seen(estimated: float, measured: float, right: bool) -> None:
     assert within_factor(estimated, measured) is right
-    assert LoadedWorth("", "", (estimated, 0.0), (measured, 0.0)).right == (right, True)
+    assert LoadedInfluence("", "", (estimated, 0.0), (measured, 0.0)).right == (right, True)
 
 
 def test_every_effect_has_something_to_do_twice() -> None:
     times = dict.fromkeys((effect.name for effect in EFFECTS), 0)
-    for case in worth_cases():
+    for case in influence_cases():
         options = {name: value for name, value in case.options.items() if name != "positions"}
         for entry in check_request(case.pair, normal_forces=case.forces, **options).ledger:
             times[entry.name] += entry.on
@@ -31,14 +31,14 @@ def test_every_effect_has_something_to_do_twice() -> None:
 
 
 def test_counts_and_tables_are_those_of_the_ablations() -> None:
-    right = LoadedWorth("one", "misalignment", (0.1, 0.2), (0.11, 0.19))
-    wrong = LoadedWorth("two", "misalignment", (0.1, 0.2), (0.11, -0.19))
-    off = LoadedWorth("two", "corner_contact", (0.001, 0.0), (0.002, 0.03), (0.05,))
+    right = LoadedInfluence("one", "misalignment", (0.1, 0.2), (0.11, 0.19))
+    wrong = LoadedInfluence("two", "misalignment", (0.1, 0.2), (0.11, -0.19))
+    off = LoadedInfluence("two", "corner_contact", (0.001, 0.0), (0.002, 0.03), (0.05,))
     rows = {figure.what: figure for figure in STUDY.counts([right, right, wrong, off])}
     assert rows["mean or peak-to-peak beyond a factor 2"].value == pytest.approx(50.0)
     assert rows["mean: beyond a factor 2, of the 3 changes above 1 %"].value == 0.0
     left = [
-        rows[f"largest change by what auto leaves off at {text}"]
+        rows[f"largest change by what auto neglects at {text}"]
         for text in ("1 % (0 ablations)", "5 % (1 ablations)")
     ]
     assert [figure.value for figure in left] == pytest.approx([0.0, 3.0])

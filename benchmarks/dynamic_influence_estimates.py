@@ -11,21 +11,29 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.dynamic_worth_cases import example_scenes, worth_scenes
+from benchmarks.assessed_influence import (
+    FACTOR,
+    FLOOR,
+    SHARE,
+    AssessedEffect,
+    InfluenceStudy,
+    by_effect,
+    per_cent_right,
+)
+from benchmarks.dynamic_influence_cases import example_scenes, influence_scenes
 from benchmarks.figures import Figure
-from benchmarks.judged_worth import FACTOR, FLOOR, SHARE, JudgedWorth, WorthStudy, by_effect, per_cent_right
+from benchmarks.influence_estimates import PAGE
 from benchmarks.marked_section import replace_section
-from benchmarks.worth_estimates import PAGE
 from dynamics.ablation import RunFigures, ablate
 from dynamics.ablation.ablate import EffectAblation
 from dynamics.influence import decide_effects
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
-SECTION = "dynamic worth estimates"
+SECTION = "dynamic influence estimates"
 TOLERANCES = (0.01, 0.05, 0.2)
-STUDY = WorthStudy(
-    "worth estimates of dynamic effects against ablation",
+STUDY = InfluenceStudy(
+    "influence estimates of dynamic effects against ablation",
     "scene and effect",
     "any quantity",
     ("mean DTE", "peak-to-peak DTE", "bearing forces"),
@@ -41,13 +49,13 @@ def figures() -> list[Figure]:
 
 
 @cache
-def assessed() -> tuple[JudgedWorth, ...]:
+def assessed() -> tuple[AssessedEffect, ...]:
     """Toggle all effects of all scenes, once: some five CPU minutes."""
     with tempfile.TemporaryDirectory() as folder:
-        return tuple(study({**worth_scenes(Path(folder)), **example_scenes()}))
+        return tuple(study({**influence_scenes(Path(folder)), **example_scenes()}))
 
 
-def study(scenes: Mapping[str, Scene]) -> list[JudgedWorth]:
+def study(scenes: Mapping[str, Scene]) -> list[AssessedEffect]:
     """Toggle every effect of every scene."""
     found = []
     for name, scene in scenes.items():
@@ -60,7 +68,7 @@ def study(scenes: Mapping[str, Scene]) -> list[JudgedWorth]:
     return found
 
 
-def assess(name: str, entry: EffectAblation, off_at: tuple[float, ...] = ()) -> JudgedWorth:
+def assess(name: str, entry: EffectAblation, off_at: tuple[float, ...] = ()) -> AssessedEffect:
     """Compare the estimate of one effect with its ablation; what was not estimated counts as nothing."""
     whole, without, estimate = entry.with_effect, entry.without_effect, entry.estimate
     measured = [
@@ -77,7 +85,7 @@ def assess(name: str, entry: EffectAblation, off_at: tuple[float, ...] = ()) -> 
         ]
     largest = [int(np.argmax(np.abs(values))) for values in measured]
     pairs = [(float(e[k]), float(m[k])) for e, m, k in zip(estimated, measured, largest, strict=True)]
-    return JudgedWorth(name, entry.name, tuple(e for e, _ in pairs), tuple(m for _, m in pairs), off_at)
+    return AssessedEffect(name, entry.name, tuple(e for e, _ in pairs), tuple(m for _, m in pairs), off_at)
 
 
 def _bearings(run: RunFigures) -> FloatArray:
@@ -85,7 +93,7 @@ def _bearings(run: RunFigures) -> FloatArray:
     return np.asarray(np.sqrt(np.sum(run.bearing_orders**2, axis=1)))
 
 
-def markdown(found: Sequence[JudgedWorth]) -> str:
+def markdown(found: Sequence[AssessedEffect]) -> str:
     """Return the section of docs/effects/influence.md."""
     scenes = list(dict.fromkeys(one.where for one in found))
     head = (
@@ -98,7 +106,7 @@ def markdown(found: Sequence[JudgedWorth]) -> str:
     return f"{head}\n\n{_table_of_effects(found)}\n{_table_of_scenes(found)}"
 
 
-def _table_of_effects(found: Sequence[JudgedWorth]) -> str:
+def _table_of_effects(found: Sequence[AssessedEffect]) -> str:
     """How often the estimates of every effect are right."""
     lines = [
         "| effect | ablations | " + " | ".join(f"{name}: right" for name in STUDY.quantities) + " |",
@@ -110,7 +118,7 @@ def _table_of_effects(found: Sequence[JudgedWorth]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _table_of_scenes(found: Sequence[JudgedWorth]) -> str:
+def _table_of_scenes(found: Sequence[AssessedEffect]) -> str:
     """Every ablation that changes something: estimated / measured change in %."""
     lines = [
         "What leaving an effect out changes, estimated / measured in % of the value with it (bearing forces: "
@@ -125,7 +133,7 @@ def _table_of_scenes(found: Sequence[JudgedWorth]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def publish(found: Sequence[JudgedWorth], machine: dict[str, str]) -> None:
+def publish(found: Sequence[AssessedEffect], machine: dict[str, str]) -> None:
     """Write the section of the page between its marks."""
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
     replace_section(PAGE, SECTION, f"{markdown(found)}\nMeasured with {versions}.\n")

@@ -21,7 +21,7 @@ from fe_contact.types import FloatArray, Json
 
 
 @dataclass(frozen=True)
-class JudgedTable:
+class AssessedTable:
     """Errors of a table.
 
     Attributes
@@ -45,7 +45,7 @@ class JudgedTable:
         return found | summary(self.curve_error)
 
 
-def judged_table(
+def assessed_table(
     table: SteDatabase,
     fine: Places,
     coarse: Places,
@@ -53,7 +53,7 @@ def judged_table(
     nodes: PositionNodes,
     checked: Checked,
     plan: Plan,
-) -> JudgedTable:
+) -> AssessedTable:
     """Solve the table once more on each rougher discretization, and held-out points of its axes.
 
     Parameters
@@ -80,11 +80,11 @@ def judged_table(
     sources, errors = estimate_errors(*measured), curve_errors(*measured)
     between = held_out_axes(table, fine, checked.request.scene, checked.decided, solved)
     held_out = {name: error.to_json() for name, error in between.items()}
-    return JudgedTable(sources.total, with_axes(errors, between), sources.to_json(), held_out)
+    return AssessedTable(sources.total, with_axes(errors, between), sources.to_json(), held_out)
 
 
-def unjudged_table(table: SteDatabase, places: Places, plan: Plan) -> JudgedTable:
+def unassessed_table(table: SteDatabase, places: Places, plan: Plan) -> AssessedTable:
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
     left = {"plane_for_finite_width_relative": left_out(places.places[0].contact.pair, plan.discretization)}
     unknown = np.full(table.error_estimate.shape, np.nan)
-    return JudgedTable(unknown, unestimated(places, plan), left, {})
+    return AssessedTable(unknown, unestimated(places, plan), left, {})

@@ -1,4 +1,4 @@
-"""What effects that are off cost: runs with them off against registries that do not know them."""
+"""What neglected effects cost: runs with them off against registries that do not know them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from fe_contact.effects import EFFECTS
 from service.client.portable import scene_of
 from service.convert.scene import dynamic_scene
 
-SUBJECT = "effects that are off against a build without them, CPU time"
+SUBJECT = "neglected effects against a build without them, CPU time"
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 PAIR = GearPair(GEAR, GEAR, center_distance=80e-3)
 REPEATS = 15

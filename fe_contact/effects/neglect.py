@@ -1,4 +1,4 @@
-"""A scene without what an effect models, for effects that are too small to be worth their cost."""
+"""A scene without what an effect models, for effects that are too small for their cost."""
 
 from __future__ import annotations
 
@@ -62,6 +62,6 @@ WITHOUT: dict[str, Callable[[ContactScene], ContactScene]] = {
     LeadModification.name: _each_gear(_plain_lead),
     PitchError.name: _each_gear(_teeth_in_place),
 }
-"""Effects that cost something and whose worth is estimated well, with the scene as if there were nothing for
-them. Tooth coupling costs nothing; three dimensions follow from the other effects; of rims and seats the
-estimate is coarse."""
+"""Effects that cost something and whose influence is estimated well, with the scene as if there were
+nothing for them. Tooth coupling costs nothing; three dimensions follow from the other effects; of rims and
+seats the estimate is coarse."""

@@ -1,4 +1,4 @@
-"""Is what effects are worth estimated well? Every effect of many pairs switched over by finite elements."""
+"""Is the influence of effects estimated well? Every effect of many pairs toggled by finite elements."""
 
 from __future__ import annotations
 
@@ -11,22 +11,30 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.assessed_influence import (
+    FACTOR,
+    FLOOR,
+    SHARE,
+    AssessedEffect,
+    InfluenceStudy,
+    by_effect,
+    per_cent_right,
+)
 from benchmarks.figures import Figure
-from benchmarks.judged_worth import FACTOR, FLOOR, SHARE, JudgedWorth, WorthStudy, by_effect, per_cent_right
+from benchmarks.influence_cases import influence_cases
 from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
-from benchmarks.worth_cases import worth_cases
 from fe_contact.analysis import check_request
 from fe_contact.analysis.ablation import EffectAblation, ablate
 from fe_contact.analysis.model_choice import decide
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
-from fe_contact.effects.worth import Worth, estimate_worths
+from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
 
 PAGE = Path(__file__).parents[1] / "docs" / "effects" / "influence.md"
-SECTION = "worth estimates"
+SECTION = "influence estimates"
 TOLERANCES = (0.01, 0.05)
-STUDY = WorthStudy(
-    "worth estimates of effects against ablation",
+STUDY = InfluenceStudy(
+    "influence estimates of effects against ablation",
     "case, effect and load",
     "mean or peak-to-peak",
     ("mean", "peak-to-peak"),
@@ -35,25 +43,25 @@ STUDY = WorthStudy(
 
 
 @dataclass(frozen=True)
-class LoadedWorth(JudgedWorth):
-    """A worth at one load, in parts of the rated one."""
+class LoadedInfluence(AssessedEffect):
+    """An influence at one load, in parts of the rated one."""
 
     load: float = 1.0
 
 
 def figures() -> list[Figure]:
     """Return how often the estimates are right."""
-    return STUDY.counts(judged())
+    return STUDY.counts(assessed())
 
 
 @cache
-def judged() -> tuple[LoadedWorth, ...]:
+def assessed() -> tuple[LoadedInfluence, ...]:
     """Switch all effects of all cases over, once: about five CPU minutes."""
     with tempfile.TemporaryDirectory() as folder:
-        return tuple(study(worth_cases(), Path(folder)))
+        return tuple(study(influence_cases(), Path(folder)))
 
 
-def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedWorth]:
+def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedInfluence]:
     """Switch every effect of every case over."""
     found = []
     for case in cases:
@@ -62,12 +70,12 @@ def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedWorth]:
         asked = {"normal_forces": case.forces, **case.options}
         checked = check_request(case.pair, level="draft", **asked)
         names = [entry.name for entry in made.effects]
-        estimates = estimate_worths(checked.request.scene, checked.decided, names, EFFECTS)
+        estimates = estimate_influences(checked.request.scene, checked.decided, names, EFFECTS)
         wishes = {tol: check_request(case.pair, tolerance=tol, **asked) for tol in TOLERANCES}
         decided = {tol: decide(wish, folder).checked.decided for tol, wish in wishes.items()}
         for entry in made.effects:
             off_at = tuple(tol for tol in TOLERANCES if left_off(decided[tol], entry.name))
-            found += _judged(case, entry, estimates[entry.name], off_at)
+            found += _assessed(case, entry, estimates[entry.name], off_at)
     return found
 
 
@@ -77,9 +85,9 @@ def left_off(decided: Mapping[str, str], name: str) -> bool:
     return decided[name] == "off" and not held
 
 
-def _judged(
-    case: PairCase, entry: EffectAblation, estimate: Worth | None, off_at: tuple[float, ...]
-) -> list[LoadedWorth]:
+def _assessed(
+    case: PairCase, entry: EffectAblation, estimate: EstimatedInfluence | None, off_at: tuple[float, ...]
+) -> list[LoadedInfluence]:
     """One effect at every load."""
     if estimate is None:
         return []
@@ -87,7 +95,7 @@ def _judged(
     measured = (entry.mean_change / whole.mean, entry.peak_to_peak_change / whole.peak_to_peak)
     estimated = (estimate.mean / whole.mean, estimate.peak_to_peak / whole.peak_to_peak)
     return [
-        LoadedWorth(
+        LoadedInfluence(
             case.name,
             entry.name,
             (float(estimated[0][k]), float(estimated[1][k])),
@@ -99,7 +107,7 @@ def _judged(
     ]
 
 
-def markdown(found: Sequence[LoadedWorth]) -> str:
+def markdown(found: Sequence[LoadedInfluence]) -> str:
     """Return the section of docs/effects/influence.md."""
     cases = list(dict.fromkeys(one.where for one in found))
     head = (
@@ -112,7 +120,7 @@ def markdown(found: Sequence[LoadedWorth]) -> str:
     return f"{head}\n\n{_table_of_effects(found)}\n{_table_of_cases(found)}"
 
 
-def _table_of_effects(found: Sequence[LoadedWorth]) -> str:
+def _table_of_effects(found: Sequence[LoadedInfluence]) -> str:
     """How often the estimates of every effect are right, and the spread of the ratio where it can be seen."""
     lines = [
         "| effect | ablations | mean: right | median estimated / measured | peak-to-peak: right | median |",
@@ -128,7 +136,7 @@ def _table_of_effects(found: Sequence[LoadedWorth]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _table_of_cases(found: Sequence[LoadedWorth]) -> str:
+def _table_of_cases(found: Sequence[LoadedInfluence]) -> str:
     """Every ablation at the full load: estimated / measured change in % of the value with the effect."""
     lines = [
         "What leaving an effect out changes at the rated load, estimated / measured in % of the value.",
@@ -142,7 +150,7 @@ def _table_of_cases(found: Sequence[LoadedWorth]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def publish(found: Sequence[LoadedWorth], machine: dict[str, str]) -> None:
+def publish(found: Sequence[LoadedInfluence], machine: dict[str, str]) -> None:
     """Write the section of the page between its marks."""
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
     replace_section(PAGE, SECTION, f"{markdown(found)}\nMeasured with {versions}.\n")

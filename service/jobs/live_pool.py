@@ -1,4 +1,4 @@
-"""The desk of the live worker: questions that are answered while their caller waits, one at a time.
+"""The pool of the live worker: questions that are answered while their caller waits, one at a time.
 
 A question under the name of a caller makes the caller's earlier one obsolete if that has not begun: a slider
 that moves on asks for where it is now. The worker starts with the first question, is replaced when it dies or
@@ -19,7 +19,7 @@ import structlog
 from service.jobs.live_order import LiveOrder
 from service.jobs.live_worker import LiveWorker, WorkerGone
 from service.jobs.memory import machine_memory_mb
-from service.jobs.relayed import relayed
+from service.jobs.propagated import propagated
 from service.problems import LiveUnavailable, QueueFull, Superseded, Unexpected
 from service.settings import LEAST_MEMORY_MB, Settings
 
@@ -28,7 +28,7 @@ logger = structlog.get_logger(__name__)
 
 @dataclass(frozen=True)
 class LiveLimits:
-    """Bounds of the desk.
+    """Bounds of the pool.
 
     Attributes
     ----------
@@ -53,8 +53,8 @@ class _Question:
     future: Future[bytes] = field(default_factory=Future)
 
 
-class LiveDesk:
-    """Hands questions to the one live worker, which it starts, watches and ends."""
+class LivePool:
+    """Passes questions to the one live worker, which it starts, watches and ends."""
 
     def __init__(
         self,
@@ -97,7 +97,7 @@ class LiveDesk:
             self._waiting[name] = question
             if self._thread is None:
                 self._stopping = False
-                self._thread = threading.Thread(target=self._loop, name=f"{self._name} desk", daemon=True)
+                self._thread = threading.Thread(target=self._loop, name=f"{self._name} pool", daemon=True)
                 self._thread.start()
             self._changed.notify()
         return question.future
@@ -155,7 +155,7 @@ class LiveDesk:
         """Ask the worker, starting it if there is none."""
         kind, body = self._asked(order)
         if kind == "problem":
-            raise relayed(body)
+            raise propagated(body)
         if kind == "memory":
             self._end_worker()
             may_have = f"it may have {self._memory_limit_mb} MB"
@@ -204,14 +204,14 @@ def _refuse(question: _Question, error: Exception) -> None:
         question.future.set_exception(error)
 
 
-def live_desk(settings: Settings) -> LiveDesk:
-    """Return the desk of a service; its worker may have as much memory as one computation."""
-    return LiveDesk(settings.data_directory, _share(settings))
+def live_pool(settings: Settings) -> LivePool:
+    """Return the pool of a service; its worker may have as much memory as one computation."""
+    return LivePool(settings.data_directory, _share(settings))
 
 
-def reading_desk(settings: Settings) -> LiveDesk:
-    """Return the desk whose worker reads large texts, so that the service does not."""
-    return LiveDesk(settings.data_directory, _share(settings), LiveLimits(idle_s=60.0), "reading")
+def reading_pool(settings: Settings) -> LivePool:
+    """Return the pool whose worker reads large texts, so that the service does not."""
+    return LivePool(settings.data_directory, _share(settings), LiveLimits(idle_s=60.0), "reading")
 
 
 def _share(settings: Settings) -> int:

@@ -50,7 +50,7 @@ def example_scenes() -> dict[str, Scene]:
     return found
 
 
-def worth_scenes(folder: Path) -> dict[str, Scene]:
+def influence_scenes(folder: Path) -> dict[str, Scene]:
     """Return scenes by name; every effect has something to do in several of them."""
     slow, fast = CONSTANT(600.0 * RPM), CONSTANT(4000.0 * RPM)
     up = TimeLaw((0.0, 0.6), (1000.0 * RPM, 5000.0 * RPM))

@@ -19,7 +19,7 @@ from fe_contact.mesh.bore_support import BoreSupport, bore_support
 from fe_contact.workers import InProcess, Workers
 
 FEWEST = 2
-"""Gears that are worth handing out: a single one is condensed here in the same time."""
+"""Gears that pay to hand out: a single one is condensed here in the same time."""
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Solid:
         return compliance_key_3d(self.gear, self.recipe, self.reach, self.support)
 
 
-def condense_elsewhere(
+def condense_remotely(
     gears: Sequence[Toothing], recipes: Sequence[SectorRecipe], cache: Path, workers: Workers
 ) -> None:
     """Let workers condense the gears that are not in the cache, and keep them there.

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from geared_scenes import gear_pair_scene
 
-from benchmarks import dynamic_worth_cases
-from benchmarks.dynamic_worth_estimates import STUDY, assess, markdown
-from benchmarks.judged_worth import JudgedWorth
+from benchmarks import dynamic_influence_cases
+from benchmarks.assessed_influence import AssessedEffect
+from benchmarks.dynamic_influence_estimates import STUDY, assess, markdown
 from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
 from dynamics.effects import EFFECTS, MESH_EFFECTS
@@ -17,14 +17,14 @@ from dynamics.forces import straight_table
 
 
 def test_counts_and_tables_are_those_of_the_ablations() -> None:
-    right = JudgedWorth("one", "tilt", (0.1, 0.2, 0.3), (0.11, 0.19, 0.5))
-    wrong = JudgedWorth("two", "tilt", (0.1, 0.2, 0.3), (0.11, -0.19, 0.3))
-    off = JudgedWorth("two", "axial", (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,))
+    right = AssessedEffect("one", "tilt", (0.1, 0.2, 0.3), (0.11, 0.19, 0.5))
+    wrong = AssessedEffect("two", "tilt", (0.1, 0.2, 0.3), (0.11, -0.19, 0.3))
+    off = AssessedEffect("two", "axial", (0.001, 0.0, 0.0), (0.002, 0.003, 0.03), (0.05,))
     rows = {figure.what: figure for figure in STUDY.counts([right, right, wrong, off])}
     assert rows["any quantity beyond a factor 2"].value == pytest.approx(50.0)
     assert rows["bearing forces: beyond a factor 2, of the 4 changes above 1 %"].value == pytest.approx(25.0)
     left = [
-        rows[f"largest change by what auto leaves off at {text}"]
+        rows[f"largest change by what auto neglects at {text}"]
         for text in ("1 % (0 ablations)", "5 % (1 ablations)")
     ]
     assert [figure.value for figure in left] == pytest.approx([0.0, 3.0])
@@ -33,7 +33,7 @@ def test_counts_and_tables_are_those_of_the_ablations() -> None:
     assert "| tilt | 2 | 100 % | 50 % | 100 % |" in text
 
 
-def test_an_ablation_is_judged_beside_its_estimate() -> None:
+def test_an_ablation_is_assessed_beside_its_estimate() -> None:
     made = ablate(gear_pair_scene(duration=0.06), only=["lateral"])
     one = assess("pair", made.effects[0])
     whole = made.nominal
@@ -44,10 +44,10 @@ def test_an_ablation_is_judged_beside_its_estimate() -> None:
 
 def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -> None:
     """On tables in closed form: what needs a table's axes or its ripple is left to the study itself."""
-    monkeypatch.setattr(dynamic_worth_cases, "table", lambda *_: straight_table(3e8))
+    monkeypatch.setattr(dynamic_influence_cases, "table", lambda *_: straight_table(3e8))
     on = {
         entry.effect
-        for scene in dynamic_worth_cases.worth_scenes(Path()).values()
+        for scene in dynamic_influence_cases.influence_scenes(Path()).values()
         for entry in assemble(scene).ledger.entries
         if entry.on
     }

@@ -9,7 +9,7 @@ from fe_contact.types import Json
 RIPPLE_FLOOR = 20e-9
 """m; per cent of a peak-to-peak below this are not given: it is what meshes and springs leave uncertain."""
 TRIFLE = 1e-3
-"""Relative change below which an effect is not worth a line of its own."""
+"""Relative change below which an effect is too small for a line of its own."""
 _UM = 1e6
 _NOTHING = 5e-5  # um and %, well below what two digits of any change that counts can show
 

@@ -14,12 +14,12 @@ from fe_contact.effects.effect import ContactScene, Effect
 from fe_contact.effects.face_load_distribution import FaceLoadDistribution
 from fe_contact.effects.finite_width import FiniteWidth
 from fe_contact.effects.flipping import flipped
-from fe_contact.effects.worth.slice_model import EstimatedCurve, Springs
+from fe_contact.effects.influence.slice_model import EstimatedCurve, Springs
 from fe_contact.types import FloatArray
 
 
 @dataclass(frozen=True)
-class Worth:
+class EstimatedInfluence:
     """What leaving an effect out is estimated to change: without it less with it.
 
     Attributes
@@ -39,13 +39,13 @@ class Worth:
     largest: float
 
 
-def estimate_worth(
+def estimate_influence(
     scene: ContactScene,
     decided: Mapping[str, str],
     name: str,
     registry: Sequence[Effect],
     least: float = 0.0,
-) -> Worth | None:
+) -> EstimatedInfluence | None:
     """Estimate what leaving the effect `name` out of the model changes.
 
     Parameters
@@ -60,21 +60,21 @@ def estimate_worth(
 
     Returns
     -------
-    Worth or None
+    EstimatedInfluence or None
         None: one of the two states cannot be had, as a plane with what acts across the face, or the springs
         do not know it.
     """
-    return estimate_worths(scene, decided, [name], registry, least)[name]
+    return estimate_influences(scene, decided, [name], registry, least)[name]
 
 
-def estimate_worths(
+def estimate_influences(
     scene: ContactScene,
     decided: Mapping[str, str],
     names: Sequence[str],
     registry: Sequence[Effect],
     least: float = 0.0,
-) -> dict[str, Worth | None]:
-    """Estimate several effects; parameters of `estimate_worth`."""
+) -> dict[str, EstimatedInfluence | None]:
+    """Estimate several effects; parameters of `estimate_influence`."""
     known: dict[tuple[tuple[str, str], ...], list[EstimatedCurve]] = {}
     springs = Springs(scene.pair)
 
@@ -84,11 +84,11 @@ def estimate_worths(
             known[key] = _curves(scene, choices, registry, springs)
         return known[key]
 
-    def worth(effect: Effect) -> Worth | None:
+    def influence_of(effect: Effect) -> EstimatedInfluence | None:
         if _unknown(scene, effect.name):
             return None
         if effect.name == FaceLoadDistribution.name and _uncorrected(decided):
-            return worth(next(one for one in registry if one.name == FiniteWidth.name))
+            return influence_of(next(one for one in registry if one.name == FiniteWidth.name))
         if effect.name == FaceLoadDistribution.name or effect.called_for(scene).neutral:
             # with nothing across the face the corrected plane stands in for three dimensions
             return _compared(curves(decided), curves(decided), least)
@@ -98,7 +98,7 @@ def estimate_worths(
         )
         return _compared(with_it, without, least)
 
-    return {effect.name: worth(effect) for effect in registry if effect.name in names}
+    return {effect.name: influence_of(effect) for effect in registry if effect.name in names}
 
 
 def _uncorrected(decided: Mapping[str, str]) -> bool:
@@ -132,7 +132,9 @@ def _curves(
     return [found[model] for model in models]
 
 
-def _compared(with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve], least: float) -> Worth:
+def _compared(
+    with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurve], least: float
+) -> EstimatedInfluence:
     """Take differences of the last curves, and the largest relative one of all."""
     changes = [
         (b.mean - a.mean, b.peak_to_peak - a.peak_to_peak) for a, b in zip(with_it, without, strict=True)
@@ -141,4 +143,4 @@ def _compared(with_it: Sequence[EstimatedCurve], without: Sequence[EstimatedCurv
         np.abs((mean, ripple)) / np.maximum(np.abs((curve.mean, curve.peak_to_peak)), least)
         for (mean, ripple), curve in zip(changes, with_it, strict=True)
     ]
-    return Worth(*changes[-1], with_it[-1], float(np.max(relative)))
+    return EstimatedInfluence(*changes[-1], with_it[-1], float(np.max(relative)))

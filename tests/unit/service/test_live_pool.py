@@ -19,8 +19,8 @@ import pytest
 from running_service import PATIENCE_S, lives, until
 from structlog.testing import capture_logs
 
-from service.jobs.live_desk import LiveDesk, LiveLimits
 from service.jobs.live_order import LiveOrder
+from service.jobs.live_pool import LiveLimits, LivePool
 from service.problems import LiveUnavailable, QueueFull, ServiceError, Superseded, Unexpected
 
 WORK = "live_stand_in_work"
@@ -41,27 +41,27 @@ def answer(future: Future[bytes]) -> dict[str, Any]:
 
 
 @pytest.fixture
-def desk(tmp_path: Path) -> Iterator[LiveDesk]:
-    made = LiveDesk(tmp_path, 512, LiveLimits(waiting=3))
+def pool(tmp_path: Path) -> Iterator[LivePool]:
+    made = LivePool(tmp_path, 512, LiveLimits(waiting=3))
     yield made
     made.stop()
 
 
-def test_one_worker_answers_all_in_turn_and_is_nice(desk: LiveDesk) -> None:
-    first = answer(desk.ask(order("echo", word="a")))
-    second = answer(desk.ask(order("echo", word="b")))
+def test_one_worker_answers_all_in_turn_and_is_nice(pool: LivePool) -> None:
+    first = answer(pool.ask(order("echo", word="a")))
+    second = answer(pool.ask(order("echo", word="b")))
     assert (first["asked"], second["asked"]) == (["a"], ["a", "b"])
-    assert first["pid"] == second["pid"] == desk.worker_pid != os.getpid()
+    assert first["pid"] == second["pid"] == pool.worker_pid != os.getpid()
     assert first["nice"] == min(os.nice(0) + 5, 19)
 
 
-def test_the_newest_question_of_a_caller_wins(desk: LiveDesk, tmp_path: Path) -> None:
+def test_the_newest_question_of_a_caller_wins(pool: LivePool, tmp_path: Path) -> None:
     gate = tmp_path / "gate"
-    running = desk.ask(order("echo", word="runs", wait_for=str(gate)), "slider")
+    running = pool.ask(order("echo", word="runs", wait_for=str(gate)), "slider")
     until(running.running)
-    obsolete = desk.ask(order("echo", word="obsolete"), "slider")
-    other = desk.ask(order("echo", word="other"), "form")
-    newest = desk.ask(order("echo", word="newest"), "slider")
+    obsolete = pool.ask(order("echo", word="obsolete"), "slider")
+    other = pool.ask(order("echo", word="other"), "form")
+    newest = pool.ask(order("echo", word="newest"), "slider")
     with pytest.raises(Superseded):
         obsolete.result(timeout=PATIENCE_S)
     gate.touch()
@@ -70,39 +70,39 @@ def test_the_newest_question_of_a_caller_wins(desk: LiveDesk, tmp_path: Path) ->
     assert sorted(answer(newest)["asked"] + ["other"])[:1] == ["newest"]
 
 
-def test_the_queue_is_bounded_and_says_when_to_ask_again(desk: LiveDesk, tmp_path: Path) -> None:
+def test_the_queue_is_bounded_and_says_when_to_ask_again(pool: LivePool, tmp_path: Path) -> None:
     gate = tmp_path / "gate"
-    running = desk.ask(order("echo", word="runs", wait_for=str(gate)))
+    running = pool.ask(order("echo", word="runs", wait_for=str(gate)))
     until(running.running)
-    waiting = [desk.ask(order("echo", word=str(k)), f"caller {k}") for k in range(3)]
+    waiting = [pool.ask(order("echo", word=str(k)), f"caller {k}") for k in range(3)]
     with pytest.raises(QueueFull) as caught:
-        desk.ask(order("echo", word="one too many"))
+        pool.ask(order("echo", word="one too many"))
     assert (caught.value.status, caught.value.retry_after_s) == (429, 1)
-    replaced = desk.ask(order("echo", word="instead"), "caller 0")
+    replaced = pool.ask(order("echo", word="instead"), "caller 0")
     gate.touch()
     assert answer(replaced)["asked"][0] == "runs"
     assert [answer(future)["asked"][-1] for future in waiting[1:]] == ["1", "2"]
 
 
 @pytest.mark.parametrize(("name", "text"), [("die", "ended. Ask again"), ("hog", "512 MB")])
-def test_a_worker_that_died_is_replaced(desk: LiveDesk, name: str, text: str) -> None:
-    first = answer(desk.ask(order("echo", word="a")))["pid"]
+def test_a_worker_that_died_is_replaced(pool: LivePool, name: str, text: str) -> None:
+    first = answer(pool.ask(order("echo", word="a")))["pid"]
     with pytest.raises(LiveUnavailable, match=text) as caught:
-        desk.ask(order(name)).result(timeout=PATIENCE_S)
+        pool.ask(order(name)).result(timeout=PATIENCE_S)
     assert (caught.value.status, caught.value.retry_after_s) == (503, 1)
-    again = answer(desk.ask(order("echo", word="b")))
+    again = answer(pool.ask(order("echo", word="b")))
     assert again["asked"] == ["b"] and again["pid"] != first
     assert not lives(first)
 
 
 def test_one_killed_in_the_middle_of_an_answer_is_told_and_those_that_wait_are_answered(
-    desk: LiveDesk, tmp_path: Path
+    pool: LivePool, tmp_path: Path
 ) -> None:
     gate = tmp_path / "never"
-    asked = desk.ask(order("echo", word="a", wait_for=str(gate)))
-    waits = desk.ask(order("echo", word="b"))
-    until(lambda: asked.running() and desk.worker_pid is not None)
-    first = desk.worker_pid
+    asked = pool.ask(order("echo", word="a", wait_for=str(gate)))
+    waits = pool.ask(order("echo", word="b"))
+    until(lambda: asked.running() and pool.worker_pid is not None)
+    first = pool.worker_pid
     os.kill(first or 0, signal.SIGKILL)
     with pytest.raises(LiveUnavailable, match="ended"):
         asked.result(timeout=PATIENCE_S)
@@ -111,14 +111,14 @@ def test_one_killed_in_the_middle_of_an_answer_is_told_and_those_that_wait_are_a
 
 
 def test_sixteen_at_once_get_their_own_answers_and_the_seventeenth_is_refused(tmp_path: Path) -> None:
-    desk, gate = LiveDesk(tmp_path, 512), tmp_path / "gate"
+    pool, gate = LivePool(tmp_path, 512), tmp_path / "gate"
     try:
-        running = desk.ask(order("echo", word="first", wait_for=str(gate)))
+        running = pool.ask(order("echo", word="first", wait_for=str(gate)))
         until(running.running)
         futures: dict[str, Future[bytes]] = {}
 
         def ask(word: str) -> None:
-            futures[word] = desk.ask(order("echo", word=word), f"caller {word}")
+            futures[word] = pool.ask(order("echo", word=word), f"caller {word}")
 
         callers = [threading.Thread(target=ask, args=(str(k),)) for k in range(16)]
         for caller in callers:
@@ -126,13 +126,13 @@ def test_sixteen_at_once_get_their_own_answers_and_the_seventeenth_is_refused(tm
         for caller in callers:
             caller.join()
         with pytest.raises(QueueFull):
-            desk.ask(order("echo", word="one too many"))
+            pool.ask(order("echo", word="one too many"))
         gate.touch()
         assert {word: answer(future)["asked"][-1] for word, future in futures.items()} == {
             str(k): str(k) for k in range(16)
         }
     finally:
-        desk.stop()
+        pool.stop()
 
 
 SERVE = """
@@ -175,59 +175,59 @@ def _workers_of(service: int) -> list[int]:
     return found
 
 
-def test_one_killed_between_two_questions_is_not_noticed(desk: LiveDesk) -> None:
-    first = answer(desk.ask(order("echo", word="a")))["pid"]
+def test_one_killed_between_two_questions_is_not_noticed(pool: LivePool) -> None:
+    first = answer(pool.ask(order("echo", word="a")))["pid"]
     os.kill(first, signal.SIGKILL)
     until(lambda: not lives(first))
-    assert answer(desk.ask(order("echo", word="b")))["asked"] == ["b"]
+    assert answer(pool.ask(order("echo", word="b")))["asked"] == ["b"]
 
 
 def test_one_that_dies_unseen_after_an_answer_is_replaced_once(
-    desk: LiveDesk, monkeypatch: pytest.MonkeyPatch
+    pool: LivePool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A process whose threads still end looks alive when it is asked."""
-    first = answer(desk.ask(order("echo", word="a")))["pid"]
+    first = answer(pool.ask(order("echo", word="a")))["pid"]
     os.kill(first, signal.SIGKILL)
     until(lambda: not lives(first))
     monkeypatch.setattr("service.jobs.live_worker.LiveWorker.alive", True)
-    assert answer(desk.ask(order("echo", word="b")))["pid"] != first
+    assert answer(pool.ask(order("echo", word="b")))["pid"] != first
 
 
 def test_what_takes_too_long_is_ended(tmp_path: Path) -> None:
-    desk = LiveDesk(tmp_path, 512, LiveLimits(answer_s=1.0))
+    pool = LivePool(tmp_path, 512, LiveLimits(answer_s=1.0))
     with capture_logs() as log, pytest.raises(LiveUnavailable, match="longer than 1 s"):
-        desk.ask(order("hang")).result(timeout=PATIENCE_S)
+        pool.ask(order("hang")).result(timeout=PATIENCE_S)
     (pid,) = [entry["pid"] for entry in log if entry["event"] == "live worker started"]
     assert not lives(pid)
-    desk.stop()
+    pool.stop()
 
 
 def test_an_idle_worker_ends_and_another_takes_the_next_question(tmp_path: Path) -> None:
-    desk = LiveDesk(tmp_path, 512, LiveLimits(idle_s=0.05))
-    first = answer(desk.ask(order("echo", word="a")))["pid"]
-    until(lambda: desk.worker_pid is None and not lives(first))
-    assert answer(desk.ask(order("echo", word="b")))["asked"] == ["b"]
-    desk.stop()
+    pool = LivePool(tmp_path, 512, LiveLimits(idle_s=0.05))
+    first = answer(pool.ask(order("echo", word="a")))["pid"]
+    until(lambda: pool.worker_pid is None and not lives(first))
+    assert answer(pool.ask(order("echo", word="b")))["asked"] == ["b"]
+    pool.stop()
 
 
-def test_a_stop_ends_the_worker_in_the_middle_of_an_answer(desk: LiveDesk) -> None:
-    asked, waits = desk.ask(order("hang")), desk.ask(order("echo", word="a"))
-    until(lambda: asked.running() and desk.worker_pid is not None)
-    pid = desk.worker_pid
-    desk.stop()
+def test_a_stop_ends_the_worker_in_the_middle_of_an_answer(pool: LivePool) -> None:
+    asked, waits = pool.ask(order("hang")), pool.ask(order("echo", word="a"))
+    until(lambda: asked.running() and pool.worker_pid is not None)
+    pid = pool.worker_pid
+    pool.stop()
     for future in (asked, waits):
         with pytest.raises(LiveUnavailable):
             future.result(timeout=PATIENCE_S)
     assert pid is not None and not lives(pid)
 
 
-def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(desk: LiveDesk, tmp_path: Path) -> None:
+def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(pool: LivePool, tmp_path: Path) -> None:
     with pytest.raises(ServiceError) as caught:
-        desk.ask(order("refuse")).result(timeout=PATIENCE_S)
+        pool.ask(order("refuse")).result(timeout=PATIENCE_S)
     facts = caught.value.as_json()
     assert (facts["status"], facts["errors"][0]["field"]) == (422, "torque_n_m[0]")
     with pytest.raises(Unexpected) as unexpected:
-        desk.ask(order("defect")).result(timeout=PATIENCE_S)
+        pool.ask(order("defect")).result(timeout=PATIENCE_S)
     assert "secret" not in str(unexpected.value)
     assert "secret" in (tmp_path / "log" / "live.log").read_text()
 
@@ -235,12 +235,12 @@ def test_a_refusal_passes_as_it_was_told_and_a_defect_by_number(desk: LiveDesk, 
 SERVICE = """
 import sys
 from pathlib import Path
-from service.jobs.live_desk import LiveDesk
+from service.jobs.live_pool import LivePool
 from service.jobs.live_order import LiveOrder
-desk = LiveDesk(Path(sys.argv[1]), 512)
-desk.ask(LiveOrder("live_stand_in_work:echo", {"word": "a"})).result()
-print("worker", desk.worker_pid, flush=True)
-desk.ask(LiveOrder("live_stand_in_work:hang", {})).result()
+pool = LivePool(Path(sys.argv[1]), 512)
+pool.ask(LiveOrder("live_stand_in_work:echo", {"word": "a"})).result()
+print("worker", pool.worker_pid, flush=True)
+pool.ask(LiveOrder("live_stand_in_work:hang", {})).result()
 """
 
 

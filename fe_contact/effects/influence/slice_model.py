@@ -19,8 +19,8 @@ from fe_contact.contact import (
     with_compliances,
     with_gaps,
 )
-from fe_contact.effects.worth.slice_compliance import slice_compliance
-from fe_contact.effects.worth.tooth_bending import half_plane
+from fe_contact.effects.influence.slice_compliance import slice_compliance
+from fe_contact.effects.influence.tooth_bending import half_plane
 from fe_contact.geometry import ParallelAxes
 from fe_contact.hertz import contact_modulus
 from fe_contact.types import FloatArray

@@ -1,9 +1,9 @@
-"""A process that only serves: the work is done by schedulers elsewhere."""
+"""A process that only serves: the work is done by remote schedulers."""
 
 from __future__ import annotations
 
 
-class WorkElsewhere:
+class RemoteWork:
     """Stands where the scheduler is in a process that works; others look at the table by themselves."""
 
     alive = True
@@ -16,4 +16,4 @@ class WorkElsewhere:
         """Do nothing."""
 
     def wake(self) -> None:
-        """Do nothing: schedulers elsewhere look every half second."""
+        """Do nothing: remote schedulers look every half second."""

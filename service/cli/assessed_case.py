@@ -1,4 +1,4 @@
-"""Case files on the command line: read, and judged for plausibility."""
+"""Case files on the command line: read, and assessed for plausibility."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from service.schemas import Case, read_model
 from service.schemas.flank import FlankPoint
 
 
-def judged_case(file: Path, point: FlankPoint | None = None) -> Case:
+def assessed_case(file: Path, point: FlankPoint | None = None) -> Case:
     """Return the case in a file, at one load and alignment if asked; warn of what is implausible about it.
 
     Raises

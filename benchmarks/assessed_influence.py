@@ -22,7 +22,7 @@ def within_factor(estimated: float, measured: float, floor: float = FLOOR) -> bo
 
 
 @dataclass(frozen=True)
-class JudgedWorth:
+class AssessedEffect:
     """One effect of one case or scene: relative changes by leaving it out, per quantity of the study.
 
     `off_at` are the tolerances at which "auto" leaves it off.
@@ -50,14 +50,14 @@ class JudgedWorth:
         return " | ".join(cells)
 
 
-def per_cent_right(found: Sequence[JudgedWorth], quantity: int | None = None) -> float:
+def per_cent_right(found: Sequence[AssessedEffect], quantity: int | None = None) -> float:
     """Return how many per cent are right, in one quantity or in all of them at once."""
     right = [all(one.right) if quantity is None else one.right[quantity] for one in found]
     return 100.0 * float(np.mean(right)) if right else 100.0
 
 
 @dataclass(frozen=True)
-class WorthStudy:
+class InfluenceStudy:
     """What a study counts, and in which words.
 
     Attributes
@@ -66,7 +66,7 @@ class WorthStudy:
         Of its figures; what an ablation is of; where an estimate may be wrong.
     quantities : tuple of str
     tolerances : tuple of float
-        At which the decisions of "auto" are judged.
+        At which the decisions of "auto" are assessed.
     """
 
     subject: str
@@ -75,7 +75,7 @@ class WorthStudy:
     quantities: tuple[str, ...]
     tolerances: tuple[float, ...]
 
-    def counts(self, found: Sequence[JudgedWorth]) -> list[Figure]:
+    def counts(self, found: Sequence[AssessedEffect]) -> list[Figure]:
         """Return how often the estimates are right."""
         wrong = 100.0 - per_cent_right(found)
         return [
@@ -84,8 +84,8 @@ class WorthStudy:
             *self.by_quantity(found),
         ]
 
-    def by_quantity(self, found: Sequence[JudgedWorth]) -> list[Figure]:
-        """Return how often each quantity is wrong where it can be seen, and what "auto" leaves off."""
+    def by_quantity(self, found: Sequence[AssessedEffect]) -> list[Figure]:
+        """Return how often each quantity is wrong where it can be seen, and what "auto" neglects."""
         rows = []
         for k, name in enumerate(self.quantities):
             seen = [one for one in found if max(abs(one.estimated[k]), abs(one.measured[k])) >= FLOOR]
@@ -94,15 +94,15 @@ class WorthStudy:
             rows.append(Figure(self.subject, what, 100.0 - per_cent_right(seen, k), "%", 100.0 - SHARE))
         return rows + [self._left_off(found, tolerance) for tolerance in self.tolerances]
 
-    def _left_off(self, found: Sequence[JudgedWorth], tolerance: float) -> Figure:
-        """Return the largest change of any quantity by an effect that "auto" leaves off."""
+    def _left_off(self, found: Sequence[AssessedEffect], tolerance: float) -> Figure:
+        """Return the largest change of any quantity by an effect that "auto" neglects."""
         off = [one for one in found if tolerance in one.off_at]
         worst = max((abs(change) for one in off for change in one.measured), default=0.0)
-        what = f"largest change by what auto leaves off at {100 * tolerance:g} % ({len(off)} ablations)"
+        what = f"largest change by what auto neglects at {100 * tolerance:g} % ({len(off)} ablations)"
         return Figure(self.subject, what, 100.0 * worst, "%", 100.0 * tolerance)
 
 
-def by_effect(found: Sequence[JudgedWorth]) -> dict[str, list[JudgedWorth]]:
+def by_effect(found: Sequence[AssessedEffect]) -> dict[str, list[AssessedEffect]]:
     """Return the ablations of every effect, in the order they were found."""
     names = dict.fromkeys(one.effect for one in found)
     return {name: [one for one in found if one.effect == name] for name in names}

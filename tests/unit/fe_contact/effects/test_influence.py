@@ -1,4 +1,4 @@
-"""Worth of effects without finite elements: the springs against finite elements, laws of their compliance."""
+"""Influence of effects without finite elements: springs against finite elements, laws of their compliance."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.compliance import flank_compliance
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, contact_problem
 from fe_contact.effects import EFFECTS
-from fe_contact.effects.worth import Worth, estimate_worth
-from fe_contact.effects.worth.axial_compliance import _bent
-from fe_contact.effects.worth.slice_compliance import slice_compliance
-from fe_contact.effects.worth.slice_model import Springs
+from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
+from fe_contact.effects.influence.axial_compliance import _bent
+from fe_contact.effects.influence.slice_compliance import slice_compliance
+from fe_contact.effects.influence.slice_model import Springs
 from fe_contact.planning import make_plan
 from fe_contact.types import FloatArray
 
@@ -27,10 +27,10 @@ PAIR = GearPair(GEAR, GEAR)
 HELICAL = GearPair(replace(GEAR, helix_angle=0.35), replace(GEAR, helix_angle=-0.35))
 
 
-def worth(pair: GearPair, name: str, **asked: object) -> Worth:
+def influence(pair: GearPair, name: str, **asked: object) -> EstimatedInfluence:
     """Estimate one effect of a request at one load."""
     checked = check_request(pair, **({"normal_forces": [2000.0]} | asked))  # type: ignore[arg-type]
-    found = estimate_worth(checked.request.scene, checked.decided, name, EFFECTS)
+    found = estimate_influence(checked.request.scene, checked.decided, name, EFFECTS)
     assert found is not None
     return found
 
@@ -121,19 +121,21 @@ def test_lengths_and_loads_together_change_no_ratio() -> None:
 def test_a_rigid_gap_under_all_of_the_load_is_seen_whole() -> None:
     relieved = FlankModification(tip_relief=5e-6, tip_relief_length=0.5 * M)
     pair = replace(PAIR, pinion=replace(GEAR, modification=relieved))
-    found = worth(pair, "profile_modification", normal_forces=[1.0], effects={"corner_contact": "off"})
+    found = influence(pair, "profile_modification", normal_forces=[1.0], effects={"corner_contact": "off"})
     # at next to no load the mesh follows the relief of its one pair outside double contact
     assert 0.0 < -found.peak_to_peak[0] < 5e-6
     assert found.largest < 1.0
 
 
-def test_what_a_scene_does_not_hold_is_worth_nothing() -> None:
+def test_what_a_scene_does_not_hold_changes_nothing() -> None:
     for name in ("lead_modification", "misalignment", "pitch_error", "shaft_deflection", "thin_rim"):
-        assert worth(PAIR, name).largest == 0.0
+        assert influence(PAIR, name).largest == 0.0
     checked = check_request(HELICAL, normal_forces=[2000.0])
-    assert estimate_worth(checked.request.scene, checked.decided, "face_load_distribution", EFFECTS) is None
+    assert (
+        estimate_influence(checked.request.scene, checked.decided, "face_load_distribution", EFFECTS) is None
+    )
 
 
-def test_misalignment_is_worth_more_the_larger_it_is() -> None:
-    small, large = (worth(PAIR, "misalignment", misalignments=[x]) for x in (2e-6, 20e-6))
+def test_misalignment_changes_more_the_larger_it_is() -> None:
+    small, large = (influence(PAIR, "misalignment", misalignments=[x]) for x in (2e-6, 20e-6))
     assert large.largest > 10.0 * small.largest > 0.0
