@@ -153,7 +153,7 @@ def test_what_stays_leaves_room_for_the_rest_or_ends_it(helical):
 def test_positions_that_were_asked_for_stay():
     fixed = ran(pair(0.3), "standard", 15, positions=16)
     reason = next_pass(fixed, shares(position=3.0, discretization=0.5))
-    assert "16 positions were asked for" in reason
+    assert "16 positions were requested" in reason
 
 
 def test_what_lies_between_the_nodes_of_the_axes_is_the_callers(helical):
