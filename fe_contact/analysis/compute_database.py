@@ -6,28 +6,26 @@ import platform
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from importlib.metadata import version
-from pathlib import Path
 
 from bounds import Finding
 from fe_contact.analysis.assumptions import check_assumptions
 from fe_contact.analysis.contact_receipt import contact_receipt
 from fe_contact.analysis.decided import Decided
 from fe_contact.analysis.effect_ledger import effect_ledger
-from fe_contact.analysis.judged_table import judged_table, unjudged_table
+from fe_contact.analysis.judged_table import JudgedTable, judged_table, unjudged_table
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked, Request
 from fe_contact.analysis.solved_table import SolvedTable, condensed_bodies, solve_table
 from fe_contact.analysis.tolerance_receipt import tolerance_receipt
+from fe_contact.options import Run
 from fe_contact.planning.cost_model import log_name
 from fe_contact.planning.run_log import record
 from fe_contact.plausibility import merged, table_findings
-from fe_contact.progress import Progress
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import Json
-from fe_contact.workers import InProcess, Workers
 
 SOLVER_VERSION = "11"
 PACKAGES = ("lineofaction", "numpy", "scipy", "numba", "scikit-fem", "gmsh")
@@ -41,25 +39,16 @@ class Computed:
     decided: Decided
 
 
-def compute_database(
-    checked: Checked,
-    case: Json,
-    report: Progress,
-    cache: Path | None,
-    decided: Decided | None = None,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> SteDatabase:
+def compute_database(checked: Checked, case: Json, run: Run, decided: Decided | None = None) -> SteDatabase:
     """Compute the table of a checked request; parameters of `compute_pass`."""
-    return compute_pass(checked, case, report, cache, decided, workers).table
+    return compute_pass(checked, case, run, decided).table
 
 
 def compute_pass(
     checked: Checked,
     case: Json,
-    report: Progress,
-    cache: Path | None,
+    run: Run,
     decided: Decided | None = None,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
     clock: StageClock | None = None,
 ) -> Computed:
     """Compute the table of a checked request once.
@@ -69,14 +58,9 @@ def compute_pass(
     checked : Checked
     case : dict
         Echoed into the result and hashed.
-    report : callable
-        Called as report(stage, fraction).
-    cache : Path, optional
-        Directory of flank compliances.
+    run : Run
     decided : Decided, optional
         Model and discretisation; default: those that the accuracy asks for.
-    workers : Workers
-        Who condenses the gears and solves the contact; the table does not depend on them.
     clock : StageClock, optional
         That of the workers' cost, with what was spent on this pass before it began; default: a new one.
 
@@ -85,47 +69,60 @@ def compute_pass(
     SolveError
         An assumption of the run does not hold and `on_violation` is "fail".
     """
-    clock, before = clock or StageClock(workers.spent), replace(workers.spent)
-    full = checked.request.accuracy.receipt == "full"
-    planned = solve_table(checked, clock, report, cache, decided=decided, workers=workers)
-    run, found, repeated = settled(
+    clock, before = clock or StageClock(run.workers.spent), replace(run.workers.spent)
+    planned = solve_table(checked, clock, run, decided=decided)
+    made, assumptions, repeated = settled(
         planned,
         check_assumptions,
-        lambda run, needed: solve_table(
-            with_effects(run.checked, needed), clock, report, cache, run, workers=workers
-        ),
+        lambda made, needed: solve_table(with_effects(made.checked, needed), clock, run, made),
         clock,
     )
-    with clock.stage("contact"):
-        contact = contact_receipt(run.solved, run.support, condition=full, known=run.condition)
-    judged = unjudged_table(run.table, run.places, run.plan)
-    if full:
-        bodies = condensed_bodies(run.checked, run.plan, clock, report, cache, coarse=True, workers=workers)
-        with clock.stage("error estimate"):
-            coarse = run.places.on_bodies(bodies)
-            judged = judged_table(run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan)
-    elsewhere = workers.spent.since(before)
-    if not repeated and not elsewhere.tasks:
-        spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
-        record(cache, run.prediction.logged, spent)
+    judged, contact = _judged(made, clock, run)
+    remote = run.workers.spent.since(before)
+    if not repeated and not remote.tasks:
+        spent = {log_name(made.prediction.kind, name): time for name, time in clock.seconds.items()}
+        record(run.cache, made.prediction.logged, spent)
     with clock.stage("effect ledger"):
         ledger = effect_ledger(
-            run.checked, cache, found, plan=run.plan, planned_request=planned.checked, estimates=full
+            made.checked,
+            run.cache,
+            assumptions,
+            plan=made.plan,
+            planned_request=planned.checked,
+            estimates=_full(made),
         )
-    metadata = _metadata(case, run, clock, judged.to_json() | contact, ledger)
-    metadata.receipt["assumptions"] = [one.to_json() for one in found]
-    metadata.receipt["repeated"] = repeated
-    request = run.checked.request
-    findings = merged(request.findings, solved_findings(request, run.table))
-    metadata.warnings.extend(finding.to_json() for finding in findings)
-    if elsewhere.tasks or elsewhere.lost:
-        metadata.receipt["elsewhere"] = asdict(elsewhere)
-    table = replace(run.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
-    if request.accuracy.tolerance is not None:
-        kept = tolerance_receipt(table, request.accuracy.tolerance)
+    receipt = clock.to_json() | judged.to_json() | contact | _planned(made)
+    receipt |= {"assumptions": [one.to_json() for one in assumptions], "repeated": repeated}
+    if remote.tasks or remote.lost:
+        receipt["elsewhere"] = asdict(remote)
+    metadata = _metadata(case, made, receipt, ledger)
+    table = replace(made.table, error_estimate=judged.band, curve_error=judged.curve_error, metadata=metadata)
+    tolerance = made.checked.request.options.tolerance
+    if tolerance is not None:
+        kept = tolerance_receipt(table, tolerance)
         metadata.receipt["tolerance"] = kept
         metadata.receipt["choice"]["met"] = kept["met"]
-    return Computed(table, run.decided)
+    return Computed(table, made.decided)
+
+
+def _full(made: SolvedTable) -> bool:
+    """Whether the receipt measures the errors."""
+    return made.checked.request.options.receipt == "full"
+
+
+def _judged(made: SolvedTable, clock: StageClock, run: Run) -> tuple[JudgedTable, Json]:
+    """Return the table's errors, and what its receipt says of the contact."""
+    full = _full(made)
+    with clock.stage("contact"):
+        contact = contact_receipt(made.solved, made.support, condition=full, known=made.condition)
+    if not full:
+        return unjudged_table(made.table, made.places, made.plan), contact
+    bodies = condensed_bodies(made.checked, made.plan, clock, run, coarse=True)
+    with clock.stage("error estimate"):
+        coarse = made.places.on_bodies(bodies)
+        return judged_table(
+            made.table, made.places, coarse, made.solved, made.nodes, made.checked, made.plan
+        ), contact
 
 
 def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:
@@ -134,23 +131,29 @@ def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]
     return table_findings(table.static_transmission_error, table.max_pressure, module)
 
 
-def _predicted(run: SolvedTable) -> Json:
-    """Return what was expected of the run before it began, to stand beside what happened."""
-    return run.prediction.to_json() | {"error": run.decided.mesh.option.error.to_json()}
+def _planned(made: SolvedTable) -> Json:
+    """Return what was chosen and expected of the run before it began, to stand beside what happened."""
+    error = made.decided.mesh.option.error.to_json()
+    planned = {
+        "plan": made.plan.to_json(),
+        "prediction": made.prediction.to_json() | {"error": error},
+        "choice": made.decided.to_json(),
+    }
+    cycle = made.checked.cycle
+    return planned if cycle is None else planned | {"predicted": cycle.to_json()}
 
 
-def _metadata(case: Json, run: SolvedTable, clock: StageClock, found: Json, ledger: list[Json]) -> Metadata:
-    """Everything about the making of the table; `found` is what was found of its errors and its contact."""
-    receipt = clock.to_json() | found | {"plan": run.plan.to_json(), "prediction": _predicted(run)}
-    receipt["choice"] = run.decided.to_json()
-    if run.checked.cycle is not None:
-        receipt["predicted"] = run.checked.cycle.to_json()
+def _metadata(case: Json, made: SolvedTable, receipt: Json, ledger: list[Json]) -> Metadata:
+    """Everything about the making of the table."""
+    request = made.checked.request
+    findings = merged(request.findings, solved_findings(request, made.table))
     return Metadata(
         case=case,
         effect_ledger=ledger,
         receipt=receipt,
         content_hash=content_hash(case, SOLVER_VERSION, SCHEMA_VERSION),
         software_versions=software_versions(),
+        warnings=[finding.to_json() for finding in findings],
     )
 
 

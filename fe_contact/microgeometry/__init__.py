@@ -7,6 +7,8 @@ from fe_contact.microgeometry.iso1328 import iso1328_tolerances
 from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimisation import Optimisation, Outcome, StepAside
 from fe_contact.microgeometry.optimise import optimise
+from fe_contact.microgeometry.request import OptimisationRequest
+from fe_contact.microgeometry.sampling import Sampling
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import Ended, Search, SearchRun
 from fe_contact.microgeometry.search_method import (
@@ -34,7 +36,9 @@ __all__ = [
     "NelderMead",
     "Objective",
     "Optimisation",
+    "OptimisationRequest",
     "Outcome",
+    "Sampling",
     "Scatter",
     "ScatterNodes",
     "Search",

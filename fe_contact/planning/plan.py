@@ -13,7 +13,7 @@ from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactModel, PatchRule
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
-from fe_contact.planning.accuracy import Accuracy
+from fe_contact.options import AnalysisOptions
 from fe_contact.planning.discretisation import Discretisation, face_discretisation, plane_discretisation
 from fe_contact.types import FloatArray, Json
 
@@ -146,7 +146,7 @@ class Plan:
 def make_plan(
     pair: ParallelAxes,
     load: FloatArray,
-    accuracy: Accuracy,
+    options: AnalysisOptions,
     model: ContactModel,
     level: str = "standard",
     slices: int | None = None,
@@ -158,7 +158,7 @@ def make_plan(
     pair : GearPair or InternalGearPair
     load : ndarray
         Requested normal forces in N, increasing, > 0.
-    accuracy : Accuracy
+    options : AnalysisOptions
     model : ContactModel
         `across_face` asks for three dimensions, `finite_width` for a plane corrected towards them, `thin_rim`
         for the blanks, `bore_seat` for the seats.
@@ -168,24 +168,24 @@ def make_plan(
     slices : int, optional
         Of the face in three dimensions; default: those of the level.
     """
-    level = accuracy.level or level
+    level = options.level or level
     levels = increasing("load", load)
     discretisation: Discretisation
     if model.across_face:
         discretisation = face_discretisation(pair, level, slices)
     else:
-        stress = accuracy.model == "plane_stress"
+        stress = options.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
         discretisation = plane_discretisation(pair, level, hypothesis, model.finite_width)
     patch = _patch_rule(pair, float(levels[-1]), discretisation)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
-    if accuracy.tolerance is not None:
-        nodes = nodes.for_tolerance(accuracy.tolerance)
+    if options.tolerance is not None:
+        nodes = nodes.for_tolerance(options.tolerance)
     support = _support_loads(levels)
     return Plan(
         discretisation,
         patch,
-        accuracy.positions,
+        options.positions,
         nodes,
         levels,
         support,
