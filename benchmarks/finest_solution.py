@@ -32,14 +32,14 @@ def finest(case: PairCase, cache: Path) -> FloatArray:
     On elements and layers `FINER` times as fine as those of the level fine, over the face in `SLICES` slices,
     at many positions.
     """
-    checked = check_request(case.pair, normal_forces=case.forces, level="fine", **case.options)
+    checked = check_request(case.pair, *case.request(level="fine"))
     return solved_finely(checked, pair_contact(checked.request.pair, finest_plan(checked), cache))
 
 
 def finest_plan(checked: Checked) -> Plan:
     """Plan a request of the level fine on meshes, or in slices, beyond it."""
     request = checked.request
-    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+    plan = make_plan(request.pair, request.load, request.options, checked.model)
     return replace(plan, discretization=_finer(plan.discretization, plan.bodies(request.pair)))
 
 

@@ -41,10 +41,12 @@ analyze(GearPair(crowned, wheel, 134.5e-3), normal_forces=[6000.0], **common)
 fresh = cpu() - start
 from fe_contact.analysis import check_request
 from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import make_plan
 import numpy as np
-asked = check_request(GearPair(crowned, wheel, 134.5e-3), normal_forces=[6000.0], level={level!r})
-plan = make_plan(pair, asked.request.load, asked.request.accuracy, asked.model)
+axes, options = TableAxes(normal_forces=[6000.0]), AnalysisOptions(level={level!r})
+asked = check_request(GearPair(crowned, wheel, 134.5e-3), axes, options)
+plan = make_plan(pair, asked.request.load, asked.request.options, asked.model)
 contact = pair_contact(pair, plan, Path({cache!r}))
 position, load = np.arange(64) / 64, np.array([6000.0])
 contact.solve(asked.model, position, load)

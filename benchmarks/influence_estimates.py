@@ -24,11 +24,13 @@ from benchmarks.figures import Figure
 from benchmarks.influence_cases import influence_cases
 from benchmarks.marked_section import replace_section
 from benchmarks.pair_cases import PairCase
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis import check_request
 from fe_contact.analysis.ablation import EffectAblation, ablate
 from fe_contact.analysis.model_choice import decide
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.influence import EstimatedInfluence, estimate_influences
+from fe_contact.options import Run
 
 PAGE = Path(__file__).parents[1] / "docs" / "effects" / "influence.md"
 SECTION = "influence estimates"
@@ -66,12 +68,13 @@ def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedInfluence]:
     found = []
     for case in cases:
         sys.stderr.write(f"  {case.name}\n")
-        made = ablate(case.pair, normal_forces=case.forces, level="draft", cache=folder, **case.options)
-        asked = {"normal_forces": case.forces, **case.options}
-        checked = check_request(case.pair, level="draft", **asked)
+        made = ablate(case.pair, *case.request(level="draft"), Run(cache=folder))
+        checked = check_request(case.pair, *case.request(level="draft"))
         names = [entry.name for entry in made.effects]
         estimates = estimate_influences(checked.request.scene, checked.decided, names, EFFECTS)
-        wishes = {tol: check_request(case.pair, tolerance=tol, **asked) for tol in TOLERANCES}
+        wishes = {
+            tol: check_request(case.pair, *case.request(tolerance=AllowedError(tol))) for tol in TOLERANCES
+        }
         decided = {tol: decide(wish, folder).checked.decided for tol, wish in wishes.items()}
         for entry in made.effects:
             off_at = tuple(tol for tol in TOLERANCES if is_neglected(decided[tol], entry.name))

@@ -20,6 +20,7 @@ from fe_contact import FlankModification, analyze
 from fe_contact.analysis import CondensedPair, check_request, condensed_pair
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.types import FloatArray
 
 SECTION, SUBJECT = "live answers", "stated errors of live answers against the finest solution"
@@ -122,11 +123,8 @@ def _exact(bodies: Bodies) -> dict[str, FloatArray]:
     for name, question in bodies.questions.items():
         checked = check_request(
             question.pair(bodies.plain),
-            normal_forces=bodies.forces,
-            level="fine",
-            misalignments=(question.misalignment,),
-            effects={"corner_contact": "on"},
-            **bodies.options,
+            TableAxes(normal_forces=bodies.forces, misalignments=(question.misalignment,)),
+            AnalysisOptions(level="fine", effects={"corner_contact": "on"}, **bodies.options),
         )
         if contact is None:
             contact = pair_contact(checked.request.pair, finest_plan(checked), FOLDER)

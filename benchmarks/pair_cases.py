@@ -10,6 +10,7 @@ from typing import Any
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.geometry import GearBlank, InternalGearPair, ParallelAxes
 from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.options import AnalysisOptions, TableAxes
 
 M = 3e-3
 """Normal module, m."""
@@ -40,6 +41,12 @@ class PairCase:
         """Normal forces in N."""
         module = self.pair.pinion.normal_module
         return [load * RATED * 1e6 * module * self.pair.face_width for load in self.loads]
+
+    def request(self, **others: Any) -> tuple[TableAxes, AnalysisOptions]:
+        """Return the axes of the case, and its options with others."""
+        options = {**self.options, **others}
+        skews = options.pop("misalignments", (0.0,))
+        return TableAxes(normal_forces=self.forces, misalignments=skews), AnalysisOptions(**options)
 
 
 def gear_of(teeth: int, face: float = 6.0, **more: Any) -> Gear:

@@ -24,6 +24,7 @@ from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
 from fe_contact.effects.influence import Influence
 from fe_contact.effects.influence.influence import RIPPLE_FLOOR, signed
+from fe_contact.options import AnalysisOptions, Run, TableAxes
 
 SECTION = "quiet helical"
 SUBJECT = "influence of effects on quiet helical pairs"
@@ -83,13 +84,14 @@ def assessed_pair(quiet: QuietPair, folder: Path) -> list[AssessedInfluence]:
     sys.stderr.write(f"  {quiet.name}\n")
     checked = check_request(
         quiet.pair,
-        torques=[quiet.torque],
-        level="draft",
-        positions=POSITIONS,
-        misalignments=(quiet.misalignment,),
-        effects={"corner_contact": "on"},
-        receipt="minimal",
-        on_violation="report",
+        TableAxes(torques=[quiet.torque], misalignments=(quiet.misalignment,)),
+        AnalysisOptions(
+            level="draft",
+            positions=POSITIONS,
+            effects={"corner_contact": "on"},
+            receipt="minimal",
+            on_violation="report",
+        ),
     )
     held = [entry.name for entry in checked.ledger if entry.on and entry.name in EFFECTS]
     estimates = estimated_influences(checked, held)
@@ -108,7 +110,7 @@ def assessed_pair(quiet: QuietPair, folder: Path) -> list[AssessedInfluence]:
 def _curve(checked: Checked, folder: Path) -> tuple[float, float]:
     """Compute mean and peak-to-peak, m."""
     decided = decide(checked, folder).in_slices(SLICES)
-    table = compute_database(checked, checked.request.to_json(), lambda *_: None, folder, decided)
+    table = compute_database(checked, checked.request.to_json(), Run(cache=folder), decided)
     curve = table.curve(force=float(table.force[-1]), misalignment=checked.request.scene.largest_misalignment)
     return float(curve.mean.value), float(curve.peak_to_peak.value)
 

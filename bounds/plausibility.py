@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -108,7 +109,15 @@ def finding_of(content: Json) -> Finding:
     return Finding(low=content["low"] or 0.0, high=content["high"] or math.inf, **facts)
 
 
-def warn_of(findings: Sequence[Finding], stacklevel: int = 3) -> None:
-    """Warn of findings, once of each; a `stacklevel` of 3 names the caller of who calls this."""
+def warn_of(findings: Sequence[Finding]) -> None:
+    """Warn of findings, once of each, in the name of who called the package that found them."""
+    library, level = _package(2), 3
+    while _package(level) == library:
+        level += 1
     for finding in findings:
-        warnings.warn(f"implausible: {finding.message()}", PlausibilityWarning, stacklevel)
+        warnings.warn(f"implausible: {finding.message()}", PlausibilityWarning, level)
+
+
+def _package(level: int) -> str:
+    """Return the package of a caller, counted as `warnings` counts from who asks."""
+    return str(sys._getframe(level).f_globals["__name__"]).partition(".")[0]

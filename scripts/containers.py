@@ -10,9 +10,9 @@ from pathlib import Path
 import httpx2
 import numpy as np
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis import ste_database
 from service.client import LineOfActionClient
-from service.convert.case import analysis_arguments, case_json
+from service.convert.case import analysis_options, case_json, table_axes
 from service.convert.checks import check_case
 from service.schemas import Case, read_model
 
@@ -63,7 +63,7 @@ def the_case() -> Case:
 
 def same_table(client: LineOfActionClient, case: Case) -> bool:
     """Assess a table computed in containers against one computed here."""
-    here = analyze(check_case(case), **analysis_arguments(case), case=case_json(case))
+    here = ste_database(check_case(case), table_axes(case), analysis_options(case), case=case_json(case))
     there = client.analyze(case)
     ours, theirs = (np.asarray(t.to_xarray()["static_transmission_error"]) for t in (here, there))
     apart = float(np.max(np.abs(theirs - ours)) / np.max(np.abs(ours)))

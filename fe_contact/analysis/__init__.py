@@ -1,7 +1,7 @@
 """The main flow: gear pair in, STE database out; and what happens on its flanks."""
 
 from fe_contact.analysis.ablation import Ablation, EffectAblation, ablate
-from fe_contact.analysis.analyze import analyze
+from fe_contact.analysis.analyze import analyze, ste_database
 from fe_contact.analysis.condensed_lookup import condensed_pair
 from fe_contact.analysis.condensed_pair import CondensedPair
 from fe_contact.analysis.contact_pattern import ContactPattern, contact_pattern
@@ -41,5 +41,6 @@ __all__ = [
     "load_distribution",
     "plan_run",
     "root_stress",
+    "ste_database",
     "study_sensitivity",
 ]

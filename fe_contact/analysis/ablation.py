@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.effect_ledger import toggled
 from fe_contact.analysis.influences import estimated_influences
@@ -19,8 +18,8 @@ from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.influence import Influence
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning import planned, predict_run
-from fe_contact.progress import Progress, silent
 from fe_contact.types import FloatArray, Json
 
 HARMONICS = 5
@@ -169,29 +168,24 @@ class Ablation:
 
 def ablate(
     pair: ParallelAxes,
+    axes: TableAxes,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
     *,
-    torques: Sequence[float] | FloatArray | None = None,
-    normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: AllowedError | float | None = None,
-    level: str | None = None,
-    time_budget: float | None = None,
-    model: str = "auto",
-    positions: int | None = None,
-    pitches: int | None = None,
-    misalignments: Sequence[float] = (0.0,),
-    effects: Mapping[str, str] | None = None,
     only: Sequence[str] | None = None,
-    progress: Progress | None = None,
-    cache: Path | None = None,
 ) -> Ablation:
     """Switch each effect of a case over and report what that changes.
 
     Parameters
     ----------
-    pair, torques, normal_forces, tolerance, level, time_budget, model, positions, pitches, misalignments, \
-effects, progress, cache
-        As for `analyze`; all tables are made on the level of mesh that the accuracy asks for. With `cache`
-        the gears are condensed once for each body and model.
+    pair : GearPair or InternalGearPair
+    axes : TableAxes
+        The tables are at the nominal center distance.
+    options : AnalysisOptions
+        All tables are made on the level of mesh that the accuracy asks for, with a minimal receipt;
+        assumptions that do not hold are reported.
+    run : Run
+        With a cache the gears are condensed once for each body and model.
     only : sequence of str, optional
         Effects to toggle; default all.
 
@@ -209,40 +203,28 @@ effects, progress, cache
     """
     checked = check_request(
         pair,
-        torques=torques,
-        normal_forces=normal_forces,
-        tolerance=tolerance,
-        level=level,
-        time_budget=time_budget,
-        model=model,
-        positions=positions,
-        pitches=pitches,
-        misalignments=misalignments,
-        effects=effects,
-        receipt="minimal",
-        on_violation="report",
+        replace(axes, center_distance_changes=(0.0,)),
+        replace(options, receipt="minimal", on_violation="report"),
     )
-    return ablate_checked(checked, _selected(only), progress or silent, cache)
+    return ablate_checked(checked, _selected(only), run)
 
 
-def ablate_checked(
-    checked: Checked, names: Sequence[str], progress: Progress, cache: Path | None
-) -> Ablation:
+def ablate_checked(checked: Checked, names: Sequence[str], run: Run) -> Ablation:
     """Switch the named effects of a checked request over; parameters of `ablate`."""
-    checked = _on_one_mesh(checked, cache)
-    nominal = _figures(checked, cache)
+    checked = _on_one_mesh(checked, run.cache)
+    nominal = _figures(checked, run)
     estimates = estimated_influences(checked, names)
     found, left_out = [], {}
     for count, entry in enumerate(ledger := [one for one in checked.ledger if one.name in names]):
-        progress("ablation", count / len(ledger))
+        run.progress("ablation", count / len(ledger))
         if entry.verdict.neutral:
             left_out[entry.name] = entry.verdict.reason
             continue
         try:
-            found.append(_switched(checked, entry, nominal, estimates[entry.name], cache))
+            found.append(_switched(checked, entry, nominal, estimates[entry.name], run))
         except (InputError, MeshError, SolveError) as error:
             left_out[entry.name] = str(error)
-    progress("ablation", 1.0)
+    run.progress("ablation", 1.0)
     request = checked.request
     skew = request.whole_scene.largest_misalignment
     return Ablation(request.torque, request.load, skew, nominal, tuple(found), left_out)
@@ -252,8 +234,7 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
     """Return the request with the model and the level that its accuracy asks for: all tables compare."""
     decided = decide(checked, cache)
     request = decided.checked.request
-    accuracy = replace(request.accuracy, tolerance=None, time_budget=None, level=decided.mesh.level)
-    return check_asked(replace(request, accuracy=accuracy), spare=False)
+    return check_asked(replace(request, options=request.options.at_level(decided.mesh.level)), spare=False)
 
 
 def _selected(only: Sequence[str] | None) -> tuple[str, ...]:
@@ -266,22 +247,22 @@ def _selected(only: Sequence[str] | None) -> tuple[str, ...]:
 
 
 def _switched(
-    checked: Checked, entry: LedgerEntry, nominal: Figures, estimate: Influence | None, cache: Path | None
+    checked: Checked, entry: LedgerEntry, nominal: Figures, estimate: Influence | None, run: Run
 ) -> EffectAblation:
     """Compute the case with one effect toggled."""
-    other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), cache)
+    other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), run)
     whole, without = (nominal, other) if entry.on else (other, nominal)
     return EffectAblation(entry.name, entry.on, entry.verdict.reason, whole, without, estimate)
 
 
-def _figures(checked: Checked, cache: Path | None) -> Figures:
+def _figures(checked: Checked, run: Run) -> Figures:
     """Compute the table of a request, without its errors, and read its curves."""
     request = checked.request
-    table = compute_database(checked, request.to_json(), silent, cache)
+    table = compute_database(checked, request.to_json(), run.silent)
     table.require_complete()
     skew = checked.request.whole_scene.largest_misalignment
     curves = [table.curve(force=float(force), misalignment=skew) for force in table.force]
-    plan = planned(request.pair, request.load, request.accuracy, checked.model, request.alignments, cache)
+    plan = planned(request.pair, request.load, request.options, checked.model, request.alignments, run.cache)
     predicted = predict_run(request.pair, plan, checked.model, request.alignments, None)
     return Figures(
         np.array([curve.mean.value for curve in curves]),

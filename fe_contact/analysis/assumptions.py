@@ -109,7 +109,7 @@ def check_cheaply(run: SolvedRun) -> tuple[Assumption, ...]:
 
 def allowed(run: SolvedRun) -> AllowedError:
     """Return what an assumption may change mean or peak-to-peak by."""
-    return run.checked.request.accuracy.allowed
+    return run.checked.request.options.allowed
 
 
 def _tip_edges(run: SolvedRun, size: FloatArray) -> Iterator[Assumption]:

@@ -16,7 +16,8 @@ from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.effects.thin_rim import ThinRim
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning import Accuracy, Plan, make_plan
+from fe_contact.options import AnalysisOptions
+from fe_contact.planning import Plan, make_plan
 from fe_contact.ste import SteDatabase
 
 OF_BODIES = (FaceLoadDistribution.name, FiniteWidth.name, ThinRim.name, BoreSeatElasticity.name)
@@ -68,18 +69,19 @@ def _as_computed(
     on = {entry["name"]: bool(entry["on"]) for entry in ledger if isinstance(entry, dict)}
     bodies = {name: "on" if on[name] else "off" for name in OF_BODIES}
     model = "plane_stress" if plane_stress else "auto"
-    accuracy = Accuracy(None, None, choice["level"], model, None, "minimal")
+    options = AnalysisOptions(
+        level=choice["level"], model=model, effects={**effects, **bodies}, receipt="minimal"
+    )
     request = Request(
         pair,
         np.asarray(database.force),
-        accuracy,
+        options,
         np.zeros(1),
         np.zeros(1),
-        {**effects, **bodies},
         database.period if database.period > 1 else None,
     )
     checked = check_asked(request, whole_table=False, spare=False)
-    return checked, make_plan(pair, request.load, accuracy, checked.model, choice["level"], choice["slices"])
+    return checked, make_plan(pair, request.load, options, checked.model, choice["level"], choice["slices"])
 
 
 def _neglected(database: SteDatabase) -> dict[str, str]:

@@ -26,11 +26,11 @@ from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.solved_table import assembled_table
-from fe_contact.analysis.table_axes import axis, load_levels
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, ParallelAxes
+from fe_contact.options import TableAxes
 from fe_contact.planning import Plan
 from fe_contact.planning.cost_model import condensed_teeth
 from fe_contact.planning.plan import LARGEST_SUPPORT
@@ -161,7 +161,9 @@ class CondensedPair:
     def _asked(self, pair: ParallelAxes, torques: FloatArray, misalignment: float, change: float) -> Checked:
         """Check a question, and compose its model."""
         self._refuse_other_bodies(pair)
-        return self._checked(pair, self._levels(pair, torques), misalignment, change)
+        axes = TableAxes(torques=torques, misalignments=[misalignment], center_distance_changes=[change])
+        self._refuse_beyond_patches(pair, torques, axes.load(pair))
+        return self._checked(pair, axes)
 
     def _refuse_other_bodies(self, pair: ParallelAxes) -> None:
         """Refuse gears or a center distance that this compliance is not of."""
@@ -170,30 +172,29 @@ class CondensedPair:
             bound = "of the gears and the center distance of the table, but for flank modifications"
             raise InputError("pair", "another", bound, "Analyze the other pair first.")
 
-    def _levels(self, pair: ParallelAxes, torques: FloatArray) -> FloatArray:
-        """Return the loads as normal forces; refuse what outgrows the load patches."""
-        load = load_levels(pair, torques, None)
+    def _refuse_beyond_patches(self, pair: ParallelAxes, torques: FloatArray, load: FloatArray) -> None:
+        """Refuse loads that outgrow the load patches."""
         if load[-1] > self.largest_load * (1.0 + 1e-9):
             most = float(pair.torque(np.array([self.largest_load]))[0])
             bound = at_most(most, note=f": {LARGEST_SUPPORT:g} times the highest load of the table")
             advice = "Analyze the case with a higher load."
             raise InputError(f"torques[{load.size - 1}]", float(torques[-1]), bound, advice)
-        return load
 
-    def _checked(self, pair: ParallelAxes, load: FloatArray, misalignment: float, change: float) -> Checked:
+    def _checked(self, pair: ParallelAxes, axes: TableAxes) -> Checked:
         """Compose the model of other flanks on the bodies there are."""
         request = self.checked.request
-        asked = request.effects.get(CornerContact.name, "auto")
+        asked = request.options.effects.get(CornerContact.name, "auto")
         # always on: what a tip edge does is then in every curve, and one compliance serves them all
         corners = "on" if asked == "auto" else asked
+        effects = {**request.options.effects, CornerContact.name: corners}
         return check_asked(
             replace(
                 request,
                 pair=pair,
-                load=load,
-                misalignment=axis("misalignments", [misalignment]),
-                center_distance_change=axis("center_distance_changes", [change]),
-                effects={**request.effects, CornerContact.name: corners},
+                load=axes.load(pair),
+                misalignment=axes.misalignment,
+                center_distance_change=axes.center_distance_change,
+                options=replace(request.options, effects=effects),
             ),
             whole_table=False,
             spare=False,

@@ -72,7 +72,7 @@ class Decided:
     def _plan(self, level: str, slices: int | None) -> Plan:
         """Plan the request on another mesh."""
         request = self.checked.request
-        return make_plan(request.pair, request.load, request.accuracy, self.checked.model, level, slices)
+        return make_plan(request.pair, request.load, request.options, self.checked.model, level, slices)
 
     def to_json(self) -> Json:
         """Return what was chosen, as plain JSON."""
@@ -83,7 +83,7 @@ def model_name(checked: Checked) -> str:
     """Name the model of a request in words."""
     if checked.model.across_face:
         return "three dimensions"
-    if checked.request.accuracy.model == "plane_stress":
+    if checked.request.options.model == "plane_stress":
         return "plane stress"
     corrected = "plane strain corrected for the finite width"
     return corrected if checked.model.finite_width else "plane strain"

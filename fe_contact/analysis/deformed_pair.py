@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.request_check import check_one_load
+from fe_contact.analysis.request_check import check_point
 from fe_contact.analysis.solved_operating_point import (
     SolvedOperatingPoint,
     checked_positions,
@@ -24,8 +22,8 @@ from fe_contact.compliance.deformed_gear import DeformedGear
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.mesh.export import write_cells
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.planning import FaceDiscretization
-from fe_contact.progress import Progress, silent
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 
@@ -79,20 +77,12 @@ class DeformedPair:
 
 def deformed_pairs(
     pair: ParallelAxes,
+    point: OperatingPoint,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
     *,
-    torque: float | None = None,
-    normal_force: float | None = None,
     at: ArrayLike = 0.0,
     beside: int = 1,
-    misalignment: float = 0.0,
-    center_distance_change: float = 0.0,
-    tolerance: AllowedError | float | None = None,
-    level: str | None = None,
-    time_budget: float | None = None,
-    model: str = "auto",
-    effects: Mapping[str, str] | None = None,
-    progress: Progress | None = None,
-    cache: Path | None = None,
 ) -> tuple[DeformedPair, ...]:
     """Solve the contact at some positions and expand it to the finite elements of both gears.
 
@@ -102,17 +92,16 @@ def deformed_pairs(
     Parameters
     ----------
     pair : GearPair or InternalGearPair
-    torque, normal_force : float
-        Torque on the driving gear in N m, or normal force in N; exactly one.
+    point : OperatingPoint
+    options : AnalysisOptions
+        `positions`, `receipt` and `on_violation` do not count.
+    run : Run
+        Only this process works. The fields are not in the cache: in three dimensions they cost once more what
+        the compliances of both gears cost.
     at : array_like
         Positions in base pitches.
     beside : int
         Unloaded teeth to show on either side of the loaded ones, in three dimensions.
-    misalignment, center_distance_change : float
-        See `analyze`, m.
-    tolerance, level, time_budget, model, effects, progress, cache
-        See `analyze`. The fields are not in the cache: in three dimensions they cost once more what the
-        compliances of both gears cost.
 
     Returns
     -------
@@ -126,23 +115,11 @@ def deformed_pairs(
     MeshError, SolveError
         No acceptable mesh, or positions without a solution.
     """
-    checked = check_one_load(
-        pair,
-        torque,
-        normal_force,
-        misalignment,
-        center_distance_change,
-        tolerance=tolerance,
-        level=level,
-        time_budget=time_budget,
-        model=model,
-        effects=effects,
-    )
+    checked = check_point(pair, point, options)
     integer("beside", beside, 0, 100)
-    report = progress or silent
-    solved = solve_operating_point(checked, checked_positions(at), StageClock(), report, cache)
+    solved = solve_operating_point(checked, checked_positions(at), StageClock(), run)
     gears = deformed_gears(solved, beside)
-    report("deformation", 1.0)
+    run.progress("deformation", 1.0)
     position, deflection = solved.problem.candidates.position, solved.solution.deflection[:, 0]
     here = solved.contact.pair
     return tuple(

@@ -93,7 +93,7 @@ def _cost(
 def _predicted(checked: Checked, cache: Path | None, run: Plan | None) -> float:
     """CPU seconds of a request, on the mesh and in the slices of the run if that is over the face as well."""
     request = checked.request
-    wanted = request.pair, request.load, request.accuracy, checked.model
+    wanted = request.pair, request.load, request.options, checked.model
     if run is None:
         plan = planned(*wanted, request.alignments, cache)
     else:
@@ -122,9 +122,7 @@ def toggled(checked: Checked, name: str, choice: str) -> Checked:
     request = checked.request
     asked = flipped(checked.decided, name, choice)
     # choices of every effect are explicit now, so that an explicit model has no say about them any more
-    model = "plane_stress" if request.accuracy.model == "plane_stress" else "auto"
-    accuracy = replace(request.accuracy, model=model if asked["face_load_distribution"] == "off" else "auto")
+    plane_stress = request.options.model == "plane_stress" and asked["face_load_distribution"] == "off"
+    options = replace(request.options, model="plane_stress" if plane_stress else "auto", effects=asked)
     neglected = {one: reason for one, reason in request.neglected.items() if one != name}
-    return check_asked(
-        replace(request, effects=asked, accuracy=accuracy, neglected=neglected, turned_on={}), spare=False
-    )
+    return check_asked(replace(request, options=options, neglected=neglected, turned_on={}), spare=False)

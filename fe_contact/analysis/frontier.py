@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.accuracy_study import FIDELITIES, Fidelity
 from fe_contact.analysis.accuracy_study.full_contact import ORIGIN, FullContactLevel, known_full_contact
 from fe_contact.analysis.fidelity_result import FidelityResult, fidelity_results
@@ -25,9 +24,10 @@ from fe_contact.analysis.warm_up import warm_up
 from fe_contact.checks import integer
 from fe_contact.errors import InputError, MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.progress import Progress, silent
 from fe_contact.ste import SteDatabase
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import Json
 
 POSITIONS = 64
 MOST_FULL_CONTACT = 64
@@ -91,20 +91,12 @@ class Frontier:
 
 def frontier(
     pair: ParallelAxes,
+    axes: TableAxes,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     *,
-    torques: Sequence[float] | FloatArray | None = None,
-    normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: AllowedError | float | None = None,
-    level: str | None = None,
-    time_budget: float | None = None,
-    model: str = "auto",
-    positions: int | None = None,
-    misalignments: Sequence[float] = (0.0,),
-    center_distance_changes: Sequence[float] = (0.0,),
-    effects: Mapping[str, str] | None = None,
     fidelities: Sequence[str] | None = None,
     full_contact: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress = silent,
 ) -> Frontier:
     """Run every fidelity of the accuracy study that is valid for a case, and compare each to the finest.
 
@@ -112,11 +104,10 @@ def frontier(
 
     Parameters
     ----------
-    pair, torques, normal_forces, tolerance, level, time_budget, model, misalignments, \
-center_distance_changes, effects, progress
-        As for `analyze`; the accuracy decides which fidelity is marked as chosen.
-    positions : int, optional
-        Equally spaced positions of every table; default 64.
+    pair : GearPair or InternalGearPair
+    axes : TableAxes
+    options : AnalysisOptions
+        The accuracy decides which fidelity is marked as chosen; `positions` is 64 by default.
     fidelities : sequence of str, optional
         Names of fidelities to run; default all.
     full_contact : int, optional
@@ -131,19 +122,7 @@ center_distance_changes, effects, progress
     SolveError
         Fewer than two fidelities gave a whole table.
     """
-    checked = check_request(
-        pair,
-        torques=torques,
-        normal_forces=normal_forces,
-        tolerance=tolerance,
-        level=level,
-        time_budget=time_budget,
-        model=model,
-        positions=positions or POSITIONS,
-        misalignments=misalignments,
-        center_distance_changes=center_distance_changes,
-        effects=effects,
-    )
+    checked = check_request(pair, axes, replace(options, positions=options.positions or POSITIONS))
     if full_contact is not None:
         integer("full_contact", full_contact, 1, MOST_FULL_CONTACT)
     asked = selected(fidelities)
@@ -151,7 +130,7 @@ center_distance_changes, effects, progress
         fidelity.name: reason for fidelity in asked if (reason := fidelity.refusal(checked)) is not None
     }
     valid = [fidelity for fidelity in asked if fidelity.name not in left_out]
-    return _run_study(checked, valid, left_out, full_contact, progress or silent)
+    return _run_study(checked, valid, left_out, full_contact, progress)
 
 
 def selected(names: Sequence[str] | None) -> tuple[Fidelity, ...]:
@@ -234,4 +213,4 @@ def chosen_fidelity(checked: Checked) -> str | None:
         return f"3d_{level}"
     if model.finite_width:
         return "corrected" if level == "standard" else f"corrected_{level}"
-    return None if checked.request.accuracy.model == "plane_stress" else "plane_strain"
+    return None if checked.request.options.model == "plane_stress" else "plane_strain"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -14,11 +14,10 @@ from fe_contact.analysis.refinement import Refinement, next_pass
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.tolerance_receipt import error_shares
 from fe_contact.errors import FeContactError
-from fe_contact.progress import Progress
+from fe_contact.options import Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
-from fe_contact.workers import Workers
 
 MOST_PASSES = 4
 
@@ -27,29 +26,26 @@ OnDraft = Callable[[SteDatabase, str], None]
 
 
 @dataclass(frozen=True)
-class _Run:
-    """What all passes share."""
+class _Passes:
+    """What all passes share; the run has a cache."""
 
     case: Json
-    report: Progress
+    run: Run
     on_draft: OnDraft
-    cache: Path
-    workers: Workers
 
     def first(self, checked: Checked) -> Pass:
         """Run what the accuracy is expected to ask for."""
-        clock = StageClock(self.workers.cost)
+        clock = StageClock(self.run.workers.cost)
         with clock.stage("planning"):
-            decided = decide(checked, self.cache, tried=True)
-        shared = (self.case, self.report, self.cache)
-        done = compute_pass(decided.checked, *shared, decided, self.workers, clock)
+            decided = decide(checked, self.run.cache, tried=True)
+        done = compute_pass(decided.checked, self.case, self.run, decided, clock)
         return Pass(done.decided, done.table.metadata.receipt, done.table)
 
     def refined(self, made: Refinement, clock: StageClock) -> Pass:
         """Run a refinement; one that fails or is interrupted says so."""
-        decided, shared = made.decided, (self.case, self.report, self.cache)
+        decided = made.decided
         try:
-            done = compute_pass(decided.checked, *shared, decided, self.workers, clock)
+            done = compute_pass(decided.checked, self.case, self.run, decided, clock)
         except KeyboardInterrupt:
             return Pass(decided, clock.to_json(), None, made, "interrupted")
         except (FeContactError, MemoryError) as error:
@@ -57,14 +53,7 @@ class _Run:
         return Pass(done.decided, done.table.metadata.receipt, done.table, made)
 
 
-def kept_tolerance(
-    checked: Checked,
-    case: Json,
-    report: Progress,
-    cache: Path | None,
-    on_draft: OnDraft,
-    workers: Workers,
-) -> SteDatabase:
+def kept_tolerance(checked: Checked, case: Json, run: Run, on_draft: OnDraft) -> SteDatabase:
     """Compute the table of a request with a tolerance, in at most `MOST_PASSES` passes.
 
     Parameters
@@ -73,14 +62,10 @@ def kept_tolerance(
         With a tolerance and a full receipt.
     case : dict
         Echoed into the result and hashed.
-    report : callable
-        Called as report(stage, fraction); every pass begins anew.
-    cache : Path, optional
-        Directory of flank compliances, which passes share; None: one for this run.
+    run : Run
+        Its cache is what passes share; None: one for this run. Progress begins anew with every pass.
     on_draft : callable
         Called with every table that is refined, and what is refined.
-    workers : Workers
-        Who condenses the gears and solves the contact.
 
     Returns
     -------
@@ -93,27 +78,27 @@ def kept_tolerance(
     MeshError, SolveError, WorkersLost
         Of the first pass; a later one that fails keeps the table before it.
     """
-    if cache is not None:
-        return _passes(checked, _Run(case, report, on_draft, cache, workers))
+    if run.cache is not None:
+        return _refined(checked, _Passes(case, run, on_draft))
     with TemporaryDirectory() as folder:
-        return _passes(checked, _Run(case, report, on_draft, Path(folder), workers))
+        return _refined(checked, _Passes(case, replace(run, cache=Path(folder)), on_draft))
 
 
-def _passes(checked: Checked, run: _Run) -> SteDatabase:
+def _refined(checked: Checked, shared: _Passes) -> SteDatabase:
     """Refine until there is a reason not to."""
-    best = run.first(checked)
+    best = shared.first(checked)
     passes = [best]
     assert best.table is not None
     table = best.table
     while True:
-        clock = StageClock(run.workers.cost)
+        clock = StageClock(shared.run.workers.cost)
         with clock.stage("planning"):
             made = _following(table, best)
-            reason = made if isinstance(made, str) else _ended(made, passes, run.cache)
+            reason = made if isinstance(made, str) else _ended(made, passes, shared.run.cache)
         if isinstance(made, str) or reason:
             return of_all_passes(passes, table, reason)
-        run.on_draft(table, made.words)
-        last = run.refined(made, clock)
+        shared.on_draft(table, made.words)
+        last = shared.refined(made, clock)
         passes.append(last)
         if last.table is None:
             return of_all_passes(passes, table, f"pass {len(passes)} ({last.name}) failed: {last.failure}")
@@ -125,7 +110,7 @@ def _passes(checked: Checked, run: _Run) -> SteDatabase:
 
 def _following(table: SteDatabase, last: Pass) -> Refinement | str:
     """Return what to refine after a pass, or why nothing."""
-    tolerance = last.decided.checked.request.accuracy.allowed
+    tolerance = last.decided.checked.request.options.allowed
     if table.metadata.receipt["tolerance"]["met"]:
         return "met"
     if table.n_failed:
@@ -133,11 +118,11 @@ def _following(table: SteDatabase, last: Pass) -> Refinement | str:
     return next_pass(last.decided, error_shares(table, tolerance))
 
 
-def _ended(made: Refinement, passes: Sequence[Pass], cache: Path) -> str:
+def _ended(made: Refinement, passes: Sequence[Pass], cache: Path | None) -> str:
     """Say why a refinement does not begin, of passes or of time; empty if it may."""
     if len(passes) == MOST_PASSES:
         return f"{MOST_PASSES} passes are the most"
-    budget = made.decided.checked.request.accuracy.time_budget
+    budget = made.decided.checked.request.options.time_budget
     if budget is None:
         return ""
     left = budget - sum(one.cost["cpu_seconds"] for one in passes)

@@ -165,7 +165,7 @@ def over_face(checked: Checked) -> bool:
     request = checked.request
     gears = (request.pair.pinion, request.pair.wheel)
     varies = any(gear.modification.varies_along_face for gear in gears)
-    return varies or request.accuracy.model == "3d" or bool(np.any(request.misalignment != 0.0))
+    return varies or request.options.model == "3d" or bool(np.any(request.misalignment != 0.0))
 
 
 def full_contact_refusal(checked: Checked) -> str | None:

@@ -17,14 +17,8 @@ from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.ripple import expected_curves
 from fe_contact.effects import EFFECTS
 from fe_contact.effects.influence import estimate_influence
-from fe_contact.planning import (
-    LEVELS,
-    Accuracy,
-    ExpectedCurves,
-    MeshChoice,
-    chosen_mesh,
-    make_plan,
-)
+from fe_contact.options import LEVELS, AnalysisOptions
+from fe_contact.planning import ExpectedCurves, MeshChoice, chosen_mesh, make_plan
 
 _TELL = (FACE, WIDTH)
 WIDTH_SHARE = 0.8
@@ -53,13 +47,13 @@ def decide(
         The run measures its errors and is refined where they are too large: what is expected to err by
         somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
     """
-    accuracy = checked.request.accuracy
-    if accuracy.tolerance is not None and accuracy.time_budget is not None:
+    options = checked.request.options
+    if options.tolerance is not None and options.time_budget is not None:
         return _within_time(checked, cache, keep_model=keep_model, tried=tried)
     models = [checked] if keep_model else alternatives(checked)
     curves = expected_curves(checked) if _wishes(checked) or checked.model.across_face else None
     chosen = _best(_meshes(models, curves, cache, 1.0))
-    if tried and accuracy.tolerance is not None:
+    if tried and options.tolerance is not None:
         for stretch, share in TRIED:
             first = _best(_meshes(models, curves, cache, stretch))
             if first[1].met and first[1].option.effort <= share * chosen[1].option.effort:
@@ -69,20 +63,20 @@ def decide(
 
 def _within_time(checked: Checked, cache: Path | None, *, keep_model: bool, tried: bool) -> Decided:
     """Choose by the tolerance what fits into the time budget; else the most exact that fits."""
-    accuracy = checked.request.accuracy
-    budget = accuracy.time_budget or 0.0
+    options = checked.request.options
+    budget = options.time_budget or 0.0
 
-    def chosen(wish: Accuracy) -> Decided:
-        request = replace(checked.request, accuracy=wish)
+    def chosen(wish: AnalysisOptions) -> Decided:
+        request = replace(checked.request, options=wish)
         made = decide(replace(checked, request=request), cache, keep_model=keep_model, tried=tried)
-        request = replace(made.checked.request, accuracy=accuracy)
+        request = replace(made.checked.request, options=options)
         return replace(made, checked=replace(made.checked, request=request))
 
-    wished = chosen(replace(accuracy, time_budget=None))
+    wished = chosen(replace(options, time_budget=None))
     seconds = wished.predicted(cache).cpu_seconds
     if seconds <= budget:
         return wished
-    fits = chosen(replace(accuracy, tolerance=None))
+    fits = chosen(replace(options, tolerance=None))
     needs = f"{wished.mesh.option.name} is predicted to take {seconds:.2g} CPU s of {budget:.3g}"
     error = f"expected error {100.0 * fits.mesh.option.error.total:.2g} %"
     return replace(fits, mesh=MeshChoice(fits.mesh.option, False, f"{needs}; {fits.mesh.reason}, {error}"))
@@ -111,8 +105,8 @@ def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> Mesh
 
 def _wishes(checked: Checked) -> bool:
     """Whether an error or a time is requested."""
-    accuracy = checked.request.accuracy
-    return accuracy.tolerance is not None or accuracy.time_budget is not None
+    options = checked.request.options
+    return options.tolerance is not None or options.time_budget is not None
 
 
 def alternatives(checked: Checked) -> list[Checked]:
@@ -153,7 +147,7 @@ def _width_is_small(checked: Checked) -> bool:
     A ripple that a modification has made small changes by more than the mean: the expected error of plane
     strain, which is that of usual cases, does not see that.
     """
-    tolerance = checked.request.accuracy.tolerance
+    tolerance = checked.request.options.tolerance
     if tolerance is None:
         return True
     influence = estimate_influence(*checked.assessing(WIDTH), WIDTH, EFFECTS, tolerance.least_scale)
@@ -169,10 +163,10 @@ def _mesh(
     checked: Checked, curves: ExpectedCurves | None, cache: Path | None, stretch: float = 1.0
 ) -> MeshChoice:
     """Choose the mesh of one model."""
-    asked, accuracy = checked.request, checked.request.accuracy
-    if accuracy.tolerance is not None:
-        accuracy = replace(accuracy, tolerance=accuracy.tolerance.stretched(stretch))
-    wanted = asked.pair, asked.load, accuracy, checked.model
+    asked, options = checked.request, checked.request.options
+    if options.tolerance is not None:
+        options = replace(options, tolerance=options.tolerance.stretched(stretch))
+    wanted = asked.pair, asked.load, options, checked.model
     return chosen_mesh(*wanted, asked.alignments, cache, curves)
 
 
@@ -181,7 +175,7 @@ def _best(found: Sequence[tuple[Checked, MeshChoice]]) -> tuple[Checked, MeshCho
     if len(found) == 1:
         return found[0]
     good = [one for one in found if one[1].met]
-    by_time = found[0][0].request.accuracy.time_budget is not None
+    by_time = found[0][0].request.options.time_budget is not None
     if good and not by_time:
         return _said(min(good, key=lambda one: one[1].option.effort))
     return _said(min(good or found, key=lambda one: one[1].option.error.total))
@@ -210,5 +204,5 @@ def _reason(name: str, text: str, parts: str) -> str:
 def _planned(checked: Checked, mesh: MeshChoice) -> Decided:
     """Make the plan."""
     asked = checked.request
-    plan = make_plan(asked.pair, asked.load, asked.accuracy, checked.model, mesh.level, mesh.slices)
+    plan = make_plan(asked.pair, asked.load, asked.options, checked.model, mesh.level, mesh.slices)
     return Decided(checked, mesh, plan)

@@ -13,7 +13,8 @@ import numpy as np
 
 from fe_contact.analysis.decided import Decided, model_name
 from fe_contact.analysis.model_choice import next_model
-from fe_contact.planning import LEVELS, FaceDiscretization, NodeRule
+from fe_contact.options import LEVELS
+from fe_contact.planning import FaceDiscretization, NodeRule
 from fe_contact.planning.discretization import FINER_SLICES, SLICE_ORDER, SLICES, face_discretization
 from fe_contact.planning.plan import CLOSEST
 from fe_contact.ste.curve_errors import AT_NODES, all_sources
@@ -217,7 +218,7 @@ def _by_source(values: FloatArray, shares: FloatArray) -> FloatArray:
 def _of_model(model: Decided, begun: _Resolution) -> Refinement:
     """Return the pass of a more exact model; what lies between positions stays, the rest is expected."""
     said = f"model {model_name(begun.decided.checked)} -> {model_name(model.checked)}"
-    tolerance = model.checked.request.accuracy.allowed.relative
+    tolerance = model.checked.request.options.allowed.relative
     expected = float(np.hypot(model.mesh.option.error.total / tolerance, begun.shares[_POSITION].max()))
     return Refinement(model, AT_NODES[_WIDTH], (said,), expected)
 

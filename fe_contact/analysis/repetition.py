@@ -47,12 +47,12 @@ def settled(
             found = check(run)
         wrong = violated(found)
         request = run.checked.request
-        if wrong and request.on_violation == "fail":
+        if wrong and request.options.on_violation == "fail":
             said = "; ".join(f"{one.what}: {one.reason}" for one in wrong)
             raise SolveError(f"assumptions that do not hold: {said}")
         automatic = {entry.name for entry in run.checked.ledger if entry.choice == "auto" and not entry.on}
         needed = {one.effect: f"{one.what}: {one.reason}" for one in wrong if one.effect in automatic}
-        if not needed or request.on_violation != "repeat":
+        if not needed or request.options.on_violation != "repeat":
             return run, found, repeated
         before = sum(clock.seconds.values())
         run = again(run, needed)

@@ -10,13 +10,11 @@ from bounds import Finding
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, FaceLoadDistribution, FiniteWidth, LedgerEntry, compose
 from fe_contact.effects.neglect import WITHOUT
-from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning import Accuracy, CycleCost
+from fe_contact.options import AnalysisOptions, TableAxes
+from fe_contact.planning import CycleCost
 from fe_contact.plausibility import pair_findings
 from fe_contact.types import FloatArray, Json
-
-ON_VIOLATION = ("repeat", "fail", "report")
 
 
 @dataclass(frozen=True)
@@ -28,15 +26,11 @@ class Request:
     pair : GearPair or InternalGearPair
     load : ndarray
         Normal forces F_bn in N, increasing.
-    accuracy : Accuracy
+    options : AnalysisOptions
     misalignment, center_distance_change : ndarray
         Table axes, m.
-    effects : mapping
-        Effect name to "on", "off" or "auto".
     pitches : int, optional
         Base pitches that the table shall cover where teeth differ; None: until all repeats.
-    on_violation : str
-        What to do where an assumption of the run turns out wrong: "repeat", "fail" or "report".
     neglected, turned_on : mapping of str to str
         Automatic effects that are neglected because the accuracy does not need them, or on because a run
         without them showed that it does, and why.
@@ -46,19 +40,19 @@ class Request:
 
     pair: ParallelAxes
     load: FloatArray
-    accuracy: Accuracy
+    options: AnalysisOptions
     misalignment: FloatArray
     center_distance_change: FloatArray
-    effects: Mapping[str, str] = field(default_factory=dict)
     pitches: int | None = None
-    on_violation: str = "repeat"
     neglected: Mapping[str, str] = field(default_factory=dict)
     turned_on: Mapping[str, str] = field(default_factory=dict)
     loads_as: str = "torques"
 
-    def __post_init__(self) -> None:
-        if self.on_violation not in ON_VIOLATION:
-            raise InputError("on_violation", self.on_violation, f"one of {', '.join(ON_VIOLATION)}")
+    @classmethod
+    def over(cls, pair: ParallelAxes, axes: TableAxes, options: AnalysisOptions) -> Request:
+        """Return the request of a table over its axes."""
+        alignments = axes.misalignment, axes.center_distance_change
+        return cls(pair, axes.load(pair), options, *alignments, axes.pitches, loads_as=axes.loads_as)
 
     @property
     def torque(self) -> FloatArray:
@@ -93,12 +87,12 @@ class Request:
     @property
     def asked_choices(self) -> dict[str, str]:
         """Choice of each effect; an explicit model decides about the face and its finite width."""
-        asked = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.accuracy.model)
+        asked = {"3d": "on", "plane_strain": "off", "plane_stress": "off"}.get(self.options.model)
         if asked is not None:
-            return dict(self.effects) | {FaceLoadDistribution.name: asked, FiniteWidth.name: "off"}
-        if self.effects.get(FaceLoadDistribution.name) == "on":
-            return dict(self.effects) | {FiniteWidth.name: "off"}
-        return dict(self.effects)
+            return dict(self.options.effects) | {FaceLoadDistribution.name: asked, FiniteWidth.name: "off"}
+        if self.options.effects.get(FaceLoadDistribution.name) == "on":
+            return dict(self.options.effects) | {FiniteWidth.name: "off"}
+        return dict(self.options.effects)
 
     @property
     def choices(self) -> dict[str, str]:
@@ -108,15 +102,12 @@ class Request:
 
     def to_json(self) -> Json:
         """Return plain JSON in SI units: what decides the result."""
-        return {
+        return self.options.to_json() | {
             "pair": asdict(self.pair),
             "normal_force": self.load.tolist(),
-            "accuracy": asdict(self.accuracy),
             "misalignment": self.misalignment.tolist(),
             "center_distance_change": self.center_distance_change.tolist(),
-            "effects": dict(sorted(self.effects.items())),
             "pitches": self.pitches,
-            "on_violation": self.on_violation,
         }
 
 

@@ -2,51 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from bounds import Text, at_least, warn_of
-from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.neglected_effects import neglected_effects
 from fe_contact.analysis.plane_limits import refuse_beyond_plane
 from fe_contact.analysis.request import Checked, Request
-from fe_contact.analysis.table_axes import axis, load_levels
-from fe_contact.checks import integer
 from fe_contact.compliance.rounding import LARGEST_ROUNDING, least_face_width
 from fe_contact.contact import ContactModel
 from fe_contact.effects import EFFECTS, LedgerEntry, compose
 from fe_contact.errors import InputError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning import Accuracy, CycleCost, cycle_cost, make_plan, refuse_long_cycle
-from fe_contact.types import FloatArray
-
-LARGEST_PERIOD = 1_000_000
+from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
+from fe_contact.planning import CycleCost, cycle_cost, make_plan, refuse_long_cycle
 
 
 def check_request(
     pair: ParallelAxes,
+    axes: TableAxes,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     *,
-    torques: Sequence[float] | FloatArray | None = None,
-    normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: AllowedError | float | None = None,
-    level: str | None = None,
-    time_budget: float | None = None,
-    model: str = "auto",
-    positions: int | None = None,
-    pitches: int | None = None,
-    misalignments: Sequence[float] | FloatArray = (0.0,),
-    center_distance_changes: Sequence[float] | FloatArray = (0.0,),
-    effects: Mapping[str, str] | None = None,
     whole_table: bool = True,
-    receipt: str = "full",
-    on_violation: str = "repeat",
     spare: bool = True,
 ) -> Checked:
-    """Check everything that `analyze` is given, without computing anything.
+    """Check everything that a table is asked for, without computing anything.
 
-    Parameters are its; `whole_table` = False leaves out the limit on the size of a table, `spare` = False the
-    decision about effects that a tolerance does not need, which takes some milliseconds of solving.
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    axes : TableAxes
+    options : AnalysisOptions
+    whole_table : bool
+        False leaves out the limit on the size of a table.
+    spare : bool
+        False leaves out the decision about effects that a tolerance does not need, which takes some
+        milliseconds of solving.
 
     Warns
     -----
@@ -58,52 +49,15 @@ def check_request(
     InputError
         A value that cannot be used, by field name.
     """
-    request = Request(
-        pair,
-        load_levels(pair, torques, normal_forces),
-        Accuracy(AllowedError.given(tolerance), time_budget, level, model, positions, receipt),
-        axis("misalignments", misalignments),
-        axis("center_distance_changes", center_distance_changes),
-        dict(effects or {}),
-        None if pitches is None else integer("pitches", pitches, 1, LARGEST_PERIOD),
-        on_violation,
-        loads_as="normal_forces" if torques is None else "torques",
-    )
-    checked = check_asked(request, whole_table=whole_table, spare=spare)
-    warn_of(request.findings, stacklevel=4)
+    checked = check_asked(Request.over(pair, axes, options), whole_table=whole_table, spare=spare)
+    warn_of(checked.request.findings)
     return checked
 
 
-def check_one_load(
-    pair: ParallelAxes,
-    torque: float | None,
-    normal_force: float | None,
-    misalignment: float,
-    center_distance_change: float,
-    *,
-    tolerance: AllowedError | float | None,
-    level: str | None,
-    time_budget: float | None,
-    model: str,
-    effects: Mapping[str, str] | None,
-    on_violation: str = "repeat",
-) -> Checked:
-    """Check what is asked of one load (N m or N, exactly one) and alignment (m), as `check_request` does."""
-    return check_request(
-        pair,
-        torques=None if torque is None else [torque],
-        normal_forces=None if normal_force is None else [normal_force],
-        tolerance=tolerance,
-        level=level,
-        time_budget=time_budget,
-        model=model,
-        misalignments=[misalignment],
-        center_distance_changes=[center_distance_change],
-        effects=effects,
-        on_violation=on_violation,
-        whole_table=False,
-        spare=False,  # what does not show in the transmission error may show in pressures and stresses
-    )
+def check_point(pair: ParallelAxes, point: OperatingPoint, options: AnalysisOptions) -> Checked:
+    """Check what is asked of one load and one alignment, as `check_request` does."""
+    # what does not show in the transmission error may show in pressures and stresses
+    return check_request(pair, point.axes, options, whole_table=False, spare=False)
 
 
 def check_asked(request: Request, *, whole_table: bool = True, spare: bool = True) -> Checked:
@@ -115,11 +69,11 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
     refuse_beyond_plane(request.scene, composed)
     if spare and not (request.neglected or request.turned_on):
         request = replace(
-            request, neglected=neglected_effects(request.scene, ledger, request.accuracy.tolerance)
+            request, neglected=neglected_effects(request.scene, ledger, request.options.tolerance)
         )
         composed, ledger = _composed(request) if request.neglected else (composed, ledger)
     if composed.across_face:
-        _refuse_thin_discs(request.pair, request.accuracy.level)
+        _refuse_thin_discs(request.pair, request.options.level)
     _refuse_distances(request)
     _refuse_idle_pitches(request)
     cycle = _cycle_cost(request, composed) if whole_table and composed.period > 1 else None
@@ -156,7 +110,7 @@ def _refuse_idle_pitches(request: Request) -> None:
 
 def _cycle_cost(request: Request, model: ContactModel) -> CycleCost:
     """Predict the cost of the whole table; refuse one that is too long to be made."""
-    plan = make_plan(request.pair, request.load, request.accuracy, model)
+    plan = make_plan(request.pair, request.load, request.options, model)
     alignments = request.misalignment.size * request.center_distance_change.size
     cost = cycle_cost(request.pair, plan, model.period, alignments)
     refuse_long_cycle(cost)

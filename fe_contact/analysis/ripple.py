@@ -36,7 +36,7 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
     request, model = checked.request, checked.model
     if request.pair.internal or model.compliances:
         return None
-    plan = make_plan(request.pair, request.load, request.accuracy, model)
+    plan = make_plan(request.pair, request.load, request.options, model)
     scene = replace(
         request.scene,
         misalignment=_some(request.misalignment, ALIGNMENTS),
@@ -51,7 +51,7 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
     slices = np.concatenate([np.ptp(one.deflection, axis=0) for one in solved])
     mean = np.abs(unloaded + added)
     ripple = np.hypot(COUPLED_RIPPLE * slices, UNSEEN_RIPPLE * added)
-    return ExpectedCurves(np.tile(load, len(solved)), added, mean, ripple, request.accuracy.allowed)
+    return ExpectedCurves(np.tile(load, len(solved)), added, mean, ripple, request.options.allowed)
 
 
 def _some(axis: FloatArray, most: int) -> FloatArray:

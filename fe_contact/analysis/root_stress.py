@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -10,23 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bounds import Finding, warn_of
-from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.flank_results import POSITIONS
-from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
-from fe_contact.analysis.solved_operating_point import (
-    SolvedOperatingPoint,
-    checked_positions,
-    settled_operating_point,
-)
+from fe_contact.analysis.solved_operating_point import SolvedOperatingPoint, solved_point
 from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.contact.patch import Patches
 from fe_contact.geometry import ParallelAxes, tooth_profile
 from fe_contact.geometry.root_tangent import critical_section
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.planning import FaceRootMeshes, PlaneRootMeshes, root_meshes
 from fe_contact.plausibility import root_findings, unexpected
-from fe_contact.progress import Progress, silent
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import BoolArray, FloatArray, IntArray, Json
 
@@ -62,83 +54,37 @@ class RootStress:
 
 def root_stress(
     pair: ParallelAxes,
+    point: OperatingPoint,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
     *,
-    torque: float | None = None,
-    normal_force: float | None = None,
-    misalignment: float = 0.0,
-    center_distance_change: float = 0.0,
     at: ArrayLike | None = None,
-    tolerance: AllowedError | float | None = None,
-    level: str | None = None,
-    model: str = "auto",
-    effects: Mapping[str, str] | None = None,
-    time_budget: float | None = None,
-    on_violation: str = "repeat",
-    progress: Progress | None = None,
-    cache: Path | None = None,
 ) -> RootStress:
     """Solve the contact of one load and alignment, and return the stress of the tooth roots.
 
-    Parameters
-    ----------
-    pair : GearPair or InternalGearPair
-    torque, normal_force : float
-        Torque on the driving gear in N m, or normal force in N; exactly one.
-    misalignment, center_distance_change : float
-        See `analyze`, m.
-    at : array_like, optional
-        Positions in base pitches; default: 64 over one mesh cycle.
-    tolerance, level, time_budget, model, effects, on_violation, progress, cache
-        See `analyze`.
-
-    Returns
-    -------
-    RootStress
-
-    Raises
-    ------
-    InputError
-        A value that cannot be used, by field name.
-    MeshError, SolveError
-        No acceptable mesh, positions without a solution, or an assumption that does not hold where
-        `on_violation` is "fail".
+    Parameters and errors are those of `flank_results`.
     """
-    checked = check_one_load(
-        pair,
-        torque,
-        normal_force,
-        misalignment,
-        center_distance_change,
-        tolerance=tolerance,
-        level=level,
-        time_budget=time_budget,
-        model=model,
-        effects=effects,
-        on_violation=on_violation,
-    )
-    clock, report = StageClock(), progress or silent
-    position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
-    found, receipt = settled_operating_point(checked, position, clock, report, cache)
+    clock = StageClock()
+    solved, receipt = solved_point(pair, point, options, at, clock, run)
     with clock.stage("root stress"):
-        meshes = root_meshes(found.contact.plan.discretization)
-        pinion, wheel = _histories(found, meshes, cache)
-    report("root stress", 1.0)
-    requested = checked.request.findings
-    solved = tuple(
+        pinion, wheel = _histories(solved, root_meshes(solved.contact.plan.discretization), run.cache)
+    run.progress("root stress", 1.0)
+    request = solved.checked.request
+    findings = [
         finding
         for name, history in (("pinion", pinion), ("wheel", wheel))
         for finding in root_findings(name, history.peak("tension").stress.value)
-    )
-    warn_of(unexpected(requested, solved))
+    ]
+    warn_of(unexpected(request.findings, tuple(findings)))
     return RootStress(
-        pinion=pinion,
-        wheel=wheel,
-        torque=float(checked.request.torque[0]),
-        normal_force=float(checked.request.load[0]),
-        misalignment=misalignment,
-        center_distance_change=center_distance_change,
-        receipt=clock.to_json() | {"plan": found.plan.to_json()} | receipt,
-        warnings=[finding.to_json() for finding in (*_not_root(requested), *solved)],
+        pinion,
+        wheel,
+        torque=float(request.torque[0]),
+        normal_force=float(request.load[0]),
+        misalignment=point.misalignment,
+        center_distance_change=point.center_distance_change,
+        receipt=receipt | clock.to_json(),
+        warnings=[finding.to_json() for finding in (*_not_root(request.findings), *findings)],
     )
 
 

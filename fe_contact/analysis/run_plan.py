@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.decided import Decided, model_name
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.analysis.model_choice import decide
@@ -15,8 +13,8 @@ from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.ripple import expected_curves
 from fe_contact.checks import positive
 from fe_contact.geometry import ParallelAxes
+from fe_contact.options import LEVELS, AnalysisOptions, TableAxes
 from fe_contact.planning import (
-    Accuracy,
     ExpectedCurves,
     ExpectedError,
     MeshChoice,
@@ -26,8 +24,7 @@ from fe_contact.planning import (
     make_plan,
     predict_run,
 )
-from fe_contact.planning.accuracy import LEVELS
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import Json
 
 
 @dataclass(frozen=True)
@@ -96,44 +93,34 @@ class RunPlan:
 
 def plan_run(
     pair: ParallelAxes,
+    axes: TableAxes,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
     *,
-    torques: Sequence[float] | FloatArray | None = None,
-    normal_forces: Sequence[float] | FloatArray | None = None,
-    tolerance: AllowedError | float | None = None,
-    level: str | None = None,
     time_budget: float | None = None,
-    model: str = "auto",
-    positions: int | None = None,
-    pitches: int | None = None,
-    misalignments: Sequence[float] = (0.0,),
-    center_distance_changes: Sequence[float] = (0.0,),
-    effects: Mapping[str, str] | None = None,
     cache: Path | None = None,
 ) -> RunPlan:
     """Predict time by stage, memory and error of `analyze`, and list its effects.
 
-    Parameters are those of `analyze`; `time_budget` may stand beside `level` too: the plan says whether the
-    level fits the time.
+    Parameters
+    ----------
+    pair : GearPair or InternalGearPair
+    axes : TableAxes
+    options : AnalysisOptions
+    time_budget : float, optional
+        CPU seconds in place of that of the options. It may stand beside a level: the plan says whether the
+        level fits the time.
+    cache : Path, optional
+        Of flank compliances: what is in it costs nothing.
 
     Raises
     ------
     InputError
         A value that cannot be used, by field name.
     """
-    checked = check_request(
-        pair,
-        torques=torques,
-        normal_forces=normal_forces,
-        tolerance=tolerance,
-        level=level,
-        time_budget=time_budget if level is None else None,
-        model=model,
-        positions=positions,
-        pitches=pitches,
-        misalignments=misalignments,
-        center_distance_changes=center_distance_changes,
-        effects=effects,
-    )
+    budget = options.time_budget if time_budget is None else time_budget
+    if options.level is None:
+        options = replace(options, time_budget=budget)
+    checked = check_request(pair, axes, options)
     decided = decide(checked, cache, tried=True)
     checked, choice = decided.checked, decided.mesh
     curves = expected_curves(checked)
@@ -142,8 +129,8 @@ def plan_run(
         for name in LEVELS
     )
     conflict = ""
-    if time_budget is not None and (tolerance is not None or level is not None):
-        conflict = _conflict(decided, positive("time_budget", time_budget, "Seconds."), cache)
+    if budget is not None and (options.tolerance is not None or options.level is not None):
+        conflict = _conflict(decided, positive("time_budget", budget, "Seconds."), cache)
     return RunPlan(checked, choice, decided.plan, levels, conflict, cache)
 
 
@@ -155,8 +142,8 @@ def _planned(
     With the case's own curves, as its mesh is chosen by: both must tell the same error.
     """
     asked = checked.request
-    accuracy: Accuracy = replace(asked.accuracy, tolerance=None, time_budget=None, level=level)
-    plan = make_plan(asked.pair, asked.load, accuracy, checked.model, slices=slices)
+    options = asked.options.at_level(level)
+    plan = make_plan(asked.pair, asked.load, options, checked.model, slices=slices)
     cost = predict_run(asked.pair, plan, checked.model, asked.alignments, cache)
     error = expected_error(asked.pair, plan, curves)
     return PlannedLevel(level, plan.discretization.slices, cost, error)
@@ -165,8 +152,8 @@ def _planned(
 def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:
     """Say why what is requested does not fit into the time; empty if it does."""
     within = f"within {time_budget:.3g} CPU s"
-    accuracy = decided.checked.request.accuracy
-    wish = f"level {decided.mesh.level}" if accuracy.tolerance is None else accuracy.tolerance.words
+    tolerance = decided.checked.request.options.tolerance
+    wish = f"level {decided.mesh.level}" if tolerance is None else tolerance.words
     if not decided.mesh.met:
         return f"{wish} {within} cannot be had: {decided.mesh.reason}"
     seconds = decided.predicted(cache).cpu_seconds

@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.analyze import analyze
+from fe_contact.analysis.analyze import ste_database
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.geometry import ParallelAxes
-from fe_contact.progress import Progress
+from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray
-from fe_contact.workers import InProcess, Workers
 
 
 @dataclass(frozen=True)
@@ -53,35 +48,22 @@ class Sensitivity:
 
 def study_sensitivity(
     pair: ParallelAxes,
-    *,
-    normal_force: float,
-    misalignments: Sequence[float] | FloatArray,
-    center_distance_changes: Sequence[float] | FloatArray,
-    tolerance: AllowedError | float | None = None,
-    level: str | None = None,
-    time_budget: float | None = None,
-    model: str = "auto",
-    positions: int | None = None,
-    effects: Mapping[str, str] | None = None,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-    progress: Progress | None = None,
-    cache: Path | None = None,
+    axes: TableAxes,
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
 ) -> tuple[Sensitivity, Sensitivity]:
     """Vary misalignment and center distance, one at a time, without and with corner contact.
 
     Parameters
     ----------
     pair : GearPair or InternalGearPair
-    normal_force : float
-        F_bn in N.
-    misalignments, center_distance_changes : sequence of float
-        Deviations in m; zero is added to both.
-    tolerance, level, time_budget, model, positions, effects, progress, cache
-        See `analyze`. An automatic model is three-dimensional at every point, so that the curves compare;
-        the effects decide about everything but corner contact. Progress begins anew for each of the
-        four tables. With `cache` the gears are condensed once.
-    workers : Workers
-        Who condenses the gears and solves the contact of every table.
+    axes : TableAxes
+        One load, and the deviations; zero is added to both.
+    options : AnalysisOptions
+        An automatic model is three-dimensional at every point, so that the curves compare; the effects decide
+        about everything but corner contact.
+    run : Run
+        Progress begins anew for each of the four tables. With a cache the gears are condensed once.
 
     Returns
     -------
@@ -95,35 +77,32 @@ def study_sensitivity(
     MeshError, SolveError
         No acceptable mesh, or points without a solution.
     """
-    axes: dict[str, Any] = {
-        "misalignments": np.union1d([0.0], misalignments),
-        "center_distance_changes": np.union1d([0.0], center_distance_changes),
-    }
-    tables = [
-        analyze(
-            pair,
-            normal_forces=[normal_force],
-            tolerance=tolerance,
-            level=level,
-            time_budget=time_budget,
-            model="3d" if model == "auto" else model,
-            positions=positions,
-            effects={**(effects or {}), CornerContact.name: corners},
-            progress=progress,
-            cache=cache,
-            workers=workers,
-            **{name: axis},
-        )
+    options = replace(options, model="3d" if options.model == "auto" else options.model)
+    without, with_corners = (
+        Sensitivity(corners == "on", *_curves(pair, axes, _with_corners(options, corners), run))
         for corners in ("off", "on")
-        for name, axis in axes.items()
-    ]
-    curves = [_ripple(table, name) for table, name in zip(tables, [*axes, *axes], strict=True)]
-    return Sensitivity(False, curves[0], curves[1]), Sensitivity(True, curves[2], curves[3])
+    )
+    return without, with_corners
+
+
+def _with_corners(options: AnalysisOptions, choice: str) -> AnalysisOptions:
+    """Return the options with corner contact on or off."""
+    return replace(options, effects={**options.effects, CornerContact.name: choice})
+
+
+def _curves(
+    pair: ParallelAxes, axes: TableAxes, options: AnalysisOptions, run: Run
+) -> tuple[RippleCurve, RippleCurve]:
+    """Compute the table over each axis, the other one at zero, and read its ripple."""
+    nominal = replace(axes, misalignments=(0.0,), center_distance_changes=(0.0,))
+    skews = replace(nominal, misalignments=np.union1d([0.0], axes.misalignments))
+    changes = replace(nominal, center_distance_changes=np.union1d([0.0], axes.center_distance_changes))
+    skewed, moved = (ste_database(pair, each, options, run) for each in (skews, changes))
+    return _ripple(skewed, "misalignment"), _ripple(moved, "center_distance_change")
 
 
 def _ripple(table: SteDatabase, axis: str) -> RippleCurve:
     """Peak-to-peak along the axis of a table of one load."""
-    name = axis.removesuffix("s")
-    deviation: FloatArray = getattr(table, name)
-    found = [table.peak_to_peak(force=float(table.force[0]), **{name: float(x)}) for x in deviation]
+    deviation: FloatArray = getattr(table, axis)
+    found = [table.peak_to_peak(force=float(table.force[0]), **{axis: float(x)}) for x in deviation]
     return RippleCurve(deviation, np.array([e.value for e in found]), np.array([e.error for e in found]))

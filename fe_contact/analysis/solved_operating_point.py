@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,13 +13,18 @@ from fe_contact.analysis.operating_points import OperatingPoints, operating_poin
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked
+from fe_contact.analysis.request_check import check_point
 from fe_contact.checks import finite
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError, SolveError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.planning import Plan, planned
-from fe_contact.progress import Progress
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json, Status
+
+POSITIONS = 64
+"""Over one mesh cycle, where none are requested."""
 
 
 @dataclass(frozen=True)
@@ -48,34 +52,54 @@ class SolvedOperatingPoint:
         return ((self.problem, self.solution),)
 
 
-def settled_operating_point(
-    checked: Checked, position: FloatArray, clock: StageClock, report: Progress, cache: Path | None
+def solved_point(
+    pair: ParallelAxes,
+    point: OperatingPoint,
+    options: AnalysisOptions,
+    at: ArrayLike | None,
+    clock: StageClock,
+    run: Run,
 ) -> tuple[SolvedOperatingPoint, Json]:
-    """Solve a place as `solve_operating_point` does, check what it took for granted, and repeat it as asked.
+    """Solve an operating point at positions, check what that took for granted, and repeat it as asked.
+
+    Parameters
+    ----------
+    pair, point, options, run
+        As `flank_results` takes them.
+    at : array_like, optional
+        Positions in base pitches; default: 64 over one mesh cycle.
+    clock : StageClock
 
     Returns
     -------
     SolvedOperatingPoint
+        Its request is that of the last run, with the effects that the first showed to be needed.
     dict
-        What the receipt says of it: `assumptions`, `repeated`.
+        Receipt: times, the plan, `assumptions`, `repeated`.
 
     Raises
     ------
+    InputError
+        A value that cannot be used, by field name.
     MeshError, SolveError
         As `solve_operating_point`, or an assumption does not hold and `on_violation` is "fail".
     """
+    checked = check_point(pair, point, options)
+    position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
 
-    def again(run: SolvedOperatingPoint, needed: Mapping[str, str]) -> SolvedOperatingPoint:
-        more = with_effects(run.checked, needed, whole_table=False)
-        return solve_operating_point(more, position, clock, report, cache)
+    def repeat(made: SolvedOperatingPoint, needed: Mapping[str, str]) -> SolvedOperatingPoint:
+        return solve_operating_point(
+            with_effects(made.checked, needed, whole_table=False), position, clock, run
+        )
 
-    first = solve_operating_point(checked, position, clock, report, cache)
-    run, found, repeated = settled(first, check_one_place, again, clock)
-    return run, {"assumptions": [one.to_json() for one in found], "repeated": repeated}
+    first = solve_operating_point(checked, position, clock, run)
+    made, found, repeated = settled(first, check_one_place, repeat, clock)
+    plan, assumptions = made.plan.to_json(), [one.to_json() for one in found]
+    return made, clock.to_json() | {"plan": plan, "assumptions": assumptions, "repeated": repeated}
 
 
 def solve_operating_point(
-    checked: Checked, position: FloatArray, clock: StageClock, report: Progress, cache: Path | None
+    checked: Checked, position: FloatArray, clock: StageClock, run: Run
 ) -> SolvedOperatingPoint:
     """Solve the one load and the one alignment of a request at positions (P,).
 
@@ -87,17 +111,17 @@ def solve_operating_point(
         No acceptable mesh, or positions without a solution.
     """
     request = checked.request
-    plan = planned(request.pair, request.load, request.accuracy, checked.model, cache=cache)
-    report("compliance", 0.0)
+    plan = planned(request.pair, request.load, request.options, checked.model, cache=run.cache)
+    run.progress("compliance", 0.0)
     with clock.stage("compliance"):
-        nominal = pair_contact(request.pair, plan, cache, distance_changes=request.center_distance_change)
-    report("compliance", 1.0)
+        nominal = pair_contact(request.pair, plan, run.cache, distance_changes=request.center_distance_change)
+    run.progress("compliance", 1.0)
     with clock.stage("contact"):
         places = operating_points(request.scene, request.choices, nominal)
         (place,) = places.places
         pitch = np.floor(position).astype(np.int64)
         problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
-    report("contact", 1.0)
+    run.progress("contact", 1.0)
     if not solution.converged:
         raise SolveError(_failure(position, solution), partial=solution)
     return SolvedOperatingPoint(checked, places, problem, solution)

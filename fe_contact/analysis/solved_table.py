@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -20,13 +19,12 @@ from fe_contact.analysis.table_nodes import table_nodes
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.compliance.remote_condensation import condense_remotely
 from fe_contact.geometry import ParallelAxes
+from fe_contact.options import Run
 from fe_contact.planning import FaceDiscretization, Plan, Prediction, predict_run
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.types import FloatArray
-from fe_contact.workers import InProcess, Workers
-
-Progress = Callable[[str, float], None]
+from fe_contact.workers import InProcess
 
 
 @dataclass(frozen=True)
@@ -72,11 +70,9 @@ class SolvedTable:
 def solve_table(
     checked: Checked,
     clock: StageClock,
-    report: Progress,
-    cache: Path | None,
+    run: Run,
     before: SolvedTable | None = None,
     decided: Decided | None = None,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> SolvedTable:
     """Plan and solve a request.
 
@@ -84,33 +80,28 @@ def solve_table(
     ----------
     checked : Checked
     clock : StageClock
-    report : callable
-        Called as report(stage, fraction).
-    cache : Path, optional
-        Directory of flank compliances.
+    run : Run
     before : SolvedTable, optional
         The same pair with other effects: its compliance is taken if the bodies are the same.
     decided : Decided, optional
         Model and discretization; default: those that the accuracy asks for.
-    workers : Workers
-        Who condenses the gears and solves the contact.
     """
-    full = checked.request.accuracy.receipt == "full"
+    full = checked.request.options.receipt == "full"
     with clock.stage("planning"):
-        decided = decided or decide(checked, cache)
+        decided = decided or decide(checked, run.cache)
         checked, plan, request = decided.checked, decided.plan, decided.checked.request
         wanted = request.pair, plan, checked.model, request.alignments
-        prediction = predict_run(*wanted, cache, with_errors=full)
+        prediction = predict_run(*wanted, run.cache, with_errors=full)
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
-    nominal = condensed_bodies(checked, plan, clock, report, cache, known=known, workers=workers)
-    places = operating_points(request.scene, request.choices, nominal, workers)
+    nominal = condensed_bodies(checked, plan, clock, run, known=known)
+    places = operating_points(request.scene, request.choices, nominal, run.workers)
     with clock.stage("contact"):
         nodes = table_nodes(places, plan)
-        report("contact", 0.3)
+        run.progress("contact", 0.3)
         loads = plan.load, plan.support
         (solved, support), condition = solve_operating_points(places, nodes.position, loads, conditioned=full)
         table = assembled_table(request, places, nodes, solved, support)
-        report("contact", 1.0)
+        run.progress("contact", 1.0)
     return SolvedTable(decided, prediction, places, nodes, solved, support, table, condition)
 
 
@@ -118,39 +109,30 @@ def condensed_bodies(
     checked: Checked,
     plan: Plan,
     clock: StageClock,
-    report: Progress,
-    cache: Path | None,
+    run: Run,
     *,
     coarse: bool = False,
     known: PairContact | None = None,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> PairContact:
     """Compute or fetch the compliances of both gears, fine or coarse, as a stage of the run."""
     request, stage = checked.request, "error estimate" if coarse else "compliance"
-    report(stage, 0.0)
+    run.progress(stage, 0.0)
     with clock.stage(stage):
         changes = request.center_distance_change
-        nominal = known or _condensed(request.pair, plan, cache, coarse, changes, workers)
-    report(stage, 1.0)
+        nominal = known or _condensed(request.pair, plan, coarse, changes, run)
+    run.progress(stage, 1.0)
     return nominal
 
 
-def _condensed(
-    pair: ParallelAxes,
-    plan: Plan,
-    cache: Path | None,
-    coarse: bool,
-    changes: FloatArray,
-    workers: Workers,
-) -> PairContact:
+def _condensed(pair: ParallelAxes, plan: Plan, coarse: bool, changes: FloatArray, run: Run) -> PairContact:
     """Condense the gears, those of three dimensions by the workers if there are any."""
     made = plan.discretization
-    if isinstance(workers, InProcess) or not isinstance(made, FaceDiscretization):
-        return pair_contact(pair, plan, cache, coarse, changes)
+    if isinstance(run.workers, InProcess) or not isinstance(made, FaceDiscretization):
+        return pair_contact(pair, plan, run.cache, coarse, changes)
     with TemporaryDirectory() as folder:
-        kept = cache or Path(folder)
+        kept = run.cache or Path(folder)
         recipes = made.coarse_recipes if coarse else made.recipes
-        condense_remotely(plan.bodies(pair), recipes, kept, workers)
+        condense_remotely(plan.bodies(pair), recipes, kept, run.workers)
         return pair_contact(pair, plan, kept, coarse, changes)
 
 

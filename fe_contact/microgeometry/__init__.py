@@ -7,6 +7,8 @@ from fe_contact.microgeometry.iso1328 import iso1328_tolerances
 from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
 from fe_contact.microgeometry.optimization import Optimization, Outcome, Perturbation
 from fe_contact.microgeometry.optimize import optimize
+from fe_contact.microgeometry.request import OptimizationRequest
+from fe_contact.microgeometry.sampling import Sampling
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import Ended, Search, SearchRun
 from fe_contact.microgeometry.search_method import (
@@ -34,8 +36,10 @@ __all__ = [
     "NelderMead",
     "Objective",
     "Optimization",
+    "OptimizationRequest",
     "Outcome",
     "Perturbation",
+    "Sampling",
     "Scatter",
     "ScatterNodes",
     "Search",

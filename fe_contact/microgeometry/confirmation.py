@@ -17,7 +17,7 @@ from fe_contact.microgeometry.evaluator import Evaluation, Evaluator
 from fe_contact.microgeometry.harris_map import HarrisMap
 from fe_contact.microgeometry.scatter import ONE_NODE
 from fe_contact.microgeometry.variables import modified
-from fe_contact.progress import silent
+from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Estimate, FloatArray, Json
 
@@ -119,11 +119,10 @@ def full_table(
         request,
         pair=modified(request.pair, values),
         misalignment=skews,
-        effects=dict(search.choices),
-        accuracy=replace(request.accuracy, tolerance=None, time_budget=None, level=decided.mesh.level),
+        options=replace(request.options.at_level(decided.mesh.level), effects=dict(search.choices)),
     )
     checked = check_asked(asked, spare=False)
-    table = compute_database(checked, asked.to_json(), silent, cache, replace(decided, checked=checked))
+    table = compute_database(checked, asked.to_json(), Run(cache=cache), replace(decided, checked=checked))
     table.require_complete()
     return table
 

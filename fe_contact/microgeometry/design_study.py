@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from bounds import SiNote
-from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.decided import Decided
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked, check_request
-from fe_contact.analysis.table_axes import LARGEST_DEVIATION
 from fe_contact.checks import increasing, integer, within
 from fe_contact.effects.misalignment import Misalignment
 from fe_contact.errors import InputError
@@ -23,7 +21,8 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.scatter import MISALIGNMENT, Scatter
 from fe_contact.microgeometry.variables import effect_of, figure, modified
-from fe_contact.progress import Progress
+from fe_contact.options import AnalysisOptions, Levels, Run, TableAxes
+from fe_contact.options.table_axes import LARGEST_DEVIATION
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, IntArray
 
@@ -56,36 +55,12 @@ class DesignStudy:
 
 
 @dataclass(frozen=True)
-class Accuracies:
-    """What `analyze` takes of the same names."""
+class DesignSpace:
+    """Which designs of a pair are assessed, and how.
 
-    tolerance: AllowedError | float | None = None
-    level: str | None = None
-    time_budget: float | None = None
-    model: str = "auto"
-    effects: Mapping[str, str] | None = None
-
-
-def design_study(
-    pair: ParallelAxes,
-    torques: Sequence[float] | FloatArray,
-    further_torques: Sequence[float] | FloatArray,
-    varied: Mapping[str, float],
-    scatter: Scatter,
-    misalignment: float,
-    positions: int,
-    accuracy: Accuracies,
-    clock: StageClock,
-    report: Progress,
-    cache: Path | None,
-) -> DesignStudy:
-    """Choose the model and condense the gears.
-
-    Parameters
+    Attributes
     ----------
     pair : GearPair or InternalGearPair
-    torques, further_torques : sequence of float
-        Those that count, and those that only maps show, N m.
     varied : mapping
         ``gear.quantity`` to m of a design in which nothing that is varied is zero: by it the effects are
         decided.
@@ -94,72 +69,82 @@ def design_study(
         About which it scatters, m.
     positions : int
         Equally spaced in a base pitch.
-    accuracy : Accuracies
-    clock, report, cache
-        See `analyze`.
+    options : AnalysisOptions
+        Their `positions`, `receipt` and `on_violation` do not count.
+    """
+
+    pair: ParallelAxes
+    varied: Mapping[str, float]
+    scatter: Scatter
+    misalignment: float
+    positions: int
+    options: AnalysisOptions
+
+    def check(self, torques: Levels) -> Checked:
+        """Check the request of a design in which everything acts that may act in any; computes nothing.
+
+        Raises
+        ------
+        InputError
+            A value that cannot be used, or something is varied whose effect is off.
+        """
+        integer("positions", self.positions, 8, 4096, "64 resolve a spur pair.")
+        ends = -LARGEST_DEVIATION, LARGEST_DEVIATION
+        within("misalignment", self.misalignment, *ends, SiNote("In m: 10 um is 1e-5."))
+        scattered = self.scatter.modification
+        present = {name: figure(self.pair, name) for name in scattered} | dict(self.varied)
+        acting = {name: present[name] + scattered.get(name, 0.0) for name in present}
+        skews = np.unique(self.misalignment + self.scatter.nodes().misalignment)
+        checked = check_request(
+            modified(self.pair, acting),
+            TableAxes(torques, misalignments=skews),
+            replace(self.options, positions=None, receipt="full", on_violation="report"),
+            spare=False,
+        )
+        _refuse_off(checked, self.varied, self.scatter)
+        return checked
+
+
+def design_study(
+    space: DesignSpace, torques: Levels, further_torques: Levels, clock: StageClock, run: Run
+) -> DesignStudy:
+    """Choose the model and condense the gears.
+
+    Parameters
+    ----------
+    space : DesignSpace
+    torques, further_torques : sequence of float
+        Those that count, and those that only maps show, N m.
+    clock : StageClock
+    run : Run
+        Only this process works.
 
     Raises
     ------
     InputError
-        A value that cannot be used, or something is varied whose effect is off.
+        As `DesignSpace.check`.
     """
     counted = increasing("torques", torques)
     everything = np.union1d(counted, further_torques)
     with clock.stage("planning"):
-        checked = check_study(pair, everything, varied, scatter, misalignment, positions, accuracy)
-        decided = _on_one_mesh(checked, cache)
-    report("compliance", 0.0)
+        decided = _on_one_mesh(space.check(everything), run.cache)
+    run.progress("compliance", 0.0)
     with clock.stage("compliance"):
-        contact = pair_contact(pair, decided.plan, cache)
-    report("compliance", 1.0)
+        contact = pair_contact(space.pair, decided.plan, run.cache)
+    run.progress("compliance", 1.0)
     index = np.searchsorted(everything, counted)
     load = decided.checked.request.load[index]
-    place = np.arange(positions) / positions
-    evaluator = Evaluator(contact, decided.checked.decided, place, load, misalignment, scatter.nodes())
+    position, nodes = np.arange(space.positions) / space.positions, space.scatter.nodes()
+    evaluator = Evaluator(contact, decided.checked.decided, position, load, space.misalignment, nodes)
     return DesignStudy(decided, everything, index, evaluator)
-
-
-def check_study(
-    pair: ParallelAxes,
-    torques: FloatArray,
-    varied: Mapping[str, float],
-    scatter: Scatter,
-    misalignment: float,
-    positions: int,
-    accuracy: Accuracies,
-) -> Checked:
-    """Check the request of a design in which everything acts that may act in any; computes nothing.
-
-    Parameters and errors are those of `design_study`, all torques in one.
-    """
-    integer("positions", positions, 8, 4096, "64 resolve a spur pair.")
-    within(
-        "misalignment", misalignment, -LARGEST_DEVIATION, LARGEST_DEVIATION, SiNote("In m: 10 um is 1e-5.")
-    )
-    nodes = scatter.nodes()
-    present = {name: figure(pair, name) for name in scatter.modification} | dict(varied)
-    acting = {name: present[name] + scatter.modification.get(name, 0.0) for name in present}
-    checked = check_request(
-        modified(pair, acting),
-        torques=torques,
-        tolerance=accuracy.tolerance,
-        level=accuracy.level,
-        time_budget=accuracy.time_budget,
-        model=accuracy.model,
-        misalignments=np.unique(misalignment + nodes.misalignment),
-        effects=accuracy.effects,
-        on_violation="report",
-        spare=False,
-    )
-    _refuse_off(checked, varied, scatter)
-    return checked
 
 
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Decided:
     """Return model and mesh by the asked accuracy, every effect decided for good."""
     decided = decide(checked, cache)
     request = decided.checked.request
-    fixed = replace(request, effects=decided.checked.decided, neglected={}, turned_on={})
+    options = replace(request.options, effects=decided.checked.decided)
+    fixed = replace(request, options=options, neglected={}, turned_on={})
     return replace(decided, checked=check_asked(fixed, spare=False))
 
 

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fe_contact.checks import increasing
 from fe_contact.geometry import ParallelAxes
-from fe_contact.microgeometry.design_study import Accuracies, DesignStudy, check_study
-from fe_contact.microgeometry.objective import Limits, Objective
-from fe_contact.microgeometry.scatter import Scatter
+from fe_contact.microgeometry.design_study import DesignSpace, DesignStudy
+from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Objective, WeightedMean
+from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter
 from fe_contact.microgeometry.search import Search
 from fe_contact.microgeometry.variables import LENGTHS, DesignVariable, check_variables, start_of
+from fe_contact.options import AnalysisOptions, Levels
 from fe_contact.types import FloatArray, Json
 
 MAP_PARTS = np.arange(1, 11) / 8.0
@@ -24,18 +24,43 @@ CLOSE = 0.03
 
 @dataclass(frozen=True)
 class OptimizationRequest:
-    """Arguments of `optimize`, which describes them; those of `analyze` are in `accuracy`."""
+    """A pair, its design variables, and by what its designs are assessed.
+
+    Attributes
+    ----------
+    pair : GearPair or InternalGearPair
+        Its own modifications are the start; those that are no variables stay.
+    torques : sequence of float
+        That count, N m on the driving gear, increasing.
+    variables : tuple of DesignVariable
+    scatter : Scatter
+        Of misalignment and modifications, about the design.
+    misalignment : float
+        About which it scatters, m.
+    objective : Objective
+        `WeightedMean` or `Worst` of the expectations at the torques.
+    limits : Limits
+        Pressure, face load factor, load on tip edges.
+    search : Search
+        Method, seed, starts, evaluations, positions.
+    options : AnalysisOptions
+        `positions`, `receipt` and `on_violation` do not count. Effects are decided once, for a design in
+        which every variable is at the middle of its bounds, misaligned as it scatters: all designs are
+        assessed by one model.
+    map_torques : sequence of float, optional
+        Further torques of the Harris maps, N m; default: up to 1.25 times the largest that counts.
+    """
 
     pair: ParallelAxes
-    torques: Sequence[float] | FloatArray
+    torques: Levels
     variables: tuple[DesignVariable, ...]
-    scatter: Scatter
-    misalignment: float
-    objective: Objective
-    limits: Limits
-    search: Search
-    accuracy: Accuracies
-    map_torques: Sequence[float] | FloatArray | None = None
+    scatter: Scatter = NO_SCATTER
+    misalignment: float = 0.0
+    objective: Objective = WeightedMean()  # noqa: RUF009 (frozen)
+    limits: Limits = NO_LIMITS
+    search: Search = Search()  # noqa: RUF009 (frozen)
+    options: AnalysisOptions = AnalysisOptions()  # noqa: RUF009 (frozen)
+    map_torques: Levels | None = None
 
     @property
     def own(self) -> tuple[float, ...]:
@@ -43,9 +68,11 @@ class OptimizationRequest:
         return start_of(self.pair, self.variables)
 
     @property
-    def acting(self) -> dict[str, float]:
-        """A design in which every variable acts, ``gear.quantity`` to m."""
-        return {one.name: one.acting for one in self.variables}
+    def space(self) -> DesignSpace:
+        """The designs, by one in which every variable acts."""
+        acting = {one.name: one.acting for one in self.variables}
+        scattered = self.scatter, self.misalignment
+        return DesignSpace(self.pair, acting, *scattered, self.search.positions, self.options)
 
     @property
     def outside(self) -> tuple[str, ...]:
@@ -77,8 +104,7 @@ class OptimizationRequest:
         check_variables(self.pair, self.variables)
         counted = increasing("torques", self.torques)
         self.objective.check(counted.size)
-        wanted = self.acting, self.scatter, self.misalignment, self.search.positions, self.accuracy
-        check_study(self.pair, counted, *wanted)
+        self.space.check(counted)
 
     def to_json(self, study: DesignStudy) -> Json:
         """Return plain JSON, with what the study decided."""

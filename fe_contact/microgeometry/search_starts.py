@@ -9,17 +9,16 @@ from scipy.stats import qmc
 from fe_contact.microgeometry.counted_merit import Cancelled
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.search import Cancel, Ended, Search, SearchRun, search_from
-from fe_contact.progress import Progress
+from fe_contact.options import Run
 from fe_contact.types import FloatArray
-from fe_contact.workers import InProcess, Workers
+from fe_contact.workers import InProcess
 
 
 def search_all(
     problem: DesignProblem,
     search: Search,
     own: tuple[float, ...],
-    workers: Workers,
-    report: Progress,
+    run: Run,
     cancel: Cancel,
 ) -> tuple[SearchRun, ...]:
     """Search from every start; `own` is the design to begin with, m.
@@ -31,10 +30,8 @@ def search_all(
         1 : search.starts
     ]
     begins = list(enumerate([first, *others]))
-    if isinstance(workers, InProcess):
-        runs = _here(problem, search, begins, report, cancel)
-    else:
-        runs = _remote(problem, search, begins, workers, report, cancel)
+    search_from_each = _here if isinstance(run.workers, InProcess) else _remotely
+    runs = search_from_each(problem, search, begins, run, cancel)
     return tuple(runs) or (SearchRun(first, problem.assess(first), 1, Ended.CANCELLED, 0.0),)
 
 
@@ -42,7 +39,7 @@ def _here(
     problem: DesignProblem,
     search: Search,
     begins: list[tuple[int, FloatArray]],
-    report: Progress,
+    run: Run,
     cancel: Cancel,
 ) -> list[SearchRun]:
     """Search from one start after the other."""
@@ -52,27 +49,26 @@ def _here(
             break
 
         def told(part: float, index: int = index) -> None:
-            report("search", (index + part) / search.starts)
+            run.progress("search", (index + part) / search.starts)
 
         runs.append(search_from(problem, search, start, index, told, cancel))
     return runs
 
 
-def _remote(
+def _remotely(
     problem: DesignProblem,
     search: Search,
     begins: list[tuple[int, FloatArray]],
-    workers: Workers,
-    report: Progress,
+    run: Run,
     cancel: Cancel,
 ) -> list[SearchRun]:
     """Let workers search; cancelled, keep what is there: a Ctrl-C may have ended some of them."""
     runs: list[SearchRun] = []
     try:
         bare = replace(problem, memory=None)  # a file of this machine, for one writer
-        for one in workers.run(search_one, (bare, search), begins):
+        for one in run.workers.run(search_one, (bare, search), begins):
             runs.append(one)
-            report("search", len(runs) / search.starts)
+            run.progress("search", len(runs) / search.starts)
             if cancel():
                 break
     except Exception:

@@ -2,32 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
-from fe_contact.allowed_error import AllowedError
-from fe_contact.checks import increasing, integer, within
 from fe_contact.errors import SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.microgeometry.confirmation import full_table
-from fe_contact.microgeometry.design_study import Accuracies, check_study, design_study
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator, least_deviation
 from fe_contact.microgeometry.linearized_design import linearized
 from fe_contact.microgeometry.objective import NO_LIMITS
+from fe_contact.microgeometry.sampling import Sampling
 from fe_contact.microgeometry.scatter import ONE_NODE, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.spread import Quantile, quantile, rank_correlation
 from fe_contact.microgeometry.tolerances import Tolerances
-from fe_contact.progress import Progress, silent
+from fe_contact.options import AnalysisOptions, Levels, Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray, Json
-from fe_contact.workers import InProcess, Workers
 
 IN_A_TASK = 25
 """Samples of a task: half a second to some seconds. It does not depend on who does the tasks."""
-FRACTIONS = (0.05, 0.5, 0.95)
 ACTING = SobolSample(1)
 """Two pairs that deviate in everything: by them the effects are decided."""
 
@@ -108,25 +103,15 @@ class ToleranceStudy:
 
 def scatter(
     pair: ParallelAxes,
-    torques: Sequence[float] | FloatArray,
+    torques: Levels,
     tolerances: Tolerances,
+    sampling: Sampling = Sampling(),  # noqa: B008 (frozen)
+    options: AnalysisOptions = AnalysisOptions(),  # noqa: B008 (frozen)
+    run: Run = Run(),  # noqa: B008 (frozen)
     *,
-    samples: int = 1000,
-    seed: int = 0,
-    confidence: float = 0.95,
-    fractions: Sequence[float] = FRACTIONS,
     misalignment: float = 0.0,
-    positions: int = 64,
-    tolerance: AllowedError | float | None = None,
-    level: str | None = None,
-    time_budget: float | None = None,
-    model: str = "auto",
-    effects: Mapping[str, str] | None = None,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-    progress: Progress | None = None,
-    cache: Path | None = None,
 ) -> ToleranceStudy:
-    """Draw pairs within their tolerances and compute the peak-to-peak transmission error of each.
+    """Sample pairs within their tolerances and compute the peak-to-peak transmission error of each.
 
     Parameters
     ----------
@@ -136,22 +121,13 @@ def scatter(
         N m on the driving gear, increasing.
     tolerances : Tolerances
         See `iso1328_tolerances`. Material removed does not become negative by a deviation.
-    samples : int
-        Pairs, 2 to 1 000 000.
-    seed : int
-        Equal seeds give equal results to the last bit, whoever does the work.
-    confidence : float
-        Of the bounds of the quantiles.
-    fractions : sequence of float
-        Quantiles to estimate.
+    sampling : Sampling
+    options : AnalysisOptions
+        One model for all pairs; `positions`, `receipt` and `on_violation` do not count.
+    run : Run
+        Its workers do the tasks of 25 pairs.
     misalignment : float
         As designed, m.
-    positions : int
-        Equally spaced in a base pitch.
-    tolerance, level, time_budget, model, effects, progress, cache
-        See `analyze`; one model for all pairs.
-    workers : Workers
-        Who does the tasks of 25 pairs.
 
     Raises
     ------
@@ -160,26 +136,19 @@ def scatter(
     MeshError, SolveError
         No acceptable mesh, or the contact of a pair cannot be solved.
     """
-    clock, report = StageClock(), progress or silent
-    integer("samples", samples, 2, 1_000_000)
-    integer("seed", seed, 0, 2**63 - 1)
-    within("confidence", confidence, 0.5, 0.9999)
-    for index, fraction in enumerate(fractions):
-        within(f"fractions[{index}]", fraction, 0.0, 1.0)
-    accuracy = Accuracies(tolerance, level, time_budget, model, effects)
-    study = design_study(
-        pair, torques, [], {}, _widths(tolerances), misalignment, positions, accuracy, clock, report, cache
-    )
-    deviation = tolerances.sample(samples, seed)
+    clock = StageClock()
+    space = toleranced(pair, tolerances, sampling, options, misalignment)
+    study = design_study(space, torques, [], clock, run)
+    deviation = tolerances.sample(sampling.samples, sampling.seed)
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)
     with clock.stage("first order"):
         at_once = first_order(nominal, names, deviation)
     with clock.stage("samples"):
-        found = _evaluated(study.evaluator, names, deviation, workers, report)
+        found = _evaluated(study.evaluator, names, deviation, run)
     with clock.stage("confirmation"):
-        table = full_table(nominal, {}, study.decided, cache)
+        table = full_table(nominal, {}, study.decided, run.cache)
         error = [table.peak_to_peak(force=float(f), misalignment=misalignment).error for f in table.force]
-    report("confirmation", 1.0)
+    run.progress("confirmation", 1.0)
     return ToleranceStudy(
         study.torque,
         names,
@@ -187,52 +156,38 @@ def scatter(
         found,
         nominal.evaluate({}).peak_to_peak[0],
         np.array(error),
-        tuple(quantile(found, fraction, confidence) for fraction in fractions),
+        tuple(quantile(found, fraction, sampling.confidence) for fraction in sampling.fractions),
         at_once,
-        confidence,
+        sampling.confidence,
         clock.to_json(),
         {
             "tolerances": tolerances.to_json(),
-            "seed": seed,
-            "positions": positions,
+            "seed": sampling.seed,
+            "positions": sampling.positions,
             "misalignment_m": misalignment,
         },
     )
 
 
-def check_scatter(
+def toleranced(
     pair: ParallelAxes,
-    torques: Sequence[float] | FloatArray,
     tolerances: Tolerances,
+    sampling: Sampling,
+    options: AnalysisOptions,
     misalignment: float,
-    accuracy: Accuracies,
-    positions: int = 64,
-) -> None:
-    """Check what `scatter` is given, without computing anything.
-
-    Raises
-    ------
-    InputError
-        As `scatter`.
-    """
-    loads = increasing("torques", torques)
-    check_study(pair, loads, {}, _widths(tolerances), misalignment, positions, accuracy)
+) -> DesignSpace:
+    """Return the pairs that tolerances allow, as designs: everything deviates that may."""
+    deviations = Scatter(tolerances.misalignment, tolerances.modification, ACTING)
+    return DesignSpace(pair, {}, deviations, misalignment, sampling.positions, options)
 
 
-def _widths(tolerances: Tolerances) -> Scatter:
-    """Return a scatter in which everything deviates that may."""
-    return Scatter(tolerances.misalignment, tolerances.modification, ACTING)
-
-
-def _evaluated(
-    evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, workers: Workers, report: Progress
-) -> FloatArray:
+def _evaluated(evaluator: Evaluator, names: tuple[str, ...], deviation: FloatArray, run: Run) -> FloatArray:
     """Evaluate all samples (N, L), task by task."""
     tasks = [deviation[k : k + IN_A_TASK] for k in range(0, deviation.shape[0], IN_A_TASK)]
     parts = []
-    for count, part in enumerate(workers.run(ripple_of_samples, (evaluator, names), tasks)):
+    for count, part in enumerate(run.workers.run(ripple_of_samples, (evaluator, names), tasks)):
         parts.append(part)
-        report("samples", (count + 1) / len(tasks))
+        run.progress("samples", (count + 1) / len(tasks))
     found: FloatArray = np.concatenate(parts)
     if not np.isfinite(found).all():
         bad = int((~np.isfinite(found)).any(axis=1).sum())

@@ -1,6 +1,5 @@
 """From a pair, an accuracy and a contact model to a plan."""
 
-from fe_contact.planning.accuracy import LEVELS, Accuracy
 from fe_contact.planning.cost_model import Prediction, predict_run
 from fe_contact.planning.cycle_cost import MOST_ROWS, CycleCost, cycle_cost, refuse_long_cycle
 from fe_contact.planning.discretization import FaceDiscretization, PlaneDiscretization
@@ -20,9 +19,7 @@ from fe_contact.planning.root_recipes import FaceRootMeshes, PlaneRootMeshes, ro
 
 __all__ = [
     "LEFT_OUT",
-    "LEVELS",
     "MOST_ROWS",
-    "Accuracy",
     "CycleCost",
     "ExpectedCurves",
     "ExpectedError",

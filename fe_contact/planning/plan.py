@@ -13,7 +13,7 @@ from fe_contact.compliance import PlaneHypothesis
 from fe_contact.contact import ContactModel, PatchRule
 from fe_contact.geometry import ParallelAxes, Toothing
 from fe_contact.hertz import contact_modulus, half_width, relative_radius
-from fe_contact.planning.accuracy import Accuracy
+from fe_contact.options import AnalysisOptions
 from fe_contact.planning.discretization import Discretization, face_discretization, plane_discretization
 from fe_contact.types import FloatArray, Json
 
@@ -146,7 +146,7 @@ class Plan:
 def make_plan(
     pair: ParallelAxes,
     load: FloatArray,
-    accuracy: Accuracy,
+    options: AnalysisOptions,
     model: ContactModel,
     level: str = "standard",
     slices: int | None = None,
@@ -158,7 +158,7 @@ def make_plan(
     pair : GearPair or InternalGearPair
     load : ndarray
         Requested normal forces in N, increasing, > 0.
-    accuracy : Accuracy
+    options : AnalysisOptions
     model : ContactModel
         `across_face` asks for three dimensions, `finite_width` for a plane corrected towards them, `thin_rim`
         for the blanks, `bore_seat` for the seats.
@@ -168,24 +168,24 @@ def make_plan(
     slices : int, optional
         Of the face in three dimensions; default: those of the level.
     """
-    level = accuracy.level or level
+    level = options.level or level
     levels = increasing("load", load)
     discretization: Discretization
     if model.across_face:
         discretization = face_discretization(pair, level, slices)
     else:
-        stress = accuracy.model == "plane_stress"
+        stress = options.model == "plane_stress"
         hypothesis = PlaneHypothesis.PLANE_STRESS if stress else PlaneHypothesis.PLANE_STRAIN
         discretization = plane_discretization(pair, level, hypothesis, model.finite_width)
     patch = _patch_rule(pair, float(levels[-1]), discretization)
     nodes = FACE_NODES if model.across_face else PLANE_NODES
-    if accuracy.tolerance is not None:
-        nodes = nodes.for_tolerance(accuracy.tolerance)
+    if options.tolerance is not None:
+        nodes = nodes.for_tolerance(options.tolerance)
     support = _support_loads(levels)
     return Plan(
         discretization,
         patch,
-        accuracy.positions,
+        options.positions,
         nodes,
         levels,
         support,

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from fe_contact.contact import ContactModel
 from fe_contact.geometry import ParallelAxes
-from fe_contact.planning.accuracy import LEVELS, Accuracy
+from fe_contact.options import LEVELS, AnalysisOptions
 from fe_contact.planning.cost_model import predict_run
 from fe_contact.planning.discretization import FINER_SLICES, FaceDiscretization
 from fe_contact.planning.effort import effort
@@ -20,7 +20,7 @@ from fe_contact.types import FloatArray
 def planned(
     pair: ParallelAxes,
     load: FloatArray,
-    accuracy: Accuracy,
+    options: AnalysisOptions,
     model: ContactModel,
     alignments: tuple[int, int] = (1, 1),
     cache: Path | None = None,
@@ -29,14 +29,14 @@ def planned(
 
     Parameters are those of `chosen_mesh`.
     """
-    choice = chosen_mesh(pair, load, accuracy, model, alignments, cache)
-    return make_plan(pair, load, accuracy, model, choice.level, choice.slices)
+    choice = chosen_mesh(pair, load, options, model, alignments, cache)
+    return make_plan(pair, load, options, model, choice.level, choice.slices)
 
 
 def chosen_mesh(
     pair: ParallelAxes,
     load: FloatArray,
-    accuracy: Accuracy,
+    options: AnalysisOptions,
     model: ContactModel,
     alignments: tuple[int, int] = (1, 1),
     cache: Path | None = None,
@@ -49,7 +49,7 @@ def chosen_mesh(
     pair : GearPair or InternalGearPair
     load : ndarray
         Requested normal forces in N.
-    accuracy : Accuracy
+    options : AnalysisOptions
     model : ContactModel
     alignments : (int, int)
         Numbers of misalignments and of center distances.
@@ -61,22 +61,22 @@ def chosen_mesh(
     """
 
     def option(level: str, slices: int | None = None) -> MeshOption:
-        plan = make_plan(pair, load, accuracy, model, level, slices)
+        plan = make_plan(pair, load, options, model, level, slices)
         error = expected_error(pair, plan, curves)
         return MeshOption(level, plan.discretization.slices, error, effort(pair, plan, model, alignments))
 
     def seconds(choice: MeshOption) -> float:
-        plan = make_plan(pair, load, accuracy, model, choice.level, choice.slices)
+        plan = make_plan(pair, load, options, model, choice.level, choice.slices)
         return predict_run(pair, plan, model, alignments, cache).cpu_seconds
 
-    if accuracy.level is not None:
-        return MeshChoice(option(accuracy.level), True, "as asked")
-    if accuracy.tolerance is None and accuracy.time_budget is None:
+    if options.level is not None:
+        return MeshChoice(option(options.level), True, "as asked")
+    if options.tolerance is None and options.time_budget is None:
         return MeshChoice(option("standard"), True, "nothing asked")
-    options = [option(level) for level in LEVELS]
-    usual = make_plan(pair, load, accuracy, model, "draft").discretization
+    meshes = [option(level) for level in LEVELS]
+    usual = make_plan(pair, load, options, model, "draft").discretization
     if isinstance(usual, FaceDiscretization):
-        options += [option(level, n) for level in LEVELS for n in FINER_SLICES]
-    if accuracy.tolerance is not None:
-        return mesh_for_tolerance(accuracy.tolerance, options)
-    return mesh_for_time(accuracy.time_budget or 0.0, options, seconds)
+        meshes += [option(level, n) for level in LEVELS for n in FINER_SLICES]
+    if options.tolerance is not None:
+        return mesh_for_tolerance(options.tolerance, meshes)
+    return mesh_for_time(options.time_budget or 0.0, meshes, seconds)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis import ste_database
+from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
 from service.cli.assessed_case import assessed_case
@@ -14,7 +15,7 @@ from service.cli.output import Report, check_netcdf_output, console, print_json,
 from service.cli.tolerance_lines import print_draft, tolerance_lines, tolerance_warnings
 from service.cli.warned import warn
 from service.convert.answers import summary_json
-from service.convert.case import analysis_arguments, boundary_errors, case_json
+from service.convert.case import analysis_options, boundary_errors, case_json, table_axes
 from service.convert.checks import check_case
 from service.convert.plausibility import phrased_database
 from service.convert.task_workers import ExecutorChoice, open_executor
@@ -51,14 +52,13 @@ def analyzed(
     """Return the database of a case, not asked of a service; condensed gears are kept in the user's cache."""
     pair = check_case(case)
     with boundary_errors():
-        database = analyze(
+        database = ste_database(
             pair,
-            **analysis_arguments(case),
+            table_axes(case),
+            analysis_options(case),
+            Run(workers, cache_home() / "compliance", report),
             case=case_json(case),
-            cache=cache_home() / "compliance",
-            progress=report,
             on_draft=print_draft,
-            workers=workers,
         )
     return phrased_database(database, case)
 

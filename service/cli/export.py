@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis import DeformedPair, deformed_pairs
+from fe_contact.options import Run
 from fe_contact.types import FloatArray
 from service.cli.assessed_case import assessed_case
 from service.cli.output import console, print_json, progress_bar, table
 from service.cli.ste import positions
-from service.convert.case import boundary_errors
+from service.convert.case import analysis_options, boundary_errors, operating_point
 from service.convert.checks import check_case
-from service.convert.flanks import point_arguments
 from service.directories import cache_home
 from service.problems import BadInput
 from service.schemas import validated
@@ -37,11 +37,11 @@ def run_export(
     with progress_bar() as report, boundary_errors():
         found = deformed_pairs(
             pair,
+            operating_point(case),
+            analysis_options(case),
+            Run(cache=cache_home() / "compliance", progress=report),
             at=where,
             beside=beside,
-            progress=report,
-            cache=cache_home() / "compliance",
-            **{name: value for name, value in point_arguments(case).items() if name != "on_violation"},
         )
     written = _written(found, output)
     if as_json:

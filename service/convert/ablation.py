@@ -13,7 +13,8 @@ from dynamics.effects import MESH_EFFECTS
 from dynamics.scene import Scene
 from fe_contact.analysis.ablation import Ablation, ablate
 from fe_contact.effects import EFFECTS
-from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from fe_contact.options import Run
+from service.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
 from service.convert.runs import staged
 from service.problems import BadInput
 from service.schemas import Case
@@ -21,7 +22,6 @@ from service.units import UM
 
 Json = dict[str, Any]
 Report = Callable[[str, float], None]
-_LEFT_ASIDE = ("receipt", "on_violation", "center_distance_changes")
 
 
 def ablation_of_case(case: Case, only: Sequence[str] | None, cache: Path | None, report: Report) -> Ablation:
@@ -35,9 +35,9 @@ def ablation_of_case(case: Case, only: Sequence[str] | None, cache: Path | None,
         The case itself cannot be computed.
     """
     pair = gear_pair(case)
-    asked = {name: value for name, value in analysis_arguments(case).items() if name not in _LEFT_ASIDE}
+    run = Run(cache=cache, progress=report)
     with boundary_errors():
-        return ablate(pair, **asked, only=only, progress=report, cache=cache)
+        return ablate(pair, table_axes(case), analysis_options(case), run, only=only)
 
 
 def ablation_of_scene(scene: Scene, only: Sequence[str] | None, report: Report) -> SceneAblation:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 from bounds import inside
@@ -24,6 +25,7 @@ from fe_contact.geometry import (
     Shaft,
 )
 from fe_contact.material import Material
+from fe_contact.options import AnalysisOptions, OperatingPoint, TableAxes
 from service.convert.declared import declared_part, in_si
 from service.convert.errors import translated
 from service.problems import BadInput
@@ -150,32 +152,56 @@ def _flank_grid(given: ToothingInput) -> FlankGrid | None:
         )
 
 
-def analysis_arguments(case: Case) -> Json:
-    """Return what `fe_contact.analyze` is asked for a case, as keyword arguments in SI."""
-    accuracy, load, errors = case.accuracy, case.load, case.errors
-    return {
-        "torques": None if load.torque_n_m is None else list(load.torque_n_m),
-        "normal_forces": None if load.normal_force_n is None else list(load.normal_force_n),
-        "misalignments": tuple(value * UM for value in errors.misalignment_um),
-        "center_distance_changes": tuple(value * MM for value in errors.center_distance_change_mm),
-        "tolerance": _allowed(accuracy),
-        "time_budget": accuracy.time_budget_s,
-        "level": accuracy.level,
-        "model": accuracy.model,
-        "positions": accuracy.positions,
-        "pitches": accuracy.pitches,
-        "receipt": accuracy.receipt,
-        "on_violation": accuracy.on_violation,
-        "effects": dict(case.effects),
-    }
+def table_axes(case: Case) -> TableAxes:
+    """Return what the table of a case is computed over, in SI."""
+    load, errors = case.load, case.errors
+    with boundary_errors():
+        return TableAxes(
+            load.torque_n_m,
+            load.normal_force_n,
+            tuple(value * UM for value in errors.misalignment_um),
+            tuple(value * MM for value in errors.center_distance_change_mm),
+            case.accuracy.pitches,
+        )
+
+
+def analysis_options(case: Case) -> AnalysisOptions:
+    """Return accuracy, model and effects of a case, in SI."""
+    accuracy = case.accuracy
+    with boundary_errors():
+        return AnalysisOptions(
+            tolerance=_allowed(accuracy),
+            time_budget=accuracy.time_budget_s,
+            level=accuracy.level,
+            model=accuracy.model,
+            positions=accuracy.positions,
+            effects=dict(case.effects),
+            receipt=accuracy.receipt,
+            on_violation=accuracy.on_violation,
+        )
+
+
+def study_options(case: Case) -> AnalysisOptions:
+    """Return the options of a case for a study, which measures its errors and repeats what it must."""
+    return replace(analysis_options(case), receipt="full", on_violation="repeat")
+
+
+def operating_point(case: Case) -> OperatingPoint:
+    """Return the first load and the first alignment of a case, in SI."""
+    load, errors = case.load, case.errors
+    return OperatingPoint(
+        None if load.torque_n_m is None else load.torque_n_m[0],
+        None if load.normal_force_n is None else load.normal_force_n[0],
+        errors.misalignment_um[0] * UM,
+        errors.center_distance_change_mm[0] * MM,
+    )
 
 
 def _allowed(accuracy: AccuracyInput) -> AllowedError | None:
     """Return the tolerance requested."""
     if accuracy.tolerance is None:
         return None
-    with boundary_errors():
-        return AllowedError(accuracy.tolerance, accuracy.tolerance_floor_nm * NM)
+    return AllowedError(accuracy.tolerance, accuracy.tolerance_floor_nm * NM)
 
 
 def case_json(case: Case) -> Json:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fe_contact.analysis import check_request
 from fe_contact.geometry import ParallelAxes
-from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.convert.case import analysis_options, boundary_errors, gear_pair, table_axes
 from service.schemas import Case
 
 
@@ -18,5 +18,5 @@ def check_case(case: Case, *, whole_table: bool = True) -> ParallelAxes:
     """
     pair = gear_pair(case)
     with boundary_errors():
-        check_request(pair, **analysis_arguments(case), whole_table=whole_table, spare=False)
+        check_request(pair, table_axes(case), analysis_options(case), whole_table=whole_table, spare=False)
     return pair

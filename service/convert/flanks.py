@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis import LoadDistribution, flank_results
-from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
+from fe_contact.options import Run
+from fe_contact.progress import Progress, silent
+from service.convert.case import analysis_options, boundary_errors, case_json, gear_pair, operating_point
 from service.schemas import Case, ErrorsInput, LoadInput
 from service.schemas.flank import FlankPoint
 from service.units import MM, UM
 
 Json = dict[str, Any]
-_PASSED_ON = ("tolerance", "time_budget", "level", "model", "effects", "on_violation")
 
 
 def case_at(case: Case, point: FlankPoint) -> Case:
@@ -41,9 +41,7 @@ def case_at(case: Case, point: FlankPoint) -> Case:
     return case.model_copy(update={"load": load, "errors": here, "accuracy": accuracy})
 
 
-def flanks_of(
-    case: Case, cache: Path | None, progress: Callable[[str, float], None] | None = None
-) -> LoadDistribution:
+def flanks_of(case: Case, cache: Path | None, progress: Progress = silent) -> LoadDistribution:
     """Return what happens on the flanks of a case of one load and one alignment, over a mesh cycle.
 
     Raises
@@ -54,23 +52,10 @@ def flanks_of(
         No mesh, or positions without a solution.
     """
     with boundary_errors():
-        arguments = point_arguments(case)
+        run = Run(cache=cache, progress=progress)
         return flank_results(
-            gear_pair(case), case=case_json(case), progress=progress, cache=cache, **arguments
+            gear_pair(case), operating_point(case), analysis_options(case), run, case=case_json(case)
         )
-
-
-def point_arguments(case: Case) -> Json:
-    """Return what a case of one load and one alignment asks for, as keyword arguments in SI."""
-    arguments = analysis_arguments(case)
-    torques, forces = arguments["torques"], arguments["normal_forces"]
-    return {
-        "torque": torques[0] if torques else None,
-        "normal_force": forces[0] if forces else None,
-        "misalignment": arguments["misalignments"][0],
-        "center_distance_change": arguments["center_distance_changes"][0],
-        **{name: arguments[name] for name in _PASSED_ON},
-    }
 
 
 def flank_json(found: LoadDistribution) -> Json:

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 from fe_contact.analysis.frontier import Frontier, frontier
-from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from fe_contact.progress import Progress, silent
+from service.convert.case import boundary_errors, gear_pair, study_options, table_axes
 from service.schemas import Case
-
-_LEFT_ASIDE = ("pitches", "receipt", "on_violation")
 
 
 def frontier_of(
     case: Case,
     rungs: Sequence[str] | None,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = silent,
     *,
     full_contact: int | None = None,
 ) -> Frontier:
@@ -30,6 +30,8 @@ def frontier_of(
         Fewer than two rungs gave a table.
     """
     pair = gear_pair(case)
-    asked = {name: value for name, value in analysis_arguments(case).items() if name not in _LEFT_ASIDE}
+    axes = replace(table_axes(case), pitches=None)
     with boundary_errors():
-        return frontier(pair, **asked, fidelities=rungs, full_contact=full_contact, progress=progress)
+        return frontier(
+            pair, axes, study_options(case), fidelities=rungs, full_contact=full_contact, progress=progress
+        )

@@ -14,6 +14,7 @@ from fe_contact.microgeometry import (
     Method,
     NelderMead,
     Optimization,
+    OptimizationRequest,
     Scatter,
     Search,
     SequentialLinearProgramming,
@@ -23,11 +24,11 @@ from fe_contact.microgeometry import (
     optimize,
 )
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
-from fe_contact.microgeometry.design_study import Accuracies
-from fe_contact.microgeometry.request import OptimizationRequest
+from fe_contact.microgeometry.search import never
+from fe_contact.options import Run
 from fe_contact.workers import InProcess, Workers
 from service.convert.ablation import in_um
-from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.convert.case import analysis_options, boundary_errors, gear_pair
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
 from service.schemas.optimisation import (
@@ -42,7 +43,6 @@ from service.units import UM, factor
 Json = dict[str, Any]
 Report = Callable[[str, float], None]
 MPA = 1e6
-_ACCURACY = ("tolerance", "level", "time_budget", "model", "effects")
 
 
 def optimisation_of(
@@ -51,7 +51,7 @@ def optimisation_of(
     cache: Path | None,
     report: Report,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
-    cancel: Callable[[], bool] | None = None,
+    cancel: Callable[[], bool] = never,
     memory: Path | None = None,
 ) -> Optimization:
     """Optimise the modifications of a case; when `cancel` says so, end with the best so far.
@@ -64,42 +64,34 @@ def optimisation_of(
         The case cannot be computed.
     """
     with boundary_errors():
-        arguments = _arguments(case, study)
-        return optimize(
-            **arguments,
-            **{name: analysis_arguments(case)[name] for name in _ACCURACY},
-            workers=workers,
-            cancel=cancel,
-            memory=memory,
-            progress=report,
-            cache=cache,
-        )
+        run = Run(workers, cache, report)
+        return optimize(_request(case, study), run, cancel=cancel, memory=memory)
 
 
 def check_optimisation_of(case: Case, study: OptimisationInput) -> None:
     """Raise `BadInput` for what `optimisation_of` would, without computing anything."""
     with boundary_errors():
-        accuracy = Accuracies(**{name: analysis_arguments(case)[name] for name in _ACCURACY})
-        OptimizationRequest(**_arguments(case, study), accuracy=accuracy).check()
+        _request(case, study).check()
 
 
-def _arguments(case: Case, study: OptimisationInput) -> Json:
-    """Return what both of the library's functions take, in SI."""
+def _request(case: Case, study: OptimisationInput) -> OptimizationRequest:
+    """Return what is asked of the library, in SI."""
     pair = gear_pair(case)
     torques = study.torque_n_m or case.load.torque_n_m
     if torques is None:
         torques = tuple(float(pair.torque(force)) for force in case.load.normal_force_n or ())
     objective = WeightedMean(study.objective.weights) if study.objective.kind == "weighted_mean" else Worst()
-    return {
-        "pair": pair,
-        "torques": list(torques),
-        "variables": tuple(_variables(study)),
-        "scatter": scatter_of(study.scatter, study.search.seed),
-        "misalignment": study.misalignment_um * UM,
-        "objective": objective,
-        "limits": _limits(study),
-        "search": _search(study.search),
-    }
+    return OptimizationRequest(
+        pair,
+        list(torques),
+        tuple(_variables(study)),
+        scatter_of(study.scatter, study.search.seed),
+        study.misalignment_um * UM,
+        objective,
+        _limits(study),
+        _search(study.search),
+        analysis_options(case),
+    )
 
 
 def _variables(study: OptimisationInput) -> list[DesignVariable]:

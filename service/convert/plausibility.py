@@ -8,15 +8,13 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
 from bounds import Unit, finding_of
 from dynamics.plausibility import scene_findings
 from dynamics.scene import Scene
 from fe_contact.analysis import LoadDistribution
 from fe_contact.plausibility import pair_findings
 from fe_contact.ste import SteDatabase
-from service.convert.case import analysis_arguments, gear_pair
+from service.convert.case import gear_pair, table_axes
 from service.convert.errors import named
 from service.convert.vocabulary import case_field, scene_field
 from service.schemas import Case
@@ -35,11 +33,9 @@ def case_warnings(case: Case) -> list[Json]:
     BadInput
         No such pair.
     """
-    pair, asked = gear_pair(case), analysis_arguments(case)
-    by_torque = asked["torques"] is not None
-    forces = pair.normal_force(asked["torques"]) if by_torque else np.asarray(asked["normal_forces"])
-    axes = asked["misalignments"], asked["center_distance_changes"]
-    found = pair_findings(pair, forces, *axes, loads_as="torques" if by_torque else "normal_forces")
+    pair, axes = gear_pair(case), table_axes(case)
+    alignments = axes.misalignment, axes.center_distance_change
+    found = pair_findings(pair, axes.load(pair), *alignments, loads_as=axes.loads_as)
     return phrased([finding.to_json() for finding in found], _field_in(case))
 
 

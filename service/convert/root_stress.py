@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis import RootStress, RootStressHistory, root_stress
 from fe_contact.analysis.root_stress_history import ROOTS, RootPeak
-from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from fe_contact.options import Run
+from fe_contact.progress import Progress, silent
+from service.convert.case import analysis_options, boundary_errors, gear_pair, operating_point
 from service.schemas import Case
 from service.units import MM, UM
 
 Json = dict[str, Any]
 GEARS = ("pinion", "wheel")
 MPA = 1e6
-_PASSED_ON = ("tolerance", "time_budget", "level", "model", "effects", "on_violation")
 
 
-def root_stress_of(
-    case: Case, cache: Path | None, progress: Callable[[str, float], None] | None = None
-) -> RootStress:
+def root_stress_of(case: Case, cache: Path | None, progress: Progress = silent) -> RootStress:
     """Return the root stress of a case of one load and one alignment, over a mesh cycle.
 
     Raises
@@ -31,19 +29,9 @@ def root_stress_of(
     JobFailed
         No mesh, or positions without a solution.
     """
-    arguments = analysis_arguments(case)
-    torques, forces = arguments["torques"], arguments["normal_forces"]
+    run = Run(cache=cache, progress=progress)
     with boundary_errors():
-        return root_stress(
-            gear_pair(case),
-            torque=torques[0] if torques else None,
-            normal_force=forces[0] if forces else None,
-            misalignment=arguments["misalignments"][0],
-            center_distance_change=arguments["center_distance_changes"][0],
-            progress=progress,
-            cache=cache,
-            **{name: arguments[name] for name in _PASSED_ON},
-        )
+        return root_stress(gear_pair(case), operating_point(case), analysis_options(case), run)
 
 
 def root_stress_json(found: RootStress) -> Json:

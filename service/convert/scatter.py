@@ -7,19 +7,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from fe_contact.microgeometry import Sampling as Sample
 from fe_contact.microgeometry import ToleranceStudy, iso1328_tolerances, scatter
-from fe_contact.microgeometry.design_study import Accuracies
-from fe_contact.microgeometry.tolerance_study import check_scatter
+from fe_contact.microgeometry.tolerance_study import toleranced
+from fe_contact.options import Run
 from fe_contact.workers import Workers
 from service.convert.ablation import in_um
-from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.convert.case import analysis_options, boundary_errors, gear_pair
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
 from service.schemas.sampling import SamplingInput
 from service.units import UM
 
 Json = dict[str, Any]
-_ACCURACY = ("tolerance", "level", "time_budget", "model", "effects")
 _PLANE = ("plane_strain", "plane_stress")
 
 
@@ -58,21 +58,15 @@ def scatter_of_case(
         The case cannot be computed.
     """
     with boundary_errors():
-        return scatter(
-            **_drawn(case, sampling),
-            samples=sampling.samples,
-            seed=sampling.seed,
-            **_accuracy(case),
-            workers=workers,
-            progress=report,
-            cache=cache,
-        )
+        return scatter(**_drawn(case, sampling), run=Run(workers, cache, report))
 
 
 def check_scatter_of(case: Case, sampling: Sampling) -> None:
     """Raise `BadInput` for what `scatter_of_case` would, without computing anything."""
     with boundary_errors():
-        check_scatter(**_drawn(case, sampling), accuracy=Accuracies(**_accuracy(case)))
+        drawn = _drawn(case, sampling)
+        torques = drawn.pop("torques")
+        toleranced(**drawn).check(torques)
 
 
 def _drawn(case: Case, sampling: Sampling) -> Json:
@@ -90,13 +84,10 @@ def _drawn(case: Case, sampling: Sampling) -> Json:
         "pair": pair,
         "torques": list(torques),
         "tolerances": tolerances,
+        "sampling": Sample(sampling.samples, sampling.seed),
+        "options": analysis_options(case),
         "misalignment": case.errors.misalignment_um[0] * UM,
     }
-
-
-def _accuracy(case: Case) -> Json:
-    """Return what the case says of its model."""
-    return {name: analysis_arguments(case)[name] for name in _ACCURACY}
 
 
 def scatter_json(found: ToleranceStudy) -> Json:

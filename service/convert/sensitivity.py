@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from fe_contact.analysis import check_request
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 from fe_contact.geometry import ParallelAxes
+from fe_contact.options import Run, TableAxes
+from fe_contact.progress import Progress, silent
 from fe_contact.workers import InProcess, Workers
-from service.convert.case import analysis_arguments, boundary_errors, gear_pair
+from service.convert.case import boundary_errors, gear_pair, study_options
 from service.schemas import Case
 from service.units import MM, UM
 
 Json = dict[str, Any]
-_PASSED_ON = ("tolerance", "time_budget", "level", "model", "positions", "effects")
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ def study_case(
     case: Case,
     deviations: Deviations,
     cache: Path | None,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = silent,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
 ) -> PairStudy:
     """Study a case at its highest load; its own misalignments and center distances are left aside.
@@ -64,19 +65,10 @@ def study_case(
         No mesh, or points without a solution.
     """
     pair = gear_pair(case)
-    arguments = analysis_arguments(case)
-    force = _highest_force(case, pair)
     with boundary_errors():
-        curves = study_sensitivity(
-            pair,
-            normal_force=force,
-            **_axes(pair, deviations),
-            progress=progress,
-            cache=cache,
-            workers=workers,
-            **{name: arguments[name] for name in _PASSED_ON},
-        )
-    return PairStudy(name, force, pair.center_distance, curves)
+        axes = _axes(case, pair, deviations)
+        curves = study_sensitivity(pair, axes, study_options(case), Run(workers, cache, progress))
+    return PairStudy(name, float(axes.load(pair)[0]), pair.center_distance, curves)
 
 
 def check_study(case: Case, deviations: Deviations) -> None:
@@ -88,15 +80,12 @@ def check_study(case: Case, deviations: Deviations) -> None:
         No such pair, or a deviation at which it cannot run.
     """
     pair = gear_pair(case)
-    arguments = analysis_arguments(case)
-    axes = _axes(pair, deviations)
+    options = study_options(case)
     with boundary_errors():
         check_request(
             pair,
-            normal_forces=[_highest_force(case, pair)],
-            **axes,
-            **{name: arguments[name] for name in _PASSED_ON}
-            | {"model": "3d" if case.accuracy.model == "auto" else case.accuracy.model},
+            _axes(case, pair, deviations),
+            replace(options, model="3d" if options.model == "auto" else options.model),
         )
 
 
@@ -106,13 +95,14 @@ def _highest_force(case: Case, pair: ParallelAxes) -> float:
     return float(pair.normal_force(torques[-1])) if torques else float((forces or ())[-1])
 
 
-def _axes(pair: ParallelAxes, deviations: Deviations) -> Json:
-    """Return both axes in m."""
+def _axes(case: Case, pair: ParallelAxes, deviations: Deviations) -> TableAxes:
+    """Return the highest load of the case and both axes."""
     percent = deviations.center_distance_change_percent
-    return {
-        "misalignments": [value * UM for value in deviations.misalignment_um],
-        "center_distance_changes": [0.01 * value * pair.center_distance for value in percent],
-    }
+    return TableAxes(
+        normal_forces=[_highest_force(case, pair)],
+        misalignments=[value * UM for value in deviations.misalignment_um],
+        center_distance_changes=[0.01 * value * pair.center_distance for value in percent],
+    )
 
 
 def studies_json(studies: Sequence[PairStudy]) -> Json:

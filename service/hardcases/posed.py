@@ -12,6 +12,7 @@ from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request_check import check_request
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import Plan, make_plan
 from fe_contact.types import FloatArray, IntArray
 
@@ -82,12 +83,10 @@ def posed(
 
     Its compliances are computed afresh, or taken from `bodies` of the same macro geometry.
     """
-    checked = check_request(
-        pair, torques=torques, level=level, model=model, misalignments=[misalignment], pitches=pitches,
-        effects=effects,
-    )  # fmt: skip
+    axes = TableAxes(torques, misalignments=[misalignment], pitches=pitches)
+    checked = check_request(pair, axes, AnalysisOptions(level=level, model=model, effects=effects or {}))
     asked = checked.request
-    plan = make_plan(pair, asked.load, asked.accuracy, checked.model)
+    plan = make_plan(pair, asked.load, asked.options, checked.model)
     contact = pair_contact(pair, plan, None) if bodies is None else _again(bodies, pair, plan)
     (place,) = operating_points(asked.scene, asked.choices, contact).places
     return Posed(place.contact, place.model)

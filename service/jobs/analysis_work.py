@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis import ste_database
+from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
-from service.convert.case import analysis_arguments, boundary_errors, case_json, gear_pair
+from service.convert.case import analysis_options, boundary_errors, case_json, gear_pair, table_axes
 from service.convert.plausibility import phrased_database
 from service.jobs.cluster import table_workers
 from service.jobs.drafted_progress import DraftedProgress
@@ -26,13 +27,12 @@ def database_of(case: Case, order: WorkOrder, progress: Progress) -> SteDatabase
     """Return the STE database of a case of an order; condensed gears are kept in the service's cache."""
     drafted = DraftedProgress(progress)
     with boundary_errors(), table_workers(order) as workers:
-        database = analyze(
+        database = ste_database(
             gear_pair(case),
-            **analysis_arguments(case),
+            table_axes(case),
+            analysis_options(case),
+            Run(workers, order.data_directory / "compliance", drafted),
             case=case_json(case),
-            cache=order.data_directory / "compliance",
-            progress=drafted,
             on_draft=drafted.draft,
-            workers=workers,
         )
     return phrased_database(database, case)

@@ -15,10 +15,10 @@ import pytest
 from fastapi.testclient import TestClient
 
 from dynamics.simulation import simulate
-from fe_contact.analysis import analyze
+from fe_contact.analysis import ste_database
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
-from service.convert.case import analysis_arguments, case_json, gear_pair
+from service.convert.case import analysis_options, case_json, gear_pair, table_axes
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.settings import Settings
@@ -66,7 +66,7 @@ def test_the_service_gives_what_python_gives(client: LineOfActionClient, case: d
     seen: list[JobState] = []
     served = client.analyze(case, seen.append)
     model = validated(Case, case)
-    here = analyze(gear_pair(model), **analysis_arguments(model), case=case_json(model))
+    here = ste_database(gear_pair(model), table_axes(model), analysis_options(model), case=case_json(model))
     assert np.array_equal(served.static_transmission_error, here.static_transmission_error)
     assert served.metadata.case == here.metadata.case
     progress = [state.progress for state in seen]

@@ -15,11 +15,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis import contact_lines, solved_operating_points
 from fe_contact.errors import WorkersLost
-from fe_contact.microgeometry import Tolerances, scatter
+from fe_contact.microgeometry import Sampling, Tolerances, scatter
+from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import ByDask, InProcess, OrHere, RunCost, Workers
 
 distributed = pytest.importorskip("distributed", reason="the extra dask is not installed")
@@ -150,10 +152,13 @@ def test_a_sensitivity_sweep_of_three_workers_one_of_which_is_killed(cluster: Cl
     cluster.at_least(3)
     workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "solve_block")
     asked: dict[str, Any] = {
-        "normal_force": 2000.0, "misalignments": [20e-6], "center_distance_changes": [50e-6],
-        "level": "draft", "positions": 16, "cache": cache,
+        "normal_forces": [2000.0], "misalignments": [20e-6], "center_distance_changes": [50e-6],
+        "level": "draft", "positions": 16,
     }  # fmt: skip
-    here, there = (study_sensitivity(PAIR, **asked, workers=who) for who in (InProcess(), workers))
+    here, there = (
+        study_sensitivity(PAIR, *table_request(**asked), Run(workers=who, cache=cache))
+        for who in (InProcess(), workers)
+    )
     assert workers.killed and len(cluster.alive) == 2
     for one, other in zip(here, there, strict=True):
         for name in ("misalignment", "center_distance_change"):
@@ -169,11 +174,15 @@ def test_a_monte_carlo_of_two_workers_one_of_which_is_killed(cluster: Cluster, c
     workers = Losing(ByDask(cluster.client), lambda: cluster.kill_busy(1), "ripple_of_samples")
     here, there = (
         scatter(
-            SPUR, [100.0, 200.0], slopes, samples=200, seed=1, workers=who, cache=cache,
-            level="draft", model="plane_strain",
+            SPUR,
+            [100.0, 200.0],
+            slopes,
+            Sampling(samples=200, seed=1),
+            AnalysisOptions(level="draft", model="plane_strain"),
+            Run(workers=who, cache=cache),
         )
         for who in (InProcess(), workers)
-    )  # fmt: skip
+    )
     assert workers.killed and len(cluster.alive) == 1
     np.testing.assert_array_equal(there.peak_to_peak, here.peak_to_peak)
     assert there.quantiles[1].value.tolist() == here.quantiles[1].value.tolist()

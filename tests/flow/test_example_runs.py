@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from dynamics.simulation import simulate
-from fe_contact import analyze
+from fe_contact import ste_database
 from service.client.portable import case_of_mesh, scene_of
-from service.convert.case import analysis_arguments, gear_pair
+from service.convert.case import analysis_options, gear_pair, table_axes
 from service.convert.scene import dynamic_scene
 
 DEAR = ("wind_turbine_scene",)  # its three helical tables take 40 CPU s; its balance closes to 3e-8
@@ -31,8 +31,8 @@ def example(file: Path):
     for index, mesh in enumerate(given.meshes):
         case = case_of_mesh(mesh, f"meshes[{index}]", folder)
         assert case is not None
-        asked = analysis_arguments(case) | {"tolerance": None, "level": "draft", "receipt": "minimal"}
-        tables[mesh.name] = analyze(gear_pair(case), **asked)
+        options = replace(analysis_options(case).at_level("draft"), receipt="minimal")
+        tables[mesh.name] = ste_database(gear_pair(case), table_axes(case), options)
     return dynamic_scene(given, tables)
 
 

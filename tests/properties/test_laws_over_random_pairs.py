@@ -20,6 +20,7 @@ from fe_contact.contact import ContactModel, ContactSolution
 from fe_contact.errors import InputError
 from fe_contact.geometry import FlankModification, Gear, GearPair, PitchDeviation
 from fe_contact.material import Material
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import make_plan
 
 LAWS = settings(suppress_health_check=[HealthCheck.filter_too_much, HealthCheck.too_slow])
@@ -46,9 +47,11 @@ class Loaded:
 
 def loaded(pair: GearPair, load: np.ndarray) -> Loaded:
     asked = check_request(
-        pair, normal_forces=load, model="plane_strain", level="draft", pitches=pitches_of(pair)
+        pair,
+        TableAxes(normal_forces=load, pitches=pitches_of(pair)),
+        AnalysisOptions(model="plane_strain", level="draft"),
     )
-    plan = make_plan(pair, asked.request.load, asked.request.accuracy, asked.model)
+    plan = make_plan(pair, asked.request.load, asked.request.options, asked.model)
     return Loaded(on_springs(pair, plan), asked.model, load)
 
 

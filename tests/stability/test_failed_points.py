@@ -12,6 +12,7 @@ import fe_contact.analysis.pair_contact as room
 from fe_contact import Gear, GearPair, SteDatabase, analyze, flank_results
 from fe_contact.contact import ContactProblem, ContactSolution, Start, solve_contact
 from fe_contact.errors import SolveError
+from fe_contact.options import AnalysisOptions, OperatingPoint
 from fe_contact.types import FloatArray, Status
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -95,5 +96,7 @@ def test_flank_results_say_which_position_failed_and_why() -> None:
         patch.setattr(room, "solve_contact", damaging)
         said = r"1 of 64 positions have no solution \(position 0.25: SINGULAR\)"
         with pytest.raises(SolveError, match=said) as error:
-            flank_results(PAIR, torque=100.0, model="plane_strain", level="draft")
+            flank_results(
+                PAIR, OperatingPoint(torque=100.0), AnalysisOptions(model="plane_strain", level="draft")
+            )
     assert isinstance(error.value.partial, ContactSolution)

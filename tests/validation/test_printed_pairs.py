@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from printed_pairs import Row, printed_case, printed_pairs
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis import ste_database
 from fe_contact.errors import InfeasibleGeometry
 from fe_contact.flank.involute import involute_function
 from fe_contact.geometry import ParallelAxes, Toothing
@@ -20,7 +20,7 @@ from fe_contact.geometry.printed_data import (
     PROFILE_SHIFT,
     backlash_rounding,
 )
-from service.convert.case import analysis_arguments, gear_pair
+from service.convert.case import analysis_options, gear_pair, table_axes
 
 PAIRS = printed_pairs()
 
@@ -123,7 +123,7 @@ def test_a_printed_pair_gets_its_table(row: Row) -> None:
 def gets_its_table(row: Row, model: str) -> None:
     case = printed_case(row, model)
     pair = gear_pair(case)
-    table = analyze(pair, **analysis_arguments(case))
+    table = ste_database(pair, table_axes(case), analysis_options(case))
     assert (table.status == 0).all()
     assert table.static_transmission_error.min() > 0.0
     notes = [one["reason"] for one in table.metadata.receipt["assumptions"]]

@@ -79,7 +79,7 @@ class ClosedFormFidelity:
         """Compute the table; nothing is read from or written to the cache."""
         clock = StageClock()
         request = checked.request
-        plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+        plan = make_plan(request.pair, request.load, request.options, checked.model)
         with clock.stage("contact"):
             nominal = SpringContact(request.pair, plan, law=self.law)
             places = operating_points(request.scene, request.choices, nominal)

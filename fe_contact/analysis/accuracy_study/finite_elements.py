@@ -11,7 +11,7 @@ from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked
 from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.errors import InputError
-from fe_contact.planning import Accuracy
+from fe_contact.options import Run
 from fe_contact.planning.discretization import PLANE_REFINEMENT
 from fe_contact.progress import Progress
 from fe_contact.ste import SteDatabase
@@ -62,13 +62,13 @@ class FiniteElementFidelity:
     def as_asked(self, checked: Checked) -> Checked:
         """Return the request with this model and mesh; explicit choices of other effects stay."""
         request = checked.request
-        accuracy = Accuracy(level=self.level, model=self.model, positions=request.accuracy.positions)
         own = (FaceLoadDistribution.name, FiniteWidth.name)
-        effects = {name: choice for name, choice in request.effects.items() if name not in own}
+        effects = {name: choice for name, choice in request.options.effects.items() if name not in own}
         if self.model == "auto":
             effects |= {FaceLoadDistribution.name: "off", FiniteWidth.name: "on"}
-        asked = replace(request, accuracy=accuracy, effects=effects)
-        return check_asked(asked)
+        options = request.options.at_level(self.level)
+        options = replace(options, model=self.model, effects=effects, receipt="full")
+        return check_asked(replace(request, options=options))
 
     def run(self, checked: Checked, progress: Progress, cache: Path | None) -> SteDatabase:
         """Compute the table."""
@@ -76,4 +76,4 @@ class FiniteElementFidelity:
         decided = decide(asked, cache)
         if self.slices is not None:
             decided = decided.in_slices(self.slices)
-        return compute_database(asked, asked.request.to_json(), progress, cache, decided)
+        return compute_database(asked, asked.request.to_json(), Run(cache=cache, progress=progress), decided)

@@ -7,11 +7,11 @@ from contextlib import suppress
 
 import numpy as np
 
-from fe_contact.analysis import analyze
+from fe_contact.analysis import ste_database
 from fe_contact.types import FloatArray
 from host import halt
 from host import kill as end
-from service.convert.case import analysis_arguments, gear_pair
+from service.convert.case import analysis_options, gear_pair, table_axes
 from service.hardcases.jobs.aftermath import MEDIUM, aftermath, largest_difference
 from service.hardcases.jobs.job_service import Disturb, JobService
 from service.hardcases.jobs.limits import AFTER
@@ -98,7 +98,7 @@ def worker_killed_always() -> Sequence[Measured]:
 def of_python() -> FloatArray:
     """Return the transmission errors of the job, computed here."""
     case = validated(Case, MEDIUM)
-    return analyze(gear_pair(case), **analysis_arguments(case)).static_transmission_error
+    return ste_database(gear_pair(case), table_axes(case), analysis_options(case)).static_transmission_error
 
 
 MESHER = HardScene(

@@ -24,5 +24,5 @@ def test_none_of_the_fresh_pairs_is_among_the_others() -> None:
 
 def test_the_plane_is_what_the_effects_choose() -> None:
     for case in drawn_pairs(3, 10):
-        checked = check_request(case.pair, normal_forces=case.forces, level="draft", **case.options)
+        checked = check_request(case.pair, *case.request(level="draft"))
         assert checked.model.across_face is not in_plane(case)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from analysis_requests import table_request
 
 from benchmarks.assessed_influence import within_factor
 from benchmarks.influence_cases import influence_cases
@@ -24,7 +25,7 @@ def test_every_effect_has_something_to_do_twice() -> None:
     times = dict.fromkeys((effect.name for effect in EFFECTS), 0)
     for case in influence_cases():
         options = {name: value for name, value in case.options.items() if name != "positions"}
-        for entry in check_request(case.pair, normal_forces=case.forces, **options).ledger:
+        for entry in check_request(case.pair, *table_request(normal_forces=case.forces, **options)).ledger:
             times[entry.name] += entry.on
     assert min(times.values()) >= 1
     assert sum(times.values()) >= 24

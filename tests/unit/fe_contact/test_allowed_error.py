@@ -12,6 +12,7 @@ from fe_contact.analysis import check_request
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.position_nodes import adaptive_nodes
 from fe_contact.errors import InputError
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import NodeRule
 from fe_contact.planning.plan import FLOOR_SHARE
 
@@ -50,7 +51,9 @@ def test_a_tolerance_that_cannot_be_is_refused_by_name(asked, field):
 
 def test_a_number_is_the_relative_part():
     def allowed(tolerance):
-        return check_request(quiet_pair(), torques=[20.0], tolerance=tolerance).request.accuracy.allowed
+        return check_request(
+            quiet_pair(), TableAxes(torques=[20.0]), AnalysisOptions(tolerance=AllowedError.given(tolerance))
+        ).request.options.allowed
 
     assert allowed(0.02) == AllowedError(0.02, 20 * NM)
     assert allowed(AllowedError(0.02, 0.0)) == AllowedError(0.02, 0.0)
@@ -62,7 +65,9 @@ def test_a_floor_makes_a_quiet_pair_cheaper_and_more_so_the_higher_it_is():
     pair = quiet_pair()
 
     def effort(floor, torque):
-        asked = check_request(pair, torques=[torque], tolerance=AllowedError(0.005, floor))
+        asked = check_request(
+            pair, TableAxes(torques=[torque]), AnalysisOptions(tolerance=AllowedError(0.005, floor))
+        )
         return decide(asked).mesh.option.effort
 
     quiet = [effort(floor * NM, 20.0) for floor in (0.0, 20.0, 200.0)]
@@ -83,9 +88,16 @@ def test_positions_are_placed_by_the_floor():
 
 
 def test_positions_know_the_floor_of_the_tolerance():
-    asked = check_request(quiet_pair(), torques=[20.0], tolerance=AllowedError(0.01, 30 * NM))
+    asked = check_request(
+        quiet_pair(), TableAxes(torques=[20.0]), AnalysisOptions(tolerance=AllowedError(0.01, 30 * NM))
+    )
     assert decide(asked).plan.nodes.least_ripple == pytest.approx(FLOOR_SHARE * 3e-6)
-    assert decide(check_request(quiet_pair(), torques=[20.0], level="draft")).plan.nodes.least_ripple == 0.0
+    assert (
+        decide(
+            check_request(quiet_pair(), TableAxes(torques=[20.0]), AnalysisOptions(level="draft"))
+        ).plan.nodes.least_ripple
+        == 0.0
+    )
 
 
 def test_the_receipt_holds_the_measured_errors_against_it(tmp_path):

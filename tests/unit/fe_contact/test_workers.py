@@ -13,18 +13,21 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_requests import design_request
 
 from fe_contact import Gear, GearPair
 from fe_contact.errors import InputError, WorkersLost
 from fe_contact.microgeometry import (
     DesignVariable,
     NelderMead,
+    Sampling,
     Search,
     Tolerances,
     ToleranceStudy,
     optimize,
     scatter,
 )
+from fe_contact.options import AnalysisOptions, Run
 from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
 from fe_contact.workers.packed import Packed
 
@@ -50,7 +53,12 @@ def local(pair: GearPair, compliances: Path) -> ToleranceStudy:
 
 def study(pair: GearPair, compliances: Path, workers: Workers) -> ToleranceStudy:
     return scatter(
-        pair, [100.0, 200.0], SLOPES, samples=200, seed=1, workers=workers, cache=compliances, **DRAFT
+        pair,
+        [100.0, 200.0],
+        SLOPES,
+        Sampling(samples=200, seed=1),
+        AnalysisOptions(**DRAFT),
+        Run(workers=workers, cache=compliances),
     )
 
 
@@ -74,11 +82,11 @@ def test_starts_searched_in_a_pool_find_the_same_designs(
     search = Search(NelderMead(), starts=3, evaluations=25, positions=16)
     here, there = (
         optimize(
-            pair, [200.0], variables, search=search, workers=workers, map_torques=[200.0],
-            cache=compliances, **DRAFT,
+            design_request(pair, [200.0], variables, search=search, map_torques=[200.0], **DRAFT),
+            Run(workers=workers, cache=compliances),
         )
         for workers in (InProcess(), pool)
-    )  # fmt: skip
+    )
     assert [run.assessed for run in there.runs] == [run.assessed for run in here.runs]
     assert there.optimum.values == here.optimum.values
     assert there.optimum.objective == here.optimum.objective

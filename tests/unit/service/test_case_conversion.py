@@ -29,7 +29,7 @@ from dynamics.errors import InputError as DynamicsInputError
 from dynamics.errors import SolveError as DynamicsSolveError
 from fe_contact import AllowedError, FlankModification
 from fe_contact.errors import InputError, MeshError
-from service.convert.case import analysis_arguments, case_json, gear_pair
+from service.convert.case import analysis_options, case_json, gear_pair, table_axes
 from service.convert.checks import check_case
 from service.convert.errors import translated
 from service.jobs.key import content_key
@@ -220,16 +220,16 @@ def test_arguments_of_the_analysis_are_si() -> None:
         "errors": {"misalignment_um": [0.0, 30.0], "center_distance_change_mm": [-0.1, 0.0]},
         "accuracy": {"time_budget_s": 3.0, "positions": 64, "model": "plane_stress"},
     }
-    arguments = analysis_arguments(validated(Case, table))
-    assert arguments["torques"] == [10.0, 100.0] and arguments["normal_forces"] is None
-    assert arguments["misalignments"] == pytest.approx((0.0, 3e-5))
-    assert arguments["center_distance_changes"] == pytest.approx((-1e-4, 0.0))
-    assert (arguments["tolerance"], arguments["time_budget"], arguments["positions"]) == (None, 3.0, 64)
+    axes, options = table_axes(validated(Case, table)), analysis_options(validated(Case, table))
+    assert axes.torques == (10.0, 100.0) and axes.normal_forces is None
+    assert axes.misalignments == pytest.approx((0.0, 3e-5))
+    assert axes.center_distance_changes == pytest.approx((-1e-4, 0.0))
+    assert (options.tolerance, options.time_budget, options.positions) == (None, 3.0, 64)
 
 
 def test_the_floor_of_a_tolerance_is_given_in_nm() -> None:
     def allowed(**accuracy: float) -> AllowedError:
-        return analysis_arguments(validated(Case, GOOD | {"accuracy": accuracy}))["tolerance"]
+        return analysis_options(validated(Case, GOOD | {"accuracy": accuracy})).tolerance
 
     assert allowed() == AllowedError(0.01, 20e-9)
     assert allowed(tolerance=0.02, tolerance_floor_nm=0.0) == AllowedError(0.02, 0.0)
@@ -376,8 +376,8 @@ def test_pitch_deviations_arrive_in_si_and_pitches_as_they_are() -> None:
     assert pair.wheel.pitch_deviation.neutral
     table = copy.deepcopy(GOOD)
     table["accuracy"] = {"pitches": 40}
-    assert analysis_arguments(validated(Case, table))["pitches"] == 40
-    assert analysis_arguments(case())["pitches"] is None
+    assert table_axes(validated(Case, table)).pitches == 40
+    assert table_axes(case()).pitches is None
 
 
 @pytest.mark.parametrize(

@@ -15,6 +15,8 @@ from typer.testing import CliRunner, Result
 
 from fe_contact.analysis import RippleCurve, Sensitivity, check_request
 from fe_contact.errors import DatabaseError
+from fe_contact.geometry import ParallelAxes
+from fe_contact.options import TableAxes
 from service.cli.commands import app
 from service.convert.sensitivity import Deviations, PairStudy, studies_json, study_case
 from service.convert.sensitivity_file import read_studies, write_studies
@@ -190,23 +192,18 @@ def test_the_picture_is_large_enough_to_read(
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
 def test_the_examples_run_at_every_deviation(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Both pairs of the paper's Table 2 exist from -0.2 to +0.2 % of the center distance."""
-    asked = {}
+    studied = []
 
-    def study_nothing(pair: object, **options: object) -> tuple[()]:
-        check_request(
-            pair,  # type: ignore[arg-type]
-            normal_forces=[options["normal_force"]],  # type: ignore[list-item]
-            misalignments=options["misalignments"],  # type: ignore[arg-type]
-            center_distance_changes=options["center_distance_changes"],  # type: ignore[arg-type]
-        )
-        asked.update(options)
+    def study_nothing(pair: ParallelAxes, axes: TableAxes, *_: object) -> tuple[()]:
+        check_request(pair, axes)
+        studied.append(axes)
         return ()
 
     monkeypatch.setattr("service.convert.sensitivity.study_sensitivity", study_nothing)
     case = read_model(Case, file)
     found = study_case("x", case, Deviations((0.0, 60.0), (-0.2, 0.0, 0.2)), None)
     assert found.normal_force in (6000.0, 13300.0)
-    assert asked["center_distance_changes"][0] == pytest.approx(-0.002 * found.center_distance)
+    assert studied[0].center_distance_changes[0] == pytest.approx(-0.002 * found.center_distance)
 
 
 def test_the_highest_torque_is_the_load(small: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,6 +15,7 @@ from fe_contact.compliance import FlankCompliance3D, flank_compliances_3d
 from fe_contact.geometry import InternalGearPair, ParallelAxes, RingGear
 from fe_contact.material import Material
 from fe_contact.mesh import PlaneStrain
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import LEFT_OUT, make_plan
 
 POSITION = np.arange(16) / 16
@@ -73,8 +74,8 @@ def as_they_face(pair: ParallelAxes, flanks: tuple[FlankCompliance3D, ...]) -> t
 
 def in_space(pair: ParallelAxes, force: float) -> tuple[np.ndarray, np.ndarray]:
     """STE in three dimensions, and in plane strain on the same section."""
-    asked = check_request(pair, normal_forces=[force], level="draft", model="3d")
-    plan = make_plan(pair, asked.request.load, asked.request.accuracy, asked.model)
+    asked = check_request(pair, TableAxes(normal_forces=[force]), AnalysisOptions(level="draft", model="3d"))
+    plan = make_plan(pair, asked.request.load, asked.request.options, asked.model)
     gears, recipes = (pair.pinion, pair.wheel), plan.discretization.recipes
     solid = as_they_face(pair, flank_compliances_3d(gears, recipes))
     flat = [replace(recipe, layers=1, merge_rows=()) for recipe in recipes]
@@ -88,8 +89,8 @@ def in_space(pair: ParallelAxes, force: float) -> tuple[np.ndarray, np.ndarray]:
 
 def in_plane(pair: ParallelAxes, force: float) -> tuple[np.ndarray, np.ndarray]:
     """STE in the corrected plane, and in plane strain on the same mesh."""
-    asked = check_request(pair, normal_forces=[force], level="draft")
-    plan = make_plan(pair, asked.request.load, asked.request.accuracy, asked.model)
+    asked = check_request(pair, TableAxes(normal_forces=[force]), AnalysisOptions(level="draft"))
+    plan = make_plan(pair, asked.request.load, asked.request.options, asked.model)
     contact = pair_contact(pair, plan, None)
     return solved(contact, asked.model, force), solved(contact.in_plane_strain, asked.model, force)
 

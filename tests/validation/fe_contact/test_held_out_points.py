@@ -8,6 +8,7 @@ import pytest
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.analysis import check_request
 from fe_contact.analysis.pair_contact import pair_contact
+from fe_contact.options import TableAxes
 from fe_contact.planning import make_plan
 
 TORQUES = np.geomspace(10.0, 400.0, 12)
@@ -20,8 +21,8 @@ def held_out(tmp_path_factory):
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, 80e-3)
     table = analyze(pair, torques=TORQUES, cache=cache)
-    checked = check_request(pair, torques=TORQUES)
-    plan = make_plan(pair, checked.request.load, checked.request.accuracy, checked.model)
+    checked = check_request(pair, TableAxes(torques=TORQUES))
+    plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
     contact = pair_contact(pair, plan, cache)
     position = np.random.default_rng(0).random(800)
 

@@ -12,6 +12,7 @@ import pytest
 from fe_contact import Gear, GearPair, root_stress
 from fe_contact.geometry import tooth_profile
 from fe_contact.geometry.root_tangent import critical_section
+from fe_contact.options import AnalysisOptions, OperatingPoint
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "reference"))
 from iso6336_root_stress import RootSection, nominal_stress, root_section
@@ -71,7 +72,10 @@ def test_finite_elements_beside_the_nominal_stress(
     outer = pair.path_of_contact
     at = float(pair.position(outer.start + outer.base_pitch))
     found = root_stress(
-        pair, torque=torque, at=at + np.array([-0.02, 0.0, 0.02]), effects={"corner_contact": "off"}
+        pair,
+        OperatingPoint(torque=torque),
+        AnalysisOptions(effects={"corner_contact": "off"}),
+        at=at + np.array([-0.02, 0.0, 0.02]),
     ).pinion.peak("tension")
     nominal = nominal_stress(section, torque / pair.pinion.reference_radius, WIDTH, MODULE)
     ratio = found.stress.value / nominal

@@ -15,6 +15,7 @@ from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.operating_points import OperatingPoint, operating_points
 from fe_contact.analysis.solved_table import condensed_bodies
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, solve_contact
+from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.stage_clock import StageClock
 
 LOAD = np.array([2500.0])
@@ -59,11 +60,10 @@ def contact_of(
     """Bodies that all shapes share."""
     checked = check_request(
         pair(helix, **shape),
-        normal_forces=LOAD.tolist(),
-        level=level,
-        effects={"corner_contact": "on" if corner else "off"},
+        TableAxes(normal_forces=LOAD.tolist()),
+        AnalysisOptions(level=level, effects={"corner_contact": "on" if corner else "off"}),
     )
-    bodies = condensed_bodies(checked, decide(checked).plan, StageClock(), lambda *_: None, cache)
+    bodies = condensed_bodies(checked, decide(checked).plan, StageClock(), Run(cache=cache))
     return operating_points(checked.request.scene, checked.request.choices, bodies).places[0]
 
 

@@ -22,7 +22,8 @@ from fe_contact.geometry import (
     RingGear,
 )
 from fe_contact.mesh import SectorRecipe
-from fe_contact.planning import Accuracy, FaceDiscretization, make_plan
+from fe_contact.options import AnalysisOptions, OperatingPoint
+from fe_contact.planning import FaceDiscretization, make_plan
 from fe_contact.ste import SteDatabase
 
 MODULE, WIDTH = 2e-3, 20e-3
@@ -87,7 +88,9 @@ def test_the_corrected_plane_stands_in_for_three_dimensions(record_figure: Any) 
 
 
 def test_pressure_at_the_pitch_point_is_hertz_with_the_hollow_flank() -> None:
-    found = flank_results(PAIR, torque=60.0, at=[0.0], level="draft", model="plane_strain")
+    found = flank_results(
+        PAIR, OperatingPoint(torque=60.0), AnalysisOptions(level="draft", model="plane_strain"), at=[0.0]
+    )
     at = int(np.flatnonzero(found.pair == 0)[0])
     assert found.roll_length_2[0, at, 0] - found.roll_length_1[0, at, 0] == pytest.approx(
         PAIR.common_tangent, rel=1e-12
@@ -138,7 +141,7 @@ def misaligned(pair: ParallelAxes, growth: float = 20e-6) -> tuple[np.ndarray, n
     """Deflection in m and load centroid over the face width at three positions, on coarse meshes."""
     model = ContactModel(couple_teeth=True, across_face=True, gaps=(MisalignmentGap(growth),))
     load = pair.normal_force([40.0])
-    plan = make_plan(pair, load, Accuracy(level="draft"), model)
+    plan = make_plan(pair, load, AnalysisOptions(level="draft"), model)
     sizes = {"flank_size": 0.4, "tip_size": 0.2, "depth_size": 0.4, "depth_limit": 0.8}
     sizes |= {"body_size": 0.5, "body_limit": 2.0}
     recipe = SectorRecipe(

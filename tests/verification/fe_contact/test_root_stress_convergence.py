@@ -16,6 +16,7 @@ from fe_contact.contact.face_patch import FaceGrid, face_loads
 from fe_contact.contact.patch import load_vector
 from fe_contact.geometry import Gear
 from fe_contact.mesh import MeshRecipe, PlaneStrain, SectorRecipe
+from fe_contact.options import AnalysisOptions, OperatingPoint
 from fe_contact.planning.root_recipes import finer_root
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -109,7 +110,9 @@ def test_the_middle_of_a_wide_gear_approaches_plane_strain(record_figure: Callab
 def test_the_stated_error_holds_in_the_plane() -> None:
     pair = GearPair(GEAR, GEAR, 80e-3)
     found = {
-        level: root_stress(pair, torque=100.0, at=[0.0, 0.19], level=level).pinion
+        level: root_stress(
+            pair, OperatingPoint(torque=100.0), AnalysisOptions(level=level), at=[0.0, 0.19]
+        ).pinion
         for level in ("draft", "standard", "fine")
     }
     for root in PEAKS:

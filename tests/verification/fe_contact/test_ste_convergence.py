@@ -11,7 +11,8 @@ import pytest
 from fe_contact import Gear, GearPair
 from fe_contact.analysis.pair_contact import pair_contact
 from fe_contact.effects import EFFECTS, ContactScene, compose
-from fe_contact.planning import Accuracy, make_plan
+from fe_contact.options import AnalysisOptions
+from fe_contact.planning import make_plan
 
 LOAD = np.array([100.0, 400.0]) / 37.588e-3  # N, 100 and 400 N m
 
@@ -23,7 +24,7 @@ def contact(tmp_path_factory):
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, 80e-3)
     model, _ = compose(ContactScene(pair, pair.torque(LOAD)), {}, EFFECTS)
-    plan = make_plan(pair, LOAD, Accuracy(), model)
+    plan = make_plan(pair, LOAD, AnalysisOptions(), model)
 
     def solve(factor: float, position: np.ndarray, load: np.ndarray) -> np.ndarray:
         first, second = (recipe.refined(factor) for recipe in plan.discretization.recipes)

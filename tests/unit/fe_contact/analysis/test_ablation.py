@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, ablate, analyze
 from fe_contact.analysis import ablation
@@ -15,6 +16,7 @@ from fe_contact.analysis.ablation import Ablation
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.request import Checked
 from fe_contact.errors import InputError
+from fe_contact.options import Run, TableAxes
 from fe_contact.ste import SteDatabase
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -31,7 +33,7 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def made(cache: Path) -> Ablation:
     only = ["tooth_coupling", "corner_contact", "profile_modification", "finite_width", "misalignment"]
-    return ablate(PAIR, **ASKED, only=only, cache=cache)  # type: ignore[arg-type]
+    return ablate(PAIR, *table_request(**ASKED), run=Run(cache=cache), only=only)  # type: ignore[arg-type]
 
 
 def test_a_change_is_that_of_two_tables(made: Ablation, cache: Path) -> None:
@@ -67,7 +69,12 @@ def test_what_the_scene_does_not_hold_is_left_out_by_name(made: Ablation) -> Non
 
 
 def test_an_effect_that_is_off_is_switched_on(cache: Path, made: Ablation) -> None:
-    off = ablate(PAIR, **ASKED, effects={"tooth_coupling": "off"}, only=["tooth_coupling"], cache=cache)  # type: ignore[arg-type]
+    off = ablate(
+        PAIR,
+        *table_request(effects={"tooth_coupling": "off"}, **ASKED),
+        run=Run(cache=cache),
+        only=["tooth_coupling"],
+    )  # type: ignore[arg-type]
     (entry,) = off.effects
     (usual,) = [one for one in made.effects if one.name == "tooth_coupling"]
     assert not entry.on
@@ -78,7 +85,7 @@ def test_an_effect_that_is_off_is_switched_on(cache: Path, made: Ablation) -> No
 def test_longer_periods_cost_more(cache: Path) -> None:
     early = PitchDeviation((3e-6, *([0.0] * 19)))
     pair = GearPair(replace(GEAR, pitch_deviation=early), GEAR)
-    (entry,) = ablate(pair, **ASKED, only=["pitch_error"], cache=cache).effects  # type: ignore[arg-type]
+    (entry,) = ablate(pair, *table_request(**ASKED), run=Run(cache=cache), only=["pitch_error"]).effects  # type: ignore[arg-type]
     # twenty base pitches to solve instead of one, over the same finite elements
     assert entry.with_effect.predicted_cpu_seconds > entry.without_effect.predicted_cpu_seconds + 0.01
     assert entry.cost_ratio > 1.0
@@ -86,7 +93,9 @@ def test_longer_periods_cost_more(cache: Path) -> None:
 
 def test_what_no_plane_holds_stays_in(cache: Path) -> None:
     asked = ASKED | {"misalignments": [10e-6], "positions": 16}
-    made = ablate(GearPair(GEAR, GEAR), **asked, only=["face_load_distribution"], cache=cache)  # type: ignore[arg-type]
+    made = ablate(
+        GearPair(GEAR, GEAR), *table_request(**asked), run=Run(cache=cache), only=["face_load_distribution"]
+    )  # type: ignore[arg-type]
     assert made.effects == ()
     assert "misalignments" in made.left_out["face_load_distribution"]
 
@@ -98,18 +107,18 @@ def test_the_result_is_plain_json(made: Ablation) -> None:
 
 def test_an_unknown_effect_is_refused() -> None:
     with pytest.raises(InputError, match="only"):
-        ablate(PAIR, normal_forces=[1000.0], only=["windage"])
+        ablate(PAIR, TableAxes(normal_forces=[1000.0]), only=["windage"])
 
 
 def test_a_tolerance_chooses_one_mesh_for_all_tables(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = []
 
     def noted(checked: Checked, *further: object) -> SteDatabase:
-        made.append((checked.request.accuracy.level, checked.request.accuracy.tolerance))
+        made.append((checked.request.options.level, checked.request.options.tolerance))
         return compute_database(checked, *further)  # type: ignore[arg-type]
 
     monkeypatch.setattr(ablation, "compute_database", noted)
-    asked = {"normal_forces": [2500.0], "tolerance": 0.05, "positions": 16, "cache": cache}
-    found = ablate(PAIR, **asked, only=["tooth_coupling"])  # type: ignore[arg-type]
+    asked = {"normal_forces": [2500.0], "tolerance": 0.05, "positions": 16}
+    found = ablate(PAIR, *table_request(**asked), run=Run(cache=cache), only=["tooth_coupling"])
     assert len(found.effects) == 1
     assert made == [("draft", None)] * 2

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.analysis.accuracy_study import FIDELITIES, ISO6336, THIN_SLICES
@@ -17,6 +18,7 @@ from fe_contact.contact import solve_contact
 from fe_contact.contact.problem import ContactProblem
 from fe_contact.errors import InputError
 from fe_contact.geometry.iso6336_stiffness import iso6336_stiffness
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import make_plan
 
 
@@ -34,7 +36,7 @@ def pair_of(helix: float = 0.0, width: float = 8e-3, **modification: float) -> G
 
 
 def run(fidelity, pair, **asked):
-    checked = check_request(pair, normal_forces=[500.0], positions=64, **asked)
+    checked = check_request(pair, *table_request(normal_forces=[500.0], positions=64, **asked))
     return fidelity.run(checked, lambda *_: None, None)
 
 
@@ -82,8 +84,8 @@ def test_iso_stiffness_is_even_where_the_overlap_is_a_whole_pitch():
 def test_thin_slices_are_the_contact_solver_with_uncoupled_slices(helix, misalignment, crown):
     """One solves in closed form what the other iterates, whose slices are held against published figures."""
     pair = pair_of(helix, helix_crowning=crown)
-    checked = check_request(pair, normal_forces=[50.0, 500.0], misalignments=[misalignment])
-    plan = make_plan(pair, checked.request.load, checked.request.accuracy, checked.model)
+    checked = check_request(pair, TableAxes(normal_forces=[50.0, 500.0], misalignments=[misalignment]))
+    plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
     springs = SpringContact(pair, plan, law=THIN_SLICES.law)
     problem, found = springs.solve(checked.model, np.linspace(0.0, 0.9, 7), plan.load)
     stiffness = slice_stiffness(pair, problem.candidates, THIN_SLICES.law)
@@ -109,7 +111,9 @@ def test_thin_slices_have_the_mean_stiffness_of_the_standard_without_its_correct
 @pytest.fixture(scope="module")
 def spur():
     names = ["iso6336", "thin_slices", "plane_strain", "corrected_draft", "3d_draft", "3d_standard"]
-    return frontier(pair_of(width=4e-3), normal_forces=[500.0], positions=32, fidelities=names)
+    return frontier(
+        pair_of(width=4e-3), TableAxes(normal_forces=[500.0]), AnalysisOptions(positions=32), fidelities=names
+    )
 
 
 def test_errors_of_a_spur_pair_fall_from_fidelity_to_fidelity(spur):
@@ -124,8 +128,8 @@ def test_errors_of_a_spur_pair_fall_from_fidelity_to_fidelity(spur):
 def test_errors_of_a_helical_pair_fall_from_fidelity_to_fidelity():
     found = frontier(
         pair_of(math.radians(15.0)),
-        normal_forces=[500.0],
-        positions=16,
+        TableAxes(normal_forces=[500.0]),
+        AnalysisOptions(positions=16),
         fidelities=["iso6336", "3d_draft", "3d_standard"],
     )
     iso, draft, _ = found.results
@@ -144,8 +148,8 @@ def test_a_fidelity_that_is_not_valid_says_why():
         teeth=96, normal_module=2e-3, face_width=8e-3, rim_diameter=212e-3, addendum_coefficient=0.9
     )
     gear = Gear(teeth=36, normal_module=2e-3, face_width=8e-3, bore_diameter=30e-3)
-    internal = check_request(InternalGearPair(gear, ring, 60e-3), normal_forces=[500.0])
-    helical = check_request(pair_of(0.3), normal_forces=[500.0])
+    internal = check_request(InternalGearPair(gear, ring, 60e-3), TableAxes(normal_forces=[500.0]))
+    helical = check_request(pair_of(0.3), TableAxes(normal_forces=[500.0]))
     refused = {
         fidelity.name: (fidelity.refusal(internal), fidelity.refusal(helical)) for fidelity in FIDELITIES
     }
@@ -158,16 +162,18 @@ def test_a_fidelity_that_is_not_valid_says_why():
 @pytest.mark.parametrize("level", ["draft", "standard", "fine"])
 @pytest.mark.parametrize("model", ["auto", "plane_strain", "3d"])
 def test_the_chosen_fidelity_is_the_model_and_the_mesh_asked_for(model, level):
-    checked = check_request(pair_of(), normal_forces=[500.0], model=model, level=level)
+    checked = check_request(
+        pair_of(), TableAxes(normal_forces=[500.0]), AnalysisOptions(model=model, level=level)
+    )
     fidelity = next(fidelity for fidelity in FIDELITIES if fidelity.name == chosen_fidelity(checked))
     made = fidelity.as_asked(checked)
     assert made.model == checked.model
-    assert made.request.accuracy.level == (level if model != "plane_strain" else "standard")
+    assert made.request.options.level == (level if model != "plane_strain" else "standard")
 
 
 def test_an_unknown_fidelity_is_refused_by_name():
     with pytest.raises(InputError, match="fidelities"):
-        frontier(pair_of(), normal_forces=[500.0], fidelities=["4d"])
+        frontier(pair_of(), TableAxes(normal_forces=[500.0]), fidelities=["4d"])
 
 
 def test_the_front_leaves_out_what_another_point_beats():

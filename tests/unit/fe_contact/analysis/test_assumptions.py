@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, Shaft, analyze
 from fe_contact.analysis import check_request, neglected_effects
 from fe_contact.errors import InputError, SolveError
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
 
@@ -51,7 +53,7 @@ def same(one: SteDatabase, other: SteDatabase) -> None:
 
 
 def test_an_automatic_effect_that_is_needed_is_switched_on_and_the_table_repeated(cache: Path) -> None:
-    assert not check_request(CLEAR, **SKEWED).model.corner_contact  # type: ignore[arg-type]
+    assert not check_request(CLEAR, *table_request(**SKEWED)).model.corner_contact  # type: ignore[arg-type]
     repeated, explicit = (
         table(CLEAR, cache, **SKEWED, effects=effects) for effects in ({}, {"corner_contact": "on"})
     )
@@ -73,7 +75,7 @@ def test_the_caller_may_have_it_fail_or_only_reported(cache: Path) -> None:
     assert assumption(reported, "corner_contact")["holds"] is False
     same(reported, table(CLEAR, cache, **SKEWED, effects={"corner_contact": "off"}))
     with pytest.raises(InputError, match="on_violation"):
-        check_request(PAIR, torques=[1.0], on_violation="shrug")
+        check_request(PAIR, TableAxes(torques=[1.0]), AnalysisOptions(on_violation="shrug"))
 
 
 def test_what_was_switched_off_by_name_stays_off(cache: Path) -> None:
@@ -126,7 +128,7 @@ def test_an_effect_below_the_tolerance_is_neglected_and_its_model_with_it(cache:
     ],
 )
 def test_it_is_kept_without_a_tolerance_by_name_or_where_it_matters(more: Json) -> None:
-    checked = check_request(PAIR, **(TINY | more))  # type: ignore[arg-type]
+    checked = check_request(PAIR, *table_request(**TINY | more))  # type: ignore[arg-type]
     assert checked.decided["misalignment"] == "on"
     assert checked.model.across_face
 

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from analysis_requests import point_request
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request, flank_results, root_stress
 from fe_contact.analysis.tip_edges import OUTSIDE, handovers
 from fe_contact.errors import SolveError
+from fe_contact.options import Run, TableAxes
 from fe_contact.types import Json
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 # tips relieved by more than twice the even deflection, but not by that of a misaligned face
 RELIEVED = replace(GEAR, modification=FlankModification(tip_relief=12e-6, tip_relief_length=0.3e-3))
 CLEAR = GearPair(RELIEVED, RELIEVED)
-SKEWED = {"normal_force": 1500.0, "misalignment": 150e-6, "level": "draft", "at": [0.1, *handovers(CLEAR)]}
+SKEWED = {"normal_force": 1500.0, "misalignment": 150e-6, "level": "draft"}
+AT = [0.1, *handovers(CLEAR)]
 
 
 @pytest.fixture(scope="module")
@@ -33,9 +37,9 @@ def edges(receipt: Json) -> Json:
 
 
 def test_flank_results_are_repeated_refused_or_reported(cache: Path) -> None:
-    asked = {**SKEWED, "cache": cache}
-    repeated = flank_results(CLEAR, **asked)  # type: ignore[arg-type]
-    explicit = flank_results(CLEAR, effects={"corner_contact": "on"}, **asked)  # type: ignore[arg-type]
+    how: dict[str, Any] = {"run": Run(cache=cache), "at": AT}
+    repeated = flank_results(CLEAR, *point_request(**SKEWED), **how)
+    explicit = flank_results(CLEAR, *point_request(effects={"corner_contact": "on"}, **SKEWED), **how)
     for name in ("pressure", "line_load", "position"):
         np.testing.assert_array_equal(getattr(repeated, name), getattr(explicit, name))
     receipt = repeated.metadata.receipt
@@ -44,27 +48,27 @@ def test_flank_results_are_repeated_refused_or_reported(cache: Path) -> None:
     entry = next(one for one in repeated.metadata.effect_ledger if one["name"] == "corner_contact")
     assert entry["on"] and entry["decision"].startswith("on after a run without it")
     assert explicit.metadata.receipt["repeated"] == []
-    reported = flank_results(CLEAR, on_violation="report", **asked)  # type: ignore[arg-type]
+    reported = flank_results(CLEAR, *point_request(on_violation="report", **SKEWED), **how)
     assert edges(reported.metadata.receipt)["holds"] is False
     assert reported.pressure.max() != repeated.pressure.max()
     with pytest.raises(SolveError, match="tip edges stay clear"):
-        flank_results(CLEAR, on_violation="fail", **asked)  # type: ignore[arg-type]
+        flank_results(CLEAR, *point_request(on_violation="fail", **SKEWED), **how)
 
 
 def test_root_stress_is_repeated_too(cache: Path) -> None:
-    asked = {**SKEWED, "cache": cache}
-    repeated = root_stress(CLEAR, **asked)  # type: ignore[arg-type]
-    explicit = root_stress(CLEAR, effects={"corner_contact": "on"}, **asked)  # type: ignore[arg-type]
+    how: dict[str, Any] = {"run": Run(cache=cache), "at": AT}
+    repeated = root_stress(CLEAR, *point_request(**SKEWED), **how)
+    explicit = root_stress(CLEAR, *point_request(effects={"corner_contact": "on"}, **SKEWED), **how)
     np.testing.assert_array_equal(repeated.wheel.stress, explicit.wheel.stress)
     (again,) = repeated.receipt["repeated"]
     assert set(again["turned_on"]) == {"corner_contact"}
-    off = root_stress(CLEAR, effects={"corner_contact": "off"}, **asked)  # type: ignore[arg-type]
+    off = root_stress(CLEAR, *point_request(effects={"corner_contact": "off"}, **SKEWED), **how)
     assert edges(off.receipt)["holds"] is False
     assert off.receipt["repeated"] == []
     peaks = [found.wheel.peak("tension").stress.value for found in (off, repeated)]
     assert peaks[0] != peaks[1]
     with pytest.raises(SolveError, match="tip edges stay clear"):
-        root_stress(CLEAR, on_violation="fail", **asked)  # type: ignore[arg-type]
+        root_stress(CLEAR, *point_request(on_violation="fail", **SKEWED), **how)
 
 
 def test_positions_that_pass_a_handover_by_miss_no_edge(cache: Path) -> None:
@@ -81,7 +85,7 @@ def test_positions_that_pass_a_handover_by_miss_no_edge(cache: Path) -> None:
 
 
 def test_handovers_are_just_outside_the_path_of_contact() -> None:
-    pair = check_request(GearPair(GEAR, GEAR), torques=[1.0]).request.pair
+    pair = check_request(GearPair(GEAR, GEAR), TableAxes(torques=[1.0])).request.pair
     path = pair.path_of_contact
     rolls = [path.pitch_point + (x + j) * path.base_pitch for x in handovers(pair) for j in (-2, -1, 0, 1)]
     assert min(abs(path.start - roll - OUTSIDE * path.base_pitch) for roll in rolls) < 1e-12

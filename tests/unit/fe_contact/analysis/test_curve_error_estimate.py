@@ -13,7 +13,7 @@ from fe_contact.analysis import check_request
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.curve_error_estimate import HARMONIC_SHARE
 from fe_contact.analysis.model_choice import decide
-from fe_contact.planning import LEVELS
+from fe_contact.options import LEVELS, AnalysisOptions, Run, TableAxes
 from fe_contact.planning.discretization import SLICE_ORDER, face_discretization
 from fe_contact.ste.curve_errors import SOURCES
 from fe_contact.ste.fields import DIMENSIONS
@@ -90,11 +90,13 @@ def test_what_few_slices_change_is_carried_on_along_the_curve(cache):
         *(dataclasses.replace(gear, face_width=27.55e-3) for gear in (helical().pinion, helical().wheel)),
         helical().center_distance,
     )
-    checked = check_request(quiet, normal_forces=[FORCE], level="draft", positions=32)
+    checked = check_request(
+        quiet, TableAxes(normal_forces=[FORCE]), AnalysisOptions(level="draft", positions=32)
+    )
     decided = decide(checked)
     made = decided.plan.discretization
     table, few = (
-        compute_database(checked, {}, lambda *_: None, cache, decided.in_slices(count))
+        compute_database(checked, {}, Run(cache=cache), decided.in_slices(count))
         for count in (made.slices, made.coarse_slices)
     )
     own, sliced = (one.static_transmission_error[:, 0, 0, 0] for one in (table, few))

@@ -10,6 +10,7 @@ from typing import Any
 import meshio
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, deformed_pairs
 from fe_contact.analysis.deformed_pair import mesh_angles
@@ -23,6 +24,7 @@ from fe_contact.contact import (
 )
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear, Toothing, tooth_profile
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.stage_clock import StageClock
 
 
@@ -64,10 +66,8 @@ def internal_pair(hand: float = 0.0, **fields: Any) -> InternalGearPair:
 
 
 def solved(pair: GearPair | InternalGearPair, cache: Path, **request: Any) -> SolvedOperatingPoint:
-    checked = check_request(pair, normal_forces=[2000.0], level="draft", **request)
-    return solve_operating_point(
-        checked, np.array([0.171875, 0.796875]), StageClock(), lambda _stage, _part: None, cache
-    )
+    checked = check_request(pair, *table_request(normal_forces=[2000.0], level="draft", **request))
+    return solve_operating_point(checked, np.array([0.171875, 0.796875]), StageClock(), Run(cache=cache))
 
 
 def test_the_work_of_the_forces_is_that_of_the_contact(cache: Path) -> None:
@@ -166,7 +166,11 @@ def flank_point(gear: Toothing, tooth: int, angle: float, roll: float, along: fl
 @pytest.fixture(scope="module")
 def found(cache: Path) -> Any:
     return deformed_pairs(
-        helical_pair(), normal_force=2000.0, at=[0.0, 0.45], misalignment=15e-6, level="draft", cache=cache
+        helical_pair(),
+        OperatingPoint(normal_force=2000.0, misalignment=15e-6),
+        AnalysisOptions(level="draft"),
+        Run(cache=cache),
+        at=[0.0, 0.45],
     )
 
 
@@ -212,9 +216,9 @@ def test_loaded_flanks_move_towards_each_others_bodies(found: Any) -> None:
 
 def test_what_cannot_be_shown_is_refused() -> None:
     with pytest.raises(InputError, match="beside = -1"):
-        deformed_pairs(spur_pair(), torque=10.0, beside=-1)
+        deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), beside=-1)
     with pytest.raises(InputError, match=r"at = \[\]"):
-        deformed_pairs(spur_pair(), torque=10.0, at=[])
+        deformed_pairs(spur_pair(), OperatingPoint(torque=10.0), at=[])
 
 
 @pytest.mark.parametrize("hand", [1.0, -1.0])
@@ -222,7 +226,12 @@ def test_meshes_of_pinion_and_ring_meet_where_the_load_is(hand: float, cache: Pa
     """Under a load at one end of the face both are stressed most there, and there the other mesh is near."""
     pair = internal_pair(hand)
     (found,) = deformed_pairs(
-        pair, normal_force=500.0, at=0.2, misalignment=100e-6, level="draft", cache=cache, beside=0
+        pair,
+        OperatingPoint(normal_force=500.0, misalignment=100e-6),
+        AnalysisOptions(level="draft"),
+        Run(cache=cache),
+        at=0.2,
+        beside=0,
     )
     for gear, other in ((found.pinion, found.wheel), (found.wheel, found.pinion)):
         most = gear.points[gear.von_mises.argmax()]

@@ -7,11 +7,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, analyze
 from fe_contact.analysis import check_request, plan_run
 from fe_contact.analysis.effect_ledger import effect_ledger
 from fe_contact.effects import EFFECTS
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.types import Json
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
@@ -30,7 +32,7 @@ FIELDS = {
 
 def ledger(pair: GearPair, **asked: object) -> dict[str, Json]:
     """Entries by name, before anything is computed."""
-    checked = check_request(pair, **({"torques": [100.0], "positions": 16} | asked))  # type: ignore[arg-type]
+    checked = check_request(pair, *table_request(**{"torques": [100.0], "positions": 16} | asked))  # type: ignore[arg-type]
     return {entry["name"]: entry for entry in effect_ledger(checked, None)}
 
 
@@ -69,8 +71,11 @@ def test_a_choice_against_the_scene_is_obeyed_and_has_a_price() -> None:
 
 
 def test_three_dimensions_cost_what_the_plan_says(tmp_path: Path) -> None:
-    asked = {"torques": [100.0], "positions": 16, "cache": tmp_path}
-    flat, solid = (plan_run(PLAIN, model=model, **asked) for model in ("auto", "3d"))  # type: ignore[arg-type]
+    axes = TableAxes(torques=[100.0])
+    flat, solid = (
+        plan_run(PLAIN, axes, AnalysisOptions(model=model, positions=16), cache=tmp_path)
+        for model in ("auto", "3d")
+    )
     found = {entry["name"]: entry for entry in solid.to_json()["effect_ledger"]}
     extra = solid.chosen.cost.cpu_seconds - flat.chosen.cost.cpu_seconds
     assert found["face_load_distribution"]["cost_cpu_seconds"] == pytest.approx(extra, rel=1e-6)

@@ -9,6 +9,7 @@ import pytest
 
 from fe_contact import Gear, GearPair, LoadDistribution, contact_pattern, flank_results
 from fe_contact.errors import DatabaseError
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run
 from fe_contact.ste import Metadata
 
 
@@ -17,13 +18,11 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> LoadDistribution:
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     return flank_results(
         GearPair(gear, gear, 80e-3),
-        torque=100.0,
-        center_distance_change=5e-5,
-        level="draft",
-        model="plane_strain",
+        OperatingPoint(torque=100.0, center_distance_change=5e-5),
+        AnalysisOptions(level="draft", model="plane_strain"),
+        Run(cache=tmp_path_factory.mktemp("compliance")),
         at=np.arange(8) / 8,
         case={"name": "spur"},
-        cache=tmp_path_factory.mktemp("compliance"),
     )
 
 

@@ -5,10 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from analysis_requests import point_request
+from numpy.typing import ArrayLike
 
 from fe_contact import FlankModification, Gear, GearPair, analyze, contact_pattern, flank_results
 from fe_contact.errors import InputError
 from fe_contact.hertz import contact_modulus, relative_radius
+from fe_contact.options import Run
 
 FORCE = 2000.0
 NO_CORNERS = {"corner_contact": "off"}
@@ -35,9 +38,9 @@ def helical_pair() -> GearPair:
     return GearPair(pinion, dataclasses.replace(pinion, teeth=26, helix_angle=-pinion.helix_angle))
 
 
-def solved(pair: GearPair, cache, **options: object):
+def solved(pair: GearPair, cache, at: ArrayLike | None = None, **options: object):
     options = {"normal_force": FORCE, "model": "3d", "level": "draft"} | options
-    return flank_results(pair, cache=cache, **options)
+    return flank_results(pair, *point_request(**options), run=Run(cache=cache), at=at)
 
 
 def test_the_line_load_along_the_contact_lines_is_the_force(cache):

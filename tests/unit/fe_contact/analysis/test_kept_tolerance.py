@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import AllowedError, Gear, GearPair, SteDatabase, analyze
 from fe_contact.analysis import check_request, curve_error_estimate, error_estimate, kept_tolerance
@@ -15,6 +16,7 @@ from fe_contact.analysis.compute_database import Computed, compute_database, com
 from fe_contact.analysis.decided import Decided
 from fe_contact.analysis.model_choice import decide
 from fe_contact.errors import MeshError, SolveError
+from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning import error_model, model_error
 from fe_contact.ste.fields import DIMENSIONS
 
@@ -80,14 +82,14 @@ def test_a_tight_one_refines_until_it_is_met(from_draft, tmp_path):
     ((draft, words),) = drafts
     assert words == "mesh draft -> standard"
     assert receipt(draft)["tolerance"]["used"] == passes[0]["used"] > 1.0
-    exact = decide(check_request(SPUR, **PLANE, tolerance=tight)).refined(
+    exact = decide(check_request(SPUR, *table_request(tolerance=tight, **PLANE))).refined(
         "standard", 1, table_nodes(tight), "as refined"
     )
-    assert same(table, compute_database(exact.checked, {}, lambda *_: None, tmp_path, exact))
+    assert same(table, compute_database(exact.checked, {}, Run(cache=tmp_path), exact))
 
 
 def table_nodes(allowed: AllowedError):
-    return decide(check_request(SPUR, **PLANE, tolerance=allowed)).plan.nodes
+    return decide(check_request(SPUR, *table_request(tolerance=allowed, **PLANE))).plan.nodes
 
 
 @pytest.mark.parametrize("tolerance", [0.002, 0.001, 0.0005, 0.0001])
@@ -139,14 +141,14 @@ def test_a_time_budget_that_is_not_used_up_changes_nothing(from_draft):
 
 def test_the_first_pass_is_the_most_exact_that_fits_into_the_time():
     asked = {"torques": [50.0], "model": "3d", "tolerance": AllowedError(0.002, 0.0)}
-    free = decide(check_request(SPUR, **asked))
-    draft = decide(check_request(SPUR, torques=[50.0], model="3d", level="draft"))
+    free = decide(check_request(SPUR, *table_request(**asked)))
+    draft = decide(check_request(SPUR, TableAxes(torques=[50.0]), AnalysisOptions(model="3d", level="draft")))
     between = math.sqrt(free.predicted(None).cpu_seconds * draft.predicted(None).cpu_seconds)
-    bound = decide(check_request(SPUR, time_budget=between, **asked))
+    bound = decide(check_request(SPUR, *table_request(time_budget=between, **asked)))
     assert free.mesh.level != "draft"
     assert (bound.mesh.met, bound.predicted(None).cpu_seconds <= between) == (False, True)
     assert f"{free.mesh.option.name} is predicted to take" in bound.mesh.reason
-    assert bound.checked.request.accuracy.tolerance == asked["tolerance"]
+    assert bound.checked.request.options.tolerance == asked["tolerance"]
 
 
 def test_the_cost_is_that_of_all_passes(from_draft):
@@ -172,9 +174,9 @@ def test_passes_share_condensed_bodies(from_draft, monkeypatch):
     """Positions that are searched more closely need no new bodies, without a cache either."""
     computed: list[list[str]] = []
 
-    def counted(checked, case, report, cache, decided, workers, clock) -> Computed:
-        done = compute_pass(checked, case, report, cache, decided, workers, clock)
-        computed.append(sorted(file.name for file in cache.glob("compliance-*")))
+    def counted(checked, case, run, decided, clock) -> Computed:
+        done = compute_pass(checked, case, run, decided, clock)
+        computed.append(sorted(file.name for file in run.cache.glob("compliance-*")))
         return done
 
     monkeypatch.setattr(kept_tolerance, "compute_pass", counted)

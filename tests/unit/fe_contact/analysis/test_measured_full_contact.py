@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import measured_full_contact as measuring
@@ -18,6 +19,7 @@ from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_request
 from fe_contact.errors import InputError, SolveError
 from fe_contact.full_contact import FullContactPoint, FullContactTable
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Status
 
@@ -29,7 +31,7 @@ SOFTER, FAILED = 1.02, 3
 
 @pytest.fixture(scope="module")
 def checked() -> Checked:
-    return check_request(PAIR, normal_forces=FORCES, positions=32)
+    return check_request(PAIR, TableAxes(normal_forces=FORCES), AnalysisOptions(positions=32))
 
 
 @pytest.fixture(scope="module")
@@ -105,15 +107,17 @@ def test_one_position_has_no_peak_to_peak(
 
 
 def test_what_it_cannot_hold_is_said() -> None:
-    assert full_contact_refusal(check_request(PAIR, normal_forces=[9.0])) is None
+    assert full_contact_refusal(check_request(PAIR, TableAxes(normal_forces=[9.0]))) is None
     wider = dataclasses.replace(GEAR, face_width=9e-3)
-    beside = check_request(GearPair(GEAR, wider, 40e-3), normal_forces=[9.0], misalignments=[0.0, 1e-5])
+    beside = check_request(
+        GearPair(GEAR, wider, 40e-3), TableAxes(normal_forces=[9.0], misalignments=[0.0, 1e-5])
+    )
     assert "unlike or offset faces" in str(full_contact_refusal(beside))
-    apart = check_request(PAIR, normal_forces=[9.0], center_distance_changes=[0.0, 1e-5])
+    apart = check_request(PAIR, TableAxes(normal_forces=[9.0], center_distance_changes=[0.0, 1e-5]))
     assert "center distance" in str(full_contact_refusal(apart))
     helical = [dataclasses.replace(GEAR, helix_angle=angle) for angle in (0.2, -0.2)]
     tilted = GearPair(*helical, center_distance=2.0 * helical[0].reference_radius)
-    assert "helical" in str(full_contact_refusal(check_request(tilted, normal_forces=[9.0])))
+    assert "helical" in str(full_contact_refusal(check_request(tilted, TableAxes(normal_forces=[9.0]))))
 
 
 def test_what_needs_the_face_is_solved_over_it(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -121,11 +125,11 @@ def test_what_needs_the_face_is_solved_over_it(table: SteDatabase, monkeypatch: 
     crowned = dataclasses.replace(GEAR, modification=FlankModification(helix_crowning=5e-6))
     aligned = {"normal_forces": FORCES, "positions": 32}
     needing = [
-        check_request(PAIR, **aligned, model="3d"),
-        check_request(PAIR, **aligned, misalignments=[0.0, 1e-5]),
-        check_request(dataclasses.replace(PAIR, wheel=crowned), **aligned),
+        check_request(PAIR, *table_request(model="3d", **aligned)),
+        check_request(PAIR, *table_request(misalignments=[0.0, 1e-5], **aligned)),
+        check_request(dataclasses.replace(PAIR, wheel=crowned), *table_request(**aligned)),
     ]
-    assert not over_face(check_request(PAIR, **aligned))
+    assert not over_face(check_request(PAIR, *table_request(**aligned)))
     for checked in needing:
         assert over_face(checked)
         assert full_contact_refusal(checked) is None
@@ -155,21 +159,23 @@ def fake_over_face(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> list[
 
 def test_an_accuracy_study_goes_on_without_it(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:
     fidelities = ["iso6336", "thin_slices"]
-    asked = {"normal_forces": FORCES, "positions": 32, "fidelities": fidelities}
+    asked = {"normal_forces": FORCES, "positions": 32}
     stand_in(table, monkeypatch, [])
-    beside = frontier(PAIR, **asked, full_contact=2).to_json()
+    beside = frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=2).to_json()
     assert beside["full_contact"]["mean_error"] == pytest.approx(SOFTER - 1.0, rel=1e-3)
     stand_in(table, monkeypatch, [0])
-    failed = frontier(PAIR, **asked, full_contact=1)
+    failed = frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=1)
     assert failed.full_contact is None
     assert failed.left_out == {"full_contact": "cut back too often"}
     assert [result.name for result in failed.results] == fidelities
     for wrong in (0, 65, True):
         with pytest.raises(InputError, match="full_contact"):
-            frontier(PAIR, **asked, full_contact=wrong)
+            frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=wrong)
     module = importlib.import_module("fe_contact.analysis.frontier")
     monkeypatch.setattr(module, "full_contact_refusal", lambda _: "helical")
-    assert frontier(PAIR, **asked, full_contact=1).left_out == {"full_contact": "helical"}
+    assert frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=1).left_out == {
+        "full_contact": "helical"
+    }
 
 
 def test_no_solution_at_all_is_an_error_with_its_reason(
@@ -184,8 +190,8 @@ def test_the_peer_runs_beside_the_accuracy_study() -> None:
     """The thing itself: our plane strain is within half a per cent of it."""
     found = frontier(
         PAIR,
-        torques=[2.0, 20.0],
-        positions=32,
+        TableAxes(torques=[2.0, 20.0]),
+        AnalysisOptions(positions=32),
         fidelities=["plane_strain", "corrected_draft"],
         full_contact=2,
     )

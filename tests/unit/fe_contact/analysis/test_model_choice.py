@@ -7,12 +7,15 @@ import math
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair, Material, analyze
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.model_choice import alternatives, decide
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.ripple import expected_curves
 from fe_contact.geometry.finite_width import finite_width_excess
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.ste.curve_errors import SOURCES
 
 LOADS = [400.0, 1600.0]
@@ -37,7 +40,7 @@ def replace_materials(pair: GearPair, material: Material) -> GearPair:
 
 
 def decided(pair: GearPair, **asked):
-    return decide(check_request(pair, normal_forces=LOADS, **asked))
+    return decide(check_request(pair, *table_request(normal_forces=LOADS, **asked)))
 
 
 def model_of(found) -> str:
@@ -88,7 +91,7 @@ def test_the_ledger_says_why_the_finite_width_is_left_out():
     ],
 )
 def test_an_explicit_model_or_effect_is_obeyed(explicit):
-    asked = check_request(pair(), normal_forces=LOADS, tolerance=0.05, **explicit)
+    asked = check_request(pair(), *table_request(normal_forces=LOADS, tolerance=0.05, **explicit))
     found = decide(asked)
     assert found.checked.model == asked.model
     assert found.checked.ledger == asked.ledger
@@ -96,9 +99,11 @@ def test_an_explicit_model_or_effect_is_obeyed(explicit):
 
 def test_a_level_or_nothing_asked_keeps_the_model_of_the_scene():
     for asked in ({"level": "draft"}, {}):
-        (only,) = alternatives(check_request(pair(), normal_forces=LOADS, **asked))
+        (only,) = alternatives(check_request(pair(), *table_request(normal_forces=LOADS, **asked)))
         assert only.model.finite_width
-    (only,) = alternatives(check_request(pair(0.3), normal_forces=LOADS, tolerance=0.1))
+    (only,) = alternatives(
+        check_request(pair(0.3), TableAxes(normal_forces=LOADS), AnalysisOptions(tolerance=AllowedError(0.1)))
+    )
     assert only.model.across_face
 
 
@@ -112,7 +117,9 @@ def test_helical_pairs_get_the_cheapest_mesh_and_slices_that_are_exact_enough():
 def test_a_small_ripple_asks_for_more():
     """Steep and wide: the contact lines hardly change their length, so that per cents of ripple are small."""
     smooth = pair(math.radians(30.0), width=math.pi * 2e-3 / math.sin(math.radians(30.0)))
-    curves = [expected_curves(check_request(one, normal_forces=LOADS)) for one in (pair(0.15), smooth)]
+    curves = [
+        expected_curves(check_request(one, TableAxes(normal_forces=LOADS))) for one in (pair(0.15), smooth)
+    ]
     parts = [(one.peak_to_peak / one.mean).min() for one in curves]
     assert parts[1] < 0.3 * parts[0]
     efforts = [decided(one, tolerance=0.02).mesh.option.effort for one in (pair(0.15), smooth)]
@@ -122,7 +129,9 @@ def test_a_small_ripple_asks_for_more():
 def test_the_choice_knows_neither_host_nor_cache(tmp_path, monkeypatch):
     before = decided(pair(0.3), tolerance=0.01).to_json()
     monkeypatch.setattr("fe_contact.planning.cost_model.host_slowness", lambda _: 40.0)
-    asked = check_request(pair(0.3), normal_forces=LOADS, tolerance=0.01)
+    asked = check_request(
+        pair(0.3), TableAxes(normal_forces=LOADS), AnalysisOptions(tolerance=AllowedError(0.01))
+    )
     assert decide(asked, tmp_path).to_json() == before
 
 

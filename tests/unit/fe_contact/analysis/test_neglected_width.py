@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fe_contact import FlankModification, Gear, GearPair
+from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis import check_request
 from fe_contact.analysis.model_choice import decide
+from fe_contact.options import AnalysisOptions, TableAxes
 
 GEAR = Gear(teeth=25, normal_module=3e-3, face_width=18e-3, bore_diameter=37.5e-3)
 WHEEL = replace(GEAR, teeth=31, bore_diameter=46.5e-3)
@@ -16,7 +18,11 @@ RATED = [2700.0]
 
 def finite_width(pinion: Gear, tolerance: float) -> bool:
     """Whether the decided model has it."""
-    asked = check_request(GearPair(pinion, WHEEL), normal_forces=RATED, tolerance=tolerance)
+    asked = check_request(
+        GearPair(pinion, WHEEL),
+        TableAxes(normal_forces=RATED),
+        AnalysisOptions(tolerance=AllowedError.given(tolerance)),
+    )
     return decide(asked).checked.model.finite_width
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair
 from fe_contact.analysis.operating_points import OperatingPoints, operating_points
@@ -19,10 +20,10 @@ def laid_out() -> tuple[OperatingPoints, OperatingPoints, PairContact]:
     """Operating points over a draft, those laid out afresh over a standard mesh, and the pair on it."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     axes = {"misalignments": MISALIGNMENTS, "center_distance_changes": CHANGES}
-    checked = check_request(GearPair(gear, gear, 80e-3), torques=[100.0], **axes)
+    checked = check_request(GearPair(gear, gear, 80e-3), *table_request(torques=[100.0], **axes))
     request = checked.request
     plans = [
-        make_plan(request.pair, request.load, request.accuracy, checked.model, level)
+        make_plan(request.pair, request.load, request.options, checked.model, level)
         for level in ("draft", "standard")
     ]
     draft, standard = (PairContact(request.pair, plan) for plan in plans)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, analyze, flank_results
 from fe_contact.analysis import check_request
@@ -14,6 +15,7 @@ from fe_contact.analysis.position_nodes import adaptive_nodes
 from fe_contact.analysis.table_nodes import assessed_windows
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.errors import InputError
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
 from fe_contact.planning import NodeRule
 
 TORQUES = (30.0, 100.0)
@@ -56,7 +58,9 @@ def test_one_erring_gear_has_the_period_of_its_teeth(table):
 def test_the_table_is_right_between_its_positions_within_its_own_estimate(pair, table, cache):
     """At positions all over the period, solved one by one as flank results."""
     position = RNG.uniform(0.0, 20.0, 400)
-    exact = flank_results(pair, torque=100.0, at=position, level="draft", cache=cache).deflection
+    exact = flank_results(
+        pair, OperatingPoint(torque=100.0), AnalysisOptions(level="draft"), Run(cache=cache), at=position
+    ).deflection
     error = np.abs(table.ste(position, pair.normal_force(100.0)) - exact)
     stated = table.metadata.receipt["error_by_source"]["table_interpolation_m"][1]
     assert np.ptp(exact) > 5e-6
@@ -118,17 +122,17 @@ def test_periods_that_cannot_be_tabulated_are_refused_by_name(teeth, options, me
     if teeth:
         pair = GearPair(gear(97, RNG.normal(0, 1e-6, 97)), gear(101, RNG.normal(0, 1e-6, 101)))
     with pytest.raises(InputError, match=message) as refusal:
-        check_request(pair, torques=TORQUES, **options)
+        check_request(pair, *table_request(torques=TORQUES, **options))
     assert refusal.value.field == "pitches"
-    assert check_request(pair, torques=TORQUES, whole_table=False).cycle is None
+    assert check_request(pair, TableAxes(torques=TORQUES), whole_table=False).cycle is None
 
 
 def test_a_misalignment_axis_shortens_the_longest_period():
     pair = GearPair(gear(97, RNG.normal(0, 1e-6, 97)), gear(101))
     options = {"torques": TORQUES, "misalignments": np.arange(40) * 1e-6}
     with pytest.raises(InputError, match="40 alignments"):
-        check_request(pair, **options)
-    assert check_request(pair, **options, positions=8).cycle.alignments == 40
+        check_request(pair, *table_request(**options))
+    assert check_request(pair, *table_request(positions=8, **options)).cycle.alignments == 40
 
 
 def test_the_assessed_pitches_span_the_differences_between_neighbors():

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material
 from fe_contact.analysis.decided import Decided
@@ -26,7 +27,7 @@ def pair(helix: float = 0.0, width: float = 16e-3, **more) -> GearPair:
 def ran(gears: GearPair, level: str, slices: int = 1, **asked) -> Decided:
     """What a pass ran; tolerances of nothing but a part."""
     wish = {"normal_forces": [400.0, 1600.0], "tolerance": AllowedError(0.01, 0.0)} | asked
-    first = decide(check_request(gears, **wish))
+    first = decide(check_request(gears, *table_request(**wish)))
     return first.refined(level, slices, first.plan.nodes, "first")
 
 

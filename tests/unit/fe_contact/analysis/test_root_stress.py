@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from analysis_requests import point_request
+from numpy.typing import ArrayLike
 
 from fe_contact import Gear, GearPair, RootStress, root_stress
 from fe_contact.analysis.request_check import check_request
@@ -18,6 +20,7 @@ from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear
 from fe_contact.mesh import MeshRecipe, SectorRecipe
+from fe_contact.options import AnalysisOptions, OperatingPoint, Run, TableAxes
 from fe_contact.planning.root_recipes import finer_root
 from fe_contact.stage_clock import StageClock
 
@@ -36,16 +39,18 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("compliance")
 
 
-def solved(pair: GearPair | InternalGearPair, cache: Path, **options: object) -> RootStress:
+def solved(
+    pair: GearPair | InternalGearPair, cache: Path, at: ArrayLike | None = None, **options: object
+) -> RootStress:
     options = {"normal_force": FORCE, "level": "draft"} | options
-    return root_stress(pair, cache=cache, **options)
+    return root_stress(pair, *point_request(**options), run=Run(cache=cache), at=at)
 
 
 def place(pair: GearPair, cache: Path, model: str) -> SolvedOperatingPoint:
-    checked = check_request(pair, normal_forces=[FORCE], level="draft", model=model)
-    return solve_operating_point(
-        checked, np.array([0.1, 0.45, 0.8]), StageClock(), lambda _stage, _done: None, cache
+    checked = check_request(
+        pair, TableAxes(normal_forces=[FORCE]), AnalysisOptions(level="draft", model=model)
     )
+    return solve_operating_point(checked, np.array([0.1, 0.45, 0.8]), StageClock(), Run(cache=cache))
 
 
 def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1.0) -> SolvedOperatingPoint:
@@ -187,8 +192,8 @@ def test_a_root_under_the_patch_counts_for_no_peak(cache: Path) -> None:
 
 def test_what_cannot_be_asked(cache: Path) -> None:
     with pytest.raises(InputError) as refusal:
-        root_stress(SPUR, cache=cache)
+        root_stress(SPUR, OperatingPoint(), run=Run(cache=cache))
     assert refusal.value.field in ("torques", "normal_forces")
     with pytest.raises(InputError) as refusal:
-        root_stress(SPUR, torque=10.0, at=[[0.1]], cache=cache)
+        root_stress(SPUR, OperatingPoint(torque=10.0), run=Run(cache=cache), at=[[0.1]])
     assert refusal.value.field == "at"

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, analyze, study_sensitivity
 from fe_contact.analysis import RippleCurve
 from fe_contact.errors import InputError
+from fe_contact.options import Run
 
 FORCE = 2000.0
 
@@ -25,7 +27,11 @@ def pair():
 
 def study(pair, cache, **options):
     options = {"misalignments": [30e-6], "center_distance_changes": [-50e-6, 80e-6]} | options
-    return study_sensitivity(pair, normal_force=FORCE, level="draft", positions=16, cache=cache, **options)
+    return study_sensitivity(
+        pair,
+        *table_request(normal_forces=[FORCE], level="draft", positions=16, **options),
+        run=Run(cache=cache),
+    )
 
 
 @pytest.mark.parametrize("corners", [False, True])

@@ -11,10 +11,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import Gear, GearPair, PitchDeviation, SteDatabase, analyze, study_sensitivity
 from fe_contact.analysis import contact_lines, solved_operating_points
 from fe_contact.geometry import FlankModification, Shaft
+from fe_contact.options import Run
 from fe_contact.workers import InProcess, RunCost
 
 SKEWED = {"misalignments": [-10e-6, 25e-6], "center_distance_changes": [0.0, 80e-6]}
@@ -146,10 +148,13 @@ def test_too_little_to_send_stays_here(cache: Path, monkeypatch: pytest.MonkeyPa
 def test_sensitivity_over_workers_keeps_its_bits(cache: Path) -> None:
     workers = Elsewhere()
     asked: dict[str, Any] = {
-        "normal_force": 2000.0, "misalignments": [20e-6], "center_distance_changes": [50e-6],
-        "level": "draft", "positions": 16, "cache": cache,
+        "normal_forces": [2000.0], "misalignments": [20e-6], "center_distance_changes": [50e-6],
+        "level": "draft", "positions": 16,
     }  # fmt: skip
-    here, there = (study_sensitivity(helical(), **asked, workers=who) for who in (InProcess(), workers))
+    here, there = (
+        study_sensitivity(helical(), *table_request(**asked), Run(workers=who, cache=cache))
+        for who in (InProcess(), workers)
+    )
     for one, other in zip(here, there, strict=True):
         for name in ("misalignment", "center_distance_change"):
             first, second = getattr(one, name), getattr(other, name)

@@ -20,6 +20,7 @@ from fe_contact.compliance.rounding import (
 from fe_contact.errors import InputError, SolveError
 from fe_contact.material import STEEL
 from fe_contact.mesh import SectorRecipe
+from fe_contact.options import AnalysisOptions, TableAxes
 
 
 def disc(modules: float, helix: float = 0.3, teeth: int = 40) -> Gear:
@@ -72,10 +73,18 @@ def test_a_disc_as_thin_as_allowed_is_computed_and_a_thinner_one_refused() -> No
     least = least_face_width(disc(1.0), layers) / 4e-3
     assert disc_rounding(slenderness(disc(least)), 0.3, layers, STEEL) == pytest.approx(LARGEST_ROUNDING)
     allowed, thinner = disc(1.001 * least), disc(0.999 * least)
-    check_request(GearPair(allowed, mate_of(allowed)), torques=[1.0], model="3d", level="draft")
+    check_request(
+        GearPair(allowed, mate_of(allowed)),
+        TableAxes(torques=[1.0]),
+        AnalysisOptions(model="3d", level="draft"),
+    )
     assert flank_compliance_3d(allowed, SectorRecipe.draft(allowed), reach=0).checks.energy < LARGEST_ROUNDING
     with pytest.raises(InputError, match="bends as a plate under the axial force") as refusal:
-        check_request(GearPair(thinner, mate_of(thinner)), torques=[1.0], model="3d", level="draft")
+        check_request(
+            GearPair(thinner, mate_of(thinner)),
+            TableAxes(torques=[1.0]),
+            AnalysisOptions(model="3d", level="draft"),
+        )
     assert refusal.value.field == "pinion.face_width"
 
 

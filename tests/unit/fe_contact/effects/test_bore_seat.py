@@ -13,7 +13,8 @@ from fe_contact.contact import ContactModel
 from fe_contact.effects import ContactScene
 from fe_contact.effects.bore_seat import BoreSeatElasticity
 from fe_contact.errors import InputError
-from fe_contact.planning import Accuracy, make_plan
+from fe_contact.options import AnalysisOptions, TableAxes
+from fe_contact.planning import make_plan
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 SEATED = replace(GEAR, seat=BoreSeat(tangential_foundation=1e13))
@@ -33,14 +34,16 @@ def test_contributes_nothing_else_and_off_is_the_fixed_bore() -> None:
         "bore_seat"
     ]
     loads = np.array([1e3])
-    assert make_plan(PAIR, loads, Accuracy(), model).bodies(PAIR) == (GEAR, GEAR)
-    assert make_plan(PAIR, loads, Accuracy(), after).bodies(PAIR) == (SEATED, GEAR)
-    assert make_plan(FIXED, loads, Accuracy(), after).bodies(FIXED)[0] is GEAR
+    assert make_plan(PAIR, loads, AnalysisOptions(), model).bodies(PAIR) == (GEAR, GEAR)
+    assert make_plan(PAIR, loads, AnalysisOptions(), after).bodies(PAIR) == (SEATED, GEAR)
+    assert make_plan(FIXED, loads, AnalysisOptions(), after).bodies(FIXED)[0] is GEAR
 
 
 def test_a_seat_acts_across_the_face_and_is_refused_in_the_plane() -> None:
-    assert check_request(PAIR, torques=[1.0]).model.across_face
+    assert check_request(PAIR, TableAxes(torques=[1.0])).model.across_face
     with pytest.raises(InputError) as refusal:
-        check_request(PAIR, torques=[1.0], model="plane_strain")
+        check_request(PAIR, TableAxes(torques=[1.0]), AnalysisOptions(model="plane_strain"))
     assert refusal.value.field == "pinion.seat"
-    check_request(PAIR, torques=[1.0], model="plane_strain", effects={"bore_seat": "off"})
+    check_request(
+        PAIR, TableAxes(torques=[1.0]), AnalysisOptions(model="plane_strain", effects={"bore_seat": "off"})
+    )

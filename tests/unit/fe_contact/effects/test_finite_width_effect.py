@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import check_request
@@ -20,7 +21,7 @@ PAIR = GearPair(GEAR, GEAR, 80e-3)
 
 def model(**options: object):
     asked = {"torques": [100.0], "level": "draft"} | options
-    return check_request(PAIR, **asked)  # type: ignore[arg-type]
+    return check_request(PAIR, *table_request(**asked))  # type: ignore[arg-type]
 
 
 def test_an_aligned_spur_pair_is_corrected_and_nothing_else() -> None:
@@ -55,7 +56,7 @@ def test_an_explicit_model_decides(options: dict[str, object], across: bool, cor
     assert (checked.model.across_face, checked.model.finite_width) == (across, corrected)
     on = {entry.name: entry.on for entry in checked.ledger}
     assert (on["face_load_distribution"], on["finite_width"]) == (across, corrected)
-    plan = make_plan(PAIR, checked.request.load, checked.request.accuracy, checked.model)
+    plan = make_plan(PAIR, checked.request.load, checked.request.options, checked.model)
     assert plan.discretization.corrected is corrected
     assert ("finite_width" in plan.to_json()) is corrected
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import check_request
@@ -18,6 +19,7 @@ from fe_contact.effects.influence import EstimatedInfluence, estimate_influence
 from fe_contact.effects.influence.axial_compliance import _bent
 from fe_contact.effects.influence.slice_compliance import slice_compliance
 from fe_contact.effects.influence.slice_model import Springs
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import make_plan
 from fe_contact.types import FloatArray
 
@@ -29,7 +31,7 @@ HELICAL = GearPair(replace(GEAR, helix_angle=0.35), replace(GEAR, helix_angle=-0
 
 def influence(pair: GearPair, name: str, **asked: object) -> EstimatedInfluence:
     """Estimate one effect of a request at one load."""
-    checked = check_request(pair, **({"normal_forces": [2000.0]} | asked))  # type: ignore[arg-type]
+    checked = check_request(pair, *table_request(**{"normal_forces": [2000.0]} | asked))  # type: ignore[arg-type]
     found = estimate_influence(checked.request.scene, checked.decided, name, EFFECTS)
     assert found is not None
     return found
@@ -62,9 +64,13 @@ def test_springs_are_as_soft_as_finite_elements() -> None:
 def test_springs_of_helical_teeth_are_as_soft_as_finite_elements(tmp_path: Path) -> None:
     """A force with an axial part bends the discs: without that teeth move their neighbors half as far."""
     narrow = {name: replace(getattr(HELICAL, name), face_width=4 * M) for name in ("pinion", "wheel")}
-    checked = check_request(replace(HELICAL, **narrow), normal_forces=[2000.0], level="draft", positions=8)
+    checked = check_request(
+        replace(HELICAL, **narrow),
+        TableAxes(normal_forces=[2000.0]),
+        AnalysisOptions(level="draft", positions=8),
+    )
     request = checked.request
-    plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
+    plan = make_plan(request.pair, request.load, request.options, checked.model)
     problem = pair_contact(request.pair, plan, tmp_path).problem(checked.model, np.array([0.25]))
     candidates, exact = problem.candidates, problem.compliance[0]
     springs = slice_compliance(request.pair, candidates.slices, checked.model)[0]
@@ -130,7 +136,7 @@ def test_a_rigid_gap_under_all_of_the_load_is_seen_whole() -> None:
 def test_what_a_scene_does_not_hold_changes_nothing() -> None:
     for name in ("lead_modification", "misalignment", "pitch_error", "shaft_deflection", "thin_rim"):
         assert influence(PAIR, name).largest == 0.0
-    checked = check_request(HELICAL, normal_forces=[2000.0])
+    checked = check_request(HELICAL, TableAxes(normal_forces=[2000.0]))
     assert (
         estimate_influence(checked.request.scene, checked.decided, "face_load_distribution", EFFECTS) is None
     )

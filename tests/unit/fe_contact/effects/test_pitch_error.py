@@ -16,6 +16,7 @@ from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose
 from fe_contact.effects.pitch_error import PitchError, PitchGap
 from fe_contact.geometry import Gear, GearPair, InternalGearPair, PitchDeviation, RingGear
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import make_plan
 
 Z1, Z2 = 20, 23
@@ -43,8 +44,13 @@ def solved(cache):
     """STE (T, P, L) in m of a pair over whole pitches, at a light and a heavy load."""
 
     def solve(pair, pitches, position=POSITIONS, effects=None, torques=(LIGHT, HEAVY)):
-        checked = check_request(pair, torques=torques, level="draft", effects=effects, whole_table=False)
-        plan = make_plan(pair, checked.request.load, checked.request.accuracy, checked.model)
+        checked = check_request(
+            pair,
+            TableAxes(torques=torques),
+            AnalysisOptions(level="draft", effects=effects),
+            whole_table=False,
+        )
+        plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)
         contact = pair_contact(pair, plan, cache)
         (place,) = operating_points(checked.request.scene, checked.request.choices, contact).places
         solution = place.solve(position, plan.load, np.repeat(pitches, position.size))[1]

@@ -14,6 +14,7 @@ from fe_contact.effects import ContactScene
 from fe_contact.effects.thin_rim import ThinRim
 from fe_contact.errors import InputError
 from fe_contact.geometry import web_compliance
+from fe_contact.options import AnalysisOptions, TableAxes
 
 PINION = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 WHEEL = replace(PINION, teeth=30, blank=GearBlank(8e-3, 8e-3, 50e-3))
@@ -46,8 +47,8 @@ def test_off_is_the_solid_pair_and_on_for_it_changes_no_bit() -> None:
 
 
 def test_a_web_acts_across_the_face() -> None:
-    assert not check_request(SOLID, torques=[1.0]).model.across_face
-    checked = check_request(WEBBED, torques=[1.0])
+    assert not check_request(SOLID, TableAxes(torques=[1.0])).model.across_face
+    checked = check_request(WEBBED, TableAxes(torques=[1.0]))
     assert checked.model.across_face
     assert checked.model.thin_rim
 
@@ -55,6 +56,8 @@ def test_a_web_acts_across_the_face() -> None:
 def test_a_web_off_the_middle_is_refused_in_the_plane_unless_it_is_left_out() -> None:
     tilting = GearPair(PINION, replace(WHEEL, blank=GearBlank(8e-3, 8e-3, web_offset=2e-3)))
     with pytest.raises(InputError) as refusal:
-        check_request(tilting, torques=[1.0], model="plane_strain")
+        check_request(tilting, TableAxes(torques=[1.0]), AnalysisOptions(model="plane_strain"))
     assert refusal.value.field == "wheel.blank.web_offset"
-    check_request(tilting, torques=[1.0], model="plane_strain", effects={"thin_rim": "off"})
+    check_request(
+        tilting, TableAxes(torques=[1.0]), AnalysisOptions(model="plane_strain", effects={"thin_rim": "off"})
+    )

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from analysis_requests import design_request
 
 from fe_contact import GearPair
 from fe_contact.microgeometry import (
@@ -20,6 +21,8 @@ from fe_contact.microgeometry import (
     optimize,
 )
 from fe_contact.microgeometry.evaluator import Evaluator
+from fe_contact.microgeometry.search import Cancel, never
+from fe_contact.options import Run
 
 FREE = (
     DesignVariable("pinion.profile_crowning", 0.0, 2e-5),
@@ -41,12 +44,12 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return count
 
 
-def run(pair: GearPair, compliances: Path, memory: Path | None, **further: Any) -> Optimization:
+def run(
+    pair: GearPair, compliances: Path, memory: Path | None, cancel: Cancel = never, **further: Any
+) -> Optimization:
     asked: dict[str, Any] = {"torques": [200.0], "variables": FREE, "search": SEARCH, **further}
-    return optimize(
-        pair, asked.pop("torques"), asked.pop("variables"), map_torques=[200.0], level="draft",
-        model="plane_strain", cache=compliances, memory=memory, **asked,
-    )  # fmt: skip
+    request = design_request(pair, map_torques=[200.0], level="draft", model="plane_strain", **asked)
+    return optimize(request, Run(cache=compliances), memory=memory, cancel=cancel)
 
 
 def test_a_stopped_search_goes_on_where_it_was(

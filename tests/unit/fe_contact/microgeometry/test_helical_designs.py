@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_requests import design_request
 
 from fe_contact import Gear, GearPair, analyze
 from fe_contact.microgeometry import (
@@ -23,13 +24,14 @@ from fe_contact.microgeometry import (
     optimize,
 )
 from fe_contact.microgeometry.design_problem import DesignProblem
-from fe_contact.microgeometry.design_study import Accuracies, design_study
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.objective import NO_LIMITS
 from fe_contact.microgeometry.scatter import NO_SCATTER
 from fe_contact.microgeometry.search import search_from
 from fe_contact.microgeometry.search_method import SIMPLEX_MERIT, SIMPLEX_SIZE
 from fe_contact.microgeometry.variables import modified
+from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
 
 CROWNING, SLOPE = "pinion.helix_crowning", "pinion.helix_slope"
@@ -55,11 +57,8 @@ def pair() -> GearPair:
 def evaluator(
     pair: GearPair, compliances: Path, skew: float, scatter: Scatter = NO_SCATTER, torque: float = 150.0
 ) -> Evaluator:
-    study = design_study(
-        pair, [torque], [], DESIGN, scatter, skew, POSITIONS, Accuracies(level="draft"), StageClock(),
-        lambda *_: None, compliances,
-    )  # fmt: skip
-    return study.evaluator
+    space = DesignSpace(pair, DESIGN, scatter, skew, POSITIONS, AnalysisOptions(level="draft"))
+    return design_study(space, [torque], [], StageClock(), Run(cache=compliances)).evaluator
 
 
 def searched(
@@ -156,9 +155,18 @@ def test_crowning_that_evens_the_load_grows_with_the_scatter(pair: GearPair, com
 def test_a_misaligned_pair_is_assessed_by_whole_tables(pair: GearPair, compliances: Path) -> None:
     free = [DesignVariable(SLOPE, -30e-6, 30e-6), DesignVariable("wheel.profile_crowning", 0.0, 20e-6)]
     best = optimize(
-        pair, [300.0], free, Scatter(5e-6, rule=GaussHermite(2)), misalignment=SKEW, map_torques=[300.0],
-        search=Search(NelderMead(), evaluations=40, positions=POSITIONS), level="draft", cache=compliances,
-    )  # fmt: skip
+        design_request(
+            pair,
+            [300.0],
+            free,
+            Scatter(5e-6, rule=GaussHermite(2)),
+            misalignment=SKEW,
+            map_torques=[300.0],
+            search=Search(NelderMead(), evaluations=40, positions=POSITIONS),
+            level="draft",
+        ),
+        Run(cache=compliances),
+    )
     assert best.gain.value > 0.0 and best.optimum.values[SLOPE] < 0.0  # against the misalignment
     assert (best.outcome is Outcome.IMPROVED) == (best.gain.value > best.gain.error)
     skews = SKEW + best.nodes.misalignment

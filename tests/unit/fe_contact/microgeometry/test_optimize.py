@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_requests import design_request
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
@@ -25,8 +26,9 @@ from fe_contact.microgeometry import (
     Worst,
     optimize,
 )
-from fe_contact.microgeometry.design_study import Accuracies, design_study
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.variables import modified
+from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
 from fe_contact.types import FloatArray
 
@@ -42,17 +44,18 @@ NONE = {"map_torques": [TORQUE]}
 
 @pytest.fixture(scope="module")
 def found(long_reliefs: GearPair, compliances: Path) -> Optimization:
-    return optimize(long_reliefs, [TORQUE], AMOUNTS, search=FEW, cache=compliances, **DRAFT, **NONE)
+    return optimize(
+        design_request(long_reliefs, [TORQUE], AMOUNTS, search=FEW, **DRAFT, **NONE), Run(cache=compliances)
+    )
 
 
 def test_no_design_of_a_fine_scan_is_better(
     found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
     names = [one.name for one in AMOUNTS]
-    study = design_study(
-        long_reliefs, [TORQUE], [], dict.fromkeys(names, 30e-6), Scatter(), 0.0, FEW.positions,
-        Accuracies(level="draft", model="plane_strain"), StageClock(), lambda *_: None, compliances,
-    )  # fmt: skip
+    varied = dict.fromkeys(names, 30e-6), Scatter(), 0.0, FEW.positions
+    space = DesignSpace(long_reliefs, *varied, AnalysisOptions(**DRAFT))
+    study = design_study(space, [TORQUE], [], StageClock(), Run(cache=compliances))
     scan = [
         float(study.evaluator.evaluate(dict(zip(names, values, strict=True))).peak_to_peak[0, 0])
         for values in itertools.product(np.linspace(0.0, 60e-6, 25), repeat=2)
@@ -90,7 +93,8 @@ def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(
     reliefs, deflections = [], []
     for torque in (100.0, 200.0):
         best = optimize(
-            long_reliefs, [torque], AMOUNTS, search=FEW, map_torques=[torque], cache=compliances, **DRAFT
+            design_request(long_reliefs, [torque], AMOUNTS, search=FEW, map_torques=[torque], **DRAFT),
+            Run(cache=compliances),
         ).optimum
         reliefs.append(np.mean(list(best.values.values())))
         deflections.append(best.table.mean(torque=torque).value)
@@ -102,13 +106,17 @@ def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(
 
 def test_wider_bounds_never_end_worse(found: Optimization, long_reliefs: GearPair, compliances: Path) -> None:
     narrow = [replace(one, low=5e-6, high=9e-6) for one in AMOUNTS]
-    held = optimize(long_reliefs, [TORQUE], narrow, search=QUICK, cache=compliances, **DRAFT, **NONE)
+    held = optimize(
+        design_request(long_reliefs, [TORQUE], narrow, search=QUICK, **DRAFT, **NONE), Run(cache=compliances)
+    )
     assert all(v.low <= held.optimum.values[v.name] <= v.high for v in held.variables)
     assert found.runs[0].assessed.objective < held.runs[0].assessed.objective
     assert "wider bounds of pinion.tip_relief, wheel.tip_relief" in held.not_tried[0]
     best = modified(long_reliefs, held.optimum.values)
     once = Search(NelderMead(), evaluations=1, positions=32)
-    further = optimize(best, [TORQUE], AMOUNTS, search=once, cache=compliances, **DRAFT, **NONE)
+    further = optimize(
+        design_request(best, [TORQUE], AMOUNTS, search=once, **DRAFT, **NONE), Run(cache=compliances)
+    )
     assert further.runs[0].assessed.objective == pytest.approx(
         held.runs[0].assessed.objective, rel=1e-9, abs=0.0
     )
@@ -119,13 +127,8 @@ def test_equal_seeds_give_equal_results(
 ) -> None:
     again, other = (
         optimize(
-            long_reliefs,
-            [TORQUE],
-            AMOUNTS,
-            search=replace(FEW, seed=seed),
-            cache=compliances,
-            **DRAFT,
-            **NONE,
+            design_request(long_reliefs, [TORQUE], AMOUNTS, search=replace(FEW, seed=seed), **DRAFT, **NONE),
+            Run(cache=compliances),
         )
         for seed in (FEW.seed, 7)
     )
@@ -137,7 +140,9 @@ def test_equal_seeds_give_equal_results(
 
 def test_the_best_of_all_starts_is_taken(pair: GearPair, compliances: Path) -> None:
     search = Search(NelderMead(), starts=3, evaluations=60, positions=32)
-    best = optimize(pair, [TORQUE], FREE, search=search, cache=compliances, **DRAFT, **NONE)
+    best = optimize(
+        design_request(pair, [TORQUE], FREE, search=search, **DRAFT, **NONE), Run(cache=compliances)
+    )
     reached = [run.assessed.objective for run in best.runs]
     assert len(set(reached)) > 1
     assert best.best_run == int(np.argmin(reached))
@@ -158,11 +163,13 @@ def test_tip_edges_can_be_kept_from_contact(
     limits = Limits(edge_load_share=0.0)
     small = [replace(one, high=12e-6) for one in AMOUNTS]
     held = optimize(
-        long_reliefs, [TORQUE], small, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
+        design_request(long_reliefs, [TORQUE], small, search=QUICK, limits=limits, **DRAFT, **NONE),
+        Run(cache=compliances),
     )
     assert held.start.violation == pytest.approx(held.start.figures.edge_load_share.max(), rel=1e-9, abs=0.0)
     wide = optimize(
-        long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
+        design_request(long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, **DRAFT, **NONE),
+        Run(cache=compliances),
     )
     assert held.outcome is Outcome.LIMITS_EXCEEDED
     assert wide.outcome is Outcome.IMPROVED and wide.optimum.violation < 0.005
@@ -172,7 +179,8 @@ def test_a_pressure_limit_is_kept(found: Optimization, long_reliefs: GearPair, c
     reached = float(found.optimum.figures.pressure.max())
     limits = Limits(max_pressure=0.9 * reached)
     held = optimize(
-        long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
+        design_request(long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, **DRAFT, **NONE),
+        Run(cache=compliances),
     )
     assert held.optimum.figures.pressure.max() < reached
     assert held.runs[0].assessed.violation < found.optimum.figures.violation(limits)
@@ -181,7 +189,9 @@ def test_a_pressure_limit_is_kept(found: Optimization, long_reliefs: GearPair, c
 
 def test_a_gain_smaller_than_the_errors_is_not_claimed(pair: GearPair, compliances: Path) -> None:
     tiny = [DesignVariable("pinion.profile_slope", -1e-10, 1e-10)]
-    best = optimize(pair, [TORQUE], tiny, search=QUICK, cache=compliances, **DRAFT, **NONE)
+    best = optimize(
+        design_request(pair, [TORQUE], tiny, search=QUICK, **DRAFT, **NONE), Run(cache=compliances)
+    )
     assert best.outcome in (Outcome.WITHIN_ERROR, Outcome.NOT_IMPROVED)
     assert abs(best.gain.value) <= best.gain.error
     assert "what is varied makes no difference" in best.reason
@@ -192,7 +202,7 @@ def test_bounds_that_leave_the_start_out_are_told(long_reliefs: GearPair, compli
     good = {one.name: 8e-6 for one in AMOUNTS}
     poor = [replace(one, low=30e-6, high=31e-6) for one in AMOUNTS]
     asked: dict[str, Any] = {"cache": compliances, **DRAFT, **NONE}
-    best = optimize(modified(long_reliefs, good), [TORQUE], poor, search=QUICK, **asked)
+    best = optimize(design_request(modified(long_reliefs, good), [TORQUE], poor, search=QUICK, **asked))
     assert best.start.values == good
     assert all(30e-6 <= value <= 31e-6 for value in best.optimum.values.values())
     assert best.outcome is Outcome.NOT_IMPROVED and best.gain.value < 0.0
@@ -211,7 +221,9 @@ def test_an_interrupted_search_gives_the_best_so_far_in_full(
         return asked[0] > 61  # once before the start
 
     best = optimize(
-        long_reliefs, [TORQUE], AMOUNTS, search=FEW, cancel=cancel, cache=compliances, **DRAFT, **NONE
+        design_request(long_reliefs, [TORQUE], AMOUNTS, search=FEW, **DRAFT, **NONE),
+        Run(cache=compliances),
+        cancel=cancel,
     )
     assert "interrupted after 60 of at most 250 designs" in best.reason
     assert best.evaluations == 60 and not best.runs[0].converged
@@ -226,9 +238,11 @@ def test_few_positions_explore_as_well_as_many(
 ) -> None:
     assert found.runs[0].explored > 0
     full = optimize(
-        long_reliefs, [TORQUE], AMOUNTS, search=replace(FEW, exploration=FEW.positions), cache=compliances,
-        **DRAFT, **NONE,
-    )  # fmt: skip
+        design_request(
+            long_reliefs, [TORQUE], AMOUNTS, search=replace(FEW, exploration=FEW.positions), **DRAFT, **NONE
+        ),
+        Run(cache=compliances),
+    )
     reached = found.runs[0].assessed.objective
     assert reached == pytest.approx(full.runs[0].assessed.objective, rel=0.01, abs=0.0)
 
@@ -246,7 +260,10 @@ def test_objectives_differ_over_loads(long_reliefs: GearPair, compliances: Path)
 
     def best(objective: Any) -> FloatArray:
         both: dict[str, Any] = {"objective": objective, "map_torques": torques}
-        result = optimize(long_reliefs, torques, AMOUNTS, search=QUICK, cache=compliances, **both, **DRAFT)
+        result = optimize(
+            design_request(long_reliefs, torques, AMOUNTS, search=QUICK, **both, **DRAFT),
+            Run(cache=compliances),
+        )
         return result.optimum.harris_map.expected
 
     light, heavy, worst = best(WeightedMean((1.0, 0.0))), best(WeightedMean((0.0, 1.0))), best(Worst())
@@ -256,7 +273,7 @@ def test_objectives_differ_over_loads(long_reliefs: GearPair, compliances: Path)
 
 def test_the_map_runs_over_all_torques(pair: GearPair, compliances: Path) -> None:
     once = Search(NelderMead(), evaluations=2, positions=16)
-    best = optimize(pair, [100.0, 200.0], FREE, search=once, cache=compliances, **DRAFT)
+    best = optimize(design_request(pair, [100.0, 200.0], FREE, search=once, **DRAFT), Run(cache=compliances))
     harris = best.optimum.harris_map
     assert {100.0, 200.0} <= set(harris.torque) and harris.torque[-1] == 250.0 and harris.torque.size > 8
     assert harris.ste.shape == (harris.position.size, harris.torque.size)
@@ -287,7 +304,7 @@ def test_what_cannot_be_optimized_is_refused_by_name(
 ) -> None:
     asked: dict[str, Any] = {"torques": [TORQUE], "variables": FREE, **DRAFT, **further}
     with pytest.raises(InputError) as caught:
-        optimize(pair, asked.pop("torques"), asked.pop("variables"), asked.pop("scatter", Scatter()), **asked)
+        optimize(design_request(pair, **asked))
     assert caught.value.field == field, caught.value
 
 

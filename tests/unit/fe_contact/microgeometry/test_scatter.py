@@ -11,9 +11,10 @@ import pytest
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
 from fe_contact.microgeometry import GaussHermite, Scatter, SobolSample
-from fe_contact.microgeometry.design_study import Accuracies, design_study
+from fe_contact.microgeometry.design_study import DesignSpace, design_study
 from fe_contact.microgeometry.evaluator import Evaluator
 from fe_contact.microgeometry.variables import modified
+from fe_contact.options import AnalysisOptions, Run
 from fe_contact.stage_clock import StageClock
 
 SLOPE, CROWNING = "pinion.profile_slope", "wheel.profile_crowning"
@@ -22,21 +23,9 @@ SLOPE, CROWNING = "pinion.profile_slope", "wheel.profile_crowning"
 def evaluator(
     pair: GearPair, scatter: Scatter, compliances: Path, model: str, varied: tuple[str, ...] = ()
 ) -> Evaluator:
-    accuracy = Accuracies(level="draft", model=model)
-    study = design_study(
-        pair,
-        [200.0],
-        [],
-        dict.fromkeys(varied, 1e-6),
-        scatter,
-        0.0,
-        16,
-        accuracy,
-        StageClock(),
-        lambda *_: None,
-        compliances,
-    )
-    return study.evaluator
+    options = AnalysisOptions(level="draft", model=model)
+    space = DesignSpace(pair, dict.fromkeys(varied, 1e-6), scatter, 0.0, 16, options)
+    return design_study(space, [200.0], [], StageClock(), Run(cache=compliances)).evaluator
 
 
 @pytest.mark.parametrize("points", [1, 2, 5])

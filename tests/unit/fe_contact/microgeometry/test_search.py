@@ -20,6 +20,7 @@ from fe_contact.microgeometry import (
 from fe_contact.microgeometry.design_problem import Assessed, DesignProblem
 from fe_contact.microgeometry.search import EXPLORED, search_from
 from fe_contact.microgeometry.search_starts import search_all, search_one
+from fe_contact.options import Run
 from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess
 
@@ -154,7 +155,9 @@ class Failing:
 
 def test_starts_that_have_ended_survive_an_interruption() -> None:
     search = Search(NelderMead(), starts=4, evaluations=60)
-    every = search_all(cast(DesignProblem, Bowl()), search, tuple(START), InProcess(), _ignore, lambda: False)
+    every = search_all(
+        cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=InProcess()), lambda: False
+    )
     assert len(every) == 4
     asked = [0]
 
@@ -164,17 +167,21 @@ def test_starts_that_have_ended_survive_an_interruption() -> None:
 
     for workers in (Failing(9), Failing(2)):  # cancelled between two, and by a dead worker
         asked[0] = 0
-        kept = search_all(cast(DesignProblem, Bowl()), search, tuple(START), workers, _ignore, once_one_ended)
+        kept = search_all(
+            cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=workers), once_one_ended
+        )
         assert len(kept) == 2
         for one, whole in zip(kept, every, strict=False):
             assert one.assessed == whole.assessed
     with pytest.raises(RuntimeError):
-        search_all(cast(DesignProblem, Bowl()), search, tuple(START), Failing(2), _ignore, lambda: False)
+        search_all(cast(DesignProblem, Bowl()), search, tuple(START), Run(workers=Failing(2)), lambda: False)
 
 
 @pytest.mark.parametrize("workers", [InProcess(), Failing(0)])
 def test_cancelled_before_the_first_design_the_start_is_left(workers: Any) -> None:
-    (run,) = search_all(cast(DesignProblem, Bowl()), Search(), tuple(START), workers, _ignore, lambda: True)
+    (run,) = search_all(
+        cast(DesignProblem, Bowl()), Search(), tuple(START), Run(workers=workers), lambda: True
+    )
     np.testing.assert_array_equal(run.place, START)
     assert run.ended is Ended.CANCELLED and run.evaluations == 1
 

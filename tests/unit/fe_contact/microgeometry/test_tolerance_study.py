@@ -11,9 +11,10 @@ from scipy.special import ndtr
 
 from fe_contact import GearPair, analyze
 from fe_contact.errors import InputError
-from fe_contact.microgeometry import Tolerances, ToleranceStudy, scatter
+from fe_contact.microgeometry import Sampling, Tolerances, ToleranceStudy, scatter
 from fe_contact.microgeometry.spread import quantile, rank_correlation
 from fe_contact.microgeometry.variables import modified
+from fe_contact.options import AnalysisOptions, Run
 
 TORQUES = [100.0, 200.0]
 DRAFT: dict[str, Any] = {"level": "draft", "model": "plane_strain"}
@@ -22,7 +23,14 @@ SLOPES = Tolerances(0.0, {"pinion.profile_slope": 10e-6, "wheel.profile_slope": 
 
 @pytest.fixture(scope="module")
 def found(pair: GearPair, compliances: Path) -> ToleranceStudy:
-    return scatter(pair, TORQUES, SLOPES, samples=120, seed=3, positions=16, cache=compliances, **DRAFT)
+    return scatter(
+        pair,
+        TORQUES,
+        SLOPES,
+        Sampling(samples=120, seed=3, positions=16),
+        AnalysisOptions(**DRAFT),
+        Run(cache=compliances),
+    )
 
 
 def test_every_sample_is_the_pair_as_it_is_made(
@@ -38,9 +46,23 @@ def test_every_sample_is_the_pair_as_it_is_made(
 def test_a_larger_sample_begins_with_the_smaller_one(
     found: ToleranceStudy, pair: GearPair, compliances: Path
 ) -> None:
-    more = scatter(pair, TORQUES, SLOPES, samples=130, seed=3, positions=16, cache=compliances, **DRAFT)
+    more = scatter(
+        pair,
+        TORQUES,
+        SLOPES,
+        Sampling(samples=130, seed=3, positions=16),
+        AnalysisOptions(**DRAFT),
+        Run(cache=compliances),
+    )
     np.testing.assert_array_equal(more.peak_to_peak[:120], found.peak_to_peak)
-    other = scatter(pair, TORQUES, SLOPES, samples=30, seed=4, positions=16, cache=compliances, **DRAFT)
+    other = scatter(
+        pair,
+        TORQUES,
+        SLOPES,
+        Sampling(samples=30, seed=4, positions=16),
+        AnalysisOptions(**DRAFT),
+        Run(cache=compliances),
+    )
     assert not np.any(other.deviation == found.deviation[:30])
 
 
@@ -53,8 +75,8 @@ def test_the_first_order_answer_is_off_by_the_square_of_the_tolerances(
     found: ToleranceStudy, pair: GearPair, compliances: Path
 ) -> None:
     narrow = Tolerances(0.0, {name: 0.1 * width for name, width in SLOPES.modification.items()})
-    asked: dict[str, Any] = {"samples": 120, "seed": 3, "positions": 16, "cache": compliances, **DRAFT}
-    tenth = scatter(pair, TORQUES, narrow, **asked)
+    sampling = Sampling(samples=120, seed=3, positions=16)
+    tenth = scatter(pair, TORQUES, narrow, sampling, AnalysisOptions(**DRAFT), Run(cache=compliances))
     one, other = (np.abs(each.first_order - each.peak_to_peak).mean(axis=0) for each in (found, tenth))
     assert np.all(other < 0.05 * one)
     assert np.all(one < 0.5 * found.peak_to_peak.std(axis=0))  # slopes of 10 um are not small
@@ -112,9 +134,10 @@ def test_parts_lie_within_their_tolerances(distribution: Any) -> None:
     ],
 )
 def test_what_cannot_be_drawn_is_refused_by_name(pair: GearPair, given: dict[str, Any], field: str) -> None:
-    asked = {"tolerances": SLOPES, **DRAFT, **given}
+    asked = {"tolerances": SLOPES, **given}
     with pytest.raises(InputError) as caught:
-        scatter(pair, TORQUES, asked.pop("tolerances"), **asked)
+        options = AnalysisOptions(**DRAFT, effects=asked.pop("effects", {}))
+        scatter(pair, TORQUES, asked.pop("tolerances"), Sampling(**asked), options)
     assert caught.value.field == field, caught.value
 
 

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, Material, SteDatabase, analyze
 from fe_contact.analysis import check_request
@@ -14,6 +15,7 @@ from fe_contact.analysis.model_choice import TRIED, decide
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.geometry import InternalGearPair
 from fe_contact.geometry.ring_gear import RingGear
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning.discretization import SLICE_ORDER
 from fe_contact.planning.plan import CLOSEST, FACE_NODES, PLANE_NODES, POSITION_SHARE
 
@@ -49,7 +51,7 @@ def stated(table: SteDatabase) -> tuple[float, float, float]:
 )
 def test_a_draft_is_predicted_within_a_factor_3(gears, tmp_path):
     asked = {"torques": [15.0, 40.0], "level": "draft"}
-    error = plan_run(gears, **asked).chosen.error
+    error = plan_run(gears, *table_request(**asked)).chosen.error
     predicted = error.total, error.mean, error.peak_to_peak
     for expected, measured in zip(predicted, stated(analyze(gears, **asked, cache=tmp_path)), strict=True):
         assert 1.0 / FACTOR < expected / measured < FACTOR
@@ -57,7 +59,8 @@ def test_a_draft_is_predicted_within_a_factor_3(gears, tmp_path):
 
 def test_errors_in_um_grow_with_the_load_where_those_in_parts_hardly_do():
     low, high = (
-        plan_run(pair(0.15), torques=[torque], level="draft").chosen.error for torque in (20.0, 80.0)
+        plan_run(pair(0.15), TableAxes(torques=[torque]), AnalysisOptions(level="draft")).chosen.error
+        for torque in (20.0, 80.0)
     )
     for name in ("mean", "peak_to_peak"):
         assert 2.0 < getattr(high, name) / getattr(low, name) < 6.0  # large displacements by the square
@@ -65,18 +68,22 @@ def test_errors_in_um_grow_with_the_load_where_those_in_parts_hardly_do():
 
 
 def test_finer_meshes_and_more_slices_err_less_and_by_their_order():
-    levels = plan_run(pair(0.3), torques=[40.0], level="fine").levels
+    levels = plan_run(pair(0.3), TableAxes(torques=[40.0]), AnalysisOptions(level="fine")).levels
     for name in ("mean", "peak_to_peak"):
         errors = [getattr(entry.error, name) for entry in levels]
         assert errors == sorted(errors, reverse=True)
-    fine = decide(check_request(pair(0.3), torques=[40.0], level="fine"))
+    fine = decide(check_request(pair(0.3), TableAxes(torques=[40.0]), AnalysisOptions(level="fine")))
     few, many = (fine.refined("fine", n, fine.plan.nodes, "").mesh.option.error for n in (15, 23))
     assert few.slices / many.slices == pytest.approx((23 / 15) ** SLICE_ORDER)
 
 
 def test_plane_strain_leaves_out_as_much_whoever_chose_it():
-    named = plan_run(pair(), torques=[40.0], level="draft", model="plane_strain").chosen.error
-    taken = decide(check_request(pair(), torques=[40.0], tolerance=0.06)).mesh.option.error
+    named = plan_run(
+        pair(), TableAxes(torques=[40.0]), AnalysisOptions(level="draft", model="plane_strain")
+    ).chosen.error
+    taken = decide(
+        check_request(pair(), TableAxes(torques=[40.0]), AnalysisOptions(tolerance=AllowedError(0.06)))
+    ).mesh.option.error
     assert named.model == pytest.approx(taken.model, rel=1e-9)
     assert taken.model > 0.02
 
@@ -84,7 +91,7 @@ def test_plane_strain_leaves_out_as_much_whoever_chose_it():
 def test_what_slices_cannot_tell_has_no_size():
     ring = RingGear(60, 2e-3, 12e-3, rim_diameter=0.144, tip_diameter=0.117)
     gears = InternalGearPair(Gear(20, 2e-3, 12e-3, 20e-3), ring, 40e-3)
-    error = plan_run(gears, torques=[20.0], level="draft").chosen.error
+    error = plan_run(gears, TableAxes(torques=[20.0]), AnalysisOptions(level="draft")).chosen.error
     assert (error.mean, error.peak_to_peak) == (None, None)
     assert 0.0 < error.total < 0.02
     assert error.to_json()["mean_m"] is None
@@ -93,7 +100,9 @@ def test_what_slices_cannot_tell_has_no_size():
 def test_positions_follow_a_tolerance_that_is_smaller_than_usual():
     def search(tolerance: float, helix: float):
         bound = {} if helix else {"effects": {"finite_width": "on"}}
-        return decide(check_request(pair(helix), torques=[40.0], tolerance=tolerance, **bound)).plan.nodes
+        return decide(
+            check_request(pair(helix), *table_request(torques=[40.0], tolerance=tolerance, **bound))
+        ).plan.nodes
 
     for helix, usual in ((0.0, PLANE_NODES), (0.3, FACE_NODES)):
         assert search(0.05, helix).tolerance == usual.tolerance
@@ -115,7 +124,9 @@ def test_a_stretched_tolerance_allows_more_of_the_same_scale():
 def test_what_costs_much_less_is_tried_first():
     """A run measures its errors: the corrected plane may do where only three dimensions are expected to."""
     narrow = pair(width=2e-3, material=Material(youngs_modulus=206e9, poissons_ratio=0.45))
-    asked = check_request(narrow, normal_forces=[100.0], tolerance=AllowedError(0.0045, 0.0))
+    asked = check_request(
+        narrow, TableAxes(normal_forces=[100.0]), AnalysisOptions(tolerance=AllowedError(0.0045, 0.0))
+    )
     promised, tried = decide(asked), decide(asked, tried=True)
     assert promised.checked.model.across_face
     assert not tried.checked.model.across_face
@@ -125,5 +136,5 @@ def test_what_costs_much_less_is_tried_first():
     assert any(error <= most and work <= share for most, share in TRIED)
     assert tried.mesh.met is promised.mesh.met
     assert "tried first" in tried.mesh.reason
-    loose = check_request(pair(), torques=[40.0], tolerance=0.01)
+    loose = check_request(pair(), TableAxes(torques=[40.0]), AnalysisOptions(tolerance=AllowedError(0.01)))
     assert decide(loose, tried=True).mesh == decide(loose).mesh

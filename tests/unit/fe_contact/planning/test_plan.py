@@ -10,7 +10,8 @@ from fe_contact import AllowedError, Gear, GearPair
 from fe_contact.contact import ContactModel
 from fe_contact.errors import InputError
 from fe_contact.hertz import half_width, relative_radius
-from fe_contact.planning import Accuracy, FaceDiscretization, Plan, make_plan
+from fe_contact.options import AnalysisOptions
+from fe_contact.planning import FaceDiscretization, Plan, make_plan
 from fe_contact.stage_clock import StageClock
 
 
@@ -21,7 +22,7 @@ def pair():
 
 
 def plan(pair, model: ContactModel | None = None, **accuracy: object) -> Plan:
-    return make_plan(pair, np.array([1e3]), Accuracy(**accuracy), model or ContactModel())
+    return make_plan(pair, np.array([1e3]), AnalysisOptions(**accuracy), model or ContactModel())
 
 
 def test_levels_are_nested_refinements(pair):
@@ -39,14 +40,14 @@ def test_the_coarse_mesh_is_half_as_fine(pair):
 def test_one_overload_does_not_widen_the_patches_of_all_loads(pair):
     """A patch as wide as the tooth would spoil the curves of the usual loads (docs/theory/contact.md)."""
     usual, overload = pair.normal_force(100.0), pair.normal_force(1e5)
-    plan = make_plan(pair, np.array([usual, overload]), Accuracy(), ContactModel())
+    plan = make_plan(pair, np.array([usual, overload]), AnalysisOptions(), ContactModel())
     assert plan.patch.half_width == pytest.approx(0.375 * pair.pinion.normal_module, rel=1e-12)
 
 
 def test_patches_are_wider_than_the_contact_under_the_largest_load(pair):
     loads = np.array([1e3, 1e5])
     strip = half_width(loads[-1] / pair.face_width, relative_radius(*pair.roll_lengths(0.0)), 115e9)
-    assert make_plan(pair, loads, Accuracy(), ContactModel()).patch.half_width >= strip / 0.66
+    assert make_plan(pair, loads, AnalysisOptions(), ContactModel()).patch.half_width >= strip / 0.66
 
 
 def test_three_dimensions_have_fewer_slices_than_half_layers(pair):
@@ -71,7 +72,7 @@ def test_slices_are_no_narrower_than_layers_of_the_wider_gear_allow(pair):
 @pytest.mark.parametrize("wish", [{"tolerance": AllowedError(0.01)}, {"time_budget": 5.0}])
 def test_a_level_is_a_mesh_and_takes_no_other_wish(wish):
     with pytest.raises(InputError, match="level"):
-        Accuracy(level="draft", **wish)
+        AnalysisOptions(level="draft", **wish)
 
 
 def test_the_clock_adds_repeated_stages():

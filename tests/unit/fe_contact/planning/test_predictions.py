@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from analysis_requests import table_request
 
 from fe_contact import AllowedError, FlankModification, Gear, GearPair, analyze
 from fe_contact.analysis import check_request
@@ -13,6 +14,7 @@ from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.run_plan import plan_run
 from fe_contact.compliance.cache import kept_size
 from fe_contact.errors import InputError
+from fe_contact.options import AnalysisOptions, TableAxes
 from fe_contact.planning import cost_model, host_speed, predict_run
 from fe_contact.planning.contact_cost import contact_bytes, contact_seconds, expected_positions
 from fe_contact.planning.error_model import ExpectedError
@@ -152,13 +154,18 @@ def test_a_plan_computes_nothing(monkeypatch):
         "fe_contact.compliance.cyclic_compliance.compute_flank_compliance_3d",
     ):
         monkeypatch.setattr(place, lambda *_, **__: pytest.fail("computed"))
-    for made in (plan_run(pair(), normal_forces=[500.0]), plan_run(pair(0.3), normal_forces=[500.0])):
+    for made in (
+        plan_run(pair(), TableAxes(normal_forces=[500.0])),
+        plan_run(pair(0.3), TableAxes(normal_forces=[500.0])),
+    ):
         assert made.chosen.cost.cpu_seconds > 0.0
         assert made.plan.level == made.choice.level == "standard"
 
 
 def test_finer_meshes_cost_more_and_err_less():
-    for levels in (plan_run(p, normal_forces=[500.0]).levels for p in (pair(), pair(0.3), pair(teeth=60))):
+    for levels in (
+        plan_run(p, TableAxes(normal_forces=[500.0])).levels for p in (pair(), pair(0.3), pair(teeth=60))
+    ):
         seconds = [entry.cost.cpu_seconds for entry in levels]
         errors = [entry.error.total for entry in levels]
         assert seconds == sorted(seconds)
@@ -167,7 +174,9 @@ def test_finer_meshes_cost_more_and_err_less():
 
 def test_more_loads_positions_and_alignments_cost_more():
     def contact(**more):
-        made = plan_run(pair(), **({"normal_forces": [500.0], "positions": 64, "model": "3d"} | more))
+        made = plan_run(
+            pair(), *table_request(**{"normal_forces": [500.0], "positions": 64, "model": "3d"} | more)
+        )
         return made.chosen.cost.stages["contact"]
 
     plain = contact()
@@ -180,7 +189,7 @@ def test_more_loads_positions_and_alignments_cost_more():
 def test_slices_change_no_positions_but_their_cost():
     """Contact is at points of the lines, and steps where slices come into contact are gone."""
     wide = pair(helix=0.4, width=40e-3)
-    asked = check_request(wide, normal_forces=[500.0], level="fine")
+    asked = check_request(wide, TableAxes(normal_forces=[500.0]), AnalysisOptions(level="fine"))
     few, many = (decide(asked).in_slices(count).plan for count in (15, 31))
     assert expected_positions(few) == expected_positions(many)
     costs = [contact_seconds(wide, plan, asked.model, (1, 1), with_errors=False)[0] for plan in (few, many)]
@@ -190,24 +199,24 @@ def test_slices_change_no_positions_but_their_cost():
 def test_tolerance_and_time_that_cannot_both_be_had_are_said():
     wish = {"normal_forces": [500.0], "tolerance": 0.005, "model": "3d"}
     level = {"normal_forces": [500.0], "level": "fine", "model": "3d"}
-    assert plan_run(pair(), **wish, time_budget=1e4).conflict == ""
-    tight = plan_run(pair(), **wish, time_budget=1e-3)
+    assert plan_run(pair(), *table_request(**wish), time_budget=1e4).conflict == ""
+    tight = plan_run(pair(), *table_request(**wish), time_budget=1e-3)
     assert "cannot be had" in tight.conflict
     assert "even the quickest mesh" in tight.conflict
     needed = [entry.cost.cpu_seconds for entry in tight.levels]
-    between = plan_run(pair(), **wish, time_budget=0.5 * (needed[0] + needed[1]))
+    between = plan_run(pair(), *table_request(**wish), time_budget=0.5 * (needed[0] + needed[1]))
     assert (between.choice.level, between.choice.met) == ("draft", False)
     assert f"predicted {needed[0]:.2g} CPU s" in between.conflict
-    assert "cannot be had: it needs" in plan_run(pair(), **level, time_budget=1e-3).conflict
-    assert plan_run(pair(), **level, time_budget=1e4).conflict == ""
+    assert "cannot be had: it needs" in plan_run(pair(), *table_request(**level), time_budget=1e-3).conflict
+    assert plan_run(pair(), *table_request(**level), time_budget=1e4).conflict == ""
     with pytest.raises(InputError, match="time_budget"):
-        plan_run(pair(), **wish, time_budget=-1.0)
+        plan_run(pair(), *table_request(**wish), time_budget=-1.0)
 
 
 def test_a_run_keeps_what_was_predicted_beside_what_happened(tmp_path):
     """Also in the log; compliances that are in the cache are predicted to cost nothing."""
     asked = {"normal_forces": [500.0], "model": "plane_strain", "level": "draft", "positions": 8}
-    planned = plan_run(pair(), **asked, cache=tmp_path)
+    planned = plan_run(pair(), *table_request(**asked), cache=tmp_path)
     first = analyze(pair(), **asked, cache=tmp_path).metadata.receipt
     assert first["prediction"]["stages"] == pytest.approx(planned.chosen.cost.stages)
     assert first["prediction"]["error"]["total"] > 0.0
@@ -224,12 +233,16 @@ def test_a_plan_tells_the_error_that_its_mesh_is_chosen_by(relief):
     helical = pair(helix=0.3)
     relieved = FlankModification(tip_relief=relief, tip_relief_length=1e-3 if relief else 0.0)
     gear = replace(helical.pinion, modification=relieved)
-    found = plan_run(replace(helical, pinion=gear), torques=[20.0, 60.0], tolerance=0.05)
+    found = plan_run(
+        replace(helical, pinion=gear),
+        TableAxes(torques=[20.0, 60.0]),
+        AnalysisOptions(tolerance=AllowedError(0.05)),
+    )
     assert found.chosen.error == found.choice.option.error
 
 
 def predicted_memory(gears, cache=None, **options):
-    checked = check_request(gears, normal_forces=[1000.0], **({"level": "draft"} | options))
+    checked = check_request(gears, *table_request(normal_forces=[1000.0], **{"level": "draft"} | options))
     plan = decide(checked, cache).plan
     return predict_run(gears, plan, checked.model, checked.request.alignments, cache).memory_bytes
 
@@ -240,7 +253,7 @@ def test_memory_grows_with_meshes_positions_and_slices():
         sizes = [predicted_memory(gears, level=level) for level in LEVELS]
         assert cost_model.PROCESS_BYTES < sizes[0] < sizes[1] < sizes[2]
     assert predicted_memory(face, positions=4096) > 1.3 * predicted_memory(face, positions=64)
-    plan = decide(check_request(face, normal_forces=[1000.0], level="draft")).plan
+    plan = decide(check_request(face, TableAxes(normal_forces=[1000.0]), AnalysisOptions(level="draft"))).plan
     finer = replace(plan, discretization=replace(plan.discretization, slices=61))
     ratio = 61 / plan.discretization.slices
     assert ratio < contact_bytes(face, finer) / contact_bytes(face, plan) < ratio**2
@@ -252,7 +265,9 @@ def test_kept_compliances_take_the_memory_of_their_files(tmp_path, monkeypatch):
     fresh = predicted_memory(gears, tmp_path)
     monkeypatch.setattr(cost_model, "solid_kept", lambda *_: 3_000_000)
     kept = predicted_memory(gears, tmp_path)
-    plan = decide(check_request(gears, normal_forces=[1000.0], level="draft")).plan
+    plan = decide(
+        check_request(gears, TableAxes(normal_forces=[1000.0]), AnalysisOptions(level="draft"))
+    ).plan
     alike = 2 * 3_000_000  # gears alike but for the hand are read once, the mesh and the coarse one
     assert kept == int(cost_model.PROCESS_BYTES + contact_bytes(gears, plan) + alike)
     assert kept < fresh

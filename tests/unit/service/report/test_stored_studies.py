@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_requests import design_request, table_request
 from geared_scenes import gear_pair_scene
 
 from dynamics.ablation import ablate as ablate_scene
@@ -19,12 +20,14 @@ from fe_contact.geometry import FlankModification, Gear, GearPair
 from fe_contact.microgeometry import (
     DesignVariable,
     GaussHermite,
+    Sampling,
     Scatter,
     Search,
     iso1328_tolerances,
     optimize,
     scatter,
 )
+from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
 from service.convert.ablation import ablation_json
 from service.convert.optimisation import optimisation_json
@@ -55,7 +58,12 @@ def compliance(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
     """Kind, JSON and fresh page of one study of every sort."""
     only = ["tooth_coupling", "profile_modification", "misalignment"]
-    of_case = ablate(PAIR, torques=[20.0, 100.0], positions=16, only=only, cache=compliance, **QUICK)
+    of_case = ablate(
+        PAIR,
+        *table_request(torques=[20.0, 100.0], positions=16, **QUICK),
+        run=Run(cache=compliance),
+        only=only,
+    )
     of_scene = ablate_scene(gear_pair_scene(duration=0.03), only=["lateral"])
     variables = [
         DesignVariable("pinion.tip_relief", 0.0, 40e-6),
@@ -64,18 +72,22 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
     slopes = Scatter(modification={"wheel.profile_slope": 2e-6}, rule=GaussHermite(2))
     found, exact = (
         optimize(
-            PAIR,
-            [50.0, 100.0],
-            variables,
-            scatter,
-            search=Search(evaluations=20, positions=16),
-            cache=compliance,
-            **QUICK,
+            design_request(
+                PAIR, [50.0, 100.0], variables, scatter, search=Search(evaluations=20, positions=16), **QUICK
+            ),
+            Run(cache=compliance),
         )
         for scatter in (slopes, Scatter())
     )
     tolerances = iso1328_tolerances(PAIR, 8, across_face=False)
-    drawn = scatter(PAIR, [50.0, 100.0], tolerances, samples=30, positions=16, cache=compliance, **QUICK)
+    drawn = scatter(
+        PAIR,
+        [50.0, 100.0],
+        tolerances,
+        Sampling(samples=30, positions=16),
+        AnalysisOptions(**QUICK),
+        Run(cache=compliance),
+    )
     told = (("rigid", "model", 0.2, 0.1), ("coarse", "steps", 0.01, 1.0), ("fine", "steps", 1e-4, 9.0))
     rungs = tuple(
         SceneFidelity(name, name, family, error, 2.0 * error, float("nan"), seconds)
@@ -167,7 +179,12 @@ def test_a_file_that_holds_no_study_is_refused(text: str, told: str, tmp_path: P
 def test_an_ablation_of_nothing_has_its_reasons_and_no_plot(
     studies: dict[str, tuple[str, dict[str, Any], Page]], compliance: Path
 ) -> None:
-    none = ablate(PAIR, torques=[20.0], positions=16, only=["misalignment"], cache=compliance, **QUICK)
+    none = ablate(
+        PAIR,
+        *table_request(torques=[20.0], positions=16, **QUICK),
+        run=Run(cache=compliance),
+        only=["misalignment"],
+    )
     (section,) = ablation_page(none).sections
     assert not section.figures
     assert section.tables[-1].rows == (("misalignment", "the gears are aligned"),)

@@ -1,0 +1,8 @@
+"""What a computation is requested, and how it is carried out; light: neither mesher nor finite elements."""
+
+from fe_contact.options.analysis_options import LEVELS, AnalysisOptions
+from fe_contact.options.operating_point import OperatingPoint
+from fe_contact.options.run import Run
+from fe_contact.options.table_axes import Levels, TableAxes
+
+__all__ = ["LEVELS", "AnalysisOptions", "Levels", "OperatingPoint", "Run", "TableAxes"]

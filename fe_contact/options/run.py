@@ -1,0 +1,34 @@
+"""How a computation is carried out: who works, what is kept, who is told."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from fe_contact.progress import Progress, silent
+from fe_contact.workers import InProcess, Workers
+
+
+@dataclass(frozen=True)
+class Run:
+    """How a computation is carried out. Results are the same to the last bit whatever it says.
+
+    Attributes
+    ----------
+    workers : Workers
+        Who condenses the gears, solves the contact, searches and samples: this process, an executor or a
+        cluster. Receipts count the CPU time of all of them.
+    cache : Path, optional
+        Directory of flank compliances: with it a gear is condensed once.
+    progress : callable
+        Called as progress(stage, fraction); what consists of several tables begins anew with each.
+    """
+
+    workers: Workers = InProcess()  # noqa: RUF009 (frozen)
+    cache: Path | None = None
+    progress: Progress = silent
+
+    @property
+    def silent(self) -> Run:
+        """The same without reports of progress."""
+        return replace(self, progress=silent)

@@ -1,0 +1,54 @@
+"""What the documentation shows in Python can be called so."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import re
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted(
+    page
+    for page in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))
+    if re.search(r"```python\n.*?^from (fe_contact|dynamics|service)", page.read_text("utf-8"), re.M | re.S)
+)
+
+
+def examples(page: Path) -> Iterator[ast.Module]:
+    """Return the blocks in Python that import something; sketches of signatures do not."""
+    for block in re.findall(r"```python\n(.*?)```", page.read_text("utf-8"), re.DOTALL):
+        if "import " in block:
+            yield ast.parse(block)
+
+
+def imported(example: ast.Module) -> dict[str, Any]:
+    """Import what an example imports of the project."""
+    return {
+        alias.asname or alias.name: getattr(import_module(node.module), alias.name)
+        for node in ast.walk(example)
+        if isinstance(node, ast.ImportFrom) and node.module
+        if node.module.partition(".")[0] in ("fe_contact", "dynamics", "service")
+        for alias in node.names
+    }
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_call_fits_its_signature(page: Path) -> None:
+    for example in examples(page):
+        names = imported(example)
+        for call in (node for node in ast.walk(example) if isinstance(node, ast.Call)):
+            if isinstance(call.func, ast.Name) and call.func.id in names:
+                given = {one.arg: None for one in call.keywords if one.arg}
+                inspect.signature(names[call.func.id]).bind(*call.args, **given)
+
+
+def test_pages_with_examples_are_found() -> None:
+    assert {"README.md", "flank-results.md", "optimisation.md", "frontier.md"} <= {
+        page.name for page in PAGES
+    }
