@@ -8,7 +8,6 @@ from typing import Any
 from fe_contact.analysis import analyze
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
-from service.cli.effects import assumption_lines, ledger_lines
 from service.cli.judged_case import judged_case
 from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar, table
 from service.cli.tolerance_lines import print_draft, tolerance_lines, tolerance_warnings
@@ -16,6 +15,7 @@ from service.cli.warned import warn
 from service.convert.answers import summary_json
 from service.convert.case import analysis_arguments, boundary_errors, case_json
 from service.convert.checks import check_case
+from service.convert.effect_lines import assumption_lines, ledger_lines
 from service.convert.plausibility import phrased_database
 from service.convert.task_workers import Hands, working_hands
 from service.directories import cache_home

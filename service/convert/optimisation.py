@@ -26,7 +26,6 @@ from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.design_study import Accuracies
 from fe_contact.microgeometry.request import OptimisationRequest
 from fe_contact.workers import InProcess, Workers
-from service.convert.ablation import in_um
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
@@ -37,7 +36,7 @@ from service.schemas.optimisation import (
     ScatterInput,
     SearchInput,
 )
-from service.units import UM, factor
+from service.units import UM, factor, in_um
 
 Json = dict[str, Any]
 Report = Callable[[str, float], None]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from fe_contact.microgeometry import DesignVariable, Ended, HarrisMap, ScatterNo
 from fe_contact.microgeometry.design_problem import Judged
 from fe_contact.types import Estimate
 from service.report.figure import FloatArray
-from service.report.stored_ladder import Json
 from service.units import UM, factor
+
+Json = dict[str, Any]
 
 
 class ShownDesign(Protocol):
