@@ -40,8 +40,12 @@ class Study:
         Of the result's file.
     shared : bool
         Whether workers can share its tasks.
-    folder : bool
-        Whether the verb writes a folder of files too.
+    folder : str
+        Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
+    from_file : bool
+        Whether the inputs are a file of the verb and a mapping of the client, rather than options.
+    further : tuple of str
+        Endings of files that the verb writes beside those of all studies.
     """
 
     name: str
@@ -55,12 +59,19 @@ class Study:
     version: str = "2"
     media_type: str = JSON
     shared: bool = False
-    folder: bool = False
+    folder: str = ""
+    from_file: bool = False
+    further: tuple[str, ...] = ()
 
     @property
     def argument(self) -> str:
         """Name of what is studied, as the client's method and the verb have it."""
         return "given" if self.subject == "case or scene" else self.subject
+
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """Endings of the files that the verb writes."""
+        return (*([".nc"] if self.media_type == NETCDF else []), ".json", ".png", ".html", *self.further)
 
     @property
     def inputs(self) -> Any:
@@ -106,7 +117,22 @@ STUDIES: dict[str, Study] = {
             kind="frontier",
             collection="frontiers",
             stages=(("analysis", 0.1), ("ladder", 0.9)),
-            folder=True,
+            folder="frontier",
+        ),
+        Study(
+            "optimise",
+            "case",
+            "Micro-geometry of least transmission error",
+            "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
+            "examples/palermo_spur_20_20.toml examples/optimise_tip_relief.toml -o best",
+            kind="optimisation",
+            collection="optimisations",
+            stages=(("compliance", 0.2), ("search", 0.6), ("confirmation", 0.2)),
+            version="3",
+            shared=True,
+            folder="optimum",
+            from_file=True,
+            further=(".toml",),
         ),
         Study(
             "scatter",

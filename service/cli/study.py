@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
+from service.cli.interrupt import until_interrupted
 from service.cli.judged_case import judged_case
 from service.cli.number_list import number_list
 from service.cli.output import check_writable, console, output_files, print_json, progress_bar, table
@@ -16,10 +18,10 @@ from service.convert.stamp import stamp
 from service.convert.task_workers import Hands, working_hands
 from service.directories import cache_home
 from service.problems import BadInput, JobFailed
-from service.registry import JSON, Study
+from service.registry import Study
 from service.report.image import png
 from service.report.write import write_whole
-from service.schemas import Case, read_table, validated
+from service.schemas import Case, read_model, read_table, validated
 from service.schemas.scene import SceneInput
 from service.schemas.spelling import item_type, spelling_of
 from service.studies.computation import Means
@@ -30,27 +32,37 @@ Writer = Callable[[Any, Path], object]
 
 def run_study(study: Study, given: Json) -> None:
     """Run a study as its verb was called; `given` holds argument and options by their names."""
-    inputs = validated(study.inputs, _fields(study, given))
-    writers = _writers(study)
-    targets = _targets(study, given["output"], tuple(writers))
+    inputs = _inputs(study, given)
+    targets = _targets(study, given["output"])
     subject, folder = _read(study, given[study.argument])
     study.run.check(subject, inputs)
     hands = Hands(given.get("workers", 1), given.get("dask"))
-    with working_hands(hands) as workers, progress_bar() as report:
+    stopping = until_interrupted if study.run.interruptible else nullcontext
+    with working_hands(hands) as workers, progress_bar() as report, stopping() as cancel:
         made: Any = subject
         if not isinstance(subject, Case):
             made = scene_with_tables(subject, folder, given["service"], report)
-        found = study.run.compute(made, inputs, Means(cache_home(), report, workers))
+        found = study.run.compute(made, inputs, Means(cache_home(), report, workers, cancel))
+        interrupted = cancel is not None and cancel()
     for target in targets:
         target.parent.mkdir(exist_ok=True)
-        writers[target.suffix](found, target)
+        _writers(study)[target.suffix](found, target)
         stamp(target, warnings_so_far())
     if given["json"]:
         print_json(_written(study, targets) | study.run.facts(found))
     else:
         _show(study, found, targets)
+    if interrupted:
+        raise KeyboardInterrupt("interrupted. What is above is the best of what was computed so far.")
     if failure := study.run.failure(found):
         raise JobFailed(failure)
+
+
+def _inputs(study: Study, given: Json) -> Any:
+    """Return the inputs, from their file or the options that were given."""
+    if study.from_file:
+        return read_model(study.inputs, given["study"])
+    return validated(study.inputs, _fields(study, given))
 
 
 def _fields(study: Study, given: Json) -> Json:
@@ -76,14 +88,14 @@ def _read(study: Study, file: Path) -> tuple[Case | SceneInput, Path]:
     return judged_case(file), file.parent
 
 
-def _targets(study: Study, output: Path | None, endings: tuple[str, ...]) -> list[Path]:
+def _targets(study: Study, output: Path | None) -> list[Path]:
     """Return the files to write; raises `BadInput` if one cannot be."""
     if output is None:
         return []
     if study.folder:
-        return output_files(output, study.name, endings)
-    if output.suffix not in endings:
-        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(endings)}")
+        return output_files(output, study.folder, study.endings)
+    if output.suffix not in study.endings:
+        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(study.endings)}")
     check_writable(output)
     return [output]
 
@@ -91,11 +103,12 @@ def _targets(study: Study, output: Path | None, endings: tuple[str, ...]) -> lis
 def _writers(study: Study) -> dict[str, Writer]:
     """Return what writes a result, by the ending of the file."""
     run, page = study.run, study.page
-    facts: dict[str, Writer] = {} if study.media_type == JSON else {".nc": run.save}
-    return facts | {
+    return {
+        ".nc": run.save,
         ".json": run.save_facts,
         ".png": lambda found, file: file.write_bytes(png(page.figure(found))),
         ".html": lambda found, file: write_whole(page.page(found), file, warnings=messages()),
+        **run.writers,
     }
 
 

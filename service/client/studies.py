@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from service.client.jobs import JobClient
-from service.client.portable import CaseLike, SceneLike, case_of, inputs_of
+from service.client.portable import CaseLike, case_of, inputs_of
 from service.client.status import Watch
 from service.registry import JSON, STUDIES, Study
 
@@ -54,38 +54,6 @@ class Studies(JobClient):
             "sensitivity", case, progress, {name: list(values) for name, values in deviations.items()}
         )
 
-    def optimise(
-        self, case: CaseLike, study: Mapping[str, Any], progress: Watch | None = None
-    ) -> dict[str, Any]:
-        """Return the micro-geometry of least transmission error: submit, wait, fetch.
-
-        Parameters
-        ----------
-        case : Case, mapping or Path
-            Its modifications are the start.
-        study : mapping
-            Variables, scatter, objective, limits and search, as in the file of ``loa optimise``.
-        progress : callable, optional
-
-        Returns
-        -------
-        dict
-            As ``loa optimise --json`` prints it.
-        """
-        return self._json("optimise", case_of(case), progress, dict(study))
-
-    def _json(
-        self,
-        process: str,
-        given: CaseLike | SceneLike,
-        progress: Watch | None,
-        further: dict[str, Any],
-    ) -> dict[str, Any]:
-        """Submit a case or a scene with further inputs, wait, read the JSON."""
-        result = self.obtain(process, inputs_of(given) | further, progress)
-        found: dict[str, Any] = json.loads(self.fetch_file(result.key, result.kind).read_bytes())
-        return found
-
     def _study(self, process: str, case: CaseLike, progress: Watch | None, further: dict[str, Any]) -> Path:
         """Submit a case with further inputs, wait, fetch the file."""
         inputs = {"case": case_of(case).model_dump(mode="json"), **further}
@@ -99,14 +67,17 @@ def _method(study: Study) -> Callable[..., Any]:
         [
             Parameter("self", Parameter.POSITIONAL_ONLY),
             Parameter(study.argument, Parameter.POSITIONAL_OR_KEYWORD),
+            *([Parameter("study", Parameter.POSITIONAL_OR_KEYWORD)] if study.from_file else []),
             Parameter("progress", Parameter.POSITIONAL_OR_KEYWORD, default=None),
-            Parameter("options", Parameter.VAR_KEYWORD),
+            *([] if study.from_file else [Parameter("options", Parameter.VAR_KEYWORD)]),
         ]
     )
 
     def run(self: Studies, *arguments: Any, **named: Any) -> Any:
         bound = signature.bind(self, *arguments, **named).arguments
-        options = {name: _plain(value) for name, value in bound.get("options", {}).items()}
+        options = {
+            name: _plain(value) for name, value in bound.get("study", bound.get("options", {})).items()
+        }
         inputs = inputs_of(bound[study.argument]) | options
         result = self.obtain(study.name, inputs, bound.get("progress"))
         file = self.fetch_file(result.key, result.kind)
@@ -127,8 +98,9 @@ _METHOD = """{study.description}
         {study.argument} : model, mapping or Path
         progress : callable, optional
             Called with every state seen.
-        **options
-            As of ``loa {study.name} --help``, by name; what is left out has the default of the verb.
+        study or **options
+            What is varied: as in the file of the verb, or its options by name. What is left out has its
+            default.
         """
 
 

@@ -9,7 +9,6 @@ from service.registry import STUDIES, Study
 from service.schemas.process_inputs import (
     AnalyzeInputs,
     FlankInputs,
-    OptimiseInputs,
     SensitivityInputs,
     SimulateInputs,
     study_inputs,
@@ -53,19 +52,6 @@ SENSITIVITY = Process(
     entry="service.jobs.study_work:study_sensitivity_of",
     stages=(Stage("tables", 1.0),),
 )
-OPTIMISE = Process(
-    id="optimise",
-    title="Micro-geometry of least transmission error",
-    description="Flank modifications of both gears for the least expected peak-to-peak transmission error "
-    "over torques and scatter, with Harris maps before and after.",
-    version="3",
-    inputs=OptimiseInputs,
-    output="optimisation",
-    kind="optimisation",
-    prepare=on_demand("service.jobs.preparations:prepare_optimisation"),
-    entry="service.jobs.optimisation_work:optimise_flanks",
-    stages=(Stage("compliance", 0.2), Stage("search", 0.6), Stage("confirmation", 0.2)),
-)
 SIMULATE = Process(
     id="simulate",
     title="Dynamics of a geared system",
@@ -99,4 +85,4 @@ def study_process(study: Study) -> Process:
 def default_registry() -> Registry:
     """Return the processes every service offers."""
     studies = map(study_process, STUDIES.values())
-    return Registry(ANALYZE, FLANK, SENSITIVITY, OPTIMISE, SIMULATE, *studies)
+    return Registry(ANALYZE, FLANK, SENSITIVITY, SIMULATE, *studies)

@@ -13,14 +13,12 @@ from fe_contact.ste.facts import SCHEMA_VERSION
 from service.convert.case import case_json
 from service.convert.checks import check_case
 from service.convert.flanks import case_at
-from service.convert.optimisation import check_optimisation_of
 from service.convert.sensitivity import Deviations, check_study
 from service.jobs.scene_inputs import check_scene_inputs
 from service.schemas.model import BoundaryModel
 from service.schemas.process_inputs import (
     AnalyzeInputs,
     FlankInputs,
-    OptimiseInputs,
     SensitivityInputs,
     SimulateInputs,
 )
@@ -60,11 +58,4 @@ def prepare_scene(inputs: BoundaryModel, store: ResultStore) -> Json:
     """Check the scene and the sources of its tables; return it with all defaults."""
     assert isinstance(inputs, SimulateInputs)
     check_scene_inputs(inputs.scene, store)
-    return inputs.model_dump(mode="json")
-
-
-def prepare_optimisation(inputs: BoundaryModel, _store: ResultStore) -> Json:
-    """Check that everything can be varied as asked; return the inputs with all defaults."""
-    assert isinstance(inputs, OptimiseInputs)
-    check_optimisation_of(inputs.case, inputs)
     return inputs.model_dump(mode="json")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
 
@@ -11,19 +11,7 @@ from dynamics.errors import DynamicsError
 from fe_contact.errors import FeContactError
 from service.problems import BadInput
 from service.registry import STUDIES, Study
-from service.report.optimisation import optimisation_page
 from service.report.page import Page
-from service.report.stored_optimisation import stored_optimisation
-
-Json = dict[str, Any]
-PAGES: dict[str, Callable[[Json], Page]] = {
-    "optimisation": lambda content: optimisation_page(stored_optimisation(content)),
-}
-"""By the kind of the result."""
-_FIELDS = {
-    "optimisation": {"start", "optimum", "variables"},
-}
-"""What only that kind has."""
 
 
 def marked_study(content: Mapping[str, object]) -> Study | None:
@@ -46,7 +34,8 @@ def study_page(study: Study, file: Path) -> Page:
     try:
         return cast(Page, study.page.page(study.run.read(file)))
     except (KeyError, TypeError, ValueError, FeContactError, DynamicsError) as error:
-        raise _damaged(file, study.kind, error) from None
+        advice = f"Something is missing or not as written ({type(error).__name__}: {error})."
+        raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None
 
 
 def stored_study(file: Path) -> tuple[str, Page]:
@@ -62,19 +51,7 @@ def stored_study(file: Path) -> tuple[str, Page]:
         content: Any = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise BadInput.of("file", str(file), bound, f"It cannot be read ({error}).") from None
-    named = content if isinstance(content, dict) else {}
-    if study := marked_study(named):
-        return study.kind, study_page(study, file)
-    kinds = [kind for kind, fields in _FIELDS.items() if fields <= set(named)]
-    if not kinds:
+    study = marked_study(content if isinstance(content, dict) else {})
+    if study is None:
         raise BadInput.of("file", str(file), bound, "It is JSON of another kind.")
-    try:
-        return kinds[0], PAGES[kinds[0]](content)
-    except (KeyError, TypeError, ValueError) as error:
-        raise _damaged(file, kinds[0], error) from None
-
-
-def _damaged(file: Path, kind: str, error: Exception) -> BadInput:
-    """Say what a file of a kind should be."""
-    advice = f"Something is missing or not as written ({type(error).__name__}: {error})."
-    return BadInput.of("file", str(file), f"an undamaged {kind}", advice)
+    return study.kind, study_page(study, file)

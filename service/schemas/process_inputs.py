@@ -9,7 +9,6 @@ from service.schemas.case import Case
 from service.schemas.case_or_scene import CaseOrScene
 from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
-from service.schemas.optimisation import OptimisationInput
 from service.schemas.scene import SceneInput
 from service.schemas.sensitivity import DeviationsInput
 
@@ -36,12 +35,6 @@ class SensitivityInputs(DeviationsInput):
     """Inputs of the process sensitivity."""
 
     case: Case = Field(description="The case, as in a case file; its highest load counts")
-
-
-class OptimiseInputs(OptimisationInput):
-    """Inputs of the process optimise."""
-
-    case: Case = Field(description="The case, as in a case file; its modifications are the start")
 
 
 class OfCase(BoundaryModel):

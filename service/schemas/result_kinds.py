@@ -40,7 +40,6 @@ RESULT_KINDS: dict[str, ResultKind] = {
         ResultKind("flanks", "/v1/flanks"),
         ResultKind("run", "/v1/runs"),
         ResultKind("sensitivity", "/v1/sensitivities"),
-        ResultKind("optimisation", "/v1/optimisations", JSON),
         *(ResultKind(row.kind, f"/v1/{row.collection}", row.media_type) for row in STUDIES.values()),
     )
 }

@@ -27,11 +27,14 @@ class Means:
         Called as report(stage, fraction).
     workers : Workers
         Who does the tasks.
+    cancel : callable, optional
+        Says whether to end with the best so far.
     """
 
     home: Path
     report: Callable[[str, float], None]
     workers: Workers = field(default_factory=InProcess)
+    cancel: Callable[[], bool] | None = None
 
 
 def with_defaults(inputs: BoundaryModel) -> Json:
@@ -63,6 +66,10 @@ class Computation:
     normalized : callable
         ``normalized(subject, inputs)``: the inputs of a job as JSON, alike for equal questions; may raise
         `BadInput`. Default: with all defaults.
+    interruptible : bool
+        Whether it ends with the best so far when `Means.cancel` says so.
+    writers : mapping
+        Further files of the verb, by their ending.
     failure : callable
         Says what of a result was not found; empty if nothing is missing.
     """
@@ -74,6 +81,8 @@ class Computation:
     write: Callable[[Result, Path], None] | None = None
     check: Callable[[Any, Any], None] = lambda _subject, _inputs: None
     normalized: Callable[[Any, Any], Json] = lambda _subject, inputs: with_defaults(inputs)
+    interruptible: bool = False
+    writers: Mapping[str, Callable[[Result, Path], object]] = field(default_factory=dict)
     failure: Callable[[Result], str] = lambda _found: ""
 
     def save(self, found: Result, file: Path) -> None:

@@ -12,7 +12,7 @@ from typer.core import TyperGroup
 
 from service.cli.guard import computing
 from service.cli.verbs.options import AsJson, DaskScheduler, TableService, TaskWorkers
-from service.registry import NETCDF, STUDIES, Study
+from service.registry import STUDIES, Study
 from service.schemas.spelling import is_list, spelling_of
 
 if TYPE_CHECKING:
@@ -58,11 +58,12 @@ def _parameters(study: Study) -> Iterator[Parameter]:
     text = f"{study.subject.capitalize()} file (TOML, or JSON of the same shape)."
     argument = typer.Argument(help=text, metavar=study.subject.upper().replace(" ", "_"))
     yield _parameter(study.argument, Annotated[Path, argument])
-    for name, field in study.inputs.model_fields.items():
-        yield _option(name, field)
-    endings = ".nc, .json, .png or .html" if study.media_type == NETCDF else ".json, .png or .html"
+    if study.from_file:
+        yield _parameter("study", Annotated[Path, typer.Argument(help="File of what is varied and how.")])
+    else:
+        yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
     place = "Folder, or a file" if study.folder else "File to write,"
-    target = typer.Option("-o", "--output", help=f"{place} ending in {endings}.")
+    target = typer.Option("-o", "--output", help=f"{place} ending in one of {', '.join(study.endings)}.")
     yield _parameter("output", Annotated[Path | None, target], None)
     if study.shared:
         yield _parameter("workers", TaskWorkers, 1)

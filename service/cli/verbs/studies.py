@@ -1,4 +1,4 @@
-"""Verbs on what results are worth: plans, ladders, effects switched over, sensitivity, hard scenes."""
+"""Verbs on what results are worth that are no rows of the registry: plans, sensitivity, hard scenes."""
 
 from __future__ import annotations
 
@@ -26,28 +26,6 @@ def plan(
     from service.cli.plan import run_plan  # noqa: PLC0415 (start-up time)
 
     run_plan(case, time_budget_s, as_json=json)
-
-
-@verbs.command(
-    epilog="Example: loa optimise examples/palermo_spur_20_20.toml examples/optimise_tip_relief.toml -o best"
-)
-@computing
-def optimise(
-    case: Annotated[Path, typer.Argument(help="Case file; its modifications are the start.")],
-    study: Annotated[Path, typer.Argument(help="File of variables, scatter, objective, limits, search.")],
-    output: Annotated[
-        Path | None,
-        typer.Option("-o", "--output", help="Folder, or a file ending in .png, .html, .json, .toml."),
-    ] = None,
-    workers: TaskWorkers = 1,
-    dask: DaskScheduler = None,
-    json: AsJson = False,
-) -> None:
-    """Choose flank modifications for the least peak-to-peak STE over torques and scatter."""
-    from service.cli.optimise import run_optimise  # noqa: PLC0415 (start-up time)
-    from service.convert.task_workers import Hands  # noqa: PLC0415
-
-    run_optimise(case, study, output, Hands(workers, dask), as_json=json)
 
 
 @verbs.command(epilog="Example: loa sensitivity examples/sensitivity_wind_turbine.toml -o sensitivity")

@@ -19,7 +19,7 @@ from fe_contact.analysis import contact_lines, solved_places
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import Spent, dask_cluster
 from service.jobs import cluster
-from service.jobs.catalogue import ANALYZE, OPTIMISE, SENSITIVITY, default_registry
+from service.jobs.catalogue import ANALYZE, SENSITIVITY, default_registry
 from service.jobs.claims import Claim
 from service.jobs.order import WorkOrder
 from service.jobs.process import Process
@@ -89,7 +89,7 @@ class Recording:
     [
         (ANALYZE, {}, "solve_block"),
         (SENSITIVITY, DEVIATIONS, "solve_block"),
-        (OPTIMISE, STUDY, "search_one"),
+        (default_registry()["optimise"], STUDY, "search_one"),
         (default_registry()["scatter"], {"samples": 30}, "ripple_of_samples"),
     ],
     ids=lambda given: given.id if isinstance(given, Process) else "",

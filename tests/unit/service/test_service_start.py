@@ -10,11 +10,7 @@ import pytest
 
 from service.jobs.catalogue import default_registry
 from service.jobs.process import on_demand
-from service.registry import STUDIES, study_of
 from service.routes.warm_up import HEAVY, warm_up
-from service.schemas.model import BoundaryModel
-from service.studies.computation import Computation
-from service.studies.presentation import Presentation
 
 HEAVY_PACKAGES = {"gmsh", "skfem", "numba", "scipy", "xarray", "h5py", "matplotlib", "plotly"}
 
@@ -30,15 +26,6 @@ def test_everything_that_is_called_by_name_exists() -> None:
         for entry in (process.entry, *_names(process.prepare), *_names(process.name_result)):
             module, _, name = entry.partition(":")
             assert callable(getattr(import_module(module), name)), entry
-
-
-def test_every_study_has_its_parts() -> None:
-    """What process, verb, report and page call by the row of a study."""
-    for study in STUDIES.values():
-        assert issubclass(study.inputs, BoundaryModel)
-        assert isinstance(study.run, Computation) and isinstance(study.page, Presentation)
-        assert sum(share for _, share in study.stages) == pytest.approx(1.0)
-        assert study_of(study.kind) is study
 
 
 def _names(function: object) -> tuple[str, ...]:

@@ -26,16 +26,16 @@ from fe_contact.microgeometry import (
     scatter,
 )
 from fe_contact.ste import SteDatabase
-from service.convert.optimisation import optimisation_json
 from service.problems import BadInput
 from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
-from service.report.optimisation import optimisation_page
 from service.report.page import Page
 from service.studies.ablate.page import ablation_page
 from service.studies.ablate.run import facts as ablation_json
 from service.studies.frontier.page import frontier_page
+from service.studies.optimise.page import optimisation_page
+from service.studies.optimise.run import optimisation_json
 from service.studies.scatter import page as scatter_page
 from service.studies.scatter import run as scatter_run
 

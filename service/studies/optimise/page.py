@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +22,8 @@ from service.report.figure import (
     thousands,
 )
 from service.report.page import Headline, Page, Section
-from service.report.stored_optimisation import ShownDesign, ShownOptimisation
+from service.studies.optimise.stored import ShownDesign, ShownOptimisation
+from service.studies.presentation import Presentation
 from service.units import UM, factor
 
 MOST_CURVES = 8
@@ -211,3 +213,16 @@ def optimisation_page(found: ShownOptimisation) -> Page:
     search = Section("Search", tried, tables=(run_table(found), cost_table(found)))
     robust = Section("Scatter", "", tables=(node_table(found),))
     return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust, search))
+
+
+def _text(found: ShownOptimisation) -> Iterator[Table | str]:
+    """Yield the design, its ripple, and how the search ended."""
+    yield optimum_table(found)
+    yield ripple_table(found)
+    for line in found.not_tried:
+        yield f"not tried: {line}"
+    search = f"{found.evaluations} designs in {found.cost['stages']['search']['cpu_seconds']:.3g} CPU s"
+    yield f"{found.outcome.replace('_', ' ')}: {found.reason}; {search}"
+
+
+PAGE = Presentation(harris_figure, optimisation_page, _text)

@@ -1,8 +1,8 @@
-"""Micro-geometry optimisation at the boundary: its study, and its result as JSON."""
+"""Micro-geometry optimisation of a case."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,35 +25,23 @@ from fe_contact.microgeometry import (
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.design_study import Accuracies
 from fe_contact.microgeometry.request import OptimisationRequest
-from fe_contact.workers import InProcess, Workers
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
 from service.convert.vocabulary import boundary_name
 from service.schemas import Case
-from service.schemas.optimisation import (
-    GearScatterInput,
-    GearVariablesInput,
-    OptimisationInput,
-    ScatterInput,
-    SearchInput,
-)
+from service.studies.computation import Computation, Means
+from service.studies.optimise import GearScatterInput, GearVariablesInput, Inputs, ScatterInput, SearchInput
+from service.studies.optimise.stored import read
 from service.units import UM, factor, in_um
 
 Json = dict[str, Any]
-Report = Callable[[str, float], None]
 MPA = 1e6
 _ACCURACY = ("tolerance", "level", "time_budget", "model", "effects")
 
 
-def optimisation_of(
-    case: Case,
-    study: OptimisationInput,
-    cache: Path | None,
-    report: Report,
-    workers: Workers = InProcess(),  # noqa: B008 (frozen)
-    cancel: Callable[[], bool] | None = None,
-    memory: Path | None = None,
-) -> Optimisation:
-    """Optimise the modifications of a case; when `cancel` says so, end with the best so far.
+def optimisation_of(case: Case, study: Inputs, means: Means) -> Optimisation:
+    """Optimise the modifications of a case; when it is cancelled, end with the best so far.
+
+    Designs are remembered: another attempt, or another deadline, goes on from them.
 
     Raises
     ------
@@ -63,26 +51,25 @@ def optimisation_of(
         The case cannot be computed.
     """
     with boundary_errors():
-        arguments = _arguments(case, study)
         return optimise(
-            **arguments,
+            **_arguments(case, study),
             **{name: analysis_arguments(case)[name] for name in _ACCURACY},
-            workers=workers,
-            cancel=cancel,
-            memory=memory,
-            progress=report,
-            cache=cache,
+            workers=means.workers,
+            cancel=means.cancel,
+            memory=means.home / "searches",
+            progress=means.report,
+            cache=means.home / "compliance",
         )
 
 
-def check_optimisation_of(case: Case, study: OptimisationInput) -> None:
+def check(case: Case, study: Inputs) -> None:
     """Raise `BadInput` for what `optimisation_of` would, without computing anything."""
     with boundary_errors():
         accuracy = Accuracies(**{name: analysis_arguments(case)[name] for name in _ACCURACY})
         OptimisationRequest(**_arguments(case, study), accuracy=accuracy).check()
 
 
-def _arguments(case: Case, study: OptimisationInput) -> Json:
+def _arguments(case: Case, study: Inputs) -> Json:
     """Return what both of the library's functions take, in SI."""
     pair = gear_pair(case)
     torques = study.torque_n_m or case.load.torque_n_m
@@ -101,7 +88,7 @@ def _arguments(case: Case, study: OptimisationInput) -> Json:
     }
 
 
-def _variables(study: OptimisationInput) -> list[DesignVariable]:
+def _variables(study: Inputs) -> list[DesignVariable]:
     """Return the design variables of both gears, in SI."""
     gears = {"pinion": study.variables.pinion, "wheel": study.variables.wheel}
     return [
@@ -131,7 +118,7 @@ def _given(gear: str, given: GearVariablesInput | GearScatterInput) -> list[tupl
     ]
 
 
-def _limits(study: OptimisationInput) -> Limits:
+def _limits(study: Inputs) -> Limits:
     """Return the limits in SI."""
     pressure = study.limits.max_pressure_mpa
     return Limits(
@@ -221,3 +208,22 @@ def boundary_values(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
 def _typed(name: str, value: float) -> float:
     """Return a figure in the unit of its field, without the noise of the conversion."""
     return float(f"{value / factor(boundary_name(name)):.12g}")
+
+
+def write_values(found: Optimisation, target: Path) -> None:
+    """Write the best design as TOML: lines for the tables of both gears in the case file."""
+    lines = [f"# {found.reason}"]
+    for gear, fields in boundary_values(found.optimum.values).items():
+        lines += ["", f"[pair.{gear}]", *(f"{name} = {value:.6g}" for name, value in fields.items())]
+    target.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+RUN = Computation(
+    optimisation_of,
+    optimisation_json,
+    read,
+    marks=dict.fromkeys(("start", "optimum", "variables")),
+    check=check,
+    interruptible=True,
+    writers={".toml": write_values},
+)

@@ -155,7 +155,7 @@ class SearchInput(BoundaryModel):
     )
 
 
-class OptimisationInput(BoundaryModel):
+class Inputs(BoundaryModel):
     """An optimisation of a case's flank modifications."""
 
     torque_n_m: Torques | None = Field(

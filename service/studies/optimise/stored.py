@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -117,11 +119,12 @@ class StoredOptimisation:
     evaluations: int
 
 
-def stored_optimisation(content: Json) -> StoredOptimisation:
-    """Return the optimisation in `content` (`optimisation_json`).
+def read(file: Path) -> StoredOptimisation:
+    """Return the optimisation in a file of its figures.
 
     Not stored, and NaN in it: the places and merits of the searches' best designs.
     """
+    content = json.loads(file.read_text(encoding="utf-8"))
     nodes = _nodes(content["nodes"])
     variables = (
         DesignVariable(_library(one["name"]), *_si(one["name"], one["bounds"]))
