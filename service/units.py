@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from bounds import DEPTHS, Declared, Unit
 
@@ -67,3 +68,18 @@ def unit_in_words(value: float, si: str) -> Unit:
 def boundary_text(value: float) -> str:
     """Return a number as users write it."""
     return f"{value:.7g}"
+
+
+def in_um(value: Any, *, meters: bool = False) -> Any:
+    """Turn every field that ends in _m (and no torque) into one that ends in _um."""
+    if isinstance(value, dict):
+        return dict(_field(name, inner) for name, inner in value.items())
+    if isinstance(value, list):
+        return [in_um(inner, meters=meters) for inner in value]
+    return value / UM if meters and value is not None else value
+
+
+def _field(name: str, value: Any) -> tuple[str, Any]:
+    """One field."""
+    meters = name.endswith("_m") and not name.endswith("_n_m")
+    return (f"{name.removesuffix('_m')}_um" if meters else name), in_um(value, meters=meters)

@@ -10,13 +10,13 @@ from fe_contact.options import Run
 from fe_contact.ste import SteDatabase
 from fe_contact.workers import InProcess, Workers
 from service.cli.assessed_case import assessed_case
-from service.cli.effects import assumption_lines, ledger_lines
 from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar, table
 from service.cli.tolerance_lines import print_draft, tolerance_lines, tolerance_warnings
 from service.cli.warned import warn
 from service.convert.answers import summary_json
 from service.convert.case import analysis_options, boundary_errors, case_json, table_axes
 from service.convert.checks import check_case
+from service.convert.effect_lines import assumption_lines, ledger_lines
 from service.convert.plausibility import phrased_database
 from service.convert.task_workers import ExecutorChoice, open_executor
 from service.directories import cache_home

@@ -8,6 +8,7 @@ from typing import Annotated, TextIO
 import typer
 
 from service.cli.verbs import keys, motion, pages, serving, studies, tables, upkeep
+from service.cli.verbs.of_studies import StudyGroup
 
 _EPILOG = (
     "Start with: loa analyze examples/palermo_spur_20_20.toml -o ste.nc, then loa report ste.nc. "
@@ -18,6 +19,7 @@ _EPILOG = (
 
 app = typer.Typer(
     name="loa",
+    cls=StudyGroup,
     help="Open contact analysis for gear noise: STE databases of gear pairs, and the dynamics they excite.",
     epilog=_EPILOG,
     no_args_is_help=True,

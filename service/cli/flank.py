@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from service.cli.assessed_case import assessed_case
-from service.cli.effects import assumption_lines
 from service.cli.output import check_netcdf_output, console, print_json, progress_bar
 from service.cli.warned import warn
 from service.convert.checks import check_case
+from service.convert.effect_lines import assumption_lines
 from service.convert.flanks import flank_json, flanks_of
 from service.convert.plausibility import phrased_flanks
 from service.directories import cache_home

@@ -9,8 +9,8 @@ import typer
 
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.hardcases import HARD_SCENES, HardScene, Outcome, run_scenes
+from service.hardcases.page import hardcases_page
 from service.problems import EXIT_FAILED, BadInput
-from service.report.hardcases import hardcases_page
 from service.report.write import write_whole
 
 

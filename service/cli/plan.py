@@ -7,8 +7,8 @@ from pathlib import Path
 from fe_contact.analysis.run_plan import RunPlan
 from fe_contact.planning.cost_model import STAGES
 from service.cli.assessed_case import assessed_case
-from service.cli.effects import ledger_lines
 from service.cli.output import console, print_json, table
+from service.convert.effect_lines import ledger_lines
 from service.convert.plan import plan_of
 from service.directories import cache_home
 from service.units import UM

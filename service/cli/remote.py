@@ -15,12 +15,13 @@ from service.cli.warned import warn
 from service.client import JobState, LineOfActionClient, Result
 from service.convert.stamp import stamped
 from service.problems import BadInput, NotFound, ResultNotReady
+from service.registry import studies_of
 from service.schemas import Case, read_table, validated
 from service.schemas.result_kinds import RESULT_KINDS
 
-_OF_CASES = ("analyze", "flank", "sensitivity", "optimise", "scatter")
-_OF_SCENES = ("simulate", "modes", "response", "steady")
-_OF_BOTH = ("ablate", "frontier")
+_OF_CASES = ("analyze", "flank", "sensitivity", *studies_of("case"))
+_OF_SCENES = ("simulate", *studies_of("scene"))
+_OF_BOTH = studies_of("case or scene")
 
 
 @dataclass(frozen=True)

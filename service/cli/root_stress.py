@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from service.cli.assessed_case import assessed_case
-from service.cli.effects import assumption_lines
 from service.cli.output import check_writable, console, print_json, progress_bar, table
 from service.cli.warned import warn
 from service.convert.checks import check_case
+from service.convert.effect_lines import assumption_lines
 from service.convert.plausibility import phrased
 from service.convert.root_stress import GEARS, root_stress_json, root_stress_of
 from service.convert.vocabulary import case_field

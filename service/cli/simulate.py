@@ -7,13 +7,13 @@ from pathlib import Path
 from dynamics.scene import Scene
 from dynamics.simulation import interrupted_run, simulate_to_file
 from dynamics.types import RunStatus
-from service.cli.effects import run_lines
 from service.cli.interrupt import until_interrupted
 from service.cli.output import Report, check_netcdf_output, console, print_json, progress_bar
 from service.cli.run_effects import effect_lines
 from service.cli.scene_tables import scene_with_tables
 from service.cli.warned import warnings_so_far
 from service.client.portable import scene_of
+from service.convert.effect_lines import run_lines
 from service.convert.runs import run_json, staged
 from service.convert.stamp import stamp
 from service.problems import BadInput, JobFailed

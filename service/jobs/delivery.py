@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal, Self
 
 from service.problems import BadInput
-from service.schemas.result_kinds import JSON
+from service.registry import JSON
 
 Response = Literal["raw", "document"]
 Transmission = Literal["value", "reference"]

@@ -5,39 +5,22 @@ It is what the page of the service shows, so that every plot is described once.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from service.convert.stamp import WARNINGS
-from service.problems import NotFound
 from service.report.content import page_of
 from service.report.figure import Figure, Table
-from service.report.inputs import Inputs, read_inputs
+from service.report.inputs import read_inputs
 from service.report.interactive import plotly_figure
 from service.report.page import Page, Section
-from service.report.stored_study import PAGES
 
 Json = dict[str, Any]
 
 
 def stored_figures(inputs: Json) -> Json:
-    """Return the report on a stored result: ``{"kind": ..., "file": ...}``; work of the live worker.
-
-    Raises
-    ------
-    NotFound
-        There are no figures of this kind of result.
-    """
-    kind, file = inputs["kind"], Path(inputs["file"])
-    if kind in PAGES:
-        content = json.loads(file.read_text(encoding="utf-8"))
-        warnings = tuple(one["message"] for one in content.get(WARNINGS, ()))
-        return page_json(page_of(Inputs(pages=(PAGES[kind](content),), warnings=warnings)))
-    if file.suffix == ".nc":
-        return page_json(page_of(read_inputs([file])))
-    raise NotFound(f"There are no figures of this {kind}; its JSON has all numbers.")
+    """Return the report on a stored result: ``{"file": ...}``; work of the live worker."""
+    return page_json(page_of(read_inputs([Path(inputs["file"])])))
 
 
 def page_json(page: Page) -> Json:

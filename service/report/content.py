@@ -9,12 +9,9 @@ from fe_contact.ste import PairFacts
 from service.report.dynamic_part import dynamic_alarms, dynamic_headlines, dynamic_making, dynamic_results
 from service.report.flank_part import flank_alarms, flank_headlines, flank_making, flank_results_section
 from service.report.inputs import Inputs
-from service.report.modal import modal_figures
 from service.report.page import Headline, Page, Section
-from service.report.response import response_figure
 from service.report.sensitivity import sensitivity_figure
 from service.report.static_part import static_alarms, static_headlines, static_making, static_results
-from service.report.steady import steady_figure
 
 
 def page_of(read: Inputs) -> Page:
@@ -47,12 +44,6 @@ def _page_of(read: Inputs) -> Page:
         alarms += flank_alarms(flanks, database)
     if read.studies:
         results.append(Section("Sensitivity", figures=(sensitivity_figure(read.studies),)))
-    if read.modal is not None:
-        results.append(Section("Modes", figures=modal_figures(read.modal)))
-    if read.response is not None:
-        results.append(Section("Forced response", figures=(response_figure(read.response),)))
-    if read.steady is not None:
-        results.append(Section("Steady states", figures=(steady_figure(read.steady),)))
     for study in read.pages:
         headlines += study.headlines
         results += study.sections

@@ -1,71 +1,57 @@
-"""Studies that are kept as JSON: which one a file holds, and its page."""
+"""Studies in files: which one a file holds, and its page."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
-from fe_contact.analysis import Frontier
+from dynamics.errors import DynamicsError
+from fe_contact.errors import FeContactError
 from service.problems import BadInput
-from service.report.ablation_page import ablation_page
-from service.report.frontier import frontier_page
-from service.report.optimisation import optimisation_page
+from service.registry import STUDIES, Study
 from service.report.page import Page
-from service.report.run_frontier import run_frontier_page
-from service.report.scatter import scatter_page
-from service.report.stored_ablation import stored_ablation
-from service.report.stored_ladder import Json, stored_ladder
-from service.report.stored_optimisation import stored_optimisation
-from service.report.stored_scatter import stored_scatter
-
-LADDER_TITLE = "What accuracy costs in time"
 
 
-def _ladder(content: Json) -> Page:
-    """Return the page of an accuracy ladder."""
-    found = stored_ladder(content)
-    if isinstance(found, Frontier):
-        return frontier_page(found, LADDER_TITLE)
-    return run_frontier_page(found, LADDER_TITLE)
+def marked_study(content: Mapping[str, object]) -> Study | None:
+    """Return the study that made a file, by the names in its JSON or the attributes of its netCDF file."""
+    for study in STUDIES.values():
+        marks = study.run.marks
+        if all(name in content and value in (None, content[name]) for name, value in marks.items()):
+            return study
+    return None
 
 
-PAGES: dict[str, Callable[[Json], Page]] = {
-    "ablation": lambda content: ablation_page(stored_ablation(content)),
-    "frontier": _ladder,
-    "optimisation": lambda content: optimisation_page(stored_optimisation(content)),
-    "scatter": lambda content: scatter_page(stored_scatter(content)),
-}
-"""By the kind of the result."""
-_FIELDS = {
-    "ablation": {"of", "nominal", "effects"},
-    "frontier": {"rungs", "knee", "chosen"},
-    "optimisation": {"start", "optimum", "variables"},
-    "scatter": {"samples", "quantiles", "influence"},
-}
-"""What only that kind has."""
+def study_page(study: Study, file: Path) -> Page:
+    """Return the page of a study's file.
+
+    Raises
+    ------
+    BadInput
+        It is damaged.
+    """
+    try:
+        return cast(Page, study.page.page(study.run.read(file)))
+    except (KeyError, TypeError, ValueError, FeContactError, DynamicsError) as error:
+        advice = f"Something is missing or not as written ({type(error).__name__}: {error})."
+        raise BadInput.of("file", str(file), f"an undamaged {study.kind}", advice) from None
 
 
 def stored_study(file: Path) -> tuple[str, Page]:
-    """Return which study a JSON file holds, one of `PAGES`, and its page.
+    """Return which kind of study a JSON file holds, and its page.
 
     Raises
     ------
     BadInput
         It holds none, or a damaged one.
     """
-    bound = f"a study in JSON ({', '.join(PAGES)})"
+    bound = "a study in JSON, as the verbs of loa write it"
     try:
         content: Any = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise BadInput.of("file", str(file), bound, f"It cannot be read ({error}).") from None
-    named = content.keys() if isinstance(content, dict) else ()
-    kinds = [kind for kind, fields in _FIELDS.items() if fields <= set(named)]
-    if not kinds:
+    study = marked_study(content if isinstance(content, dict) else {})
+    if study is None:
         raise BadInput.of("file", str(file), bound, "It is JSON of another kind.")
-    try:
-        return kinds[0], PAGES[kinds[0]](content)
-    except (KeyError, TypeError, ValueError) as error:
-        advice = f"Something is missing or not as written ({type(error).__name__}: {error})."
-        raise BadInput.of("file", str(file), f"an undamaged {kinds[0]}", advice) from None
+    return study.kind, study_page(study, file)

@@ -62,7 +62,7 @@ def _handler(kind: ResultKind) -> Any:
         headers = {"ETag": tag, "Cache-Control": "no-cache"}
         if tag in request.headers.get("if-none-match", ""):
             return Response(status_code=304, headers=headers)
-        order = LiveOrder(FIGURES, {"kind": kind.name, "file": str(stored.path)})
+        order = LiveOrder(FIGURES, {"file": str(stored.path)})
         body = await asyncio.wrap_future(context.live.ask(order))
         return Response(body, media_type="application/json", headers=headers)
 

@@ -12,12 +12,13 @@ from service.jobs.delivery import Delivery, Transmission, delivery
 from service.jobs.delivery import Response as Form
 from service.jobs.job import Job
 from service.problems import Fault, JobDismissed, JobFailed, ResultNotReady
+from service.registry import NETCDF
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
 from service.routes.media_types import JSON
 from service.routes.results import file_response
 from service.schemas.ogc import ResultReference
-from service.schemas.result_kinds import NETCDF, RESULT_KINDS, ResultKind
+from service.schemas.result_kinds import RESULT_KINDS, ResultKind
 
 router = APIRouter(prefix="/jobs", tags=["jobs"])
 

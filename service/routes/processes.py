@@ -10,6 +10,7 @@ from fastapi import APIRouter, Header, Query, Response
 from service.jobs.caller import Caller
 from service.jobs.delivery import Delivery, delivery
 from service.jobs.process import Process, Registry
+from service.registry import JSON
 from service.routes.context import Context, Ctx, From
 from service.routes.cursor import Limit
 from service.routes.errors import documented
@@ -17,7 +18,7 @@ from service.routes.jobs import status_info
 from service.schemas.execute import execute_model
 from service.schemas.model import BoundaryModel
 from service.schemas.ogc import Link, ProcessDescription, ProcessList, ProcessSummary, StatusInfo
-from service.schemas.result_kinds import JSON, RESULT_KINDS
+from service.schemas.result_kinds import RESULT_KINDS
 from service.store import now
 
 logger = structlog.get_logger(__name__)

@@ -10,10 +10,11 @@ from fastapi import APIRouter, Header, Path, Request
 from starlette.responses import FileResponse, JSONResponse, Response
 
 from service.loading import LOADING
+from service.registry import NETCDF
 from service.routes.context import Context, Ctx
 from service.routes.errors import documented
 from service.routes.media_types import JSON, negotiated
-from service.schemas.result_kinds import NETCDF, RESULT_KINDS, ResultKind
+from service.schemas.result_kinds import RESULT_KINDS, ResultKind
 from service.store import StoredResult
 
 _IMMUTABLE = "public, max-age=31536000, immutable"

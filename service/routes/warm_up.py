@@ -13,6 +13,7 @@ HEAVY = (
     "service.convert.answers",
     "service.convert.outline",
     "service.convert.result_figures",
+    "service.jobs.study_work",
     "fe_contact.ste.compiled_force",
 )
 """The modules that handlers import when they are asked: both libraries."""

@@ -7,8 +7,9 @@ from typing import Any, Literal
 
 from pydantic import Field, create_model, model_validator
 
+from service.registry import JSON
 from service.schemas.model import BoundaryModel, refuse
-from service.schemas.result_kinds import JSON, suffix_of_type
+from service.schemas.result_kinds import suffix_of_type
 
 _FORMAT = {"mediaType", "encoding", "schema"}
 _LINK = {"href", "rel", "type", "hreflang", "title"}

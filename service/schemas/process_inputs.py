@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pydantic import Field
+from pydantic import Field, create_model
 
+from service.registry import Study
 from service.schemas.case import Case
-from service.schemas.dynamic_studies import ModesInput, ResponseInput, SteadyInput
+from service.schemas.case_or_scene import CaseOrScene
 from service.schemas.flank import FlankPoint
 from service.schemas.model import BoundaryModel
-from service.schemas.optimisation import OptimisationInput
-from service.schemas.sampling import SamplingInput
 from service.schemas.scene import SceneInput
 from service.schemas.sensitivity import DeviationsInput
 
@@ -26,24 +25,6 @@ class SimulateInputs(BoundaryModel):
     scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
 
 
-class ModesInputs(ModesInput):
-    """Inputs of the process modes."""
-
-    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
-
-
-class ResponseInputs(ResponseInput):
-    """Inputs of the process response."""
-
-    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
-
-
-class SteadyInputs(SteadyInput):
-    """Inputs of the process steady."""
-
-    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
-
-
 class FlankInputs(FlankPoint):
     """Inputs of the process flank."""
 
@@ -56,13 +37,27 @@ class SensitivityInputs(DeviationsInput):
     case: Case = Field(description="The case, as in a case file; its highest load counts")
 
 
-class OptimiseInputs(OptimisationInput):
-    """Inputs of the process optimise."""
+class OfCase(BoundaryModel):
+    """What is studied: a case."""
 
-    case: Case = Field(description="The case, as in a case file; its modifications are the start")
+    case: Case = Field(description="The case, as in a case file")
 
 
-class ScatterInputs(SamplingInput):
-    """Inputs of the process scatter."""
+class OfScene(BoundaryModel):
+    """What is studied: a scene."""
 
-    case: Case = Field(description="The case, as in a case file; its modifications are the design")
+    scene: SceneInput = Field(description="The scene, with cases written out or databases by hash")
+
+
+_SUBJECTS: dict[str, type[BoundaryModel]] = {
+    "case": OfCase,
+    "scene": OfScene,
+    "case or scene": CaseOrScene,
+}
+
+
+def study_inputs(study: Study) -> type[BoundaryModel]:
+    """Return the model of the inputs of a study's process: what is studied, and what is varied."""
+    bases = (study.inputs, _SUBJECTS[study.subject])
+    text = f"Inputs of the process {study.name}."
+    return create_model(f"{study.name.capitalize()}Inputs", __base__=bases, __doc__=text)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from service.registry import STUDIES, Study
+
 Json = dict[str, Any]
 
 _GEAR = {"teeth": 20, "face_width_mm": 25.0, "bore_diameter_mm": 40.0}
@@ -43,6 +45,14 @@ SCENE: Json = {
     "outputs": {"sample_rate_hz": 20000.0},
 }
 
+
+def _example(study: Study) -> Json:
+    """Return inputs of a study: every field that has an example."""
+    subject = {"scene": SCENE} if study.subject == "scene" else {"case": CASE}
+    fields = study.inputs.model_fields.items()
+    return subject | {name: field.examples[0] for name, field in fields if field.examples}
+
+
 INPUTS: dict[str, Json] = {
     "analyze": {"case": CASE},
     "flank": {"case": CASE, "torque_n_m": 100.0},
@@ -51,18 +61,8 @@ INPUTS: dict[str, Json] = {
         "misalignment_um": [0.0, 30.0],
         "center_distance_change_percent": [0.0, 0.1],
     },
-    "ablate": {"case": CASE, "only": ["tooth_coupling"]},
-    "frontier": {"case": CASE},
-    "optimise": {
-        "case": CASE,
-        "torque_n_m": [50.0, 100.0, 200.0],
-        "variables": {"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}},
-    },
-    "scatter": {"case": CASE, "tolerance_class": 6, "samples": 200},
     "simulate": {"scene": SCENE},
-    "modes": {"scene": SCENE, "speed_rpm": [0.0, 1500.0, 3000.0]},
-    "response": {"scene": SCENE, "speed_rpm": [300.0, 600.0, 900.0]},
-    "steady": {"scene": SCENE, "speed_rpm": [11000.0, 12000.0]},
+    **{name: _example(study) for name, study in STUDIES.items()},
 }
 """Inputs of an execution, by process."""
 

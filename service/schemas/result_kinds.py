@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-NETCDF = "application/x-netcdf"
-JSON = "application/json"
+from service.registry import JSON, NETCDF, STUDIES
+
 _SUFFIXES = {NETCDF: ".nc", JSON: ".json"}
 
 
@@ -40,13 +40,7 @@ RESULT_KINDS: dict[str, ResultKind] = {
         ResultKind("flanks", "/v1/flanks"),
         ResultKind("run", "/v1/runs"),
         ResultKind("sensitivity", "/v1/sensitivities"),
-        ResultKind("ablation", "/v1/ablations", JSON),
-        ResultKind("frontier", "/v1/frontiers", JSON),
-        ResultKind("optimisation", "/v1/optimisations", JSON),
-        ResultKind("scatter", "/v1/scatters", JSON),
-        ResultKind("modes", "/v1/modes"),
-        ResultKind("response", "/v1/responses"),
-        ResultKind("steady", "/v1/steadies"),
+        *(ResultKind(row.kind, f"/v1/{row.collection}", row.media_type) for row in STUDIES.values()),
     )
 }
 

@@ -15,16 +15,19 @@ from study_service import CASE, Served, prepared, scene_by_hash, study_service, 
 from fe_contact.effects import EFFECTS
 from fe_contact.ste import SteDatabase
 from service.client import JobState
-from service.convert.ablation import ablation_json, ablation_of_case, ablation_of_scene
 from service.convert.scene import dynamic_scene
-from service.jobs.ablation_work import switch_effects
-from service.jobs.catalogue import ABLATE
+from service.jobs import study_work
+from service.jobs.catalogue import default_registry
 from service.jobs.order import WorkOrder
 from service.problems import BadInput
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
 from service.store import stored_results
+from service.studies.ablate import Inputs
+from service.studies.ablate.run import ablation_of, facts
+from service.studies.computation import Means
 
+ABLATE = default_registry()["ablate"]
 ONLY = ["tooth_coupling", "misalignment"]
 TIMES = ("cpu_seconds", "predicted_cpu_seconds", "cost_ratio")  # measured, or predicted for this cache
 
@@ -43,11 +46,11 @@ def scene(tmp_path: Path) -> SceneInput:
 def test_the_ablation_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
     told = served.client.ablate(CASE, seen.append, only=ONLY)
-    here = ablation_of_case(validated(Case, CASE), ONLY, tmp_path / "compliance", lambda *_: None)
+    here = ablation_of(validated(Case, CASE), Inputs(only=tuple(ONLY)), Means(tmp_path, lambda *_: None))
     assert [effect["name"] for effect in told["effects"]] == ["tooth_coupling"]
     assert told["left_out"] == {"misalignment": "the gears are aligned"}
     assert abs(told["effects"][0]["mean_change_um"][1]) > 1e-3
-    expected = json.loads(json.dumps(ablation_json(here))) | {"warnings": []}
+    expected = json.loads(json.dumps(facts(here))) | {"warnings": []}
     assert without(TIMES, told) == without(TIMES, expected)
     progress = [state.progress for state in seen]
     assert progress == sorted(progress) and progress[-1] == 100
@@ -69,15 +72,16 @@ def test_the_ablation_of_a_scene_is_that_of_python(served: Served, scene: SceneI
     inputs = ABLATE.prepare(ABLATE.inputs.model_validate_json(json.dumps(given)), stored_results(data))
     seen: list[tuple[str, float]] = []
     order = WorkOrder(ABLATE.entry, inputs, ABLATE.key(inputs), tmp_path, data)
-    (product,) = switch_effects(order, lambda *step: seen.append(step))
+    (product,) = study_work.ablate(order, lambda *step: seen.append(step))
     overall = [ABLATE.overall(*step) for step in seen]
     assert overall and None not in overall and overall == sorted(overall)  # type: ignore[type-var]
     stored_results(data).put(product.key, product.kind, product.file)
     told = client.ablate(scene, only=["lateral"])
     tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
-    here = ablation_of_scene(dynamic_scene(scene, tables), ["lateral"], lambda *_: None)
+    means = Means(tmp_path, lambda *_: None)
+    here = ablation_of(dynamic_scene(scene, tables), Inputs(only=("lateral",)), means)
     assert [effect["name"] for effect in told["effects"]] == ["lateral"]
-    expected = json.loads(json.dumps(ablation_json(here)))
+    expected = json.loads(json.dumps(facts(here)))
     assert without(TIMES, told) == without(TIMES, expected)
 
 

@@ -11,7 +11,8 @@ from httpx2 import Response
 
 from service.access import KeyFile
 from service.app import create_app
-from service.schemas.result_kinds import NETCDF, RESULT_KINDS
+from service.registry import NETCDF
+from service.schemas.result_kinds import RESULT_KINDS
 from service.settings import Settings
 
 KEY, ABSENT = "5" * 64, "6" * 64

@@ -16,16 +16,18 @@ from fe_contact.analysis.accuracy_study import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from service.client import JobState
-from service.convert.frontier import frontier_of
-from service.convert.run_frontier import run_frontier_of
 from service.convert.scene import dynamic_scene
-from service.jobs.catalogue import FRONTIER
-from service.jobs.frontier_work import climb_ladder
+from service.jobs import study_work
+from service.jobs.catalogue import default_registry
 from service.jobs.order import WorkOrder
 from service.schemas import Case, validated
 from service.schemas.scene import SceneInput
 from service.store import stored_results
+from service.studies.computation import Means
+from service.studies.frontier import Inputs
+from service.studies.frontier.run import frontier_of
 
+FRONTIER = default_registry()["frontier"]
 CLOSED = ["iso6336", "thin_slices"]
 MEASURED = ("cpu_seconds", "stages", "peak_memory_bytes", "knee")  # the knee hangs on the times
 
@@ -45,15 +47,15 @@ def worked(inputs: dict[str, Any], workspace: Path, data: Path) -> tuple[dict[st
     """Do the work in this process; return its JSON and the progress of the whole job."""
     seen: list[float | None] = []
     order = WorkOrder(FRONTIER.entry, inputs, FRONTIER.key(inputs), workspace, data)
-    (product,) = climb_ladder(order, lambda *step: seen.append(FRONTIER.overall(*step)))
+    (product,) = study_work.frontier(order, lambda *step: seen.append(FRONTIER.overall(*step)))
     assert (product.key, product.kind) == (order.key, "frontier")
     return json.loads(product.file.read_bytes()), [part for part in seen if part is not None]
 
 
-def test_the_ladder_of_a_case_is_that_of_python(served: Served) -> None:
+def test_the_ladder_of_a_case_is_that_of_python(served: Served, tmp_path: Path) -> None:
     seen: list[JobState] = []
     told = served.client.frontier(CASE, seen.append, rungs=CLOSED)
-    here = frontier_of(validated(Case, CASE), CLOSED)
+    here = frontier_of(validated(Case, CASE), Inputs(rungs=tuple(CLOSED)), Means(tmp_path, lambda *_: None))
     assert [rung["name"] for rung in told["rungs"]] == CLOSED
     assert told["rungs"][0]["mean_error"] > 1e-3 and told["reference"] == "thin_slices"
     assert all(rung["cpu_seconds"] > 0.0 for rung in told["rungs"])
@@ -80,9 +82,9 @@ def test_the_ladder_of_a_scene_is_that_of_python(served: Served, scene: SceneInp
     assert progress == sorted(progress) and len(progress) == len(rungs) + 1
     stored_results(data).put(FRONTIER.key(inputs), "frontier", tmp_path / "frontier.json")
     told = client.frontier(scene, rungs=rungs)
-    here = run_frontier_of(
-        dynamic_scene(scene, {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}), rungs
-    )
+    tables = {"mesh": SteDatabase.from_netcdf(tmp_path / "ste.nc")}
+    means = Means(tmp_path, lambda *_: None)
+    here = frontier_of(dynamic_scene(scene, tables), Inputs(rungs=tuple(rungs)), means)
     assert told == made and told["reference"] == "10_nm"
     expected = json.loads(json.dumps(here.to_json()))
     assert without(MEASURED, told) == without(MEASURED, expected)

@@ -13,12 +13,14 @@ from running_service import REFERENCES
 from study_service import empty_service
 
 from service.client import JobState, LineOfActionClient
-from service.convert.optimisation import optimisation_json, optimisation_of
-from service.jobs.catalogue import OPTIMISE
+from service.jobs.catalogue import default_registry
 from service.problems import BadInput
 from service.schemas import Case, validated
-from service.schemas.optimisation import OptimisationInput
+from service.studies.computation import Means
+from service.studies.optimise import Inputs
+from service.studies.optimise.run import optimisation_json, optimisation_of
 
+OPTIMISE = default_registry()["optimise"]
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
 CASE: dict[str, Any] = {
     "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
@@ -62,9 +64,7 @@ def test_the_optimisation_is_that_of_python(served: Served, data: Path) -> None:
     seen: list[JobState] = []
     told = client.optimise(CASE, STUDY, seen.append)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    here = optimisation_of(
-        validated(Case, CASE), validated(OptimisationInput, STUDY), data / "compliance", lambda *_: None
-    )
+    here = optimisation_of(validated(Case, CASE), validated(Inputs, STUDY), Means(data, lambda *_: None))
     expected = json.loads(json.dumps(optimisation_json(here))) | {"warnings": []}
     assert untimed(told) == untimed(expected)
     assert told["outcome"] == "improved" and told["gain_um"] > told["gain_error_um"]

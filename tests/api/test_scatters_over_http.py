@@ -11,13 +11,15 @@ import pytest
 from fastapi.testclient import TestClient
 from study_service import empty_service
 
-from fe_contact.workers import InProcess
 from service.client import JobState, LineOfActionClient
-from service.convert.scatter import Sampling, scatter_json, scatter_of_case
-from service.jobs.catalogue import SCATTER
+from service.jobs.catalogue import default_registry
 from service.problems import BadInput
 from service.schemas import Case, validated
+from service.studies.computation import Means
+from service.studies.scatter import Inputs
+from service.studies.scatter.run import draw, facts
 
+SCATTER = default_registry()["scatter"]
 GEAR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
 CASE: dict[str, Any] = {
     "pair": {"normal_module_mm": 4.0, "center_distance_mm": 80.0, "pinion": GEAR, "wheel": GEAR},
@@ -45,9 +47,8 @@ def test_the_pairs_are_those_of_python(served: tuple[LineOfActionClient, TestCli
     seen: list[JobState] = []
     told = client.scatter(CASE, seen.append, **SAMPLING)
     # on the gears as the job condensed them: linear algebra in more threads sums in another order
-    sampling = Sampling(8, 0.0, "normal", 40, 3)
-    here = scatter_of_case(validated(Case, CASE), sampling, data / "compliance", lambda *_: None, InProcess())
-    expected = json.loads(json.dumps(scatter_json(here))) | {"warnings": []}
+    here = draw(validated(Case, CASE), Inputs(**SAMPLING), Means(data, lambda *_: None))
+    expected = json.loads(json.dumps(facts(here))) | {"warnings": []}
     assert {**told, "cost": None} == {**expected, "cost": None}
     assert len(told["peak_to_peak_um"]) == 40 and told["names"] == [
         "pinion.profile_slope_um", "wheel.profile_slope_um",

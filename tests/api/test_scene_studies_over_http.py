@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -18,19 +18,18 @@ from dynamics.periodic import SteadyStates
 from fe_contact.ste import SteDatabase
 from service.app import create_app
 from service.client import JobState, LineOfActionClient
-from service.convert.modal import modes_json, modes_of
-from service.convert.response import response_json
 from service.convert.scene import dynamic_scene
-from service.convert.steady import steady_json
-from service.jobs.catalogue import RESPONSE, STEADY
+from service.jobs.catalogue import default_registry
 from service.jobs.order import WorkOrder
-from service.jobs.process import Process
 from service.problems import BadInput
+from service.registry import STUDIES
 from service.schemas import read_model
-from service.schemas.dynamic_studies import ModesInput
 from service.schemas.scene import SceneInput
 from service.settings import Settings
 from service.store import stored_results
+from service.studies.computation import Means
+from service.studies.modes import Inputs
+from service.studies.modes.run import facts, modes_of
 
 KEY = "ab" * 32
 
@@ -76,24 +75,23 @@ def test_modes_are_those_of_python(
     seen: list[JobState] = []
     file = client.modes_file(scene, seen.append, speed_rpm=[0.0, 3000.0], orders=4)
     found = ModalAnalysis.from_netcdf(file)
-    python = modes_of(here(scene, tmp_path), ModesInput(speed_rpm=(0.0, 3000.0), orders=4), none)
+    python = modes_of(here(scene, tmp_path), Inputs(speed_rpm=(0.0, 3000.0), orders=4), Means(tmp_path, none))
     for name in ("natural_frequency", "frequency", "critical_speed", "strain_energy"):
         np.testing.assert_array_equal(getattr(found, name), getattr(python, name))
     assert [state.progress for state in seen] == sorted(state.progress for state in seen)
     answer = http.get(f"/v1/modes/{client.result(seen[-1].id).key}").json()
-    assert {name: answer[name] for name in modes_json(found)} == modes_json(found)
+    assert {name: answer[name] for name in facts(found)} == facts(found)
 
 
 @pytest.mark.parametrize(
-    ("process", "further", "path", "result", "figures"),
+    ("name", "further", "path", "result"),
     [
-        (RESPONSE, {"speed_rpm": [300.0, 600.0], "orders": 3}, "responses", ForcedResponse, response_json),
+        ("response", {"speed_rpm": [300.0, 600.0], "orders": 3}, "responses", ForcedResponse),
         (
-            STEADY,
+            "steady",
             {"speed_rpm": [3000.0, 3200.0], "settling_periods": 2},
             "steadies",
             SteadyStates,
-            steady_json,
         ),
     ],
 )
@@ -101,14 +99,14 @@ def test_the_work_of_a_study_is_served_as_figures_and_as_its_file(
     served: tuple[LineOfActionClient, TestClient],
     scene: SceneInput,
     tmp_path: Path,
-    process: Process,
+    name: str,
     further: dict[str, Any],
     path: str,
     result: Any,
-    figures: Callable[[Any], dict[str, Any]],
 ) -> None:
     """The work itself, in this process: a child is a matter of the jobs, which the modes go through."""
     client, http = served
+    process, figures = default_registry()[name], STUDIES[name].run.facts
     data = http.app.state.context.settings.data_directory  # type: ignore[attr-defined]
     inputs = {"scene": scene.model_dump(mode="json"), **further}
     given = process.inputs.model_validate_json(json.dumps(inputs))

@@ -16,14 +16,16 @@ from fe_contact.analysis import ablation
 from fe_contact.analysis.ablation import Figures
 from fe_contact.ste import SteDatabase
 from service.cli.commands import app
-from service.convert.ablation import ablation_json, ablation_of_case
 from service.jobs.live_work import live_plan
-from service.report.ablation import case_ablation_table
 from service.report.as_json import stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
 from service.report.page import html
 from service.schemas import Case
+from service.studies.ablate import Inputs
+from service.studies.ablate.page import case_ablation_table
+from service.studies.ablate.run import ablation_of, facts
+from service.studies.computation import Means
 
 Json = dict[str, Any]
 SPUR = {"teeth": 20, "face_width_mm": 10.0, "bore_diameter_mm": 40.0}
@@ -123,7 +125,7 @@ def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: py
         for s in stored_figures({"kind": "database", "file": str(table)})["sections"]
         if s["title"] == "Effects"
     )
-    estimated = {entry["name"]: entry for entry in ablated(case, monkeypatch)["effects"]}
+    estimated = {entry["name"]: entry for entry in ablated(case, tmp_path, monkeypatch)["effects"]}
 
     text = html(report, {figure.key: b"" for section in report.sections for figure in section.figures})
     shown = table_words(page["tables"])
@@ -152,14 +154,15 @@ def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: py
     assert sized >= 2
 
 
-def ablated(case: Json, monkeypatch: pytest.MonkeyPatch) -> Json:
+def ablated(case: Json, home: Path, monkeypatch: pytest.MonkeyPatch) -> Json:
     """The JSON of an ablation of all effects; what it computes is not of interest here, and is not."""
     one = np.ones(len(case["load"]["torque_n_m"]))
     figures = Figures(1e-5 * one, 1e-6 * one, np.ones((one.size, 5)), 1.0, 1.0)
     monkeypatch.setattr(ablation, "_figures", lambda *_: figures)
-    found = ablation_of_case(Case.model_validate_json(json.dumps(case)), None, None, lambda *_: None)
+    means = Means(home, lambda *_: None)
+    found = ablation_of(Case.model_validate_json(json.dumps(case)), Inputs(), means)
     rows = {row[0]: row for row in case_ablation_table(found).rows}
-    content = ablation_json(found)
+    content = facts(found)
     for entry in content["effects"]:
         if entry["estimate"] is not None and not entry["estimate"]["trifle"]:
             assert rows[entry["name"]][3] in entry["estimate"]["words"]

@@ -12,9 +12,9 @@ from typer.testing import CliRunner
 
 from dynamics.ablation import ablate
 from service.cli.commands import app
-from service.convert.ablation import ablation_json
-from service.report.ablation import scene_ablation_figure, scene_ablation_table
 from service.report.image import png
+from service.studies.ablate.page import scene_ablation_figure, scene_ablation_table
+from service.studies.ablate.run import facts
 
 CASE = """
 [pair]
@@ -74,7 +74,7 @@ def test_a_case_gives_table_json_and_picture(case: Path, tmp_path: Path) -> None
 
 def test_a_scene_gives_orders_of_errors_and_bearing_forces() -> None:
     made = ablate(gear_pair_scene(duration=0.03), only=["lateral", "friction"])
-    told = ablation_json(made)
+    told = facts(made)
     assert told["of"] == "scene"
     (lateral,) = told["effects"]
     assert np.shape(lateral["order_change_um"]) == (1, 5)

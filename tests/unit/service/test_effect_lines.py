@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fe_contact import FlankModification, Gear, GearPair, analyze
-from service.cli.effects import assumption_lines, ledger_lines, run_lines
+from service.convert.effect_lines import assumption_lines, ledger_lines, run_lines
 
 GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
 

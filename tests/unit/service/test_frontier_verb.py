@@ -16,10 +16,11 @@ from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status
 from service.cli.commands import app
-from service.report.frontier import frontier_figure, frontier_page, frontier_table
 from service.report.image import png
 from service.report.interactive import plotly_figure
 from service.report.page import html
+from service.studies.frontier.of_case import frontier_figure, frontier_table
+from service.studies.frontier.page import frontier_page
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 
@@ -104,11 +105,11 @@ def test_full_contact_is_for_cases(tmp_path: Path) -> None:
     scene = EXAMPLE.with_name("palermo_scene.toml")
     done = CliRunner().invoke(app, ["frontier", str(scene), "--full-contact", "2"])
     assert done.exit_code == 2
-    assert "--full-contact" in done.stderr
+    assert "full_contact = 2: must be left out for a scene" in done.stderr
 
 
 def test_the_page_says_what_was_not_run(found: Frontier) -> None:
-    page = frontier_page(found, "Ladder")
+    page = frontier_page(found)
     text = html(page, {"frontier": b""})
     assert "no mesh" in text
     assert len(frontier_table(found).rows) == 3

@@ -15,12 +15,12 @@ from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
 from fe_contact.ste import SteDatabase
 from service.cli.commands import app
-from service.cli.speed_list import speed_list
+from service.cli.number_list import number_list
 from service.client.portable import scene_of
-from service.convert.modal import modes_json
 from service.convert.scene import dynamic_scene
 from service.problems import EXIT_FAILED, BadInput
 from service.report import write_report
+from service.studies.modes.run import facts
 
 
 def loa(*arguments: object) -> Result:
@@ -63,7 +63,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     written = json.loads(files["json"].read_text())
     written.pop("cpu_seconds")
     assert written.pop("warnings") == []
-    assert written == {k: v for k, v in modes_json(found).items() if k != "cpu_seconds"}
+    assert written == {k: v for k, v in facts(found).items() if k != "cpu_seconds"}
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 400
     assert "Campbell diagram: whirl modes over speed" in files["html"].read_text()
@@ -102,12 +102,11 @@ def test_a_load_that_parts_the_flanks_is_refused_by_name(scene: Path) -> None:
 
 
 def test_ranges_hold_their_last_speed() -> None:
-    assert speed_list("0:1:0.1") == pytest.approx(np.linspace(0.0, 1.0, 11))
-    assert speed_list("100:300:150") == [100.0, 250.0]
-    assert speed_list("7:7:1") == [7.0]
-    assert speed_list(None) == []
+    assert number_list("--speed-rpm", "0:1:0.1") == pytest.approx(np.linspace(0.0, 1.0, 11))
+    assert number_list("--speed-rpm", "100:300:150") == [100.0, 250.0]
+    assert number_list("--speed-rpm", "7:7:1") == [7.0]
     with pytest.raises(BadInput):
-        speed_list("0:nan:1")
+        number_list("--speed-rpm", "0:nan:1")
 
 
 def test_a_load_far_beyond_the_table_ends_the_study_or_is_told(scene: Path) -> None:

@@ -111,7 +111,7 @@ def test_an_interrupted_search_writes_its_best_and_says_so(
 
         yield cancel
 
-    monkeypatch.setattr("service.cli.optimise.until_interrupted", interrupted_after_thirty)
+    monkeypatch.setattr("service.cli.study.until_interrupted", interrupted_after_thirty)
     ran = CliRunner().invoke(app, ["optimise", *map(str, files), "-o", str(tmp_path / "best.json")])
     assert ran.exit_code == 130, ran.output
     told = json.loads((tmp_path / "best.json").read_text(encoding="utf-8"))

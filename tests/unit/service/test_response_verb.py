@@ -13,8 +13,8 @@ from typer.testing import CliRunner, Result
 
 from dynamics.linearize import ForcedResponse, peaks
 from service.cli.commands import app
-from service.convert.response import response_json
 from service.report import write_report
+from service.studies.response.run import facts
 
 
 def loa(*arguments: object) -> Result:
@@ -63,7 +63,7 @@ def test_the_table_and_every_kind_of_file_say_the_same(scene: Path, tmp_path: Pa
     written = json.loads(files["json"].read_text())
     written.pop("cpu_seconds")
     assert written.pop("warnings") == []
-    assert written == {k: v for k, v in response_json(found).items() if k != "cpu_seconds"}
+    assert written == {k: v for k, v in facts(found).items() if k != "cpu_seconds"}
     width, height = struct.unpack(">II", files["png"].read_bytes()[16:24])
     assert width > 1000 and height > 1000
     page = tmp_path / "page.html"

@@ -14,7 +14,8 @@ from dynamics.accuracy.vibration import Vibration
 from service.cli.commands import app
 from service.report.image import png
 from service.report.page import html
-from service.report.run_frontier import run_frontier_figure, run_frontier_page, run_frontier_table
+from service.studies.frontier.of_scene import run_frontier_figure, run_frontier_table
+from service.studies.frontier.page import frontier_page
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
 
@@ -41,7 +42,7 @@ def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
 
 
 def test_the_page_says_what_was_not_run_and_leaves_unknown_errors_out(found: Frontier) -> None:
-    assert "nothing more" in html(run_frontier_page(found, "Ladder"), {"run_frontier": b""})
+    assert "nothing more" in html(frontier_page(found), {"run_frontier": b""})
     assert run_frontier_table(found).rows[1][4] == ""
 
 

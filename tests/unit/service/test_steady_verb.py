@@ -16,8 +16,8 @@ from typer.testing import CliRunner, Result
 
 from dynamics.periodic import SteadyStates, find_orbit
 from service.cli.commands import app
-from service.convert.steady import steady_json
 from service.report import write_report
+from service.studies.steady.run import facts
 
 
 def loa(*arguments: object) -> Result:
@@ -38,10 +38,10 @@ def test_every_kind_of_output_says_the_same(scene: Path, tmp_path: Path) -> None
     answer = loa(scene, "--speed-rpm", "3000,3200", "--settling-periods", 2, "--json")
     printed, found = json.loads(answer.stdout), SteadyStates.from_netcdf(files["nc"])
     written = json.loads(files["json"].read_text())
-    for facts in (printed, written):
-        facts.pop("cpu_seconds")
-        assert facts.pop("warnings") == []
-        assert facts == {k: v for k, v in steady_json(found).items() if k != "cpu_seconds"}
+    for told in (printed, written):
+        told.pop("cpu_seconds")
+        assert told.pop("warnings") == []
+        assert told == {k: v for k, v in facts(found).items() if k != "cpu_seconds"}
     assert [point["speed_rpm"] for point in printed["up"]] == pytest.approx([3000.0, 3200.0])
     assert [point["speed_rpm"] for point in printed["down"]] == pytest.approx([3200.0, 3000.0])
     up, down = printed["up"][0], printed["down"][1]
@@ -83,7 +83,7 @@ def test_ctrl_c_ends_a_study_without_a_file(
 
         yield report
 
-    monkeypatch.setattr("service.cli.dynamic_studies.progress_bar", interrupting)
+    monkeypatch.setattr("service.cli.study.progress_bar", interrupting)
     handler = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         result = loa(scene, "--speed-rpm", "3000,3200", "--settling-periods", 2, "-o", tmp_path / "s.nc")

@@ -6,17 +6,15 @@ import json
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from fe_contact.analysis import Frontier
 from fe_contact.analysis.fidelity_result import FidelityResult
 from fe_contact.ste import SteDatabase
-from service.problems import NotFound
 from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of
-from service.report.frontier import frontier_page
 from service.report.inputs import read_inputs
-from service.report.stored_ladder import stored_ladder
+from service.studies.frontier.page import frontier_page
+from service.studies.frontier.run import read
 
 
 def rung(name: str, error: float, seconds: float) -> FidelityResult:
@@ -51,11 +49,6 @@ def test_a_stored_table_has_the_figures_of_its_report(database: SteDatabase, tmp
 def test_a_stored_ladder_is_drawn_as_a_fresh_one(tmp_path: Path) -> None:
     file = tmp_path / "frontier.json"
     file.write_text(json.dumps(LADDER.to_json(), allow_nan=False), encoding="utf-8")
-    fresh = page_json(frontier_page(LADDER, "What accuracy costs in time"))
+    fresh = page_json(frontier_page(LADDER))
     assert stored_figures({"kind": "frontier", "file": str(file)}) == fresh
-    assert stored_ladder(LADDER.to_json()).to_json() == LADDER.to_json()
-
-
-def test_a_kind_without_figures_says_so(tmp_path: Path) -> None:
-    with pytest.raises(NotFound, match="walk"):
-        stored_figures({"kind": "walk", "file": str(tmp_path / "walk.json")})
+    assert read(file).to_json() == LADDER.to_json()

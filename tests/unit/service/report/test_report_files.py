@@ -9,7 +9,7 @@ from dynamics.results import RunResult
 from fe_contact.ste import SteDatabase
 from service.problems import BadInput
 from service.report import write_report
-from service.report.inputs import file_kind
+from service.report.inputs import read_inputs
 
 
 @pytest.fixture
@@ -31,7 +31,9 @@ DYNAMIC = {
 
 
 def test_kinds_are_read_from_the_files(files: tuple[Path, Path]) -> None:
-    assert [file_kind(file) for file in files] == ["database", "run"]
+    table, run = (read_inputs([file]) for file in files)
+    assert table.run is run.database is None
+    assert table.database is not None and run.run is not None
 
 
 def test_a_page_and_all_images_of_both(files: tuple[Path, Path], tmp_path: Path) -> None:

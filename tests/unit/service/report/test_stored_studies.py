@@ -29,19 +29,18 @@ from fe_contact.microgeometry import (
 )
 from fe_contact.options import AnalysisOptions, Run
 from fe_contact.ste import SteDatabase
-from service.convert.ablation import ablation_json
-from service.convert.optimisation import optimisation_json
-from service.convert.scatter import scatter_json
 from service.problems import BadInput
-from service.report.ablation_page import ablation_page
 from service.report.as_json import page_json, stored_figures
 from service.report.content import page_of
 from service.report.inputs import read_inputs
-from service.report.optimisation import optimisation_page
 from service.report.page import Page
-from service.report.run_frontier import run_frontier_page
-from service.report.scatter import scatter_page
-from service.report.stored_study import LADDER_TITLE
+from service.studies.ablate.page import ablation_page
+from service.studies.ablate.run import facts as ablation_json
+from service.studies.frontier.page import frontier_page
+from service.studies.optimise.page import optimisation_page
+from service.studies.optimise.run import optimisation_json
+from service.studies.scatter import page as scatter_page
+from service.studies.scatter import run as scatter_run
 
 RELIEF = FlankModification(tip_relief=15e-6, tip_relief_length=1.2e-3)
 GEAR = Gear(20, 4e-3, 0.025, 0.04, modification=RELIEF)
@@ -98,10 +97,10 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
     return {
         "ablation of a case": ("ablation", ablation_json(of_case), ablation_page(of_case)),
         "ablation of a scene": ("ablation", ablation_json(of_scene), ablation_page(of_scene)),
-        "ladder of a scene": ("frontier", ladder.to_json(), run_frontier_page(ladder, LADDER_TITLE)),
+        "ladder of a scene": ("frontier", ladder.to_json(), frontier_page(ladder)),
         "optimisation": ("optimisation", optimisation_json(found), optimisation_page(found)),
         "optimisation without scatter": ("optimisation", optimisation_json(exact), optimisation_page(exact)),
-        "tolerances": ("scatter", scatter_json(drawn), scatter_page(drawn)),
+        "tolerances": ("scatter", scatter_run.facts(drawn), scatter_page.page(drawn)),
     }
 
 

@@ -1,0 +1,132 @@
+"""The verb of any study: compute, write, print."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+from service.cli.assessed_case import assessed_case
+from service.cli.interrupt import until_interrupted
+from service.cli.number_list import number_list
+from service.cli.output import check_writable, console, output_files, print_json, progress_bar, table
+from service.cli.scene_tables import scene_with_tables
+from service.cli.warned import messages, warnings_so_far
+from service.client.portable import scene_of
+from service.convert.stamp import stamp
+from service.convert.task_workers import ExecutorChoice, open_executor
+from service.directories import cache_home
+from service.problems import BadInput, JobFailed
+from service.registry import Study
+from service.report.image import png
+from service.report.write import write_whole
+from service.schemas import Case, read_model, read_table, validated
+from service.schemas.scene import SceneInput
+from service.schemas.spelling import item_type, spelling_of
+from service.studies.computation import Means
+
+Json = dict[str, Any]
+Writer = Callable[[Any, Path], object]
+
+
+def run_study(study: Study, given: Json) -> None:
+    """Run a study as its verb was called; `given` holds argument and options by their names."""
+    inputs = _inputs(study, given)
+    targets = _targets(study, given["output"])
+    subject, folder = _read(study, given[study.argument])
+    study.run.check(subject, inputs)
+    executor = ExecutorChoice(given.get("workers", 1), given.get("dask"))
+    stopping = until_interrupted if study.run.interruptible else nullcontext
+    with open_executor(executor) as workers, progress_bar() as report, stopping() as cancel:
+        made: Any = subject
+        if not isinstance(subject, Case):
+            made = scene_with_tables(subject, folder, given["service"], report)
+        found = study.run.compute(made, inputs, Means(cache_home(), report, workers, cancel))
+        interrupted = cancel is not None and cancel()
+    for target in targets:
+        target.parent.mkdir(exist_ok=True)
+        _writers(study)[target.suffix](found, target)
+        stamp(target, warnings_so_far())
+    if given["json"]:
+        print_json(_written(study, targets) | study.run.facts(found))
+    else:
+        _show(study, found, targets)
+    if interrupted:
+        raise KeyboardInterrupt("interrupted. What is above is the best of what was computed so far.")
+    if failure := study.run.failure(found):
+        raise JobFailed(failure)
+
+
+def _inputs(study: Study, given: Json) -> Any:
+    """Return the inputs, from their file or the options that were given."""
+    if study.from_file:
+        return read_model(study.inputs, given["study"])
+    return validated(study.inputs, _fields(study, given))
+
+
+def _fields(study: Study, given: Json) -> Json:
+    """Return the fields of the inputs, from the options that were given."""
+    fields = {}
+    for name, field in study.inputs.model_fields.items():
+        value, spelling = given[name], spelling_of(field)
+        if spelling and spelling.value is not None:
+            value = spelling.value if value else field.default
+        elif value is not None and (kind := item_type(field)):
+            option = f"--{name.replace('_', '-')}"
+            words = [part.strip() for part in value.split(",")]
+            value = number_list(option, value) if kind is float else words
+        if value is not None:
+            fields[name] = value
+    return fields
+
+
+def _read(study: Study, file: Path) -> tuple[Case | SceneInput, Path]:
+    """Return the case or the scene in a file and its folder; what is implausible about a case is said."""
+    if study.subject == "scene" or (study.subject != "case" and "shafts" in read_table(file)):
+        return scene_of(file)
+    return assessed_case(file), file.parent
+
+
+def _targets(study: Study, output: Path | None) -> list[Path]:
+    """Return the files to write; raises `BadInput` if one cannot be."""
+    if output is None:
+        return []
+    if study.folder:
+        return output_files(output, study.folder, study.endings)
+    if output.suffix not in study.endings:
+        raise BadInput.of("output", str(output), f"a file ending in one of {', '.join(study.endings)}")
+    check_writable(output)
+    return [output]
+
+
+def _writers(study: Study) -> dict[str, Writer]:
+    """Return what writes a result, by the ending of the file."""
+    run, page = study.run, study.page
+    return {
+        ".nc": run.save,
+        ".json": run.save_facts,
+        ".png": lambda found, file: file.write_bytes(png(page.figure(found))),
+        ".html": lambda found, file: write_whole(page.page(found), file, warnings=messages()),
+        **run.writers,
+    }
+
+
+def _written(study: Study, targets: list[Path]) -> Json:
+    """Return the files that were written, under the names that verbs have for them."""
+    names = [str(target) for target in targets]
+    if study.folder:
+        return {"written": names}
+    return {"written": names[0], "file": names[0]} if names else {"written": None}
+
+
+def _show(study: Study, found: Any, targets: list[Path]) -> None:
+    """Print tables and lines for people."""
+    out = console()
+    for part in study.page.text(found):
+        if isinstance(part, str):
+            out.print(part, highlight=False)
+        else:
+            out.print(table(part.head, part.rows, part.caption))
+    for target in targets:
+        out.print(f"written to {target}", highlight=False)

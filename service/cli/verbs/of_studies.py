@@ -1,0 +1,95 @@
+"""The verbs of studies: arguments and options from the registry and the fields of their inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from inspect import Parameter, Signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+from typer.core import TyperGroup
+
+from service.cli.guard import computing
+from service.cli.verbs.options import AsJson, DaskScheduler, TableService, TaskWorkers
+from service.registry import STUDIES, Study
+from service.schemas.spelling import is_list, spelling_of
+
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+
+
+class StudyGroup(TyperGroup):
+    """A group of verbs that has those of all studies too; each is made when it is requested."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Return the names of all verbs."""
+        return [*super().list_commands(ctx), *STUDIES]
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """Return a verb."""
+        study = STUDIES.get(cmd_name)
+        return super().get_command(ctx, cmd_name) if study is None else _command(study)
+
+
+def _command(study: Study) -> Any:
+    """Return the verb of a study."""
+    verb = typer.Typer(add_completion=False, rich_markup_mode=None)
+    example = f"Example: loa {study.name} {study.example}"
+    verb.command(study.name, epilog=example, short_help=study.description)(computing(_verb(study)))
+    return typer.main.get_command(verb)
+
+
+def _verb(study: Study) -> Callable[..., None]:
+    """Return the function of a verb, with the signature that it is called by."""
+
+    def verb(**given: Any) -> None:
+        from service.cli.study import run_study  # noqa: PLC0415 (start-up time)
+
+        run_study(study, given)
+
+    verb.__doc__ = study.description
+    verb.__signature__ = Signature(list(_parameters(study)))  # type: ignore[attr-defined]
+    return verb
+
+
+def _parameters(study: Study) -> Iterator[Parameter]:
+    """Yield argument and options of a verb."""
+    text = f"{study.subject.capitalize()} file (TOML, or JSON of the same shape)."
+    argument = typer.Argument(help=text, metavar=study.subject.upper().replace(" ", "_"))
+    yield _parameter(study.argument, Annotated[Path, argument])
+    if study.from_file:
+        yield _parameter("study", Annotated[Path, typer.Argument(help="File of what is varied and how.")])
+    else:
+        yield from (_option(name, field) for name, field in study.inputs.model_fields.items())
+    place = "Folder, or a file" if study.folder else "File to write,"
+    target = typer.Option("-o", "--output", help=f"{place} ending in one of {', '.join(study.endings)}.")
+    yield _parameter("output", Annotated[Path | None, target], None)
+    if study.shared:
+        yield _parameter("workers", TaskWorkers, 1)
+        yield _parameter("dask", DaskScheduler, None)
+    if study.subject != "case":
+        yield _parameter("service", TableService, None)
+    yield _parameter("json", AsJson, False)
+
+
+def _option(name: str, field: FieldInfo) -> Parameter:
+    """Return the option of a field of the inputs; lists are typed as text."""
+    spelling = spelling_of(field)
+    option = typer.Option(*([spelling.option] if spelling else []), help=field.description)
+    if spelling and spelling.value is not None:
+        return _parameter(name, Annotated[bool, option], field.default == spelling.value)
+    kind = str | None if is_list(field) else field.annotation
+    if field.is_required():
+        return _parameter(name, Annotated[str if is_list(field) else kind, option])
+    return _parameter(name, Annotated[kind, option], _typed(field.default))
+
+
+def _typed(default: Any) -> Any:
+    """Return a default as it would be typed; an empty list is none."""
+    return ",".join(f"{item:g}" for item in default) or None if isinstance(default, tuple) else default
+
+
+def _parameter(name: str, annotation: Any, default: Any = Parameter.empty) -> Parameter:
+    """Return a parameter that is given by its name."""
+    return Parameter(name, Parameter.KEYWORD_ONLY, annotation=annotation, default=default)

@@ -1,0 +1,196 @@
+"""The studies that the service offers: a row each.
+
+Process, routes, result kind, client method, verb, report and example follow from the row and from the package
+``service.studies.NAME``, which is loaded when it is requested: its inputs, its `run` and its `page`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any, Literal
+
+from service.loading import LOADING
+
+NETCDF = "application/x-netcdf"
+JSON = "application/json"
+
+
+@dataclass(frozen=True)
+class Study:
+    """A row of the registry.
+
+    Attributes
+    ----------
+    name : str
+        Of package, process and verb; the client's method adds ``_file`` where the result is netCDF.
+    subject : "case", "scene" or "case or scene"
+        What is studied.
+    title, description : str
+        A noun, and an imperative sentence of what is done.
+    example : str
+        Arguments of the verb.
+    kind, collection : str
+        Kind of the result, which is the process' output too; its path is ``/v1/COLLECTION/HASH``.
+    stages : tuple of (str, float)
+        Stages of the work, in order, and their shares of the time.
+    version : str
+        Part of the result's content hash: another one, and stored results are computed again.
+    media_type : str
+        Of the result's file.
+    shared : bool
+        Whether workers can share its tasks.
+    folder : str
+        Name of the files, but for their endings, that the verb writes to a folder; empty: it writes one file.
+    from_file : bool
+        Whether the inputs are a file of the verb and a mapping of the client, rather than options.
+    further : tuple of str
+        Endings of files that the verb writes beside those of all studies.
+    """
+
+    name: str
+    subject: Literal["case", "scene", "case or scene"]
+    title: str
+    description: str
+    example: str
+    kind: str
+    collection: str
+    stages: tuple[tuple[str, float], ...]
+    version: str = "2"
+    media_type: str = JSON
+    shared: bool = False
+    folder: str = ""
+    from_file: bool = False
+    further: tuple[str, ...] = ()
+
+    @property
+    def argument(self) -> str:
+        """Name of what is studied, as the client's method and the verb have it."""
+        return "given" if self.subject == "case or scene" else self.subject
+
+    @property
+    def endings(self) -> tuple[str, ...]:
+        """Endings of the files that the verb writes."""
+        return (*([".nc"] if self.media_type == NETCDF else []), ".json", ".png", ".html", *self.further)
+
+    @property
+    def inputs(self) -> Any:
+        """Model of what is varied."""
+        return self._part("", "Inputs")
+
+    @property
+    def run(self) -> Any:
+        """Its `service.studies.computation.Computation`."""
+        return self._part(".run", "RUN")
+
+    @property
+    def page(self) -> Any:
+        """Its `service.studies.presentation.Presentation`."""
+        return self._part(".page", "PAGE")
+
+    def _part(self, module: str, name: str) -> Any:
+        """Load a module of the package; return what it offers."""
+        with LOADING:
+            return getattr(import_module(f"service.studies.{self.name}{module}"), name)
+
+
+STUDIES: dict[str, Study] = {
+    study.name: study
+    for study in (
+        Study(
+            "ablate",
+            "case or scene",
+            "What each effect of a case or a scene changes",
+            "Switch each effect of a case or a scene over: what it changes, what was estimated, what it "
+            "costs.",
+            "examples/palermo_spur_20_20.toml -o ablation.png",
+            kind="ablation",
+            collection="ablations",
+            stages=(("analysis", 0.1), ("ablation", 0.9)),
+        ),
+        Study(
+            "frontier",
+            "case or scene",
+            "What accuracy costs in time on a case or a scene",
+            "Run the ladder on a case (ISO 6336 to fine finite elements) or on a scene: error against time.",
+            "examples/palermo_spur_20_20.toml -o frontier",
+            kind="frontier",
+            collection="frontiers",
+            stages=(("analysis", 0.1), ("ladder", 0.9)),
+            folder="frontier",
+        ),
+        Study(
+            "optimise",
+            "case",
+            "Micro-geometry of least transmission error",
+            "Choose flank modifications for the least peak-to-peak STE over torques and scatter.",
+            "examples/palermo_spur_20_20.toml examples/optimise_tip_relief.toml -o best",
+            kind="optimisation",
+            collection="optimisations",
+            stages=(("compliance", 0.2), ("search", 0.6), ("confirmation", 0.2)),
+            version="3",
+            shared=True,
+            folder="optimum",
+            from_file=True,
+            further=(".toml",),
+        ),
+        Study(
+            "scatter",
+            "case",
+            "Transmission error within tolerances",
+            "Draw pairs within tolerances (Monte Carlo): distribution of peak-to-peak STE with confidence "
+            "bounds.",
+            "examples/sensitivity_automotive.toml --samples 400 -o scatter.png",
+            kind="scatter",
+            collection="scatters",
+            stages=(("compliance", 0.2), ("samples", 0.7), ("confirmation", 0.1)),
+            shared=True,
+        ),
+        Study(
+            "modes",
+            "scene",
+            "Modes of a geared system",
+            "Find natural modes about the loaded equilibrium, whirl modes over speed, and critical speeds.",
+            "examples/palermo_scene.toml --speed-rpm 0:15000:250 -o modes.png",
+            kind="modes",
+            collection="modes",
+            stages=(("analysis", 0.9), ("modes", 0.1)),
+            media_type=NETCDF,
+        ),
+        Study(
+            "response",
+            "scene",
+            "Forced response of a geared system",
+            "Find the linear response to the transmission error over speed: mesh and bearing forces by "
+            "order.",
+            "examples/palermo_scene.toml --speed-rpm 100:6000:25 -o response.png",
+            kind="response",
+            collection="responses",
+            stages=(("analysis", 0.9), ("response", 0.1)),
+            media_type=NETCDF,
+        ),
+        Study(
+            "steady",
+            "scene",
+            "Periodic steady states of a geared system",
+            "Find periodic steady states at rising and falling speeds by shooting: stability, jumps, "
+            "contact.",
+            "scene.toml --speed-rpm 11000:13500:100 -o steady.png",
+            kind="steady",
+            collection="steadies",
+            stages=(("analysis", 0.4), ("up", 0.2), ("down", 0.2), ("branch", 0.2)),
+            media_type=NETCDF,
+        ),
+    )
+}
+"""By name."""
+
+
+def study_of(kind: str) -> Study | None:
+    """Return the study whose results are of a kind, None if no study's are."""
+    return next((study for study in STUDIES.values() if study.kind == kind), None)
+
+
+def studies_of(subject: str) -> tuple[str, ...]:
+    """Return the names of the studies of cases, or of scenes."""
+    return tuple(study.name for study in STUDIES.values() if study.subject == subject)

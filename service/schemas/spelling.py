@@ -1,0 +1,40 @@
+"""How a field of a study's inputs is written on the command line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
+
+if TYPE_CHECKING:
+    from pydantic.fields import FieldInfo
+
+
+@dataclass(frozen=True)
+class Spelling:
+    """Beside the type of a field: its option, and the value that the option stands for if it takes none."""
+
+    option: str
+    value: str | None = None
+
+
+def spelling_of(field: FieldInfo) -> Spelling | None:
+    """Return the spelling of a field, None if it is spelled as it is called."""
+    return next((part for part in field.metadata if isinstance(part, Spelling)), None)
+
+
+def is_list(field: FieldInfo) -> bool:
+    """Tell whether a field holds a list, of which there may be none."""
+    return item_type(field) is not None
+
+
+def item_type(field: FieldInfo) -> object:
+    """Return the type of the items of a list, None of what is no list."""
+    for kind in map(_bare, (field.annotation, *get_args(field.annotation))):
+        if get_origin(kind) is tuple:
+            return _bare(get_args(kind)[0])
+    return None
+
+
+def _bare(kind: Any) -> Any:
+    """Return a type without what is written beside it."""
+    return kind.__origin__ if get_origin(kind) is Annotated else kind

@@ -1,0 +1,97 @@
+"""What the module `run` of a study offers."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from fe_contact.workers import InProcess, Workers
+from service.schemas.model import BoundaryModel
+
+Json = dict[str, Any]
+Result = Any
+
+
+@dataclass(frozen=True)
+class Means:
+    """What a study works with.
+
+    Attributes
+    ----------
+    home : Path
+        Folder of the caches.
+    report : callable
+        Called as report(stage, fraction).
+    workers : Workers
+        Who does the tasks.
+    cancel : callable, optional
+        Says whether to end with the best so far.
+    """
+
+    home: Path
+    report: Callable[[str, float], None]
+    workers: Workers = field(default_factory=InProcess)
+    cancel: Callable[[], bool] | None = None
+
+
+def with_defaults(inputs: BoundaryModel) -> Json:
+    """Return inputs as JSON, with all defaults."""
+    return inputs.model_dump(mode="json")
+
+
+@dataclass(frozen=True)
+class Computation:
+    """The work of a study.
+
+    Attributes
+    ----------
+    compute : callable
+        ``compute(subject, inputs, means)``: case or `dynamics.scene.Scene`, model of the inputs and `Means`
+        to the result. Raises `BadInput`, `JobFailed`.
+    facts : callable
+        Figures of a result in the units of the boundary, as they are printed and served.
+    read : callable
+        A file of the service to the result. Raises the libraries' errors, or KeyError, TypeError, ValueError.
+    marks : mapping
+        By what such a file is known: names in its JSON, or attributes of its netCDF file, with their values;
+        None: any.
+    write : callable
+        Result and path to the file; default: the figures as JSON.
+    check : callable
+        ``check(subject, inputs)`` refuses what a schema accepts, and computes nothing; raises `BadInput`.
+        Here and below a scene is a `SceneInput`.
+    normalized : callable
+        ``normalized(subject, inputs)``: the inputs of a job as JSON, alike for equal questions; may raise
+        `BadInput`. Default: with all defaults.
+    interruptible : bool
+        Whether it ends with the best so far when `Means.cancel` says so.
+    writers : mapping
+        Further files of the verb, by their ending.
+    failure : callable
+        Says what of a result was not found; empty if nothing is missing.
+    """
+
+    compute: Callable[[Any, Any, Means], Result]
+    facts: Callable[[Result], Json]
+    read: Callable[[Path], Result]
+    marks: Mapping[str, str | None]
+    write: Callable[[Result, Path], None] | None = None
+    check: Callable[[Any, Any], None] = lambda _subject, _inputs: None
+    normalized: Callable[[Any, Any], Json] = lambda _subject, inputs: with_defaults(inputs)
+    interruptible: bool = False
+    writers: Mapping[str, Callable[[Result, Path], object]] = field(default_factory=dict)
+    failure: Callable[[Result], str] = lambda _found: ""
+
+    def save(self, found: Result, file: Path) -> None:
+        """Write the file of the service."""
+        if self.write is None:
+            self.save_facts(found, file)
+        else:
+            self.write(found, file)
+
+    def save_facts(self, found: Result, file: Path) -> None:
+        """Write the figures as JSON."""
+        file.write_text(f"{json.dumps(self.facts(found), allow_nan=False)}\n", encoding="utf-8")

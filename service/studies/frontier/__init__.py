@@ -1,0 +1,32 @@
+"""The accuracy ladder of a case or a scene: error against time."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field, Strict
+
+from service.schemas.case_or_scene import Name
+from service.schemas.model import BoundaryModel
+
+MOST_FULL_CONTACT = 64
+
+
+class Inputs(BoundaryModel):
+    """The rungs to run, and full contact beside those of a case."""
+
+    rungs: Annotated[tuple[Name, ...], Strict(False)] | None = Field(
+        default=None,
+        min_length=1,
+        max_length=64,
+        description="Rungs to run, by name, at least two; left out: all that are valid",
+        examples=[["thin_slices", "corrected", "3d_standard"]],
+    )
+    full_contact: int | None = Field(
+        default=None,
+        ge=1,
+        le=MOST_FULL_CONTACT,
+        description="Positions of a case at which full finite-element contact is run beside the ladder, "
+        "about 3 CPU s each in plane strain, 70 or more over the face",
+        examples=[4],
+    )

@@ -1,0 +1,236 @@
+"""A modal analysis: Campbell diagram with mesh orders and critical speeds, energies of the modes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dynamics.linearize import ModalAnalysis
+from service.convert.effect_lines import run_lines
+from service.report import palette
+from service.report.figure import Axis, Dash, Figure, FloatArray, Line, Note, Panel, Table, number
+from service.studies.presentation import Presentation, dynamics_page
+
+RPM = np.pi / 30.0
+CIRCULAR = 0.1  # from this whirl on a mode counts as forward or backward
+ALIKE = 1e-3  # of a frequency or a speed: nearer ones share a line of the tables
+SHOWN_PARTS = 2
+HEADROOM = 1.15  # of the highest mode or order: modes that no order reaches are only in the table
+LEAST_TOP = 1.0  # Hz
+ROOM = 0.03  # of the width, for the name of an order; orders that leave closer stay without
+WHIRLS: dict[str, tuple[str, Dash]] = {
+    "forward whirl": (palette.BLUE, "solid"),
+    "backward whirl": (palette.VERMILLION, "dash"),
+    "in a plane": (palette.MUTED, "solid"),
+}
+
+
+def modal_figures(found: ModalAnalysis) -> tuple[Figure, ...]:
+    """Draw the Campbell diagram, if there are speeds, and the energies."""
+    return (_campbell(found), _energies(found)) if found.speed.size > 1 else (_energies(found),)
+
+
+def whirl_name(whirl: float) -> str:
+    """Name the sense of whirl of a mode."""
+    if abs(whirl) < CIRCULAR:
+        return "in a plane"
+    return "forward whirl" if whirl > 0.0 else "backward whirl"
+
+
+def _campbell(found: ModalAnalysis) -> Figure:
+    """Frequencies over speed."""
+    place = found.speed / RPM
+    reach = float(found.facts["orders"]) * float(np.max(found.mesh_frequency))
+    top = min(HEADROOM * float(np.nanmax(found.frequency)), max(HEADROOM * reach, LEAST_TOP))
+    lines = [*_orders(found, place, top), *_modes(found, place)]
+    if found.critical_speed.size:
+        there = found.critical_speed / RPM
+        lines.append(
+            Line("critical speeds", there, found.critical_frequency, palette.INK, width=0.0, markers=True)
+        )
+    x = Axis(f"speed of {found.facts['leading_shaft']}, rpm", limits=(float(place[0]), float(place[-1])))
+    y = Axis("frequency, Hz", limits=(0.0, top))
+    return Figure(
+        key="modal_campbell",
+        title="Campbell diagram: whirl modes over speed",
+        caption="Damped frequencies about the static equilibrium with gyroscopic, Coriolis and centripetal "
+        "terms of each speed. Dotted: multiples of the mesh frequency. Points: critical speeds.",
+        alternative=_words(found),
+        content=(Panel(x, y, tuple(lines), notes=tuple(_order_notes(found, place, top))),),
+        table=critical_table(found),
+    )
+
+
+def _orders(found: ModalAnalysis, place: FloatArray, top: float) -> Iterator[Line]:
+    """Multiples of every mesh frequency, each once."""
+    for mesh in _different(found):
+        for order in range(1, int(found.facts["orders"]) + 1):
+            height = order * found.mesh_frequency[mesh]
+            yield Line(
+                "mesh orders", place, np.where(height <= top, height, np.nan), palette.PURPLE, "dot", 1.0
+            )
+
+
+def _different(found: ModalAnalysis) -> list[int]:
+    """Meshes whose frequency no earlier one has."""
+    last = found.mesh_frequency[:, -1]
+    return [
+        m for m in range(last.size) if last[m] > 0.0 and not np.any(np.isclose(last[:m], last[m], rtol=1e-9))
+    ]
+
+
+def _order_notes(found: ModalAnalysis, place: FloatArray, top: float) -> Iterator[Note]:
+    """Name the orders where they leave the panel."""
+    several, width = len(_different(found)) > 1, float(np.ptp(place))
+    for mesh in _different(found):
+        rate, last = float(found.mesh_frequency[mesh, -1] / place[-1]), np.inf
+        for order in range(1, int(found.facts["orders"]) + 1):
+            end = min(float(place[-1]), 0.97 * top / (order * rate))
+            if end <= place[0] or last - end < ROOM * width:
+                continue
+            last, name = end, f"{order}x {found.mesh[mesh]}" if several else f"{order}x"
+            yield Note(end - ROOM * width, order * rate * end * 0.985, name)
+
+
+def _modes(found: ModalAnalysis, place: FloatArray) -> Iterator[Line]:
+    """Every mode by its sense of whirl; points between two speeds take that of the first."""
+    for name, (color, dash) in WHIRLS.items():
+        for mode in range(found.frequency.shape[1]):
+            here = np.array([whirl_name(w) == name for w in found.whirl[:, mode]])
+            if not np.any(here):
+                continue
+            shown = here | np.append(False, here[:-1])
+            yield Line(name, place, np.where(shown, found.frequency[:, mode], np.nan), color, dash, 1.6)
+
+
+def _energies(found: ModalAnalysis) -> Figure:
+    """Show which mesh, bearing, coupling and drive holds each natural mode."""
+    parts = list(dict.fromkeys(found.spring_part))
+    strain = np.array(
+        [[found.held_by(row).get(part, 0.0) for part in parts] for row in found.natural_strain_energy]
+    ).reshape(-1, len(parts))
+    moving = found.natural_frequency > 0.0
+    lines = tuple(
+        Line(
+            part,
+            found.natural_frequency[moving],
+            100.0 * strain[moving, k],
+            palette.category(k),
+            width=0.0,
+            markers=True,
+        )
+        for k, part in enumerate(parts)
+    )
+    return Figure(
+        key="modal_energy",
+        title="What holds the natural modes at rest",
+        caption="Share of each mesh, bearing, coupling and drive in the strain energy of each mode. Modes of "
+        "one frequency are any combination of each other.",
+        alternative="Shares of the strain energy by mode; the table has the largest.",
+        content=(Panel(Axis("natural frequency, Hz"), Axis("strain energy, %"), lines),),
+        table=modes_table(found),
+    )
+
+
+def modes_table(found: ModalAnalysis) -> Table:
+    """List the natural modes at rest; those of one frequency are still one line each."""
+    rows = []
+    for mode, frequency in enumerate(found.natural_frequency):
+        strain, kinetic = found.natural_strain_energy[mode], found.natural_kinetic_energy[mode]
+        rows.append(
+            (
+                str(mode + 1),
+                number(float(frequency), 5),
+                number(100.0 * float(found.natural_damping_ratio[mode]), 3),
+                found.kind(strain, kinetic),
+                _shares(found.held_by(strain)),
+                _shares(found.moved(kinetic)),
+            )
+        )
+    head = ("mode", "frequency, Hz", "damping ratio, %", "kind", "strain energy in", "kinetic energy in")
+    return Table("Natural modes about the static equilibrium, at rest", head, tuple(rows))
+
+
+def _shares(parts: dict[str, float]) -> str:
+    """Write the largest shares."""
+    shown = [f"{name} {100.0 * share:.0f} %" for name, share in parts.items() if share >= 0.005]
+    return ", ".join(shown[:SHOWN_PARTS]) or "none"
+
+
+def critical_table(found: ModalAnalysis) -> Table:
+    """List the critical speeds; modes that an order meets together share a line."""
+    groups: list[list[int]] = []
+    for index, speed in enumerate(found.critical_speed):
+        mate = next((g for g in groups if _together(found, g[0], index, float(speed))), None)
+        if mate is None:
+            groups.append([index])
+        else:
+            mate.append(index)
+    head = ("speed, rpm", "frequency, Hz", "order", "mesh", "modes", "kind", "whirl", "damping ratio, %")
+    rows = tuple(_critical_row(found, group) for group in groups)
+    return Table("Critical speeds: where a mesh order meets a mode", head, rows)
+
+
+def _together(found: ModalAnalysis, first: int, other: int, speed: float) -> bool:
+    """Whether two crossings are of one order at one speed."""
+    same = found.critical_order[first] == found.critical_order[other]
+    same = same and found.critical_mesh[first] == found.critical_mesh[other]
+    return bool(same and abs(found.critical_speed[first] - speed) <= ALIKE * speed)
+
+
+def _critical_row(found: ModalAnalysis, group: list[int]) -> tuple[str, ...]:
+    """One line of the table."""
+    kinds: dict[str, None] = {}
+    senses: dict[str, None] = {}
+    for index in group:
+        mode = int(found.critical_mode[index])
+        known = np.isfinite(found.frequency[:, mode])
+        row = int(np.argmin(np.where(known, np.abs(found.speed - found.critical_speed[index]), np.inf)))
+        kinds[found.kind(found.strain_energy[row, mode], found.kinetic_energy[row, mode])] = None
+        senses[whirl_name(float(found.whirl[row, mode])).removesuffix(" whirl")] = None
+    first = group[0]
+    return (
+        number(float(found.critical_speed[first]) / RPM, 5),
+        number(float(found.critical_frequency[first]), 5),
+        str(int(found.critical_order[first])),
+        found.mesh[int(found.critical_mesh[first])],
+        ", ".join(str(int(found.critical_mode[index]) + 1) for index in group),
+        "; ".join(kinds),
+        ", ".join(senses),
+        number(100.0 * float(np.min(found.critical_damping_ratio[group])), 3),
+    )
+
+
+def _words(found: ModalAnalysis) -> str:
+    """Say how many crossings there are and where the least damped is."""
+    if not found.critical_speed.size:
+        return "No mesh order meets a mode in this range."
+    least = int(np.argmin(found.critical_damping_ratio))
+    return (
+        f"{found.critical_speed.size} crossings; the least damped, with "
+        f"{number(100.0 * float(found.critical_damping_ratio[least]), 3)} %, at "
+        f"{number(float(found.critical_speed[least]) / RPM, 4)} rpm and "
+        f"{number(float(found.critical_frequency[least]), 4)} Hz, mesh order "
+        f"{int(found.critical_order[least])}."
+    )
+
+
+def _text(found: ModalAnalysis) -> Iterator[Table | str]:
+    """Modes and critical speeds."""
+    start = found.facts["equilibrium"]
+    forces = ", ".join(f"{name} {force:.5g} N" for name, force in start["mesh_force"].items())
+    yield f"static equilibrium {start['status'].lower()}, {start['residual']:.1e} N left; {forces}"
+    yield modes_table(found)
+    if found.speed.size:
+        yield ""
+        yield critical_table(found)
+    yield f"cost {sum(found.facts['seconds'].values()):.3g} CPU s"
+    yield from run_lines(found.facts)
+
+
+PAGE = Presentation(
+    lambda found: modal_figures(found)[0],
+    lambda found: dynamics_page("Modes", modal_figures(found)),
+    _text,
+)

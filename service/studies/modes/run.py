@@ -1,0 +1,112 @@
+"""Modal analysis of a scene."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dynamics.assembly.assemble import assemble
+from dynamics.linearize import ModalAnalysis, modal_analysis
+from dynamics.linearize.modal_analysis import SCHEMA
+from dynamics.scene import Scene
+from service.convert.case import boundary_errors
+from service.studies.computation import Computation, Means
+from service.studies.modes import Inputs
+from service.units import RPM
+
+Json = dict[str, Any]
+LEAST_SHARE = 1e-3
+
+
+def modes_of(scene: Scene, inputs: Inputs, means: Means) -> ModalAnalysis:
+    """Return the modal analysis of a scene."""
+    with boundary_errors():
+        return modal_analysis(
+            assemble(scene),
+            [value * RPM for value in inputs.speed_rpm],
+            inputs.orders,
+            progress=lambda fraction: means.report("modes", fraction),
+            highest_frequency=inputs.highest_frequency_hz,
+        )
+
+
+def facts(found: ModalAnalysis) -> Json:
+    """Return all figures; shares below 0.1 % are left out."""
+    about = dict(found.facts)
+    start = about.pop("equilibrium")
+    return {
+        "leading_shaft": about["leading_shaft"],
+        "highest_frequency_hz": about["highest_frequency"],
+        "equilibrium": {
+            "status": start["status"].lower(),
+            "residual_n": start["residual"],
+            "mesh_force_n": start["mesh_force"],
+        },
+        "at_rest": [_at_rest(found, mode) for mode in range(found.natural_frequency.size)],
+        "speed_rpm": (found.speed / RPM).tolist(),
+        "mesh_frequency_hz": {
+            name: found.mesh_frequency[index].tolist() for index, name in enumerate(found.mesh)
+        },
+        "modes": [_over_speed(found, mode) for mode in range(found.frequency.shape[1])],
+        "critical_speeds": [_crossing(found, index) for index in range(found.critical_speed.size)],
+        "cpu_seconds": about["seconds"],
+        "effect_ledger": about["effect_ledger"],
+    }
+
+
+def _at_rest(found: ModalAnalysis, mode: int) -> Json:
+    """One natural mode."""
+    strain, kinetic = found.natural_strain_energy[mode], found.natural_kinetic_energy[mode]
+    return {
+        "mode": mode + 1,
+        "frequency_hz": float(found.natural_frequency[mode]),
+        "damping_ratio": float(found.natural_damping_ratio[mode]),
+        **_energies(found, strain, kinetic),
+    }
+
+
+def _energies(found: ModalAnalysis, strain: Any, kinetic: Any) -> Json:
+    """Say what holds and what moves."""
+    return {
+        "kind": found.kind(strain, kinetic),
+        "strain_energy": {name: s for name, s in found.held_by(strain).items() if s >= LEAST_SHARE},
+        "kinetic_energy": {name: s for name, s in found.moved(kinetic).items() if s >= LEAST_SHARE},
+    }
+
+
+def _over_speed(found: ModalAnalysis, mode: int) -> Json:
+    """One whirl mode where it oscillates, its energies at the highest of these speeds."""
+    there = np.flatnonzero(np.isfinite(found.frequency[:, mode]))
+    last = there[-1]
+    return {
+        "mode": mode + 1,
+        "speed_rpm": (found.speed[there] / RPM).tolist(),
+        "frequency_hz": found.frequency[there, mode].tolist(),
+        "damping_ratio": found.damping_ratio[there, mode].tolist(),
+        "whirl": found.whirl[there, mode].tolist(),
+        **_energies(found, found.strain_energy[last, mode], found.kinetic_energy[last, mode]),
+    }
+
+
+def _crossing(found: ModalAnalysis, index: int) -> Json:
+    """One critical speed; what the mode is, at the nearest of the speeds."""
+    mode, speed = int(found.critical_mode[index]), float(found.critical_speed[index])
+    known = np.isfinite(found.frequency[:, mode])
+    row = int(np.argmin(np.where(known, np.abs(found.speed - speed), np.inf)))
+    return {
+        "speed_rpm": speed / RPM,
+        "frequency_hz": float(found.critical_frequency[index]),
+        "order": int(found.critical_order[index]),
+        "mesh": found.mesh[int(found.critical_mesh[index])],
+        "mode": mode + 1,
+        "kind": found.kind(found.strain_energy[row, mode], found.kinetic_energy[row, mode]),
+        "whirl": float(found.whirl[row, mode]),
+        "damping_ratio": float(found.critical_damping_ratio[index]),
+        "residual_hz": float(found.critical_residual[index]),
+    }
+
+
+RUN = Computation(
+    modes_of, facts, ModalAnalysis.from_netcdf, marks={"schema": SCHEMA}, write=ModalAnalysis.to_netcdf
+)

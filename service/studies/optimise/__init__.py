@@ -1,0 +1,194 @@
+"""What a micro-geometry optimisation varies, how it scatters, and what it is assessed by."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Optional, Self
+
+from pydantic import Field, Strict, model_validator
+
+from bounds import DEPTHS, Kind
+from fe_contact.flank.modification import FlankModification
+from service.schemas.declared import Figure, figures, with_fields
+from service.schemas.model import BoundaryModel, refuse
+
+Deviation = Annotated[float, Field(gt=0.0, le=1000.0)]
+Torque = Annotated[float, Field(gt=0.0, le=1e9)]
+Torques = Annotated[tuple[Torque, ...], Strict(False), Field(min_length=1, max_length=64)]
+
+
+def _ends(figure: Figure) -> tuple[Any, Any]:
+    """Return the field of a figure's lowest and highest value; no length may vanish."""
+    number: Any = figure.accepted
+    if figure.what.kind is Kind.LENGTH:
+        number = Annotated[float, Field(gt=0.0, le=figure.limits["le"])]
+    pair: Any = Annotated[tuple[number, number], Strict(False)]
+    text = figure.with_unit(f"Bounds of the {figure.words}")
+    example = [[0.0 if figure.what.kind in DEPTHS else 0.5, figure.own(2.0 * figure.what.example)]]
+    return Optional[pair], Field(default=None, description=text, examples=example)  # noqa: UP045
+
+
+def _deviation(figure: Figure) -> tuple[Any, Any]:
+    """Return the field of a figure's standard deviation."""
+    text = figure.with_unit(f"Standard deviation of the {figure.words}")
+    return Optional[Deviation], Field(default=None, description=text, examples=[3.0])  # noqa: UP045
+
+
+_FREE = figures(FlankModification, Kind.AMOUNT, Kind.SLOPE, Kind.LENGTH)
+
+
+@with_fields({figure.field: _ends(figure) for figure in _FREE})
+class GearVariablesInput(BoundaryModel):
+    """Figures of one gear's modifications that are free, each between two bounds; all others stay."""
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        """Refuse a lower bound that is not the lower one."""
+        for name in type(self).model_fields:
+            ends = getattr(self, name)
+            if ends is not None and ends[1] <= ends[0]:
+                refuse(name, list(ends), "a lower bound and a higher one", "For example [0, 30].")
+        return self
+
+
+class VariablesInput(BoundaryModel):
+    """Design variables of both gears."""
+
+    pinion: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driving gear")
+    wheel: GearVariablesInput = Field(default=GearVariablesInput(), description="Of the driven gear")
+
+
+@with_fields({figure.field: _deviation(figure) for figure in _FREE})
+class GearScatterInput(BoundaryModel):
+    """Standard deviations of one gear's modifications as manufactured; what is left out does not scatter."""
+
+
+class ScatterInput(BoundaryModel):
+    """Independent normal deviations from what is designed, and the rule that takes their expectation."""
+
+    misalignment_um: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1000.0,
+        description="Standard deviation of the misalignment in um",
+        examples=[8.0],
+    )
+    pinion: GearScatterInput = Field(default=GearScatterInput(), description="Of the driving gear")
+    wheel: GearScatterInput = Field(default=GearScatterInput(), description="Of the driven gear")
+    rule: Literal["gauss_hermite", "sobol_sample"] = Field(
+        default="gauss_hermite",
+        description="Gauss-Hermite points in each deviation, or one fixed sample",
+        examples=["gauss_hermite"],
+    )
+    points: int = Field(
+        default=5, ge=1, le=33, description="Points of gauss_hermite in each deviation", examples=[5]
+    )
+    log2_size: int = Field(
+        default=4, ge=0, le=10, description="Logarithm to base 2 of the size of sobol_sample", examples=[4]
+    )
+
+
+class ObjectiveInput(BoundaryModel):
+    """What is made of the expected peak-to-peak at the torques."""
+
+    kind: Literal["weighted_mean", "worst"] = Field(
+        default="weighted_mean", description="Mean over the torques, or the worst", examples=["worst"]
+    )
+    weights: Annotated[tuple[Annotated[float, Field(ge=0.0, le=1e6)], ...], Strict(False)] = Field(
+        default=(), max_length=64, description="Of weighted_mean, one for each torque", examples=[[1.0, 2.0]]
+    )
+
+
+class LimitsInput(BoundaryModel):
+    """What a design has to keep at every torque and deviation."""
+
+    max_pressure_mpa: float | None = Field(
+        default=None, gt=0.0, le=1e5, description="Largest Hertzian pressure in MPa", examples=[1500.0]
+    )
+    face_load_factor: float | None = Field(
+        default=None, gt=1.0, le=100.0, description="K_Hbeta of the mesh cycle", examples=[1.5]
+    )
+    edge_load_share: float | None = Field(
+        default=None,
+        ge=0.0,
+        lt=1.0,
+        description="Largest part of the load on tip edges; 0 forbids their contact",
+        examples=[0.0],
+    )
+
+
+class SearchInput(BoundaryModel):
+    """How the best design is searched."""
+
+    method: Literal["sequential_linear_programming", "differential_evolution", "nelder_mead"] = Field(
+        default="sequential_linear_programming",
+        description="By derivatives from the best of a sample, global without them, or local without them",
+        examples=["differential_evolution"],
+    )
+    sample: int = Field(
+        default=64,
+        ge=0,
+        le=4096,
+        description="Of sequential_linear_programming: designs that are ranked before any is followed",
+        examples=[64],
+    )
+    trials: int = Field(
+        default=3, ge=0, le=64, description="Of them the best that are followed", examples=[3]
+    )
+    population: int = Field(
+        default=5, ge=3, le=50, description="Of differential_evolution, for each variable", examples=[5]
+    )
+    seed: int = Field(default=0, ge=0, le=2**32 - 1, description="Equal seeds, equal results", examples=[0])
+    starts: int = Field(default=1, ge=1, le=256, description="Independent searches", examples=[1])
+    evaluations: int = Field(
+        default=1000, ge=1, le=1_000_000, description="Most designs of each search", examples=[1000]
+    )
+    positions: int = Field(
+        default=64, ge=8, le=4096, description="In a base pitch, for the search", examples=[64]
+    )
+    exploration: int = Field(
+        default=16,
+        ge=8,
+        le=4096,
+        description="Positions by which they, or those of evolution, are ranked",
+        examples=[16],
+    )
+
+
+class Inputs(BoundaryModel):
+    """An optimisation of a case's flank modifications."""
+
+    torque_n_m: Torques | None = Field(
+        default=None,
+        description="Torques that count, N m on the driving gear, increasing; left out: those of the case",
+        examples=[[100.0, 200.0, 300.0]],
+    )
+    misalignment_um: float = Field(
+        default=0.0,
+        ge=-10_000.0,
+        le=10_000.0,
+        description="Misalignment in um about which it scatters",
+        examples=[0.0],
+    )
+    variables: VariablesInput = Field(
+        description="Figures of the modifications that are free",
+        examples=[{"pinion": {"tip_relief_um": [0.0, 60.0], "tip_relief_length_mm": [0.5, 3.0]}}],
+    )
+    scatter: ScatterInput = Field(
+        default=ScatterInput(), description="Deviations of assembly and manufacture"
+    )
+    objective: ObjectiveInput = Field(default=ObjectiveInput(), description="What is minimized")
+    limits: LimitsInput = Field(default=LimitsInput(), description="What has to be kept")
+    search: SearchInput = Field(default=SearchInput(), description="How it is searched")
+
+    @model_validator(mode="after")
+    def _some_variable(self) -> Self:
+        """Refuse torques that do not increase, and nothing to vary."""
+        if self.torque_n_m is not None and any(b <= a for a, b in pairwise(self.torque_n_m)):
+            refuse(
+                "torque_n_m", list(self.torque_n_m), "strictly increasing", "Sort the list and drop repeats."
+            )
+        gears = (self.variables.pinion, self.variables.wheel)
+        if not any(gear.model_dump(exclude_none=True) for gear in gears):
+            refuse("variables", {}, "at least one variable", "For example pinion.tip_relief_um = [0, 60].")
+        return self

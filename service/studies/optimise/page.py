@@ -1,0 +1,228 @@
+"""Harris maps before and after, ripple over torque with its scatter, and the gain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from service.convert.vocabulary import boundary_name
+from service.report import palette
+from service.report.figure import (
+    Axis,
+    Figure,
+    FloatArray,
+    Line,
+    Note,
+    Panel,
+    Reference,
+    Table,
+    number,
+    thousands,
+)
+from service.report.page import Headline, Page, Section
+from service.studies.optimise.stored import ShownDesign, ShownOptimisation
+from service.studies.presentation import Presentation
+from service.units import UM, factor
+
+MOST_CURVES = 8
+_POSITION = "position, base pitches"
+_STEP = 0.4  # between two torques of a map, over the largest ripple
+_ROOM = 1.12  # of the axis over the curves: for the names at their ends
+
+
+def harris_figure(found: ShownOptimisation) -> Figure:
+    """Draw both Harris maps on equal axes, and peak-to-peak over torque."""
+    designs = (("before", found.start), ("after", found.optimum))
+    curves = [_shown(found, design) for _, design in designs]
+    largest = max(float(np.ptp(values, axis=0).max()) for values in curves)
+    step = _STEP * largest
+    top = step * (curves[0].shape[1] - 1)
+    axis = Axis("STE offset by torque, µm", limits=(-0.6 * largest, top + 0.6 * largest))
+    maps = [
+        _map(found, name, design, values, step, axis)
+        for (name, design), values in zip(designs, curves, strict=True)
+    ]
+    return Figure(
+        key="harris_map",
+        title="Transmission error before and after optimisation",
+        caption="Harris maps without scatter, a curve for each torque, less its mean, set apart by "
+        f"{_STEP:g} of the largest ripple of both; and peak-to-peak over torque. "
+        f"{_scattered(found)} Dotted upright lines: torques that count.",
+        alternative=f"{found.reason}.",
+        content=(*maps, _ripple(found)),
+        table=ripple_table(found),
+    )
+
+
+def _chosen(found: ShownOptimisation) -> list[int]:
+    """Torques whose curves are drawn: those of the map nearest to evenly spaced ones."""
+    torque = found.start.harris_map.torque
+    even = np.linspace(torque[0], torque[-1], min(torque.size, MOST_CURVES))
+    return sorted({int(np.abs(torque - value).argmin()) for value in even})
+
+
+def _shown(found: ShownOptimisation, design: ShownDesign) -> FloatArray:
+    """Curves (P, K) of the chosen torques less their means, um."""
+    values = design.harris_map.ste[:, _chosen(found)] / UM
+    return np.asarray(values - values.mean(axis=0))
+
+
+def _map(
+    found: ShownOptimisation, name: str, design: ShownDesign, values: FloatArray, step: float, axis: Axis
+) -> Panel:
+    """Draw one line per torque, closed over its period, named at its end."""
+    harris, index = design.harris_map, _chosen(found)
+    names = [f"{torque} N m" for torque in thousands([float(harris.torque[k]) for k in index])]
+    end = float(np.ceil(harris.position[-1] + 1e-12))
+    position, closed = np.append(harris.position, end), np.vstack([values, values[:1]])
+    closed = closed + step * np.arange(len(names))
+    lines = (
+        Line(text, position, closed[:, k], palette.ordered(k, len(names))) for k, text in enumerate(names)
+    )
+    labels = (Note(end, float(closed[-1, k]), text) for k, text in enumerate(names))
+    across = Axis(_POSITION, limits=(0.0, _ROOM * end))
+    return Panel(across, axis, tuple(lines), title=f"Harris map {name}", notes=tuple(labels))
+
+
+def _scattered(found: ShownOptimisation) -> str:
+    """Say what the lines of the scatter are."""
+    if found.nodes.weight.size == 1:
+        return "Nothing scatters."
+    count = found.nodes.weight.size
+    return (
+        f"Thick lines: expectation over the {count} nodes of the scatter, dotted ones: its least and largest."
+    )
+
+
+def _ripple(found: ShownOptimisation) -> Panel:
+    """Draw the expectation of both designs over torque, between the extremes of their nodes."""
+    lines: list[Line] = []
+    for name, design, color in (
+        ("before", found.start, palette.VERMILLION),
+        ("after", found.optimum, palette.BLUE),
+    ):
+        harris = design.harris_map
+        if found.nodes.weight.size > 1:
+            for what, values in (
+                ("least", harris.peak_to_peak.min(0)),
+                ("largest", harris.peak_to_peak.max(0)),
+            ):
+                lines.append(Line(f"{name}, {what}", harris.torque, values / UM, color, "dot", 1.0))
+            lines.append(Line(f"{name}, no scatter", harris.torque, harris.nominal / UM, color, "dash", 1.0))
+        lines.append(Line(name, harris.torque, harris.expected / UM, color, "solid", 2.4, markers=True))
+    counted = tuple(Reference("", float(torque)) for torque in found.torque)
+    across = Axis("torque on the driving gear, N m")
+    return Panel(across, Axis("peak to peak, µm"), tuple(lines), counted, title="Ripple over torque")
+
+
+def ripple_table(found: ShownOptimisation) -> Table:
+    """Return peak-to-peak at the torques of the map, with errors."""
+    before, after = found.start.harris_map, found.optimum.harris_map
+    rows = tuple(
+        (
+            text,
+            "yes" if torque in found.torque else "",
+            *_value(before.expected[k], before.expected_error[k]),
+            *_value(after.expected[k], after.expected_error[k]),
+            number(float(before.expected[k] / after.expected[k]), 3),
+            number(after.peak_to_peak[:, k].max() / UM, 3),
+        )
+        for k, (text, torque) in enumerate(zip(thousands(before.torque.tolist()), before.torque, strict=True))
+    )
+    head = (
+        "torque, N m", "counts", "before, µm", "± µm", "after, µm", "± µm", "factor", "worst node after, µm",
+    )  # fmt: skip
+    return Table("Expected peak to peak of the transmission error", head, rows)
+
+
+def _value(value: float, error: float) -> tuple[str, str]:
+    """Write a length and its error in um."""
+    return number(value / UM, 3), number(error / UM, 2)
+
+
+def optimum_table(found: ShownOptimisation) -> Table:
+    """Return the variables, and what a perturbation changes."""
+    rows = []
+    for one, step in zip(found.variables, found.sensitivity, strict=True):
+        name = boundary_name(one.name)
+        unit = factor(name)
+        values = found.start.values[one.name], found.optimum.values[one.name], one.low, one.high
+        aside = (
+            f"{change / UM:+.2g} at {number(end / unit, 3)}"
+            for change, end in ((step.change_low, step.low), (step.change_high, step.high))
+        )
+        rows.append((name, *(number(value / unit, 4) for value in values), *aside))
+    head = ("variable", "start", "optimum", "least", "most", "lower, µm", "higher, µm")
+    return Table("Design, and the change of the objective by a perturbation", head, tuple(rows))
+
+
+def node_table(found: ShownOptimisation) -> Table:
+    """Return every node of the scatter with the ripple at the torques that count."""
+    head = [*(f"{boundary_name(name)} by" for name in found.nodes.names), "weight"]
+    for word in ("before", "after"):
+        head += [f"{word}, {torque} N m, µm" for torque in thousands(found.torque.tolist())]
+    counted = np.flatnonzero(np.isin(found.start.harris_map.torque, found.torque))
+    rows = []
+    for node, weight in enumerate(found.nodes.weight):
+        units = [factor(boundary_name(name)) for name in found.nodes.names]
+        deviation = (f"{x / u:+.3g}" for x, u in zip(found.nodes.deviation[node], units, strict=True))
+        ripples = (d.harris_map.peak_to_peak[node, counted] / UM for d in (found.start, found.optimum))
+        cells = (number(float(x), 3) for ripple in ripples for x in ripple)
+        rows.append((*deviation, number(float(weight), 3), *cells))
+    return Table("Robustness: peak to peak at every node of the scatter", tuple(head), tuple(rows))
+
+
+def run_table(found: ShownOptimisation) -> Table:
+    """Return the searches."""
+    rows = tuple(
+        (
+            str(k),
+            number(run.assessed.objective / UM, 4),
+            f"{run.evaluations}, {run.explored} of them at few positions"
+            if run.explored
+            else str(run.evaluations),
+            run.ended.value,
+            number(run.cpu_seconds, 2),
+        )
+        for k, run in enumerate(found.runs)
+    )
+    return Table("Searches", ("start", "objective, µm", "designs", "ended", "CPU s"), rows)
+
+
+def cost_table(found: ShownOptimisation) -> Table:
+    """Return the CPU time of the stages."""
+    stages = found.cost["stages"].items()
+    rows = tuple((name, number(float(one["cpu_seconds"]), 3)) for name, one in stages)
+    return Table("Cost", ("stage", "CPU s"), rows)
+
+
+def optimisation_page(found: ShownOptimisation) -> Page:
+    """Return the page of an optimisation."""
+    one, two = found.start.objective, found.optimum.objective
+    heads = (
+        Headline("before", f"{number(one.value / UM, 3)} µm", f"± {number(one.error / UM, 2)} µm"),
+        Headline("after", f"{number(two.value / UM, 3)} µm", f"± {number(two.error / UM, 2)} µm"),
+        Headline("gain", f"{number(found.gain.value / UM, 3)} µm", found.outcome.replace("_", " ")),
+    )
+    lead = f"{found.reason}; {found.evaluations} designs of {len(found.variables)} variables"
+    figure = Section("Harris map", "", (replace(harris_figure(found), table=None),), (ripple_table(found),))
+    design = Section("Design", "", tables=(optimum_table(found),))
+    tried = f"Not tried: {'; '.join(found.not_tried)}."
+    search = Section("Search", tried, tables=(run_table(found), cost_table(found)))
+    robust = Section("Scatter", "", tables=(node_table(found),))
+    return Page("Micro-geometry of least transmission error", lead, heads, (figure, design, robust, search))
+
+
+def _text(found: ShownOptimisation) -> Iterator[Table | str]:
+    """Yield the design, its ripple, and how the search ended."""
+    yield optimum_table(found)
+    yield ripple_table(found)
+    for line in found.not_tried:
+        yield f"not tried: {line}"
+    search = f"{found.evaluations} designs in {found.cost['stages']['search']['cpu_seconds']:.3g} CPU s"
+    yield f"{found.outcome.replace('_', ' ')}: {found.reason}; {search}"
+
+
+PAGE = Presentation(harris_figure, optimisation_page, _text)

@@ -1,0 +1,133 @@
+"""A forced response: transmission error, mesh force and bearing force by mesh order over speed, and peaks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from dynamics.linearize import ForcedResponse, peaks
+from service.convert.effect_lines import run_lines
+from service.report import palette
+from service.report.figure import Axis, Figure, FloatArray, Line, Panel, Reference, Table, number
+from service.studies.presentation import Presentation, dynamics_page
+
+RPM = np.pi / 30.0
+SHOWN_ORDERS, SHOWN_PEAKS = 6, 15
+
+
+def response_figure(found: ForcedResponse, mesh: int = 0) -> Figure:
+    """Draw the largest orders of one mesh and of the bearing that feels most."""
+    place = found.speed / RPM
+    ends = (float(place[0]), float(place[-1])) if place.size > 1 else None
+    x = Axis(f"speed of {found.facts['leading_shaft']}, rpm", limits=ends)
+    shown = _loudest(np.abs(found.mesh_force[mesh]))
+    name = f" of {found.mesh[mesh]}" if len(found.mesh) > 1 else ""
+    force = np.sqrt(np.sum(np.abs(found.bearing_force[:, :3]) ** 2, axis=1))
+    quantities = [
+        (f"transmission error{name}, µm", 1e6 * np.abs(found.dynamic_transmission_error[mesh])),
+        (f"mesh force{name}, N", np.abs(found.mesh_force[mesh])),
+    ]
+    if force.size:
+        loudest = int(np.argmax(np.max(force, axis=(1, 2))))
+        quantities.append((f"force on {found.bearing[loudest]}, N", force[loudest]))
+    panels = [_panel(x, label, place, amplitude, found, shown) for label, amplitude in quantities]
+    panels.append(_least(x, place, found, mesh))
+    return Figure(
+        key="response",
+        title="Forced response to the transmission error",
+        caption="Peak amplitudes of the mesh orders about the static equilibrium, linear: mean mesh "
+        "stiffness, no loss of contact. Below: the least mesh force; negative means that flanks part.",
+        alternative=_words(found),
+        content=tuple(panels),
+        table=peak_table(found),
+    )
+
+
+def _loudest(amplitude: FloatArray) -> list[int]:
+    """Return the harmonics (of S, H) of the largest amplitudes, by rising order."""
+    most = np.argsort(-np.max(amplitude, axis=0), kind="stable")[:SHOWN_ORDERS]
+    return sorted(int(h) for h in most)
+
+
+def _panel(
+    x: Axis, label: str, place: FloatArray, amplitude: FloatArray, found: ForcedResponse, shown: list[int]
+) -> Panel:
+    """One quantity by order."""
+    lines = tuple(
+        Line(f"order {found.order[h]:g}", place, amplitude[:, h], palette.category(k), width=1.4)
+        for k, h in enumerate(shown)
+    )
+    return Panel(x, Axis(label), lines)
+
+
+def _least(x: Axis, place: FloatArray, found: ForcedResponse, mesh: int) -> Panel:
+    """Least mesh force."""
+    line = Line("least mesh force", place, found.least_mesh_force[mesh], palette.INK, width=1.4)
+    return Panel(
+        x, Axis("least mesh force, N"), (line,), (Reference("flanks part", 0.0, "horizontal", 0.12),)
+    )
+
+
+def peak_table(found: ForcedResponse) -> Table:
+    """List the largest peaks of mesh and bearing forces."""
+    rows: list[tuple[str, ...]] = []
+    every = peaks(found)
+    for quantity in ("mesh_force", "bearing_force"):
+        own = [peak for peak in every if peak.quantity == quantity][:SHOWN_PEAKS]
+        rows += [
+            (
+                f"{quantity.replace('_', ' ')}, {peak.name}",
+                f"{peak.order:g}",
+                number(peak.speed / RPM, 5),
+                number(peak.frequency, 5),
+                number(peak.natural_frequency, 5),
+                number(peak.amplitude, 4),
+                number(peak.amplification, 3),
+            )
+            for peak in own
+        ]
+    head = (
+        "peak of",
+        "order",
+        "speed, rpm",
+        "frequency, Hz",
+        "nearest mode, Hz",
+        "amplitude, N",
+        "dynamic over static",
+    )
+    return Table("Peaks over speed, the largest first", head, tuple(rows))
+
+
+def _words(found: ForcedResponse) -> str:
+    """Say the largest amplitude, and where flanks part."""
+    size = np.abs(found.mesh_force)
+    mesh, s, h = np.unravel_index(int(np.argmax(size)), size.shape)
+    text = (
+        f"Largest mesh force: {number(float(size[mesh, s, h]), 3)} N of order {found.order[h]:g} at "
+        f"{number(float(found.speed[s]) / RPM, 4)} rpm."
+    )
+    parting = found.speed[~found.in_contact] / RPM
+    if parting.size:
+        first = number(float(parting[0]), 4)
+        text += f" Flanks part at {parting.size} of {found.speed.size} speeds, from {first} rpm on."
+    return text
+
+
+def _text(found: ForcedResponse) -> Iterator[Table | str]:
+    """Peaks, and what the linear answer does not hold."""
+    yield peak_table(found)
+    parting = found.speed[~found.in_contact] / RPM
+    if parting.size:
+        where = f"{parting[0]:.5g} to {parting[-1]:.5g} rpm"
+        yield f"flanks part at {parting.size} of {found.speed.size} speeds, {where}: see loa steady"
+    worst = 100.0 * float(found.excitation_difference.max(initial=0.0))
+    yield f"first-order theory: the other excitation changes amplitudes by up to {worst:.2g} % of the largest"
+    yield f"residual of the solves {found.residual:.1e}"
+    yield f"cost {sum(found.facts['seconds'].values()):.3g} CPU s"
+    yield from run_lines(found.facts)
+
+
+PAGE = Presentation(
+    response_figure, lambda found: dynamics_page("Forced response", (response_figure(found),)), _text
+)

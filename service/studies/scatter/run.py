@@ -1,0 +1,134 @@
+"""Tolerance Monte Carlo of a case."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fe_contact.microgeometry import Sampling, ToleranceStudy, iso1328_tolerances, scatter
+from fe_contact.microgeometry.spread import Quantile
+from fe_contact.microgeometry.tolerance_study import toleranced
+from fe_contact.options import Run
+from service.convert.case import analysis_options, boundary_errors, gear_pair
+from service.convert.vocabulary import boundary_name
+from service.problems import BadInput
+from service.schemas import Case
+from service.studies.computation import Computation, Means, with_defaults
+from service.studies.scatter import Inputs
+from service.units import UM, in_um
+
+Json = dict[str, Any]
+MOST_SAMPLES = 100_000
+"""Of a job: its result holds every pair, 10 to 100 MB."""
+_PLANE = ("plane_strain", "plane_stress")
+
+
+def draw(case: Case, inputs: Inputs, means: Means) -> ToleranceStudy:
+    """Sample the pairs of a case; in a plane model helix slopes do not deviate.
+
+    Raises
+    ------
+    BadInput
+        No such pair or tolerance.
+    JobFailed
+        The case cannot be computed.
+    """
+    with boundary_errors():
+        run = Run(means.workers, means.home / "compliance", means.report)
+        return scatter(**_drawn(case, inputs), run=run)
+
+
+def check(case: Case, inputs: Inputs) -> None:
+    """Raise `BadInput` for what `draw` would."""
+    with boundary_errors():
+        drawn = _drawn(case, inputs)
+        torques = drawn.pop("torques")
+        toleranced(**drawn).check(torques)
+
+
+def normalized(_case: Case, inputs: Inputs) -> Json:
+    """Return all inputs; refuse a sample too large for a job."""
+    if inputs.samples > MOST_SAMPLES:
+        raise BadInput.of("samples", inputs.samples, f"at most {MOST_SAMPLES}", "Run more by loa scatter.")
+    return with_defaults(inputs)
+
+
+def _drawn(case: Case, inputs: Inputs) -> Json:
+    """Return what is drawn from what, in SI."""
+    pair, load = gear_pair(case), case.load
+    tolerances = iso1328_tolerances(
+        pair,
+        inputs.tolerance_class,
+        misalignment=inputs.misalignment_um * UM,
+        across_face=case.accuracy.model not in _PLANE,
+        distribution=inputs.distribution,
+    )
+    torques = load.torque_n_m or [float(pair.torque(force)) for force in load.normal_force_n or ()]
+    return {
+        "pair": pair,
+        "torques": list(torques),
+        "tolerances": tolerances,
+        "sampling": Sampling(inputs.samples, inputs.seed),
+        "options": analysis_options(case),
+        "misalignment": case.errors.misalignment_um[0] * UM,
+    }
+
+
+def facts(found: ToleranceStudy) -> Json:
+    """Return a study with lengths in um."""
+    plain: Json = in_um(found.to_json())
+    widths = found.asked["tolerances"]
+    plain["asked"]["tolerances"] = {
+        "misalignment_um": widths["misalignment_m"] / UM,
+        **{boundary_name(name): width / UM for name, width in widths["modification_m"].items()},
+        "distribution": widths["distribution"],
+    }
+    return plain | {"names": [boundary_name(name) for name in found.names]}
+
+
+def read(file: Path) -> ToleranceStudy:
+    """Return the study in a file of `facts`; what was requested stays in boundary units."""
+    content = json.loads(file.read_text(encoding="utf-8"))
+    return ToleranceStudy(
+        np.array(content["torque_n_m"], dtype=float),
+        tuple(name.rpartition("_")[0] for name in content["names"]),
+        _lengths(content["deviation_um"]),
+        _lengths(content["peak_to_peak_um"]),
+        _lengths(content["nominal_um"]),
+        _lengths(content["error_um"]),
+        tuple(_quantile(one, len(content["torque_n_m"])) for one in content["quantiles"]),
+        _lengths(content["first_order_um"]),
+        content["confidence"],
+        content["cost"],
+        content["asked"],
+    )
+
+
+def _lengths(values: list[float] | list[list[float]]) -> NDArray[np.float64]:
+    """From um to m."""
+    return np.asarray(values, dtype=float) * UM
+
+
+def _quantile(content: Json, torques: int) -> Quantile:
+    """One quantile; a bound that the sample is too small for was left out."""
+    ends = (
+        np.full(torques, unbounded) if content[name] is None else _lengths(content[name])
+        for name, unbounded in (("low_um", 0.0), ("high_um", math.inf))
+    )
+    low, high = ends
+    return Quantile(content["fraction"], _lengths(content["value_um"]), low, high)
+
+
+RUN = Computation(
+    draw,
+    facts,
+    read,
+    marks=dict.fromkeys(("samples", "quantiles", "influence")),
+    check=check,
+    normalized=normalized,
+)

@@ -1,0 +1,127 @@
+"""Periodic steady states of a scene: motions over speed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from dynamics.assembly.assemble import assemble
+from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
+from dynamics.periodic.steady_states import BRANCH, CURVES, SCHEMA, UP
+from dynamics.scene import Scene
+from service.convert.case import boundary_errors
+from service.studies.computation import Computation, Means
+from service.studies.steady import Inputs
+from service.units import RPM, UM
+
+Json = dict[str, Any]
+KINDS = ("stable", "fold", "period doubling", "Neimark-Sacker")
+
+
+def steady_of(scene: Scene, inputs: Inputs, means: Means) -> SteadyStates:
+    """Return the steady states of a scene."""
+    with boundary_errors():
+        return steady_states(
+            assemble(scene),
+            [value * RPM for value in inputs.speed_rpm],
+            branch=inputs.branch,
+            repeat=inputs.repeat,
+            periods=inputs.settling_periods,
+            progress=means.report,
+        )
+
+
+def status_name(status: int) -> str:
+    """Name how a search ended."""
+    return OrbitStatus(status).name.lower().replace("_", " ")
+
+
+def facts(found: SteadyStates) -> Json:
+    """Return the motions of both sweeps and of the branch, jumps and bifurcations."""
+    about = found.facts
+    points: dict[str, list[Json]] = {
+        name: [_point(found, int(index)) for index in np.flatnonzero(found.curve == curve)]
+        for curve, name in enumerate(CURVES)
+    }
+    return {
+        "leading_shaft": about["leading_shaft"],
+        "period_pitches": about["period_pitches"],
+        "up": points["up"],
+        "down": points["down"],
+        "branch": {
+            "status": about["branch"].lower().replace("_", " "),
+            "points": points[CURVES[BRANCH]],
+        },
+        "bifurcations": [
+            {"kind": KINDS[int(kind)], "speed_rpm": float(speed) / RPM}
+            for kind, speed in zip(found.bifurcation_kind, found.bifurcation_speed, strict=True)
+        ],
+        "jumps": [
+            {"sweep": "up" if curve == UP else "down", "between_rpm": (ends / RPM).tolist()}
+            for curve, ends in zip(found.jump_curve, found.jump_speed, strict=True)
+        ],
+        "steps_per_period": about["steps_per_period"],
+        "cpu_seconds": about["seconds"],
+        "effect_ledger": about["effect_ledger"],
+    }
+
+
+def _point(found: SteadyStates, index: int) -> Json:
+    """One motion; of one that was not found only how the search ended."""
+    point: Json = {
+        "speed_rpm": float(found.speed[index]) / RPM,
+        "status": status_name(int(found.status[index])),
+        "iterations": int(found.iterations[index]),
+    }
+    for name, value in (("residual_um", found.residual[index]), ("step_error_um", found.step_error[index])):
+        if np.isfinite(value):
+            point[name] = float(value) / UM
+    if found.status[index] != OrbitStatus.CONVERGED:
+        return point
+    largest = found.multiplier[index, 0]
+    return point | {
+        "stability": KINDS[int(found.instability[index])],
+        "largest_multiplier": [float(largest.real), float(largest.imag)],
+        "meshes": {name: _mesh(found, index, mesh) for mesh, name in enumerate(found.mesh)},
+        "bearings": {
+            name: {"rms_force_n": float(found.rms_bearing_force[index, bearing])}
+            for bearing, name in enumerate(found.bearing)
+        },
+    }
+
+
+def _mesh(found: SteadyStates, index: int, mesh: int) -> Json:
+    """One mesh of one motion."""
+    return {
+        "mean_error_um": float(found.mean_error[index, mesh]) / UM,
+        "rms_error_um": float(found.rms_error[index, mesh]) / UM,
+        "peak_to_peak_error_um": float(found.peak_to_peak_error[index, mesh]) / UM,
+        "least_force_n": float(found.least_force[index, mesh]),
+        "largest_force_n": float(found.largest_force[index, mesh]),
+        "parted": float(found.parted[index, mesh]),
+        "coasting": float(found.coasting[index, mesh]),
+    }
+
+
+def not_found(found: SteadyStates) -> str:
+    """Say at how many speeds a sweep found no motion."""
+    missing = (found.status != 0) & (found.curve != BRANCH)
+    if not missing.any():
+        return ""
+    speeds = sorted({f"{speed / RPM:.6g}" for speed in found.speed[missing]})
+    shown = ", ".join(speeds[:5]) + (" ..." if len(speeds) > 5 else "")
+    return (
+        f"{int(missing.sum())} of {int((found.curve != BRANCH).sum())} motions were not found, at {shown} "
+        "rpm. They may repeat after more periods (--repeat 2), or never."
+    )
+
+
+RUN = Computation(
+    steady_of,
+    facts,
+    SteadyStates.from_netcdf,
+    marks={"schema": SCHEMA},
+    write=SteadyStates.to_netcdf,
+    failure=not_found,
+)

@@ -1,0 +1,65 @@
+"""What follows from a row of the registry: process, client method, verb, result kind, example of a study."""
+
+from __future__ import annotations
+
+import json
+from inspect import signature
+
+import pytest
+from click import Context
+from typer.main import get_command
+
+from service.cli.commands import app
+from service.client import LineOfActionClient
+from service.jobs.catalogue import default_registry
+from service.registry import JSON, STUDIES, Study, study_of
+from service.report.stored_study import marked_study
+from service.schemas.model import BoundaryModel
+from service.schemas.request_examples import INPUTS
+from service.schemas.result_kinds import RESULT_KINDS
+from service.studies.computation import Computation
+from service.studies.presentation import Presentation
+
+LOA = get_command(app)
+EVERY = pytest.mark.parametrize("study", STUDIES.values(), ids=list(STUDIES))
+
+
+@EVERY
+def test_it_has_its_parts(study: Study) -> None:
+    assert issubclass(study.inputs, BoundaryModel)
+    assert isinstance(study.run, Computation) and isinstance(study.page, Presentation)
+    assert sum(share for _, share in study.stages) == pytest.approx(1.0)
+    assert study_of(study.kind) is study
+
+
+@EVERY
+def test_its_process_takes_what_is_studied_and_what_is_varied(study: Study) -> None:
+    process = default_registry()[study.name]
+    subject = set(process.inputs.model_fields) - set(study.inputs.model_fields)
+    assert subject == set(study.subject.split(" or "))
+    assert (process.kind, RESULT_KINDS[study.kind].path) == (study.kind, f"/v1/{study.collection}")
+    process.inputs.model_validate_json(json.dumps(INPUTS[study.name]))  # the example is accepted
+
+
+@EVERY
+def test_its_verb_has_an_option_for_everything_that_is_varied(study: Study) -> None:
+    names = {option.name for option in LOA.get_command(Context(LOA), study.name).params}
+    varied = {"study"} if study.from_file else set(study.inputs.model_fields)
+    assert {study.argument, "output", "json", "strict"} | varied <= names
+
+
+@EVERY
+def test_the_client_has_a_method_that_says_what_it_takes(study: Study) -> None:
+    method = getattr(LineOfActionClient, study.name if study.media_type == JSON else f"{study.name}_file")
+    names = list(signature(method).parameters)
+    expected = ["study", "progress"] if study.from_file else ["progress", "options"]
+    assert names == ["self", study.argument, *expected]
+    assert method.__doc__.startswith(study.description)
+
+
+@EVERY
+def test_its_files_are_known_from_those_of_others(study: Study) -> None:
+    content = {name: value or "anything" for name, value in study.run.marks.items()}
+    assert marked_study(content) is study
+    for name in content:
+        assert marked_study({other: value for other, value in content.items() if other != name}) is None
