@@ -18,7 +18,7 @@ from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidat
 from fe_contact.stage_clock import StageClock
 
 LOAD = np.array([2500.0])
-POSITIONS = 128
+POSITIONS = 32
 SOURCE = "the same bodies in more slices"
 HELIX = math.radians(22.0)
 
