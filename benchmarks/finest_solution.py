@@ -10,9 +10,9 @@ import numpy as np
 from benchmarks.assessed import HARMONICS
 from benchmarks.pair_cases import PairCase
 from fe_contact.analysis import check_request
+from fe_contact.analysis.operating_points import operating_points
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.table_places import table_places
 from fe_contact.geometry import Toothing
 from fe_contact.mesh import SectorRecipe
 from fe_contact.planning import FaceDiscretization, Plan, PlaneDiscretization, make_plan
@@ -46,7 +46,7 @@ def finest_plan(checked: Checked) -> Plan:
 def solved_finely(checked: Checked, contact: PairContact) -> FloatArray:
     """Return the quantities (5, loads) in m of the one place of a request at many positions."""
     request = checked.request
-    (place,) = table_places(request.scene, request.choices, contact).places
+    (place,) = operating_points(request.scene, request.choices, contact).places
     flat = isinstance(contact.plan.discretization, PlaneDiscretization)
     position = np.arange(count := PLANE_POSITIONS if flat else FACE_POSITIONS) / count
     curves = place.solve(position, request.load)[1].deflection

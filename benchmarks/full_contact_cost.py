@@ -17,7 +17,7 @@ from fe_contact.full_contact import find_calculix, solve_position
 from fe_contact.stage_clock import StageClock
 
 SUBJECT = "64 x 12 table in plane strain, here and by full contact"
-RUNGS = ("thin_slices", "plane_strain")
+FIDELITIES = ("thin_slices", "plane_strain")
 POSITIONS = 4
 TARGET = 100.0 / 1000.0
 CPU_LIMIT = 900.0
@@ -27,7 +27,7 @@ def figures() -> list[Figure]:
     """Return times of all three, their ratios, and how far they are apart."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     pair = GearPair(gear, gear, center_distance=80e-3)
-    found = frontier(pair, torques=list(TORQUES), rungs=RUNGS, full_contact=POSITIONS)
+    found = frontier(pair, torques=list(TORQUES), fidelities=FIDELITIES, full_contact=POSITIONS)
     other, here = found.full_contact, found.reference.cpu_seconds
     if other is None:
         sys.stderr.write(f"full contact left out: {found.left_out['full_contact']}\n")

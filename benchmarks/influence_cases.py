@@ -22,7 +22,7 @@ def influence_cases() -> list[PairCase]:
 
 
 def _further(named: dict[str, PairCase]) -> list[PairCase]:
-    """Pitch errors, shafts, seats and webs, and small amounts that a tolerance may leave off."""
+    """Pitch errors, shafts, seats and webs, and small amounts that a tolerance may neglect."""
     spur, small = named["spur 20/20"].pair, named["spur 18/18, misaligned"].pair
     helical = named["helical 18/23"].pair
     even = {"positions": 64}

@@ -74,12 +74,12 @@ def study(cases: Sequence[PairCase], folder: Path) -> list[LoadedInfluence]:
         wishes = {tol: check_request(case.pair, tolerance=tol, **asked) for tol in TOLERANCES}
         decided = {tol: decide(wish, folder).checked.decided for tol, wish in wishes.items()}
         for entry in made.effects:
-            off_at = tuple(tol for tol in TOLERANCES if left_off(decided[tol], entry.name))
+            off_at = tuple(tol for tol in TOLERANCES if is_neglected(decided[tol], entry.name))
             found += _assessed(case, entry, estimates[entry.name], off_at)
     return found
 
 
-def left_off(decided: Mapping[str, str], name: str) -> bool:
+def is_neglected(decided: Mapping[str, str], name: str) -> bool:
     """Whether an effect is off; three dimensions hold the finite width by themselves."""
     held = name == FiniteWidth.name and decided[FaceLoadDistribution.name] == "on"
     return decided[name] == "off" and not held

@@ -18,7 +18,7 @@ from dynamics.effects import ledger
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis import assumptions, influences, request, request_check, table_places
+from fe_contact.analysis import assumptions, influences, operating_points, request, request_check
 from fe_contact.effects import EFFECTS
 from service.client.portable import scene_of
 from service.convert.scene import dynamic_scene
@@ -51,7 +51,7 @@ def _table() -> tuple[float, float]:
         def run() -> None:
             analyze(PAIR, torques=[10.0, 100.0], level="draft", receipt="minimal", cache=Path(folder))
 
-        modules = (assumptions, influences, request, request_check, table_places)
+        modules = (assumptions, influences, request, request_check, operating_points)
         return _compared(run, [mock.patch.object(module, "EFFECTS", remaining) for module in modules])
 
 

@@ -18,7 +18,7 @@ from benchmarks.marked_section import replace_section
 from benchmarks.quiet_helical_cases import QuietPair, quiet_pairs
 from fe_contact.analysis import check_request
 from fe_contact.analysis.compute_database import compute_database
-from fe_contact.analysis.effect_ledger import switched_over
+from fe_contact.analysis.effect_ledger import toggled
 from fe_contact.analysis.influences import estimated_influences
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
@@ -73,13 +73,13 @@ def share_right(found: Sequence[AssessedInfluence]) -> float:
 
 @cache
 def assessed() -> tuple[AssessedInfluence, ...]:
-    """Switch the effects of all pairs over, once: about four CPU minutes."""
+    """Toggle the effects of all pairs, once: about four CPU minutes."""
     with tempfile.TemporaryDirectory() as folder:
         return tuple(one for pair in quiet_pairs() for one in assessed_pair(pair, Path(folder)))
 
 
 def assessed_pair(quiet: QuietPair, folder: Path) -> list[AssessedInfluence]:
-    """Switch the effects of one pair over at its nominal load, on draft meshes in 15 slices."""
+    """Toggle the effects of one pair at its nominal load, on draft meshes in 15 slices."""
     sys.stderr.write(f"  {quiet.name}\n")
     checked = check_request(
         quiet.pair,
@@ -96,7 +96,7 @@ def assessed_pair(quiet: QuietPair, folder: Path) -> list[AssessedInfluence]:
     whole = _curve(checked, folder)
     found = []
     for name in held:
-        other, estimate = _curve(switched_over(checked, name, "off"), folder), estimates[name]
+        other, estimate = _curve(toggled(checked, name, "off"), folder), estimates[name]
         assert estimate is not None
         computed = Influence(
             quiet.torque, quiet.misalignment, other[0] - whole[0], other[1] - whole[1], whole[0], whole[1]

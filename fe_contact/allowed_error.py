@@ -39,7 +39,7 @@ class AllowedError:
 
     @classmethod
     def given(cls, tolerance: AllowedError | float | None) -> AllowedError | None:
-        """Return what a caller asked for; a number alone is the relative part."""
+        """Return what a caller requested; a number alone is the relative part."""
         if tolerance is None or isinstance(tolerance, AllowedError):
             return tolerance
         return cls(tolerance)
@@ -70,4 +70,4 @@ class AllowedError:
 
 
 RELATIVE = AllowedError(floor=0.0)
-"""What holds where no tolerance was asked for."""
+"""What holds where no tolerance was requested."""

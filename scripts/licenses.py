@@ -19,7 +19,7 @@ locked. MKL, which comes with `fast` alone, is proprietary (Intel Simplified Sof
 the image, and who passes on a program with both has to see that he may. The image also holds packages of its
 Debian base, under their own licenses.
 
-| package | version | license | asked for by |
+| package | version | license | requested by |
 |---|---|---|---|
 """
 _LINE = re.compile(r"(?P<name>[A-Za-z0-9._-]+)==(?P<version>[^ ;]+)")

@@ -1,1 +1,1 @@
-"""The shell around the libraries: schemas, jobs, store, HTTP, client and command line. Imports nothing."""
+"""The service around the libraries: schemas, jobs, store, HTTP, client and command line. Imports nothing."""

@@ -10,7 +10,7 @@ from dynamics.assembly.assemble import System
 from dynamics.motion.observation import static_deflections
 from dynamics.types import Json
 
-NOT_CHECKED = "no; switching it over measures it (ablation)"
+NOT_CHECKED = "no; toggling it measures it (ablation)"
 POSITIONS = 32
 
 

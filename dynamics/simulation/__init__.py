@@ -1,4 +1,4 @@
-"""The doors: from a scene to its result, in memory or streamed to a file."""
+"""Entry points: from a scene to its result, in memory or streamed to a file."""
 
 from dynamics.simulation.in_memory import simulate
 from dynamics.simulation.to_file import interrupted_run, simulate_to_file

@@ -28,7 +28,7 @@ TABLE_REST = 1.0 / 3.0
 def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
     """Return the estimates of a run, measured in windows of it; the requested error where it is too short.
 
-    Sources: time steps, table interpolation between positions, effects that are off.
+    Sources: time steps, table interpolation between positions, neglected effects.
     """
     requested, integration = requested_error(system.scene.integration), system.scene.integration
     left_out = left_out_effects(system)
@@ -51,7 +51,7 @@ def error_by_source(system: System, states_of: StatesOf, samples: int) -> Json:
 
 
 def left_out_effects(system: System) -> Json:
-    """Return what effects that are off would move the flanks by at rest; bearing forces are not known."""
+    """Return what neglected effects would move the flanks by at rest; bearing forces are not known."""
     off = [entry for entry in system.ledger.entries if not entry.on and entry.influence > 0.0]
     largest = max((entry.influence for entry in off), default=0.0)
     return {

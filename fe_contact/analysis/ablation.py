@@ -1,4 +1,4 @@
-"""Ablation: every effect switched over by itself, the change beside what it was estimated at."""
+"""Ablation: every effect toggled by itself, the change beside what it was estimated at."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.compute_database import compute_database
-from fe_contact.analysis.effect_ledger import switched_over
+from fe_contact.analysis.effect_ledger import toggled
 from fe_contact.analysis.influences import estimated_influences
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
@@ -61,7 +61,7 @@ class Figures:
 
 @dataclass(frozen=True)
 class EffectAblation:
-    """One effect switched over.
+    """One effect toggled.
 
     Attributes
     ----------
@@ -125,7 +125,7 @@ class EffectAblation:
 
 @dataclass(frozen=True)
 class Ablation:
-    """All effects of a case, each switched over by itself.
+    """All effects of a case, each toggled by itself.
 
     Attributes
     ----------
@@ -137,7 +137,7 @@ class Ablation:
         Of the case.
     effects : tuple of EffectAblation
     left_out : dict of str to str
-        Effects that were not switched over, and why.
+        Effects that were not toggled, and why.
     """
 
     torque: FloatArray
@@ -193,7 +193,7 @@ effects, progress, cache
         As for `analyze`; all tables are made on the level of mesh that the accuracy asks for. With `cache`
         the gears are condensed once for each body and model.
     only : sequence of str, optional
-        Effects to switch over; default all.
+        Effects to toggle; default all.
 
     Returns
     -------
@@ -257,7 +257,7 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
 
 
 def _selected(only: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the names asked for, all if None."""
+    """Return the names requested, all if None."""
     known = tuple(effect.name for effect in EFFECTS)
     for name in only or ():
         if name not in known:
@@ -268,8 +268,8 @@ def _selected(only: Sequence[str] | None) -> tuple[str, ...]:
 def _switched(
     checked: Checked, entry: LedgerEntry, nominal: Figures, estimate: Influence | None, cache: Path | None
 ) -> EffectAblation:
-    """Compute the case with one effect switched over."""
-    other = _figures(switched_over(checked, entry.name, "off" if entry.on else "on"), cache)
+    """Compute the case with one effect toggled."""
+    other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), cache)
     whole, without = (nominal, other) if entry.on else (other, nominal)
     return EffectAblation(entry.name, entry.on, entry.verdict.reason, whole, without, estimate)
 

@@ -1,4 +1,4 @@
-"""The door of the contact analysis: gear pair in, STE database out."""
+"""Entry point of the contact analysis: gear pair in, STE database out."""
 
 from __future__ import annotations
 

@@ -9,12 +9,12 @@ import numpy as np
 from fe_contact.analysis.curve_error_estimate import curve_errors, summary, unestimated, with_axes
 from fe_contact.analysis.error_estimate import Nested, estimate_errors
 from fe_contact.analysis.held_out_axes import held_out_axes
+from fe_contact.analysis.operating_points import OperatingPoints
 from fe_contact.analysis.position_errors import position_errors
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_again import TableSample
-from fe_contact.analysis.solved_places import Solved
-from fe_contact.analysis.table_places import Places
+from fe_contact.analysis.solved_operating_points import Solved
 from fe_contact.planning import Plan, left_out
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
@@ -47,8 +47,8 @@ class AssessedTable:
 
 def assessed_table(
     table: SteDatabase,
-    fine: Places,
-    coarse: Places,
+    fine: OperatingPoints,
+    coarse: OperatingPoints,
     solved: Solved,
     nodes: PositionNodes,
     checked: Checked,
@@ -60,7 +60,7 @@ def assessed_table(
     ----------
     table : SteDatabase
         As solved on `fine`.
-    fine, coarse : Places
+    fine, coarse : OperatingPoints
         On the meshes of the run and on the coarse ones.
     solved : list of (ContactProblem, ContactSolution)
         Of every place.
@@ -83,7 +83,7 @@ def assessed_table(
     return AssessedTable(sources.total, with_axes(errors, between), sources.to_json(), held_out)
 
 
-def unassessed_table(table: SteDatabase, places: Places, plan: Plan) -> AssessedTable:
+def unassessed_table(table: SteDatabase, places: OperatingPoints, plan: Plan) -> AssessedTable:
     """Return the errors of a table of which none was estimated, but for what is known in closed form."""
     left = {"plane_for_finite_width_relative": left_out(places.places[0].contact.pair, plan.discretization)}
     unknown = np.full(table.error_estimate.shape, np.nan)

@@ -9,9 +9,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.operating_points import OperatingPoint, OperatingPoints
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.solved_table import SolvedTable
-from fe_contact.analysis.table_places import Place, Places
 from fe_contact.analysis.tip_edges import assemble_edges, deepest_edge
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects import EFFECTS, FaceLoadDistribution, FiniteWidth
@@ -76,7 +76,7 @@ class SolvedRun(Protocol):
         """Discretization."""
 
     @property
-    def places(self) -> Places:
+    def places(self) -> OperatingPoints:
         """Misalignments and center distances."""
 
     @property
@@ -196,7 +196,7 @@ def _printed_data(run: SolvedRun) -> Iterator[Assumption]:
         yield Assumption("", "nominal teeth do not jam", True, float("nan"), reason)
 
 
-def _closing(place: Place) -> float:
+def _closing(place: OperatingPoint) -> float:
     """How much deviations and misalignment close the coast side beside what the driving side opens, m."""
     skew = sum(abs(term.growth) for term in place.model.gaps if isinstance(term, MisalignmentGap))
     meeting = np.arange(place.model.period)

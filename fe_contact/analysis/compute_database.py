@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import platform
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
 
 from bounds import Finding
-from fe_contact.analysis.assessed_table import assessed_table, unassessed_table
+from fe_contact.allowed_error import AllowedError
+from fe_contact.analysis.assessed_table import AssessedTable, assessed_table, unassessed_table
 from fe_contact.analysis.assumptions import check_assumptions
 from fe_contact.analysis.contact_receipt import contact_receipt
 from fe_contact.analysis.decided import Decided
@@ -88,48 +90,56 @@ def compute_pass(
     clock, before = clock or StageClock(workers.cost), replace(workers.cost)
     full = checked.request.accuracy.receipt == "full"
     planned = solve_table(checked, clock, report, cache, decided=decided, workers=workers)
-    run, found, repeated = settled(
-        planned,
-        check_assumptions,
-        lambda run, needed: solve_table(
-            with_effects(run.checked, needed), clock, report, cache, run, workers=workers
-        ),
-        clock,
-    )
+
+    def again(run: SolvedTable, needed: Mapping[str, str]) -> SolvedTable:
+        return solve_table(with_effects(run.checked, needed), clock, report, cache, run, workers=workers)
+
+    run, found, repeated = settled(planned, check_assumptions, again, clock)
     with clock.stage("contact"):
         contact = contact_receipt(run.solved, run.support, condition=full, known=run.condition)
-    assessed = unassessed_table(run.table, run.places, run.plan)
-    if full:
-        bodies = condensed_bodies(run.checked, run.plan, clock, report, cache, coarse=True, workers=workers)
-        with clock.stage("error estimate"):
-            coarse = run.places.on_bodies(bodies)
-            assessed = assessed_table(
-                run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan
-            )
+    assessed = _assessed(run, clock, report, cache, workers, full=full)
     remote = workers.cost.since(before)
     if not repeated and not remote.tasks:
-        spent = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
-        record(cache, run.prediction.logged, spent)
+        _log_cost(run, clock, cache)
     with clock.stage("effect ledger"):
         ledger = effect_ledger(
             run.checked, cache, found, plan=run.plan, planned_request=planned.checked, estimates=full
         )
     metadata = _metadata(case, run, clock, assessed.to_json() | contact, ledger)
-    metadata.receipt["assumptions"] = [one.to_json() for one in found]
-    metadata.receipt["repeated"] = repeated
-    request = run.checked.request
-    findings = merged(request.findings, solved_findings(request, run.table))
-    metadata.warnings.extend(finding.to_json() for finding in findings)
+    metadata.receipt.update(assumptions=[one.to_json() for one in found], repeated=repeated)
     if remote.tasks or remote.lost:
         metadata.receipt["elsewhere"] = asdict(remote)
     table = replace(
         run.table, error_estimate=assessed.band, curve_error=assessed.curve_error, metadata=metadata
     )
-    if request.accuracy.tolerance is not None:
-        kept = tolerance_receipt(table, request.accuracy.tolerance)
-        metadata.receipt["tolerance"] = kept
-        metadata.receipt["choice"]["met"] = kept["met"]
+    _state_tolerance(table, run.checked.request.accuracy.tolerance)
     return Computed(table, run.decided)
+
+
+def _assessed(
+    run: SolvedTable, clock: StageClock, report: Progress, cache: Path | None, workers: Workers, *, full: bool
+) -> AssessedTable:
+    """Return the errors of a table: estimated on coarser bodies for a full receipt, else not stated."""
+    if not full:
+        return unassessed_table(run.table, run.places, run.plan)
+    bodies = condensed_bodies(run.checked, run.plan, clock, report, cache, coarse=True, workers=workers)
+    with clock.stage("error estimate"):
+        coarse = run.places.on_bodies(bodies)
+        return assessed_table(run.table, run.places, coarse, run.solved, run.nodes, run.checked, run.plan)
+
+
+def _log_cost(run: SolvedTable, clock: StageClock, cache: Path | None) -> None:
+    """Enter what the stages of a run cost into the log that predictions learn from."""
+    cost = {log_name(run.prediction.kind, name): time for name, time in clock.seconds.items()}
+    record(cache, run.prediction.logged, cost)
+
+
+def _state_tolerance(table: SteDatabase, tolerance: AllowedError | None) -> None:
+    """Enter into the receipt of a table whether it keeps its tolerance."""
+    if tolerance is not None:
+        kept = tolerance_receipt(table, tolerance)
+        table.metadata.receipt["tolerance"] = kept
+        table.metadata.receipt["choice"]["met"] = kept["met"]
 
 
 def solved_findings(request: Request, table: SteDatabase) -> tuple[Finding, ...]:
@@ -149,10 +159,13 @@ def _metadata(case: Json, run: SolvedTable, clock: StageClock, found: Json, ledg
     receipt["choice"] = run.decided.to_json()
     if run.checked.cycle is not None:
         receipt["predicted"] = run.checked.cycle.to_json()
+    request = run.checked.request
+    findings = merged(request.findings, solved_findings(request, run.table))
     return Metadata(
         case=case,
         effect_ledger=ledger,
         receipt=receipt,
+        warnings=[finding.to_json() for finding in findings],
         content_hash=content_hash(case, SOLVER_VERSION, SCHEMA_VERSION),
         software_versions=software_versions(),
     )

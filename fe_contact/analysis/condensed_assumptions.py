@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from fe_contact.analysis.assumptions import Assumption, SolvedRun, check_cheaply
+from fe_contact.analysis.operating_points import OperatingPoints
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.planning import Plan
@@ -19,7 +19,7 @@ class CondensedRun:
 
     checked: Checked
     plan: Plan
-    places: Places
+    places: OperatingPoints
     solved: Sequence[tuple[ContactProblem, ContactSolution]]
 
 
@@ -30,7 +30,7 @@ def check_condensed(run: SolvedRun, neglected: Mapping[str, str]) -> tuple[Assum
     ----------
     run : SolvedRun
     neglected : mapping of str to str
-        Effects of the bodies that the tolerance of the table's case left off, and why: they are off here too.
+        Effects of the bodies that the tolerance of the table's case neglected, and why: off here too.
 
     Returns
     -------
@@ -48,7 +48,7 @@ def _edges(run: SolvedRun) -> Iterator[Assumption]:
 
 
 def _neglected(neglected: Mapping[str, str]) -> Iterator[Assumption]:
-    """Effects of the bodies that were left off for a tolerance, assessed by the flanks of the case."""
+    """Effects of the bodies that were neglected for a tolerance, assessed by the flanks of the case."""
     for name, why in neglected.items():
         reason = f"not checked on these flanks: {why}"
         yield Assumption(name, "too small to be seen", None, float("nan"), reason)

@@ -17,9 +17,9 @@ from fe_contact.analysis.condensed_contacts import CondensedContacts
 from fe_contact.analysis.curve_error_estimate import curve_errors, with_axes
 from fe_contact.analysis.error_estimate import Nested, estimate_errors
 from fe_contact.analysis.halved_positions import errors_by_halves
+from fe_contact.analysis.operating_points import OperatingPoints
 from fe_contact.analysis.pair_contact import PairContact
 from fe_contact.analysis.solved_again import TableSample
-from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import Plan, usual_mesh_error
 from fe_contact.ste import SteDatabase
@@ -34,7 +34,7 @@ BY_MESH = AT_NODES.index("discretisation")
 
 def condensed_errors(
     table: SteDatabase,
-    places: Places,
+    places: OperatingPoints,
     solution: ContactSolution,
     contacts: CondensedContacts,
     sample: TableSample,
@@ -45,7 +45,7 @@ def condensed_errors(
     Parameters
     ----------
     table : SteDatabase
-    places : Places
+    places : OperatingPoints
         Its one place, on the discretization of the table.
     solution : ContactSolution
     contacts : CondensedContacts

@@ -19,6 +19,7 @@ from fe_contact.analysis.condensed_assumptions import CondensedRun, check_conden
 from fe_contact.analysis.condensed_contacts import CondensedContacts
 from fe_contact.analysis.condensed_errors import condensed_errors
 from fe_contact.analysis.condensed_receipt import condensed_receipt
+from fe_contact.analysis.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pair_contact import PairContact
 from fe_contact.analysis.position_nodes import PositionNodes, unmeasured_nodes
 from fe_contact.analysis.request import Checked
@@ -26,7 +27,6 @@ from fe_contact.analysis.request_check import check_asked
 from fe_contact.analysis.solved_again import TableSample
 from fe_contact.analysis.solved_table import assembled_table
 from fe_contact.analysis.table_axes import axis, load_levels
-from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.effects.corner_contact import CornerContact
 from fe_contact.errors import InputError
@@ -58,7 +58,7 @@ class CondensedPair:
     contacts : CondensedContacts
         At the nominal center distance; they keep what was assembled for the positions.
     neglected : mapping of str to str
-        Effects of the bodies that the tolerance of the table left off, and why.
+        Effects of the bodies that the tolerance of the table neglected, and why.
     """
 
     checked: Checked
@@ -206,7 +206,7 @@ class CondensedPair:
         load = checked.request.load
         return unmeasured_nodes(count, load.size), replace(self.contact.plan, load=load, positions=count)
 
-    def _placed(self, checked: Checked) -> tuple[CondensedContacts, Places]:
+    def _placed(self, checked: Checked) -> tuple[CondensedContacts, OperatingPoints]:
         """Return the contacts of the asked flanks at the asked distance, and the place they make."""
         request = checked.request
         contacts = self._at(float(request.center_distance_change[0]))
@@ -215,10 +215,10 @@ class CondensedPair:
         pair = request.pair if nominal else request.pair.at_center_distance(distance)
         here = contacts.with_flanks(pair)
         scene = replace(request.scene, center_distance_change=np.zeros(1))  # the contacts stand there
-        return here, table_places(scene, request.choices, here.own)
+        return here, operating_points(scene, request.choices, here.own)
 
     def _at(self, change: float) -> CondensedContacts:
-        """Return the contacts at a change of the center distance in m; those asked for last are kept."""
+        """Return the contacts at a change of the center distance in m; those requested last are kept."""
         if change == 0.0:
             return self.contacts
         if change not in self._apart:

@@ -56,7 +56,7 @@ def failed_points(solutions: Sequence[ContactSolution]) -> dict[str, int]:
 def worst_condition(solved: Solved, known: FloatArray | None = None) -> float | None:
     """Return the largest condition number of the compliance between candidates; None if one is not definite.
 
-    Places of one center distance share their compliance, which is assessed once.
+    Operating points of one center distance share their compliance, which is assessed once.
     """
     if known is None:
         shared = {id(problem.compliance): problem.compliance for problem, _ in solved}

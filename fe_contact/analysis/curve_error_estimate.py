@@ -14,9 +14,9 @@ import numpy as np
 
 from fe_contact.analysis.error_estimate import CORRECTION_ERROR, Nested, contact_error
 from fe_contact.analysis.held_out_axes import AxisError
+from fe_contact.analysis.operating_points import OperatingPoints
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
-from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import LEFT_OUT, FaceDiscretization, Plan, left_out
 from fe_contact.planning.model_error import model_errors, of_bending
@@ -49,7 +49,7 @@ SHOWN = {"mean_m": MEAN, "peak_to_peak_m": PEAK_TO_PEAK, "first_harmonic_m": FIR
 
 
 def curve_errors(
-    places: Places,
+    places: OperatingPoints,
     solutions: list[ContactSolution],
     nested: Nested,
     positions: PositionErrors,
@@ -101,7 +101,7 @@ def _changes(
     return sample.spread(np.moveaxis(_shared(change) if helical else change, 1, 0))
 
 
-def _by_solver(places: Places, solutions: list[ContactSolution], sample: TableSample) -> FloatArray:
+def _by_solver(places: OperatingPoints, solutions: list[ContactSolution], sample: TableSample) -> FloatArray:
     """Errors (22, F, M, D) that the residuals of the contact can make."""
     knots = (np.arange(places.period)[:, None] + sample.position).ravel()
     return places.gathered(
@@ -143,7 +143,7 @@ def with_axes(at_nodes: FloatArray, axes: Mapping[str, AxisError]) -> FloatArray
     return np.concatenate([at_nodes, np.stack(between)])
 
 
-def unestimated(places: Places, plan: Plan) -> FloatArray:
+def unestimated(places: OperatingPoints, plan: Plan) -> FloatArray:
     """Return the errors of a run in which none was estimated, (9, 22, F, M, D): NaN."""
     return np.full((len(SOURCES), QUANTITIES, plan.load.size, *places.shape), np.nan)
 

@@ -12,7 +12,11 @@ from numpy.typing import ArrayLike
 
 from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.request_check import check_one_load
-from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, solve_place
+from fe_contact.analysis.solved_operating_point import (
+    SolvedOperatingPoint,
+    checked_positions,
+    solve_operating_point,
+)
 from fe_contact.checks import integer
 from fe_contact.compliance.deformation_2d import deformed_sections
 from fe_contact.compliance.deformation_3d import deformed_solids
@@ -136,7 +140,7 @@ def deformed_pairs(
     )
     integer("beside", beside, 0, 100)
     report = progress or silent
-    solved = solve_place(checked, checked_positions(at), StageClock(), report, cache)
+    solved = solve_operating_point(checked, checked_positions(at), StageClock(), report, cache)
     gears = deformed_gears(solved, beside)
     report("deformation", 1.0)
     position, deflection = solved.problem.candidates.position, solved.solution.deflection[:, 0]
@@ -147,7 +151,7 @@ def deformed_pairs(
     )
 
 
-def deformed_gears(solved: SolvedPlace, beside: int = 1) -> tuple[Both, ...]:
+def deformed_gears(solved: SolvedOperatingPoint, beside: int = 1) -> tuple[Both, ...]:
     """Expand a solution at all its positions; each gear in its own frame."""
     contact, candidates = solved.contact, solved.problem.candidates
     force, made = solved.solution.force[:, 0], contact.plan.discretization

@@ -17,7 +17,7 @@ from fe_contact.errors import InputError
 from fe_contact.planning import Plan, make_plan, planned, predict_run
 from fe_contact.types import Json
 
-NOT_CHECKED = "no; switching it over measures it (ablation)"
+NOT_CHECKED = "no; toggling it measures it (ablation)"
 
 
 def effect_ledger(
@@ -71,7 +71,7 @@ def _entry(
 def _costs(checked: Checked, cache: Path | None, plan: Plan | None) -> dict[str, float | None]:
     """Predict the CPU seconds that each effect adds to the run.
 
-    None if it cannot be switched over, and where it is off without having been called for: nothing was saved.
+    None if it cannot be toggled, and where it is off without having been called for: nothing was saved.
     """
     here = _predicted(checked, cache, plan)
     acting = [entry for entry in checked.ledger if entry.on or entry.verdict.on]
@@ -83,7 +83,7 @@ def _cost(
 ) -> float | None:
     """CPU seconds of one effect, of which the run itself is predicted to take `here`."""
     try:
-        other = switched_over(checked, entry.name, "off" if entry.on else "on")
+        other = toggled(checked, entry.name, "off" if entry.on else "on")
     except InputError:
         return None
     there = _predicted(other, *known)
@@ -111,7 +111,7 @@ def _price(entry: LedgerEntry, influence: Influence | None, seconds: float | Non
     return "not estimated" if influence is None else influence.words
 
 
-def switched_over(checked: Checked, name: str, choice: str) -> Checked:
+def toggled(checked: Checked, name: str, choice: str) -> Checked:
     """Return the request with one effect on or off and all others as they were decided.
 
     Raises

@@ -5,7 +5,7 @@ quadratic elements and Galerkin patches the error falls at least with the square
 bounds what is left of the difference (`Discretization.remaining`). The table's error is measured at the
 middles between its nodes. Where the plane stands in for three dimensions, a part of what it was corrected by
 is its error; it is measured against three-dimensional solutions (docs/effects/finite_width.md). A plane that
-is not corrected, asked for by name or not, errs by what it leaves out of the finite width.
+is not corrected, requested by name or not, errs by what it leaves out of the finite width.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.analysis.operating_points import OperatingPoints
 from fe_contact.analysis.position_errors import PositionErrors
 from fe_contact.analysis.solved_again import TableSample
-from fe_contact.analysis.table_places import Places
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import LEFT_OUT, Plan, left_out
 from fe_contact.planning.model_error import point_error
@@ -104,7 +104,7 @@ class Nested:
 
 
 def estimate_errors(
-    places: Places,
+    places: OperatingPoints,
     solutions: list[ContactSolution],
     nested: Nested,
     positions: PositionErrors,
@@ -114,12 +114,12 @@ def estimate_errors(
 
     Parameters
     ----------
-    places : Places
+    places : OperatingPoints
     solutions : list of ContactSolution
         The table's.
     nested : Nested
     positions : PositionErrors
-        The largest of the assessed places stand for every place.
+        The largest of the assessed operating points stand for every place.
     plan : Plan
     """
     made, pair = plan.discretization, places.places[0].contact.pair
@@ -144,7 +144,7 @@ def estimate_errors(
     )
 
 
-def _left_by_model(solution: ContactSolution, places: Places, plan: Plan) -> FloatArray:
+def _left_by_model(solution: ContactSolution, places: OperatingPoints, plan: Plan) -> FloatArray:
     """Return what the method leaves out at points (P, F), m."""
     return point_error(places.nominal.pair, plan.load, np.nan_to_num(solution.deflection))
 

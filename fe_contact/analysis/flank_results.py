@@ -16,7 +16,7 @@ from fe_contact.analysis.flank_file import SCHEMA_VERSION
 from fe_contact.analysis.load_distribution import LoadDistribution, load_distribution
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_one_load
-from fe_contact.analysis.solved_place import checked_positions, settled_place
+from fe_contact.analysis.solved_operating_point import checked_positions, settled_operating_point
 from fe_contact.geometry import ParallelAxes
 from fe_contact.plausibility import flank_findings, merged, unexpected
 from fe_contact.progress import Progress, silent
@@ -96,12 +96,12 @@ def flank_results(
 def _solved(
     checked: Checked, position: FloatArray, report: Progress, cache: Path | None
 ) -> tuple[Checked, LoadDistribution]:
-    """Solve one place of the table at one load; the receipt is all that its metadata hold.
+    """Solve one operating point of the table at one load; the receipt is all that its metadata hold.
 
     The request is that of the last run, with the effects that the first showed to be needed.
     """
     clock, request = StageClock(), checked.request
-    solved, receipt = settled_place(checked, position, clock, report, cache)
+    solved, receipt = settled_operating_point(checked, position, clock, report, cache)
     receipt = clock.to_json() | {"plan": solved.plan.to_json()} | receipt
     return solved.checked, load_distribution(
         solved.contact.pair,

@@ -1,4 +1,4 @@
-"""Error against time of every rung of the ladder, on one case."""
+"""Error against time of every fidelity of the accuracy study, on one case."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from fe_contact.allowed_error import AllowedError
-from fe_contact.analysis.ladder import RUNGS, Rung
-from fe_contact.analysis.ladder.full_contact import ORIGIN, FullContactLevel, known_full_contact
+from fe_contact.analysis.accuracy_study import FIDELITIES, Fidelity
+from fe_contact.analysis.accuracy_study.full_contact import ORIGIN, FullContactLevel, known_full_contact
+from fe_contact.analysis.fidelity_result import FidelityResult, fidelity_results
 from fe_contact.analysis.measured_full_contact import (
     NAME,
     MeasuredFullContact,
@@ -20,7 +21,6 @@ from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.pareto import knee_of
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_request
-from fe_contact.analysis.rung_result import RungResult, rung_results
 from fe_contact.analysis.warm_up import warm_up
 from fe_contact.checks import integer
 from fe_contact.errors import InputError, MeshError, SolveError
@@ -35,27 +35,27 @@ MOST_FULL_CONTACT = 64
 
 @dataclass(frozen=True)
 class Frontier:
-    """The ladder on one case.
+    """The accuracy study of one case.
 
     Attributes
     ----------
-    results : tuple of RungResult
-        In the order of the ladder; the last one is the reference.
+    results : tuple of FidelityResult
+        In the order of their cost; the last one is the reference.
     left_out : dict
-        Name of a rung to the reason why it was not run.
+        Name of a fidelity to the reason why it was not run.
     solves : int
         Positions x loads x alignments of every table.
     knee : str or None
-        The rung after which time buys least; None with fewer than three rungs on the front.
+        The fidelity after which time buys least; None with fewer than three fidelities on the front.
     chosen : str or None
-        The rung that the case's accuracy asks for.
+        The fidelity that the case's accuracy asks for.
     full_contact : MeasuredFullContact, optional
-        Full finite-element contact of the same case, if it was asked for and could be run.
+        Full finite-element contact of the same case, if it was requested and could be run.
     known_full_contact : tuple of FullContactLevel
         What full finite-element contact is known to cost on this very pair; empty on any other.
     """
 
-    results: tuple[RungResult, ...]
+    results: tuple[FidelityResult, ...]
     left_out: dict[str, str]
     solves: int
     knee: str | None
@@ -64,8 +64,8 @@ class Frontier:
     known_full_contact: tuple[FullContactLevel, ...] = ()
 
     @property
-    def reference(self) -> RungResult:
-        """The finest rung that was run."""
+    def reference(self) -> FidelityResult:
+        """The finest fidelity that was run."""
         return self.results[-1]
 
     def to_json(self) -> Json:
@@ -102,11 +102,11 @@ def frontier(
     misalignments: Sequence[float] = (0.0,),
     center_distance_changes: Sequence[float] = (0.0,),
     effects: Mapping[str, str] | None = None,
-    rungs: Sequence[str] | None = None,
+    fidelities: Sequence[str] | None = None,
     full_contact: int | None = None,
     progress: Progress | None = None,
 ) -> Frontier:
-    """Run every rung of the ladder that is valid for a case, and compare each to the finest.
+    """Run every fidelity of the accuracy study that is valid for a case, and compare each to the finest.
 
     Nothing is taken from the cache, so that times are those of a first run; compiled loops are warm.
 
@@ -114,13 +114,13 @@ def frontier(
     ----------
     pair, torques, normal_forces, tolerance, level, time_budget, model, misalignments, \
 center_distance_changes, effects, progress
-        As for `analyze`; the accuracy decides which rung is marked as chosen.
+        As for `analyze`; the accuracy decides which fidelity is marked as chosen.
     positions : int, optional
         Equally spaced positions of every table; default 64.
-    rungs : sequence of str, optional
-        Names of rungs to run; default all.
+    fidelities : sequence of str, optional
+        Names of fidelities to run; default all.
     full_contact : int, optional
-        Positions, 1 to 64, at which full finite-element contact is run beside the ladder, under all loads: of
+        Positions, 1 to 64, at which full finite-element contact is run beside it, under all loads: of
         solid spur and internal pairs in plane strain, about 2.5 CPU s each; of external spur pairs in three
         dimensions where `model` is "3d" or flanks vary or are inclined across the face, 70 CPU s each.
 
@@ -129,7 +129,7 @@ center_distance_changes, effects, progress
     InputError
         A value that cannot be used, by field name.
     SolveError
-        Fewer than two rungs gave a whole table.
+        Fewer than two fidelities gave a whole table.
     """
     checked = check_request(
         pair,
@@ -146,55 +146,57 @@ center_distance_changes, effects, progress
     )
     if full_contact is not None:
         integer("full_contact", full_contact, 1, MOST_FULL_CONTACT)
-    asked = selected(rungs)
-    left_out = {rung.name: reason for rung in asked if (reason := rung.refusal(checked)) is not None}
-    valid = [rung for rung in asked if rung.name not in left_out]
-    return _climbed(checked, valid, left_out, full_contact, progress or silent)
+    asked = selected(fidelities)
+    left_out = {
+        fidelity.name: reason for fidelity in asked if (reason := fidelity.refusal(checked)) is not None
+    }
+    valid = [fidelity for fidelity in asked if fidelity.name not in left_out]
+    return _run_study(checked, valid, left_out, full_contact, progress or silent)
 
 
-def selected(names: Sequence[str] | None) -> tuple[Rung, ...]:
-    """Return the rungs of these names in the order of the ladder, all if None.
+def selected(names: Sequence[str] | None) -> tuple[Fidelity, ...]:
+    """Return the fidelities of these names in the order of their cost, all if None.
 
     Raises
     ------
     InputError
-        There is no such rung.
+        There is no such fidelity.
     """
-    known = [rung.name for rung in RUNGS]
+    known = [fidelity.name for fidelity in FIDELITIES]
     for name in names or ():
         if name not in known:
-            raise InputError("rungs", name, f"among {', '.join(known)}")
-    return tuple(rung for rung in RUNGS if names is None or rung.name in names)
+            raise InputError("fidelities", name, f"among {', '.join(known)}")
+    return tuple(fidelity for fidelity in FIDELITIES if names is None or fidelity.name in names)
 
 
-def _climbed(
+def _run_study(
     checked: Checked,
-    rungs: Sequence[Rung],
+    fidelities: Sequence[Fidelity],
     left_out: dict[str, str],
     full_contact: int | None,
     progress: Progress,
 ) -> Frontier:
-    """Run the rungs, compare, mark."""
-    warm_up(across_face=any(rung.name.startswith("3d") for rung in rungs))
+    """Run the fidelities, compare, mark."""
+    warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in fidelities))
     tables: dict[str, SteDatabase] = {}
-    for count, rung in enumerate(rungs):
-        progress("ladder", count / len(rungs))
+    for count, fidelity in enumerate(fidelities):
+        progress("ladder", count / len(fidelities))
         try:
-            table = rung.run(checked, silent, None)
+            table = fidelity.run(checked, silent, None)
             table.require_complete()
-            tables[rung.name] = table
+            tables[fidelity.name] = table
         except (MeshError, SolveError) as error:
-            left_out = left_out | {rung.name: str(error)}
+            left_out = left_out | {fidelity.name: str(error)}
         except MemoryError:
-            left_out = left_out | {rung.name: "out of memory"}
+            left_out = left_out | {fidelity.name: "out of memory"}
     progress("ladder", 1.0)
     if len(tables) < 2:
-        raise SolveError(f"an error needs two rungs to compare; left out: {left_out}")
-    results = rung_results([rung for rung in rungs if rung.name in tables], tables)
+        raise SolveError(f"an error needs two fidelities to compare; left out: {left_out}")
+    results = fidelity_results([fidelity for fidelity in fidelities if fidelity.name in tables], tables)
     solves = tables[results[-1].name].status.size
     known = known_full_contact(checked.request.pair)
     found = Frontier(
-        results, left_out, solves, _knee(results), chosen_rung(checked), known_full_contact=known
+        results, left_out, solves, _knee(results), chosen_fidelity(checked), known_full_contact=known
     )
     return found if full_contact is None else _beside(found, checked, full_contact, tables, progress)
 
@@ -214,17 +216,17 @@ def _beside(
     return replace(found, left_out=found.left_out | {NAME: reason})
 
 
-def _knee(results: Sequence[RungResult]) -> str | None:
+def _knee(results: Sequence[FidelityResult]) -> str | None:
     """Return the knee; differences below the reference's own error say nothing."""
     floor = results[-1].error if np.isfinite(results[-1].error) else 0.0
     pairs = [result for result in results if np.isfinite(result.error)]
     return knee_of({result.name: (result.cpu_seconds, max(result.error, floor)) for result in pairs})
 
 
-def chosen_rung(checked: Checked) -> str | None:
-    """Return the name of the rung that a request's own model and mesh are; None if none is.
+def chosen_fidelity(checked: Checked) -> str | None:
+    """Return the name of the fidelity that a request's own model and mesh are; None if none is.
 
-    Plane strain has one rung, whose error is the model's: it stands for all its meshes.
+    Plane strain has one fidelity, whose error is the model's: it stands for all its meshes.
     """
     decided = decide(checked)
     level, model = decided.mesh.level, decided.checked.model

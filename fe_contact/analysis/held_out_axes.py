@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from fe_contact.analysis.solved_places import Solved, deflected_places
-from fe_contact.analysis.table_places import Place, Places, table_places
+from fe_contact.analysis.operating_points import OperatingPoint, OperatingPoints, operating_points
+from fe_contact.analysis.solved_operating_points import Solved, deflected_operating_points
 from fe_contact.contact import Start
 from fe_contact.effects import ContactScene
 from fe_contact.errors import DatabaseError
@@ -56,7 +56,11 @@ class AxisError:
 
 
 def held_out_axes(
-    table: SteDatabase, places: Places, scene: ContactScene, choices: Mapping[str, str], solved: Solved
+    table: SteDatabase,
+    places: OperatingPoints,
+    scene: ContactScene,
+    choices: Mapping[str, str],
+    solved: Solved,
 ) -> dict[str, AxisError]:
     """Solve one held-out point in every interval of every axis that has one.
 
@@ -69,7 +73,7 @@ def held_out_axes(
     ----------
     table : SteDatabase
         As computed.
-    places : Places
+    places : OperatingPoints
         That it was computed at.
     scene : ContactScene
         With the axes of the table.
@@ -121,7 +125,7 @@ class _Assessed:
 
     table: SteDatabase
     rows: IntArray
-    places: Places
+    places: OperatingPoints
     scene: ContactScene
     choices: Mapping[str, str]
     solved: Solved
@@ -157,13 +161,13 @@ class _Assessed:
         middles, m = _middles(self.table.center_distance_change), self._nearest("misalignment")
         position = [self.table.position[rows] for rows in _telling(self.table)]
         places, workers = self._held_out(m, middles), self.places.workers
-        solved = deflected_places(places, position, force[some], None, workers)
+        solved = deflected_operating_points(places, position, force[some], None, workers)
         held_out = zip(position, solved, middles, strict=True)
         worst = [_worst((self._tabulated(where, force[some], m[0], x), own)) for where, own, x in held_out]
         errors = spread(force, some, np.array(worst), 1)
         return AxisError(middles, errors, np.stack([errors, *[2.0 * errors] * (QUANTITIES - 1)]))
 
-    def _curves(self, place: Place, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
+    def _curves(self, place: OperatingPoint, rows: IntArray, load: FloatArray, *alignment: float) -> Curves:
         """Interpolant and solutions (positions, L), m; NaN where one did not converge."""
         position = self.table.position[rows]
         solution = place.solve(position, load, start=self._start(rows, load, *alignment))[1]
@@ -183,7 +187,7 @@ class _Assessed:
         return Start(first[0].candidates, lower + part * (upper - lower))
 
     def _place(self, m: int, change: float) -> int:
-        """Return which place of the table has misalignment `m`, the nearest in center distance."""
+        """Return which operating point of the table has misalignment `m`, the nearest in center distance."""
         nodes = self.table.center_distance_change
         return m * nodes.size + int(np.argmin(np.abs(nodes - change)))
 
@@ -200,14 +204,14 @@ class _Assessed:
         nodes: FloatArray = getattr(self.table, name)
         return nodes[[int(np.argmin(np.abs(nodes)))]]
 
-    def _keep_rows(self, place: Place) -> None:
+    def _keep_rows(self, place: OperatingPoint) -> None:
         """Let a place take the compliance at the assessed positions from that at all of the table's."""
         place.contact.keep_rows(place.model, self.table.position, self.rows)
 
-    def _held_out(self, misalignment: FloatArray, change: FloatArray) -> tuple[Place, ...]:
+    def _held_out(self, misalignment: FloatArray, change: FloatArray) -> tuple[OperatingPoint, ...]:
         """Lay out held-out places like those of the table."""
         here = replace(self.scene, misalignment=misalignment, center_distance_change=change)
-        return table_places(here, self.choices, self.places.nominal).places
+        return operating_points(here, self.choices, self.places.nominal).places
 
 
 def _around(nodes: FloatArray, at: FloatArray) -> tuple[IntArray, IntArray, FloatArray]:

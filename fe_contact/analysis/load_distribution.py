@@ -1,4 +1,4 @@
-"""Line load, pressure and gap along the contact lines of a solved place, and how evenly the load lies."""
+"""Line load, pressure and gap along the contact lines at an operating point, and how even the load is."""
 
 from __future__ import annotations
 

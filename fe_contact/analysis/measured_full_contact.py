@@ -1,4 +1,4 @@
-"""Full finite-element contact of a case at a few positions under all loads, measured beside the ladder."""
+"""Full finite-element contact of a case at a few positions under all loads, beside the accuracy study."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class MeasuredFullContact:
         misalignments; NaN where there is nothing to compare.
     plane_strain_mean, plane_strain_peak_to_peak : float
         The same of our own plane strain against them: what two independent contact solvers differ by. NaN if
-        that rung was not run.
+        that fidelity was not run.
     """
 
     tables: tuple[FullContactTable, ...]

@@ -48,7 +48,7 @@ def decide(
     cache : Path, optional
         Directory of compliances and of what is known of the host: a time depends on them.
     keep_model : bool
-        Choose mesh and slices only: what is asked for is more than the transmission error.
+        Choose mesh and slices only: what is requested is more than the transmission error.
     tried : bool
         The run measures its errors and is refined where they are too large: what is expected to err by
         somewhat more than the tolerance is tried first where it costs much less (`TRIED`).
@@ -110,7 +110,7 @@ def _said_tried(checked: Checked, chosen: MeshChoice, first: MeshChoice) -> Mesh
 
 
 def _wishes(checked: Checked) -> bool:
-    """Whether an error or a time is asked for."""
+    """Whether an error or a time is requested."""
     accuracy = checked.request.accuracy
     return accuracy.tolerance is not None or accuracy.time_budget is not None
 

@@ -49,6 +49,6 @@ def neglected_effects(
 
 
 def _reason(influence: EstimatedInfluence, tolerance: AllowedError) -> str:
-    """Say why an effect is left off."""
+    """Say why an effect is neglected."""
     change = f"at most {100 * influence.largest:.2g} % of mean or peak-to-peak at any load"
-    return f"left off: {change}, and {tolerance.words} are asked for"
+    return f"left off: {change}, and {tolerance.words} are requested"

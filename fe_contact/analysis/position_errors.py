@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fe_contact.analysis.operating_points import OperatingPoints
 from fe_contact.analysis.position_nodes import PositionNodes
-from fe_contact.analysis.solved_places import deflected_places
-from fe_contact.analysis.table_places import Places
+from fe_contact.analysis.solved_operating_points import deflected_operating_points
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import NodeRule, Plan
 from fe_contact.sampled import LOADS, sample_of, spread
@@ -40,7 +40,7 @@ NEXT_SPACING = 0.25
 
 @dataclass(frozen=True)
 class PositionErrors:
-    """Errors for lack of positions, the largest of the assessed places at each load.
+    """Errors for lack of positions, the largest of the assessed operating points at each load.
 
     Attributes
     ----------
@@ -55,7 +55,7 @@ class PositionErrors:
 
 
 def position_errors(
-    nodes: PositionNodes, places: Places, solutions: list[ContactSolution], plan: Plan
+    nodes: PositionNodes, places: OperatingPoints, solutions: list[ContactSolution], plan: Plan
 ) -> PositionErrors:
     """Assess the positions of a table.
 
@@ -63,7 +63,7 @@ def position_errors(
     ----------
     nodes : PositionNodes
         As the search left them; those of fixed positions, and of several pitches, are measured here.
-    places : Places
+    places : OperatingPoints
     solutions : list of ContactSolution
         Of all places.
     plan : Plan
@@ -80,14 +80,18 @@ def position_errors(
 
 
 def _measured(
-    position: FloatArray, places: Places, solutions: list[ContactSolution], plan: Plan, some: IntArray
+    position: FloatArray,
+    places: OperatingPoints,
+    solutions: list[ContactSolution],
+    plan: Plan,
+    some: IntArray,
 ) -> tuple[PositionNodes, FloatArray]:
     """Solve the middles of intervals at some loads, in all base pitches; see `measured_nodes`."""
     assessed, pitches = places.assessed_indices, np.arange(places.period)
     value = np.concatenate([solutions[k].deflection[:, some] for k in assessed], axis=1)
 
     def solve(middles: FloatArray) -> FloatArray:
-        curves = deflected_places(
+        curves = deflected_operating_points(
             places.assessed, [middles] * len(assessed), plan.load[some], pitches, places.workers
         )
         return np.concatenate(curves, axis=1)
@@ -174,7 +178,7 @@ def _by_bands(nodes: PositionNodes, left: FloatArray, period: int) -> FloatArray
 
 
 def _told(nodes: PositionNodes, curves: FloatArray, loads: int) -> PositionErrors:
-    """Take the largest of the assessed places at each load."""
+    """Take the largest of the assessed operating points at each load."""
     band: FloatArray = nodes.error.reshape(len(nodes.error), -1, loads).max(axis=1)
     worst: FloatArray = curves.reshape(QUANTITIES, -1, loads).max(axis=1)
     return PositionErrors(band, worst)

@@ -26,7 +26,7 @@ class PositionNodes:
         Increasing in [0, 1).
     interval_error : ndarray, shape (P, L)
         Difference in m between interpolant and solution in the interval after each node, at the worst probe;
-        (T P, L) where it is known for each of T base pitches. NaN where it was not asked for.
+        (T P, L) where it is known for each of T base pitches. NaN where it was not requested.
     value, middle : ndarray, shapes (P, L) or (T P, L)
         STE in m at the nodes and in the middle of the interval after each.
     """

@@ -225,7 +225,7 @@ def _of_model(model: Decided, begun: _Resolution) -> Refinement:
 def _no_way(finest: _Resolution, source: int) -> str:
     """Say what stands in the way."""
     plan = finest.decided.plan
-    fixed = f"{plan.positions} positions were asked for; leave positions out or ask for more"
+    fixed = f"{plan.positions} positions were requested; leave positions out or ask for more"
     why = {
         _MESH: f"mesh {finest.level} is the finest",
         _SLICES: f"{finest.slices} slices are the most",

@@ -25,7 +25,7 @@ def settled(
     """Check what a run took for granted; where that is wrong, do as the caller chose.
 
     An automatic effect that turns out to be needed is switched on and the run made `again` with the effects
-    and reasons given. What was asked for by name is only reported.
+    and reasons given. What was requested by name is only reported.
 
     Returns
     -------

@@ -38,7 +38,7 @@ class Request:
     on_violation : str
         What to do where an assumption of the run turns out wrong: "repeat", "fail" or "report".
     neglected, turned_on : mapping of str to str
-        Automatic effects that are left off because the asked accuracy does not need them, or on because a run
+        Automatic effects that are neglected because the accuracy does not need them, or on because a run
         without them showed that it does, and why.
     loads_as : str
         How the caller gave the load: "torques" or "normal_forces".

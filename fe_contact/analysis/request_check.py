@@ -127,7 +127,7 @@ def check_asked(request: Request, *, whole_table: bool = True, spare: bool = Tru
 
 
 def _composed(request: Request) -> tuple[ContactModel, tuple[LedgerEntry, ...]]:
-    """Compose the model; the ledger says what was asked for, and of what is neglected what the scene held."""
+    """Compose the model; the ledger says what was requested, and of what is neglected what the scene held."""
     composed, ledger = compose(request.scene, request.choices, EFFECTS)
     asked, overrides = request.asked_choices, {**request.neglected, **request.turned_on}
     whole = {
@@ -177,7 +177,7 @@ def _refuse_distances(request: Request) -> None:
 
 
 def _refuse_thin_discs(pair: ParallelAxes, level: str | None) -> None:
-    """Refuse discs so thin that rounding would show; where no mesh is asked for, the finest counts."""
+    """Refuse discs so thin that rounding would show; where no mesh is requested, the finest counts."""
     for name, gear in (("pinion", pair.pinion), ("wheel", pair.wheel)):
         least = least_face_width(gear, getattr(SectorRecipe, level or "fine")(gear).layers)
         if gear.face_width < least:

@@ -1,6 +1,6 @@
 """How large mean and ripple of the transmission error will be, before anything is computed.
 
-Errors of meshes and slices are parts of the mean transmission error; asked for is a part of peak-to-peak,
+Errors of meshes and slices are parts of the mean transmission error; requested is a part of peak-to-peak,
 which may be half of the mean or a thousandth. Uncoupled slices tell which in hundredths of a second. Without
 the coupling of the teeth and the bodies their mean is 0.55 to 0.94 of that of finite elements (median 0.78),
 their ripple 0.8 to 1.4 times it where it is above 5 % of the mean (docs/frontier.md, "Plan").
@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from fe_contact.analysis.operating_points import operating_points
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.slice_laws import parabolic_stiffness
 from fe_contact.analysis.slice_springs import SliceLaw, SpringContact
-from fe_contact.analysis.table_places import table_places
 from fe_contact.planning import ExpectedCurves, make_plan
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of
 from fe_contact.types import FloatArray
@@ -42,7 +42,7 @@ def expected_curves(checked: Checked) -> ExpectedCurves | None:
         misalignment=_some(request.misalignment, ALIGNMENTS),
         center_distance_change=_some(request.center_distance_change, ALIGNMENTS),
     )
-    places = table_places(scene, checked.decided, SpringContact(request.pair, plan, law=LAW)).places
+    places = operating_points(scene, checked.decided, SpringContact(request.pair, plan, law=LAW)).places
     position, load = np.arange(POSITIONS) / POSITIONS, _some(request.load, LOADS)
     solved = [place.solve(position, load)[1] for place in places]
     # errors grow with what the load adds: a misaligned pair leads at no load

@@ -14,7 +14,11 @@ from fe_contact.allowed_error import AllowedError
 from fe_contact.analysis.flank_results import POSITIONS
 from fe_contact.analysis.request_check import check_one_load
 from fe_contact.analysis.root_stress_history import ROOTS, RootStressHistory
-from fe_contact.analysis.solved_place import SolvedPlace, checked_positions, settled_place
+from fe_contact.analysis.solved_operating_point import (
+    SolvedOperatingPoint,
+    checked_positions,
+    settled_operating_point,
+)
 from fe_contact.compliance import UnitRootStress, unit_root_stresses, unit_root_stresses_3d
 from fe_contact.contact import face_flank_forces, plane_flank_forces
 from fe_contact.contact.patch import Patches
@@ -114,7 +118,7 @@ def root_stress(
     )
     clock, report = StageClock(), progress or silent
     position = np.arange(POSITIONS) / POSITIONS if at is None else checked_positions(at)
-    found, receipt = settled_place(checked, position, clock, report, cache)
+    found, receipt = settled_operating_point(checked, position, clock, report, cache)
     with clock.stage("root stress"):
         meshes = root_meshes(found.contact.plan.discretization)
         pinion, wheel = _histories(found, meshes, cache)
@@ -144,7 +148,7 @@ def _not_root(findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
 
 
 def _histories(
-    found: SolvedPlace, meshes: PlaneRootMeshes | FaceRootMeshes, cache: Path | None
+    found: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, cache: Path | None
 ) -> list[RootStressHistory]:
     """Return the histories of both gears, with the error that coarser meshes tell."""
     fine, rough = (
@@ -160,7 +164,7 @@ def _histories(
 
 
 def _unit_stresses(
-    found: SolvedPlace, meshes: PlaneRootMeshes | FaceRootMeshes, coarse: bool, cache: Path | None
+    found: SolvedOperatingPoint, meshes: PlaneRootMeshes | FaceRootMeshes, coarse: bool, cache: Path | None
 ) -> UnitStresses:
     """Compute or fetch the unit-load stress of both gears; identical gears are computed once."""
     pair = found.contact.pair
@@ -175,12 +179,14 @@ def _unit_stresses(
     return first, second
 
 
-def pair_histories(found: SolvedPlace, units: UnitStresses) -> tuple[RootStressHistory, RootStressHistory]:
+def pair_histories(
+    found: SolvedOperatingPoint, units: UnitStresses
+) -> tuple[RootStressHistory, RootStressHistory]:
     """Return the stress of both gears under the solved contact.
 
     Parameters
     ----------
-    found : SolvedPlace
+    found : SolvedOperatingPoint
     units : (UnitRootStress, UnitRootStress)
         Of the driving and the driven gear, on any mesh.
     """
@@ -214,7 +220,9 @@ def pair_histories(found: SolvedPlace, units: UnitStresses) -> tuple[RootStressH
     return first, second
 
 
-def _forces(found: SolvedPlace, units: UnitStresses, pairs: IntArray) -> tuple[FloatArray, FloatArray]:
+def _forces(
+    found: SolvedOperatingPoint, units: UnitStresses, pairs: IntArray
+) -> tuple[FloatArray, FloatArray]:
     """Return the inward nodal forces on the teeth of `pairs` (K,) of both gears, (P, K, n)."""
     candidates, force = found.problem.candidates, found.solution.force[:, 0]
     out = [np.zeros((len(force), pairs.size, unit.stress.shape[-1])) for unit in units]
@@ -231,7 +239,7 @@ def _forces(found: SolvedPlace, units: UnitStresses, pairs: IntArray) -> tuple[F
 
 
 def _near_load(
-    found: SolvedPlace, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
+    found: SolvedOperatingPoint, unit: UnitRootStress, patches: Patches, stressed: IntArray, face: FloatArray
 ) -> BoolArray:
     """Return which stations, at `face` (q,), are within half a patch of a loaded patch, (P, N, p, q)."""
     candidates, force = found.problem.candidates, found.solution.force[:, 0]

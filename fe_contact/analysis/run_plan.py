@@ -163,7 +163,7 @@ def _planned(
 
 
 def _conflict(decided: Decided, time_budget: float, cache: Path | None) -> str:
-    """Say why what is asked for does not fit into the time; empty if it does."""
+    """Say why what is requested does not fit into the time; empty if it does."""
     within = f"within {time_budget:.3g} CPU s"
     accuracy = decided.checked.request.accuracy
     wish = f"level {decided.mesh.level}" if accuracy.tolerance is None else accuracy.tolerance.words

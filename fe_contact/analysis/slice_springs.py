@@ -38,7 +38,7 @@ SLICES = 65
 
 @dataclass(frozen=True)
 class SliceLaw:
-    """What the slices of a rung are.
+    """What the slices of a fidelity are.
 
     Attributes
     ----------

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fe_contact.analysis.solved_places import deflected_places
-from fe_contact.analysis.table_places import Place, Places
+from fe_contact.analysis.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.solved_operating_points import deflected_operating_points
 from fe_contact.contact import Candidates, ContactSolution
 from fe_contact.sampled import ALIGNMENTS, LOADS, sample_of, some_positions, spread, spread_around
 from fe_contact.types import FloatArray, IntArray
@@ -94,15 +94,17 @@ class TableSample:
         curves = [solutions[k].deflection[np.ix_(self.every_row, loads)] for k in self.places]
         return self.shaped(curves)
 
-    def solved(self, places: Places, known: Places) -> FloatArray:
+    def solved(self, places: OperatingPoints, known: OperatingPoints) -> FloatArray:
         """Solve the points on other places, (T R, f, m, d) in m; `known` are those of the table."""
         pitches, load = np.arange(self.period), self.axes[0][self.nodes[0]]
         asked = [places.places[k] for k in self.places]
         where = [self.position[self.rows]] * len(asked)
         candidates = self._candidates(asked[0], [known.places[k] for k in self.places])
-        return self.shaped(deflected_places(asked, where, load, pitches, places.workers, candidates))
+        return self.shaped(
+            deflected_operating_points(asked, where, load, pitches, places.workers, candidates)
+        )
 
-    def _candidates(self, place: Place, known: Sequence[Place]) -> list[Candidates] | None:
+    def _candidates(self, place: OperatingPoint, known: Sequence[OperatingPoint]) -> list[Candidates] | None:
         """Return those of the table's places, which do not depend on the bodies.
 
         None in other slices and under other load patches, which have candidates of their own.

@@ -11,12 +11,12 @@ import numpy as np
 
 from fe_contact.analysis.decided import Decided
 from fe_contact.analysis.model_choice import decide
+from fe_contact.analysis.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.position_nodes import PositionNodes
 from fe_contact.analysis.request import Checked, Request
-from fe_contact.analysis.solved_places import Solved, solve_places
+from fe_contact.analysis.solved_operating_points import Solved, solve_operating_points
 from fe_contact.analysis.table_nodes import table_nodes
-from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.compliance.remote_condensation import condense_remotely
 from fe_contact.geometry import ParallelAxes
@@ -39,7 +39,7 @@ class SolvedTable:
         Model and discretization.
     prediction : Prediction
         What it was expected to cost.
-    places : Places
+    places : OperatingPoints
     nodes : PositionNodes
     solved, support : list of (ContactProblem, ContactSolution)
         Of every place, at the requested and at the support loads.
@@ -51,7 +51,7 @@ class SolvedTable:
 
     decided: Decided
     prediction: Prediction
-    places: Places
+    places: OperatingPoints
     nodes: PositionNodes
     solved: Solved
     support: Solved
@@ -103,12 +103,12 @@ def solve_table(
         prediction = predict_run(*wanted, cache, with_errors=full)
     known = before.places.nominal if before is not None and _same_bodies(before.plan, plan) else None
     nominal = condensed_bodies(checked, plan, clock, report, cache, known=known, workers=workers)
-    places = table_places(request.scene, request.choices, nominal, workers)
+    places = operating_points(request.scene, request.choices, nominal, workers)
     with clock.stage("contact"):
         nodes = table_nodes(places, plan)
         report("contact", 0.3)
         loads = plan.load, plan.support
-        (solved, support), condition = solve_places(places, nodes.position, loads, conditioned=full)
+        (solved, support), condition = solve_operating_points(places, nodes.position, loads, conditioned=full)
         table = assembled_table(request, places, nodes, solved, support)
         report("contact", 1.0)
     return SolvedTable(decided, prediction, places, nodes, solved, support, table, condition)
@@ -161,7 +161,7 @@ def _same_bodies(one: Plan, other: Plan) -> bool:
 
 
 def assembled_table(
-    request: Request, places: Places, nodes: PositionNodes, solved: Solved, support: Solved
+    request: Request, places: OperatingPoints, nodes: PositionNodes, solved: Solved, support: Solved
 ) -> SteDatabase:
     """Assemble the table, its errors not yet estimated; `support` may be empty."""
     position = (np.arange(places.period)[:, None] + nodes.position).ravel()

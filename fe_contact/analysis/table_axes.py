@@ -1,4 +1,4 @@
-"""Axes of a table as they are asked for: its loads, misalignments and changes of the center distance."""
+"""Axes of a table as they are requested: its loads, misalignments and changes of the center distance."""
 
 from __future__ import annotations
 

@@ -6,20 +6,20 @@ from dataclasses import replace
 
 import numpy as np
 
+from fe_contact.analysis.operating_points import OperatingPoints
 from fe_contact.analysis.position_nodes import (
     PositionNodes,
     adaptive_nodes,
     unmeasured_nodes,
 )
-from fe_contact.analysis.solved_places import deflected_places
-from fe_contact.analysis.table_places import Places
+from fe_contact.analysis.solved_operating_points import deflected_operating_points
 from fe_contact.contact import ContactModel
 from fe_contact.planning import MOST_ROWS, Plan
 from fe_contact.types import FloatArray, IntArray
 
 
-def table_nodes(places: Places, plan: Plan) -> PositionNodes:
-    """Place the positions: the number asked for, or where the curves of assessed places and pitches bend.
+def table_nodes(places: OperatingPoints, plan: Plan) -> PositionNodes:
+    """Place the positions: the number requested, or where the assessed curves bend.
 
     What is missed between fixed ones is not measured here (`position_errors`).
     """
@@ -53,9 +53,9 @@ def assessed_windows(model: ContactModel, most: int) -> tuple[IntArray, ...]:
     return tuple(order[k] + np.arange(-1, 2) for k in chosen)
 
 
-def _curves(places: Places, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
-    """STE (T, P, places x L) in m of the assessed places in the given pitches."""
-    found = deflected_places(
+def _curves(places: OperatingPoints, load: FloatArray, position: FloatArray, pitches: IntArray) -> FloatArray:
+    """STE (T, P, places x L) in m of the assessed operating points in the given pitches."""
+    found = deflected_operating_points(
         places.assessed, [position] * len(places.assessed), load, pitches, places.workers
     )
     shape = (pitches.size, position.size, -1)

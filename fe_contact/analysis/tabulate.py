@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from fe_contact.analysis.table_places import Places
+from fe_contact.analysis.operating_points import OperatingPoints
 from fe_contact.contact import ContactProblem, ContactSolution, contact_pressure
 from fe_contact.geometry import ParallelAxes
 from fe_contact.ste import PairFacts
@@ -30,7 +30,7 @@ def pair_facts(pair: ParallelAxes) -> PairFacts:
 
 
 def table_fields(
-    places: Places, solved: list[tuple[ContactProblem, ContactSolution]]
+    places: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
 ) -> dict[str, NDArray[Any]]:
     """Arrays of the database at the asked loads, (P, F, M, D, ...), and its pair axis."""
     seen = np.concatenate([problem.candidates.pair for problem, _ in solved])
@@ -42,7 +42,7 @@ def table_fields(
 
 
 def table_support(
-    places: Places, solved: list[tuple[ContactProblem, ContactSolution]]
+    places: OperatingPoints, solved: list[tuple[ContactProblem, ContactSolution]]
 ) -> dict[str, NDArray[Any]]:
     """Support loads that converged everywhere, and their arrays (P, S, M, D)."""
     fields = [support_fields(problem, solution) for problem, solution in solved]
@@ -54,7 +54,7 @@ def table_support(
 def contact_fields(
     problem: ContactProblem, solution: ContactSolution, pairs: IntArray
 ) -> dict[str, NDArray[Any]]:
-    """Arrays (P, F, ...) of one place of the table, by name in the database.
+    """Arrays (P, F, ...) of one operating point of the table, by name in the database.
 
     Pressure is that of `contact_pressure`.
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from fe_contact.analysis.solved_places import assemble_remotely
-from fe_contact.analysis.table_places import Place, Places
+from fe_contact.analysis.operating_points import OperatingPoint, OperatingPoints
+from fe_contact.analysis.solved_operating_points import assemble_remotely
 from fe_contact.contact import Candidates, ContactProblem, ContactSolution
 from fe_contact.geometry import ParallelAxes
 from fe_contact.types import FloatArray
@@ -17,14 +17,14 @@ OUTSIDE = 1e-3
 """Base pitches before A and after E at which the gap of an edge is assessed: it grows from there on."""
 
 
-def assemble_edges(places: Places, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
+def assemble_edges(places: OperatingPoints, solved: Sequence[tuple[ContactProblem, ContactSolution]]) -> None:
     """Let workers assemble the compliance at the tip edges of all places, as `edge_depth` needs it."""
     models = [replace(place.model, corner_contact=True) for place in places.places]
     assemble_remotely(places, models, _phase(solved[0][0]))
 
 
 def deepest_edge(
-    place: Place, load: FloatArray, problem: ContactProblem, solution: ContactSolution
+    place: OperatingPoint, load: FloatArray, problem: ContactProblem, solution: ContactSolution
 ) -> FloatArray:
     """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
 
@@ -43,7 +43,7 @@ def handovers(pair: ParallelAxes) -> FloatArray:
     return np.sort(np.array([start - OUTSIDE, end + OUTSIDE]) % 1.0)
 
 
-def edge_depth(place: Place, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
+def edge_depth(place: OperatingPoint, problem: ContactProblem, solution: ContactSolution) -> FloatArray:
     """Return how far tip edges would be inside the mating flanks (L,), m; 0 where they stay clear.
 
     Under the forces as solved: what the loaded teeth move at the unloaded edges is in.

@@ -1,4 +1,4 @@
-"""Whether a table keeps the tolerance that was asked for, by the errors that were measured."""
+"""Whether a table keeps the tolerance that was requested, by the errors that were measured."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from fe_contact.types import Json
 ENVIRONMENT = "LINEOFACTION_CACHE"
 OFF = ("", "0", "off", "none")
 KEPT_KEYS = 64
-"""Hashes of what was asked for last, kept in memory."""
+"""Hashes of what was requested last, kept in memory."""
 NOT_ARRAYS = ("facts", "checksum")
 Kept = TypeVar("Kept", FlankCompliance, FlankCompliance3D, UnitRootStress)
 

@@ -52,7 +52,7 @@ class EliminationTree:
     root : Front
         Its border are the kept freedoms.
     order : (n,) int array
-        Position of each freedom in the elimination; kept ones are last, in the order they were asked for.
+        Position of each freedom in the elimination; kept ones are last, in the order they were requested.
     """
 
     root: Front

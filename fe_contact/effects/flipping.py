@@ -1,4 +1,4 @@
-"""One effect switched over, all others as they were decided."""
+"""One effect toggled, all others as they were decided."""
 
 from __future__ import annotations
 

@@ -72,6 +72,6 @@ class PitchError:
 
 
 def _period(scene: ContactScene) -> int:
-    """Return the pitches asked for, or those after which the deviations of both gears repeat together."""
+    """Return the pitches requested, or those after which the deviations of both gears repeat together."""
     gears = (scene.pair.pinion, scene.pair.wheel)
     return scene.pitches or math.lcm(*(gear.pitch_deviation.period for gear in gears))

@@ -39,7 +39,7 @@ class FullContactPoint:
         Over the length of an element, Pa; under a tip edge it grows without bound as the mesh is refined. NaN
         if not known.
     error_estimate : float
-        Half-width of the discretization's error band, m; NaN if not asked for.
+        Half-width of the discretization's error band, m; NaN if not requested.
     """
 
     position: float

@@ -5,8 +5,8 @@ from fe_contact.microgeometry.curve_derivatives import CurveDerivatives, FlankDe
 from fe_contact.microgeometry.harris_map import HarrisMap
 from fe_contact.microgeometry.iso1328 import iso1328_tolerances
 from fe_contact.microgeometry.objective import Limits, Objective, WeightedMean, Worst
-from fe_contact.microgeometry.optimisation import Optimisation, Outcome, Perturbation
-from fe_contact.microgeometry.optimise import optimise
+from fe_contact.microgeometry.optimization import Optimization, Outcome, Perturbation
+from fe_contact.microgeometry.optimize import optimize
 from fe_contact.microgeometry.scatter import GaussHermite, Scatter, ScatterNodes, SobolSample
 from fe_contact.microgeometry.search import Ended, Search, SearchRun
 from fe_contact.microgeometry.search_method import (
@@ -33,7 +33,7 @@ __all__ = [
     "Method",
     "NelderMead",
     "Objective",
-    "Optimisation",
+    "Optimization",
     "Outcome",
     "Perturbation",
     "Scatter",
@@ -48,6 +48,6 @@ __all__ = [
     "Worst",
     "curve_derivatives",
     "iso1328_tolerances",
-    "optimise",
+    "optimize",
     "scatter",
 ]

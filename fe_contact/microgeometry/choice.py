@@ -12,8 +12,8 @@ from fe_contact.microgeometry.confirmation import ConfirmedDesign, confirm
 from fe_contact.microgeometry.design_memory import DesignMemory
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import DesignStudy
-from fe_contact.microgeometry.optimisation import Perturbation
-from fe_contact.microgeometry.request import OptimisationRequest
+from fe_contact.microgeometry.optimization import Perturbation
+from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.microgeometry.scatter import Scatter
 from fe_contact.microgeometry.search import Cancel, Search, SearchRun, search_from
 from fe_contact.microgeometry.search_method import SequentialLinearProgramming
@@ -56,7 +56,7 @@ class Choice:
         return self.runs[self.best]
 
 
-def posed(study: DesignStudy, asked: OptimisationRequest, memory: Path | None) -> DesignProblem:
+def posed(study: DesignStudy, asked: OptimizationRequest, memory: Path | None) -> DesignProblem:
     """Return the problem of the search, its scale the start inside the bounds.
 
     `memory` is a directory of designs that were assessed before.
@@ -80,7 +80,7 @@ def posed(study: DesignStudy, asked: OptimisationRequest, memory: Path | None) -
 def choose(
     problem: DesignProblem,
     runs: tuple[SearchRun, ...],
-    asked: OptimisationRequest,
+    asked: OptimizationRequest,
     study: DesignStudy,
     clock: StageClock,
     cache: Path | None,
@@ -92,7 +92,7 @@ def choose(
     ----------
     problem : DesignProblem
     runs : tuple of SearchRun
-    asked : OptimisationRequest
+    asked : OptimizationRequest
     study : DesignStudy
     clock : StageClock
     cache : Path, optional

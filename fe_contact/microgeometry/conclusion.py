@@ -1,4 +1,4 @@
-"""What came of an optimisation, in words: the gain, how it ended, and what was not tried."""
+"""What came of an optimization, in words: the gain, how it ended, and what was not tried."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import numpy as np
 
 from fe_contact.microgeometry.choice import SLACK, Choice
 from fe_contact.microgeometry.design_study import DesignStudy
-from fe_contact.microgeometry.optimisation import Outcome
-from fe_contact.microgeometry.request import OptimisationRequest
+from fe_contact.microgeometry.optimization import Outcome
+from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.microgeometry.scatter import MISALIGNMENT
 from fe_contact.microgeometry.search import Ended
 from fe_contact.microgeometry.variables import GEARS, QUANTITIES
@@ -16,7 +16,7 @@ AT_BOUND = 1e-3
 """A variable this near to a bound, in parts of its range, lies on it."""
 
 
-def conclusion(choice: Choice, asked: OptimisationRequest) -> tuple[Outcome, str]:
+def conclusion(choice: Choice, asked: OptimizationRequest) -> tuple[Outcome, str]:
     """Return the outcome and the reason for it."""
     start, optimum, ended = choice.start, choice.optimum, _ended(choice, asked)
     gain = start.objective.value - optimum.objective.value
@@ -34,7 +34,7 @@ def conclusion(choice: Choice, asked: OptimisationRequest) -> tuple[Outcome, str
     return outcome, f"{told}; {_why_not(choice, asked, error)}{ended}"
 
 
-def _ended(choice: Choice, asked: OptimisationRequest) -> str:
+def _ended(choice: Choice, asked: OptimizationRequest) -> str:
     """Say how the search ended; one that was interrupted may have had more to find in any of its starts."""
     cut = any(run.ended is Ended.CANCELLED for run in choice.runs)
     if cut or len(choice.runs) < asked.search.starts:
@@ -44,7 +44,7 @@ def _ended(choice: Choice, asked: OptimisationRequest) -> str:
     return "the search converged" if choice.run.converged else "the search used all its evaluations"
 
 
-def _why_not(choice: Choice, asked: OptimisationRequest, error: float) -> str:
+def _why_not(choice: Choice, asked: OptimizationRequest, error: float) -> str:
     """Say why nothing was won, where the search shows it."""
     if asked.outside:
         return f"the start lies beyond the bounds of {', '.join(asked.outside)}; "
@@ -54,7 +54,7 @@ def _why_not(choice: Choice, asked: OptimisationRequest, error: float) -> str:
     return ""
 
 
-def not_tried(choice: Choice, asked: OptimisationRequest, study: DesignStudy) -> tuple[str, ...]:
+def not_tried(choice: Choice, asked: OptimizationRequest, study: DesignStudy) -> tuple[str, ...]:
     """Say what the design is the best without: what did not vary, what did not scatter, what was left out."""
     free = {one.name for one in asked.variables}
     kept = [f"{gear}.{name}" for gear in GEARS for name in QUANTITIES if f"{gear}.{name}" not in free]
@@ -74,7 +74,7 @@ def not_tried(choice: Choice, asked: OptimisationRequest, study: DesignStudy) ->
     return tuple(one for one in found if one)
 
 
-def _on_bounds(choice: Choice, asked: OptimisationRequest) -> list[str]:
+def _on_bounds(choice: Choice, asked: OptimizationRequest) -> list[str]:
     """Variables whose optimum lies on a bound that is not the end of what there is: nothing removed."""
     found = []
     for one, part in zip(asked.variables, np.asarray(choice.run.place), strict=True):

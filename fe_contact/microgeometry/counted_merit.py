@@ -16,7 +16,7 @@ class BudgetUsed(Exception):
 
 
 class Cancelled(Exception):
-    """Somebody asked for the search to end."""
+    """Somebody requested the search to end."""
 
 
 class Budget:

@@ -19,7 +19,7 @@ import numpy as np
 
 from fe_contact.analysis.compute_database import SOLVER_VERSION
 from fe_contact.microgeometry.evaluator import Evaluator
-from fe_contact.microgeometry.request import OptimisationRequest
+from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import FloatArray
@@ -47,7 +47,7 @@ class DesignMemory:
     known: dict[bytes, Figures] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, directory: Path, asked: OptimisationRequest, evaluator: Evaluator) -> DesignMemory:
+    def of(cls, directory: Path, asked: OptimizationRequest, evaluator: Evaluator) -> DesignMemory:
         """Open the file of a problem; one that is damaged counts up to the damage."""
         content = {
             "pair": asdict(asked.pair),

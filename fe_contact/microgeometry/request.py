@@ -1,4 +1,4 @@
-"""What an optimisation is asked for."""
+"""What an optimization is asked for."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ CLOSE = 0.03
 
 
 @dataclass(frozen=True)
-class OptimisationRequest:
-    """Arguments of `optimise`, which describes them; those of `analyze` are in `accuracy`."""
+class OptimizationRequest:
+    """Arguments of `optimize`, which describes them; those of `analyze` are in `accuracy`."""
 
     pair: ParallelAxes
     torques: Sequence[float] | FloatArray
@@ -72,7 +72,7 @@ class OptimisationRequest:
         Raises
         ------
         InputError
-            As `optimise`.
+            As `optimize`.
         """
         check_variables(self.pair, self.variables)
         counted = increasing("torques", self.torques)

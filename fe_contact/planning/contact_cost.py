@@ -123,7 +123,7 @@ def unit_work(pair: ParallelAxes, plan: Plan, slices: int) -> Work:
 
 
 def expected_positions(plan: Plan) -> int:
-    """Return the positions in a base pitch: asked for, or those that the search usually ends with."""
+    """Return the positions in a base pitch: requested, or those that the search usually ends with."""
     if plan.positions is not None:
         return plan.positions
     return _FACE_EXPECTED if isinstance(plan.discretization, FaceDiscretization) else _PLANE_EXPECTED

@@ -45,7 +45,7 @@ class MeshChoice:
     ----------
     option : MeshOption
     met : bool
-        Whether the models promise what was asked for.
+        Whether the models promise what was requested.
     reason : str
         In words.
     """

@@ -1,4 +1,4 @@
-"""Checks of what is asked for: gears, deviations, shafts, loads. Closed forms, in a millisecond."""
+"""Checks of what is requested: gears, deviations, shafts, loads. Closed forms, in a millisecond."""
 
 from __future__ import annotations
 

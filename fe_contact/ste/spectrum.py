@@ -11,7 +11,7 @@ from fe_contact.types import FloatArray
 
 HARMONICS = 20
 # samples of one pitch, and of a whole period where that would be too many; 256 a pitch leave room for a mesh
-# harmonic six times the highest one asked for
+# harmonic six times the highest one requested
 _PER_PITCH, _PER_PERIOD, _FEWEST = 4096, 2**18, 256
 
 

@@ -54,7 +54,7 @@ class PassedFiles:
 
     @cached_property
     def path(self) -> Path:
-        """Where it is, made when first asked for."""
+        """Where it is, made when first requested."""
         path = Path(tempfile.mkdtemp(prefix="lineofaction-"))
         weakref.finalize(self, shutil.rmtree, path, ignore_errors=True)
         return path

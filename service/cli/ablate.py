@@ -29,7 +29,7 @@ from service.schemas import read_table
 
 
 def run_ablate(file: Path, output: Path | None, only: str | None, *, as_json: bool) -> None:
-    """Switch the effects of a case or a scene over, write, print."""
+    """Toggle the effects of a case or a scene, write, print."""
     if output is not None:
         if output.suffix not in (".png", ".json", ".html"):
             raise BadInput.of("output", str(output), "a file ending in .png, .json or .html")

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 
-from fe_contact.microgeometry import Optimisation
+from fe_contact.microgeometry import Optimization
 from service.cli.assessed_case import assessed_case
 from service.cli.interrupt import until_interrupted
 from service.cli.output import console, output_files, print_json, progress_bar, table
@@ -50,23 +50,23 @@ def run_optimise(
         raise KeyboardInterrupt("interrupted. The design above is the best of those searched so far.")
 
 
-def _picture(found: Optimisation, target: Path) -> None:
+def _picture(found: Optimization, target: Path) -> None:
     """PNG."""
     target.write_bytes(png(harris_figure(found)))
 
 
-def _page(found: Optimisation, target: Path) -> None:
+def _page(found: Optimization, target: Path) -> None:
     """Write the report page."""
     write_whole(optimisation_page(found), target, warnings=messages())
 
 
-def _json(found: Optimisation, target: Path) -> None:
+def _json(found: Optimization, target: Path) -> None:
     """JSON."""
     text = json.dumps(optimisation_json(found), allow_nan=False, indent=1)
     target.write_text(f"{text}\n", encoding="utf-8")
 
 
-def _values(found: Optimisation, target: Path) -> None:
+def _values(found: Optimization, target: Path) -> None:
     """TOML of the best design: lines for the tables of both gears in the case file."""
     lines = [f"# {found.reason}"]
     for gear, fields in boundary_values(found.optimum.values).items():
@@ -74,7 +74,7 @@ def _values(found: Optimisation, target: Path) -> None:
     target.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-_WRITERS: dict[str, Callable[[Optimisation, Path], None]] = {
+_WRITERS: dict[str, Callable[[Optimization, Path], None]] = {
     ".png": _picture,
     ".html": _page,
     ".json": _json,
@@ -82,7 +82,7 @@ _WRITERS: dict[str, Callable[[Optimisation, Path], None]] = {
 }
 
 
-def _show(found: Optimisation, targets: list[Path]) -> None:
+def _show(found: Optimization, targets: list[Path]) -> None:
     """Print the tables for people."""
     out = console()
     for rows in (optimum_table(found), ripple_table(found)):

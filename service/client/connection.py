@@ -138,7 +138,7 @@ class Connection:
 
 
 def _checked(response: httpx2.Response) -> httpx2.Response:
-    """Return an answer that is what was asked for; raises what it says otherwise."""
+    """Return an answer that is what was requested; raises what it says otherwise."""
     if response.status_code in _TRY_AGAIN:
         raise _TryAgain(response)
     if not response.is_success:  # a redirection too: this service has none

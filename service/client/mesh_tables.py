@@ -26,7 +26,7 @@ class TableSource(Protocol):
 
 
 class MeshTables:
-    """The databases of the meshes of one scene; equal cases are asked for once.
+    """The databases of the meshes of one scene; equal cases are requested once.
 
     Parameters
     ----------

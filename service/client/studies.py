@@ -59,7 +59,7 @@ class Studies(JobClient):
             A scene is told by its shafts.
         progress : callable, optional
         only : sequence of str, optional
-            Effects to switch over; default all.
+            Effects to toggle; default all.
 
         Returns
         -------

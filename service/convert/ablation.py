@@ -25,7 +25,7 @@ _LEFT_ASIDE = ("receipt", "on_violation", "center_distance_changes")
 
 
 def ablation_of_case(case: Case, only: Sequence[str] | None, cache: Path | None, report: Report) -> Ablation:
-    """Switch the effects of a case over at its nominal center distance.
+    """Toggle the effects of a case at its nominal center distance.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def ablation_of_case(case: Case, only: Sequence[str] | None, cache: Path | None,
 
 
 def ablation_of_scene(scene: Scene, only: Sequence[str] | None, report: Report) -> SceneAblation:
-    """Switch the effects of a scene over; raises as `ablation_of_case`."""
+    """Toggle the effects of a scene; raises as `ablation_of_case`."""
     with boundary_errors():
         return ablate_scene(scene, only, staged(report))
 

@@ -171,7 +171,7 @@ def analysis_arguments(case: Case) -> Json:
 
 
 def _allowed(accuracy: AccuracyInput) -> AllowedError | None:
-    """Return the tolerance asked for."""
+    """Return the tolerance requested."""
     if accuracy.tolerance is None:
         return None
     with boundary_errors():

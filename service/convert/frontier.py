@@ -32,4 +32,4 @@ def frontier_of(
     pair = gear_pair(case)
     asked = {name: value for name, value in analysis_arguments(case).items() if name not in _LEFT_ASIDE}
     with boundary_errors():
-        return frontier(pair, **asked, rungs=rungs, full_contact=full_contact, progress=progress)
+        return frontier(pair, **asked, fidelities=rungs, full_contact=full_contact, progress=progress)

@@ -32,7 +32,7 @@ def condensed_of(file: Path, cache: Path, *, compute: bool = False) -> tuple[Cas
     Raises
     ------
     NotFound
-        The table was removed since it was asked for.
+        The table was removed since it was requested.
     NotAnalyzed
         The compliance is not in the cache, and is not to be computed.
     """

@@ -13,18 +13,18 @@ from fe_contact.microgeometry import (
     Limits,
     Method,
     NelderMead,
-    Optimisation,
+    Optimization,
     Scatter,
     Search,
     SequentialLinearProgramming,
     SobolSample,
     WeightedMean,
     Worst,
-    optimise,
+    optimize,
 )
 from fe_contact.microgeometry.confirmation import ConfirmedDesign
 from fe_contact.microgeometry.design_study import Accuracies
-from fe_contact.microgeometry.request import OptimisationRequest
+from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.workers import InProcess, Workers
 from service.convert.ablation import in_um
 from service.convert.case import analysis_arguments, boundary_errors, gear_pair
@@ -53,7 +53,7 @@ def optimisation_of(
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
     cancel: Callable[[], bool] | None = None,
     memory: Path | None = None,
-) -> Optimisation:
+) -> Optimization:
     """Optimise the modifications of a case; when `cancel` says so, end with the best so far.
 
     Raises
@@ -65,7 +65,7 @@ def optimisation_of(
     """
     with boundary_errors():
         arguments = _arguments(case, study)
-        return optimise(
+        return optimize(
             **arguments,
             **{name: analysis_arguments(case)[name] for name in _ACCURACY},
             workers=workers,
@@ -80,7 +80,7 @@ def check_optimisation_of(case: Case, study: OptimisationInput) -> None:
     """Raise `BadInput` for what `optimisation_of` would, without computing anything."""
     with boundary_errors():
         accuracy = Accuracies(**{name: analysis_arguments(case)[name] for name in _ACCURACY})
-        OptimisationRequest(**_arguments(case, study), accuracy=accuracy).check()
+        OptimizationRequest(**_arguments(case, study), accuracy=accuracy).check()
 
 
 def _arguments(case: Case, study: OptimisationInput) -> Json:
@@ -153,7 +153,7 @@ def _search(given: SearchInput) -> Search:
     return Search(methods[given.method], given.seed, *counts)
 
 
-def optimisation_json(found: Optimisation) -> Json:
+def optimisation_json(found: Optimization) -> Json:
     """Return an optimisation in the units of a case file, other lengths in um."""
     plain = found.to_json()
     variables = [
@@ -174,7 +174,7 @@ def optimisation_json(found: Optimisation) -> Json:
     return converted | designs | {"variables": variables, "sensitivity": steps, "nodes": _nodes_json(found)}
 
 
-def _scatter_json(found: Optimisation) -> Json:
+def _scatter_json(found: Optimization) -> Json:
     """Return what scatters, by the fields of a case file."""
     asked = found.asked["scatter"]
     rule = {name: value for name, value in asked.items() if not name.endswith("_m")}
@@ -182,14 +182,14 @@ def _scatter_json(found: Optimisation) -> Json:
     return {**spread, **rule}
 
 
-def _limits_json(found: Optimisation) -> Json:
-    """Return the limits that were asked for."""
+def _limits_json(found: Optimization) -> Json:
+    """Return the limits that were requested."""
     limits = dict(found.asked["limits"])
     pressure = limits.pop("max_pressure_pa")
     return {"max_pressure_mpa": None if pressure is None else pressure / MPA, **limits}
 
 
-def _nodes_json(found: Optimisation) -> Json:
+def _nodes_json(found: Optimization) -> Json:
     """Return the nodes of the scatter."""
     names = found.nodes.names
     return {

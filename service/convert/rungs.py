@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.accuracy.registry import FIDELITIES as SCENE_RUNGS
-from fe_contact.analysis.ladder import RUNGS
+from dynamics.accuracy.registry import FIDELITIES as SCENE_FIDELITIES
+from fe_contact.analysis.accuracy_study import FIDELITIES
 from service.problems import BadInput
 
 LEAST = 2
@@ -19,7 +19,7 @@ def rungs_asked(names: Sequence[str] | None, *, of_scene: bool) -> list[str]:
     BadInput
         A name that no rung of a case, or of a scene, has; or fewer than two rungs.
     """
-    known = [rung.name for rung in (SCENE_RUNGS if of_scene else RUNGS)]
+    known = [rung.name for rung in (SCENE_FIDELITIES if of_scene else FIDELITIES)]
     for name in names or ():
         if name not in known:
             raise BadInput.of("rungs", name, f"among {', '.join(known)}", "Or leave it out: all are run.")

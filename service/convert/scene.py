@@ -169,7 +169,7 @@ def _coupling(index: int, given: CouplingInput) -> Coupling:
 
 
 def _with_all_planets(given: SceneInput, scene: Scene) -> Scene:
-    """Return the scene with every planet there as often as asked for."""
+    """Return the scene with every planet there as often as requested."""
     for index, planets in enumerate(given.planets):
         angles = None if planets.angles_deg is None else [angle * DEGREE for angle in planets.angles_deg]
         errors = None

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fe_contact.analysis.operating_points import operating_points
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.request_check import check_request
-from fe_contact.analysis.table_places import table_places
 from fe_contact.contact import ContactModel, ContactProblem, ContactSolution
 from fe_contact.geometry import Gear, GearPair, ParallelAxes
 from fe_contact.planning import Plan, make_plan
@@ -89,7 +89,7 @@ def posed(
     asked = checked.request
     plan = make_plan(pair, asked.load, asked.accuracy, checked.model)
     contact = pair_contact(pair, plan, None) if bodies is None else _again(bodies, pair, plan)
-    (place,) = table_places(asked.scene, asked.choices, contact).places
+    (place,) = operating_points(asked.scene, asked.choices, contact).places
     return Posed(place.contact, place.model)
 
 

@@ -15,7 +15,7 @@ STAGE = "ablation"
 
 
 def switch_effects(order: WorkOrder, progress: Progress) -> tuple[Product, ...]:
-    """Switch the effects of a case or a scene over, into a JSON file."""
+    """Toggle the effects of a case or a scene, into a JSON file."""
     file = order.workspace / "ablation.json"
     products: tuple[Product, ...] = ()
     warnings = None

@@ -58,7 +58,7 @@ SENSITIVITY = Process(
 ABLATE = Process(
     id="ablate",
     title="What each effect of a case or a scene changes",
-    description="Every effect switched over by itself: the change of transmission errors (and of bearing "
+    description="Every effect toggled by itself: the change of transmission errors (and of bearing "
     "forces, for a scene), what the ledger estimated, and what it costs.",
     version="2",
     inputs=AblationInput,

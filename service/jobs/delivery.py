@@ -41,12 +41,12 @@ AS_IT_IS = Delivery()
 
 
 def delivery(response: Response, transmission: Transmission | None, media_type: str, field: str) -> Delivery:
-    """Return the form that was asked for.
+    """Return the form that was requested.
 
     Parameters
     ----------
     response, transmission
-        As asked for; a transmission that is left out is by value, but of netCDF in a document by reference.
+        As requested; a transmission that is left out is by value, but of netCDF in a document by reference.
     media_type : str
         Of the result.
     field : str

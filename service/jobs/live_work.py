@@ -23,7 +23,7 @@ _pairs: OrderedDict[str, tuple[Case, CondensedPair]] = OrderedDict()
 
 
 def live_ste(inputs: Json) -> Json:
-    """Return the curves of a question; the compliances asked for last stay in memory."""
+    """Return the curves of a question; the compliances requested last stay in memory."""
     begin = time.process_time()
     question = LiveInput.model_validate_json(json.dumps(inputs["question"]))
     places = Path(inputs["file"]), Path(inputs["cache"])

@@ -68,7 +68,7 @@ class Retention:
         yield from purge_quarantine(self._quarantine, dry_run=dry_run)
 
     def _jobs(self, since: str, *, dry_run: bool) -> Iterator[Leftover]:
-        """Remove ended jobs that nobody asked for since an instant, and the computations of no job."""
+        """Remove ended jobs that nobody requested since an instant, and the computations of no job."""
         while found := self._forgotten(since, dry_run=dry_run):
             yield from (Leftover("not asked for", f"job {name}", 0) for name in found)
             if dry_run:

@@ -19,7 +19,7 @@ from service.problems import NoSuchJob, QueueFull
 from service.store import BRIEF_MS, Mark, behind, instant, now, optional, reading, retried, writing
 from service.store.results import USE_NOTED_EVERY_S
 
-_LOOKED_AT = 500  # at a time, where durations are asked for
+_LOOKED_AT = 500  # at a time, where durations are requested
 
 
 class Submissions:
@@ -117,7 +117,7 @@ class Submissions:
 
     @optional
     def _note_use(self, row: Any) -> None:
-        """Note, once an hour, that an ended job was asked for; nobody waits for that."""
+        """Note, once an hour, that an ended job was requested; nobody waits for that."""
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         if row.state in ENDED and (row.asked or row.job_created) < before:
             with writing(self._engine, patience_ms=BRIEF_MS) as connection:

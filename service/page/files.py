@@ -52,7 +52,7 @@ def page_file(name: str) -> PageFile | None:
 
 @lru_cache(maxsize=1)
 def _own() -> dict[str, Path]:
-    """Return the files of this package by name: only those can be asked for."""
+    """Return the files of this package by name: only those can be requested."""
     return {path.name: path for path in _DIRECTORY.iterdir() if path.suffix in _TYPES}
 
 

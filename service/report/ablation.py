@@ -88,7 +88,7 @@ def case_ablation_figure(found: Ablation) -> Figure:
     return Figure(
         key="ablation",
         title="Influence of every effect on this case",
-        caption="Each effect switched over by itself, all others as decided: change by leaving it out, in "
+        caption="Each effect toggled by itself, all others as decided: change by leaving it out, in "
         f"size, {_place(found)}. Between the dotted lines estimates are within a factor 2; changes below "
         f"{_SMALLEST:g} µm are left out.",
         alternative="; ".join(
@@ -130,7 +130,7 @@ def _scatter(found: Ablation, title: str, which: str) -> Panel:
 
 
 def _harmonics(found: Ablation) -> Panel:
-    """Amplitudes of the mesh harmonics with everything as decided and with each effect switched over."""
+    """Amplitudes of the mesh harmonics with everything as decided and with each effect toggled."""
     states = [("as decided", found.nominal.harmonics[-1])]
     for entry in found.effects:
         other = entry.without_effect if entry.on else entry.with_effect
@@ -182,7 +182,7 @@ def _most(values: FloatArray) -> float:
 
 
 def scene_ablation_figure(found: SceneAblation) -> Figure:
-    """Draw mesh orders of transmission error and bearing force, with each effect switched over."""
+    """Draw mesh orders of transmission error and bearing force, with each effect toggled."""
 
     def panel(title: str, label: str, unit: float, of: Callable[[RunFigures], FloatArray]) -> Panel:
         states = [("as decided", np.max(of(found.nominal), axis=0))]
@@ -197,7 +197,7 @@ def scene_ablation_figure(found: SceneAblation) -> Figure:
     return Figure(
         key="ablation",
         title="Influence of every effect in this scene",
-        caption="Each effect switched over by itself in all its parts: largest amplitude of every mesh order "
+        caption="Each effect toggled by itself in all its parts: largest amplitude of every mesh order "
         "over meshes, bearings and the second half of the run. States without any are not drawn.",
         alternative="; ".join(
             f"{one.name} {_signed(1e6 * _most(one.peak_to_peak_change))} µm of peak to peak"

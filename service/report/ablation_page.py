@@ -30,5 +30,5 @@ def ablation_page(found: Ablation | SceneAblation) -> Page:
     left = Table("Effects that were not switched", ("effect", "because"), tuple(found.left_out.items()))
     tables = (rows, *([left] if found.left_out else []))
     section = Section("Effects", "", (replace(figure, table=None),) if found.effects else (), tables)
-    lead = f"{len(found.effects)} effects of the {what}, each switched over by itself"
+    lead = f"{len(found.effects)} effects of the {what}, each toggled by itself"
     return Page("What every effect changes", lead, tuple(heads), (section,))

@@ -27,7 +27,7 @@ _LEDGER = {"effect": "effect", "part": "part", "on": "simulated", "reason": "bec
 _ERRORS = {
     "time_step": ("step error", "nm rms"),
     "table_interpolation": ("table error", "nm rms"),
-    "left_out_effects": ("effects that are off", "nm at rest"),
+    "left_out_effects": ("neglected effects", "nm at rest"),
 }
 """Sources of error, and the unit of what they do to transmission errors."""
 

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fe_contact.analysis.fidelity_result import FidelityResult
 from fe_contact.analysis.frontier import Frontier
 from fe_contact.analysis.measured_full_contact import MeasuredFullContact
-from fe_contact.analysis.rung_result import RungResult
 from service.report import full_contact, palette
 from service.report.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.report.ladder_page import ladder_page
@@ -23,7 +23,7 @@ _FAMILIES = (
     ("2-D finite elements", ("plane_strain", "corrected_draft", "corrected", "corrected_fine"), palette.BLUE),
     ("3-D finite elements", ("3d_draft", "3d_standard", "3d_fine"), palette.GREEN),
 )
-Assessed = RungResult | MeasuredFullContact
+Assessed = FidelityResult | MeasuredFullContact
 
 
 def frontier_figure(found: Frontier) -> Figure:
@@ -97,13 +97,13 @@ def _time_axis(found: Frontier) -> Axis:
     return Axis("CPU time of the table, s", "log", (0.5 * min(times), 3.0 * max(times)))
 
 
-def _note(found: Frontier, result: RungResult) -> str:
+def _note(found: Frontier, result: FidelityResult) -> str:
     """Name of a rung and its marks."""
     mark = _mark(found, result)
     return f"{result.name.replace('_', ' ')} ({mark})" if mark else result.name.replace("_", " ")
 
 
-def _mark(found: Frontier, result: RungResult) -> str:
+def _mark(found: Frontier, result: FidelityResult) -> str:
     """Knee, chosen, reference."""
     marks = (("knee", found.knee), ("chosen", found.chosen), ("reference", found.reference.name))
     return ", ".join(mark for mark, name in marks if name == result.name)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from fe_contact.analysis.accuracy_study.full_contact import ORIGIN
 from fe_contact.analysis.frontier import Frontier
-from fe_contact.analysis.ladder.full_contact import ORIGIN
 from fe_contact.analysis.measured_full_contact import PLANE, PROGRAM, MeasuredFullContact
 from service.report import palette
 from service.report.figure import Line, Note, number

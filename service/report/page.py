@@ -19,7 +19,7 @@ from service.report.style import STYLE
 class Section:
     """A heading with the figures and tables under it.
 
-    `text` introduces them in a sentence; `folded` tables are shown when asked for, and in print.
+    `text` introduces them in a sentence; `folded` tables are shown when requested, and in print.
     """
 
     title: str
@@ -140,7 +140,7 @@ def _embedded(figure: Figure) -> str:
 
 
 def _folded(table: Table, name: str = "") -> str:
-    """Write a table that opens when asked for."""
+    """Write a table that opens when requested."""
     return f"<details><summary>{escape(name or table.caption)}</summary>{_table(table)}</details>"
 
 

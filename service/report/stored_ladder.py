@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.accuracy import FidelityResult as SceneRung
+from dynamics.accuracy import FidelityResult as SceneFidelity
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy.frontier import FIGURES
 from dynamics.accuracy.vibration import Vibration
 from fe_contact.analysis import Frontier
-from fe_contact.analysis.ladder.full_contact import FullContactLevel
-from fe_contact.analysis.rung_result import RungResult
+from fe_contact.analysis.accuracy_study.full_contact import FullContactLevel
+from fe_contact.analysis.fidelity_result import FidelityResult
 
 Json = dict[str, Any]
 
@@ -39,10 +39,10 @@ def _of_case(content: Json) -> Frontier:
     return Frontier(rungs, **{name: content[name] for name in names}, known_full_contact=known)
 
 
-def _rung(content: Json) -> RungResult:
+def _rung(content: Json) -> FidelityResult:
     """One rung; an error that is not known was left out."""
     names = ("name", "title", "stated_error", "cpu_seconds", "stages", "peak_memory_bytes")
-    return RungResult(
+    return FidelityResult(
         **{name: content[name] for name in names},
         mean=np.array(content["mean_m"], dtype=float),
         peak_to_peak=np.array(content["peak_to_peak_m"], dtype=float),
@@ -63,8 +63,8 @@ def _of_scene(content: Json) -> SceneFrontier:
     )
 
 
-def _scene_rung(content: Json) -> SceneRung:
+def _scene_rung(content: Json) -> SceneFidelity:
     """One rung; an error that is not known was left out."""
     rms, orders, forces = (content["errors"].get(name, math.nan) for name in FIGURES)
     names = content["name"], content["title"], content["family"]
-    return SceneRung(*names, rms, orders, forces, content["cpu_seconds"])
+    return SceneFidelity(*names, rms, orders, forces, content["cpu_seconds"])

@@ -33,7 +33,7 @@ class ShownDesign(Protocol):
 
 
 class ShownOptimisation(Protocol):
-    """What a report shows of an optimisation: an `Optimisation`, or one read back."""
+    """What a report shows of an optimisation: an `Optimization`, or one read back."""
 
     @property
     def outcome(self) -> str:

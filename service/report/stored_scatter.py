@@ -14,7 +14,7 @@ from service.units import UM
 
 
 def stored_scatter(content: Json) -> ToleranceStudy:
-    """Return the study in `content` (`scatter_json`); what was asked for stays in boundary units."""
+    """Return the study in `content` (`scatter_json`); what was requested stays in boundary units."""
     return ToleranceStudy(
         np.array(content["torque_n_m"], dtype=float),
         tuple(name.rpartition("_")[0] for name in content["names"]),

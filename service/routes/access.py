@@ -27,7 +27,7 @@ class Access:
     keyring : Keyring
     always : bool
         Ask for a key even while there is none, so that taking back the last key opens nothing. Otherwise
-        keys are asked for as soon as there is one.
+        keys are requested as soon as there is one.
     """
 
     def __init__(self, app: ASGIApp, keyring: Keyring, *, always: bool) -> None:

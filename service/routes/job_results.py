@@ -1,4 +1,4 @@
-"""Results of jobs in the form that was asked for (OGC API - Processes 1.0, clauses 7.11.2 and 7.13)."""
+"""Results of jobs in the form that was requested (OGC API - Processes 1.0, clauses 7.11.2 and 7.13)."""
 
 from __future__ import annotations
 

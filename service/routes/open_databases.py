@@ -63,7 +63,7 @@ class OpenDatabases:
             return self.at_hand(key) or self._read(store, key)
 
     def _read(self, store: ResultStore, key: str) -> OpenDatabase:
-        """Read and verify a database; the one not asked for longest is closed."""
+        """Read and verify a database; the one not requested longest is closed."""
         with LOADING:
             from fe_contact.ste import SteDatabase  # noqa: PLC0415 (start-up time)
 

@@ -156,7 +156,7 @@ class AccuracyInput(BoundaryModel):
     @model_validator(mode="before")
     @classmethod
     def _default_wish(cls, data: Any) -> Any:
-        """Ask for the default tolerance when nothing is asked for, so that the echo says so."""
+        """Ask for the default tolerance when nothing is requested, so that the echo says so."""
         if isinstance(data, dict) and all(data.get(name) is None for name in _WISHES):
             return {**data, "tolerance": 0.01}
         return data
@@ -183,7 +183,7 @@ class Case(BoundaryModel):
     load: LoadInput = Field(description="The loads", examples=[{"torque_n_m": [10, 100, 400]}])
     errors: ErrorsInput = Field(default=ErrorsInput(), description="Errors of assembly", examples=[{}])
     accuracy: AccuracyInput = Field(
-        default=AccuracyInput(), description="The accuracy asked for", examples=[{}]
+        default=AccuracyInput(), description="The accuracy requested", examples=[{}]
     )
     effects: dict[EffectName, Switch] = Field(
         default={},

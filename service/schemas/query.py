@@ -52,7 +52,7 @@ _Changes = Annotated[
 
 
 class QueryInput(BoundaryModel):
-    """Points at which the mesh force is asked for; a list of one value serves for all points."""
+    """Points at which the mesh force is requested; a list of one value serves for all points."""
 
     position: _Positions = Field(
         description="Positions by the driving gear in base pitches, 0 = pitch point",
@@ -88,7 +88,7 @@ class QueryInput(BoundaryModel):
 
 
 class QueryOutput(BoundaryModel):
-    """The mesh force at the points asked for."""
+    """The mesh force at the points requested."""
 
     force_n: list[float] = Field(description="Transverse mesh force F_bt in N", examples=[[1834.2, 2651.8]])
     stiffness_n_per_um: list[float] = Field(

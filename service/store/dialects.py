@@ -218,7 +218,7 @@ class PostgreSQL:
 
 
 def _begin_on_server(connection: Connection) -> None:
-    """Wait for locks but briefly, if that is asked for; the transaction's end undoes it."""
+    """Wait for locks but briefly, if that is requested; the transaction's end undoes it."""
     if (patience_ms := connection.get_execution_options().get("patience_ms")) is not None:
         connection.exec_driver_sql(f"SET LOCAL lock_timeout = {patience_ms:d}")
 

@@ -80,10 +80,10 @@ class Leftover:
 def expire_results(
     store: ResultStore, quarantine: Quarantine, older_than_days: float, *, dry_run: bool
 ) -> Iterator[Leftover]:
-    """Take out of the index, and to quarantine, what was not asked for in so many days.
+    """Take out of the index, and to quarantine, what was not requested in so many days.
 
     Only what the index dates goes. A line goes before its file, so that nothing is found whose file is gone;
-    it goes only if it is still as it was seen, so that what is asked for just now stays.
+    it goes only if it is still as it was seen, so that what is requested just now stays.
     """
     since = days_ago(older_than_days)
     for line in store.lines():
@@ -92,7 +92,7 @@ def expire_results(
 
 
 def _expire(store: ResultStore, quarantine: Quarantine, line: IndexLine, since: str) -> bool:
-    """Take a result out, unless it was asked for meanwhile."""
+    """Take a result out, unless it was requested meanwhile."""
     quarantine.confirm()
     if not store.strike(line, unused_since=since):
         return False

@@ -66,7 +66,7 @@ class IndexLine:
     file : str
         Name of the file in its place.
     used : str
-        When it was last asked for, within an hour.
+        When it was last requested, within an hour.
     reindexed : str or None
         When the line was rebuilt from its file: the result is as old as that, or older.
     """
@@ -208,14 +208,14 @@ class ResultStore:
         return NotFound(f"There is no {kind} {key!r}. Submit its case again to compute it.")
 
     def note_use(self, key: str, kind: str) -> None:
-        """Note that a result was asked for; cheap, and written once an hour."""
+        """Note that a result was requested; cheap, and written once an hour."""
         last = self._noted.get((key, kind), -USE_NOTED_EVERY_S)
         if time.monotonic() - last >= USE_NOTED_EVERY_S:
             self._note_use(key, kind)
 
     @optional
     def _note_use(self, key: str, kind: str) -> None:
-        """Write down that a result was asked for; nobody waits for that."""
+        """Write down that a result was requested; nobody waits for that."""
         mine = (results.c.key == key, results.c.kind == kind)
         before = instant(datetime.now(UTC) - timedelta(seconds=USE_NOTED_EVERY_S))
         with writing(self._engine, patience_ms=BRIEF_MS) as connection:

@@ -15,7 +15,7 @@ from service.schemas.result_kinds import NETCDF, RESULT_KINDS
 from service.settings import Settings
 
 KEY, ABSENT = "5" * 64, "6" * 64
-PUBLIC = ("/health", "/ready")  # asked for without a key, and as old as the answer
+PUBLIC = ("/health", "/ready")  # requested without a key, and as old as the answer
 
 
 @pytest.fixture(scope="module")

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 from study_service import CASE, Served, prepared, scene_by_hash, study_service, without
 
-from dynamics.accuracy.registry import FIDELITIES as SCENE_RUNGS
-from fe_contact.analysis.ladder import RUNGS
+from dynamics.accuracy.registry import FIDELITIES as SCENE_FIDELITIES
+from fe_contact.analysis.accuracy_study import FIDELITIES
 from fe_contact.errors import SolveError
 from fe_contact.ste import SteDatabase
 from service.client import JobState
@@ -105,9 +105,9 @@ def test_a_rung_that_fails_is_named_and_the_others_survive(
         def run(self, *_: object) -> SteDatabase:
             raise failure
 
-    rungs = [rung for rung in RUNGS if rung.name in CLOSED]
-    climbing = importlib.import_module("fe_contact.analysis.frontier")
-    monkeypatch.setattr(climbing, "RUNGS", (rungs[0], Failing(), rungs[1]))
+    rungs = [rung for rung in FIDELITIES if rung.name in CLOSED]
+    module = importlib.import_module("fe_contact.analysis.frontier")
+    monkeypatch.setattr(module, "FIDELITIES", (rungs[0], Failing(), rungs[1]))
     made, progress = worked(prepared(FRONTIER, case=CASE, rungs=[*CLOSED, "corrected"]), tmp_path, tmp_path)
     assert made["left_out"] == {"corrected": said}
     assert [rung["name"] for rung in made["rungs"]] == CLOSED
@@ -126,7 +126,7 @@ def test_full_contact_runs_beside_the_ladder_of_a_case(tmp_path: Path) -> None:
 
 
 def test_equal_questions_in_other_words_are_one_result() -> None:
-    everything = [rung.name for rung in RUNGS]
+    everything = [rung.name for rung in FIDELITIES]
     keys = [
         FRONTIER.key(prepared(FRONTIER, case=CASE, **further))
         for further in ({}, {"rungs": everything}, {"rungs": [*everything[::-1], *CLOSED]}, {"rungs": CLOSED})
@@ -141,7 +141,7 @@ def test_equal_questions_in_other_words_are_one_result() -> None:
         ({"case": CASE, "rungs": []}, "rungs"),
         ({"case": CASE, "rungs": ["iso6336"]}, "rungs"),  # nothing to compare it to
         ({"case": CASE, "rungs": ["iso6336", "4d"]}, "rungs"),
-        ({"case": CASE, "rungs": [SCENE_RUNGS[0].name, *CLOSED]}, "rungs"),
+        ({"case": CASE, "rungs": [SCENE_FIDELITIES[0].name, *CLOSED]}, "rungs"),
         ({"case": CASE, "rung": CLOSED}, "rung"),
         ({"case": CASE, "full_contact": 0}, "full_contact"),
         ({"case": CASE, "full_contact": 65}, "full_contact"),

@@ -72,7 +72,7 @@ def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, ke
     first, again = (client.post(f"/v1/databases/{key}/ste", json=question).json() for question in questions)
     for curve in again["curves"]:
         assert 0.0 < curve["peak_to_peak_error_um"] < 0.2 * curve["peak_to_peak_um"]
-        assert 0.0 < curve["mean_error_um"] < 0.08 * curve["mean_um"]  # plane strain was asked for
+        assert 0.0 < curve["mean_error_um"] < 0.08 * curve["mean_um"]  # plane strain was requested
         assert len(curve["harmonics_error_um"]) == len(curve["harmonics_um"])
         by_source = curve["error_by_source_um"].values()
         total = sum(source["peak_to_peak"] ** 2 for source in by_source) ** 0.5
@@ -81,7 +81,7 @@ def test_an_answer_knows_how_wrong_it_is_and_what_it_cost(client: TestClient, ke
     assert again["not_estimated"] == [] and 0.0 < again["residuals_max"] < 1e-6
     assert {one["assumption"]: one["holds"] for one in again["assumptions"]} == {
         "load even over the face": True,
-        "plane strain stands for the whole face": False,  # as asked for by name
+        "plane strain stands for the whole face": False,  # as requested by name
         "contact strips within the load patches": True,
     }
     assert [one["assumption"] for one in again["not_checked"]] == ["coast flanks stay apart"]

@@ -83,7 +83,7 @@ def submit(client: Client, text: str) -> str:
         if answer.status_code == 201:
             return str(answer.headers["location"])
         assert (answer.status_code, answer.headers.get("retry-after")) == (429, "10"), answer.text
-        time.sleep(1.0)  # the tests' patience is less than the 10 s asked for
+        time.sleep(1.0)  # the tests' patience is less than the 10 s requested
 
 
 def submitted_at_once(asked: Asked, wishes: Sequence[str], meanwhile: Callable[[], bool]) -> list[str]:

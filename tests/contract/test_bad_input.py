@@ -1,4 +1,4 @@
-"""Bad input gives one clear error at every door (Python, command line, HTTP) and leaves nothing running."""
+"""Bad input gives one clear error at every entry point (Python, command line, HTTP); nothing runs on."""
 
 from __future__ import annotations
 

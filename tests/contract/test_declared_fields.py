@@ -1,4 +1,4 @@
-"""A declared figure is at every door: case, live question, design variable, scatter, names in messages."""
+"""A declared figure is at every entry point: case, question, design variable, scatter, names in messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every bound of every number of cases and scenes, at every door: field, value, and a bound that holds."""
+"""Every bound of every number of cases and scenes, at every entry point: field, value, a bound that holds."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def pair_facts(case: str) -> PairFacts:
 
 
 def check(given: Case | SceneInput) -> None:
-    """Check a case or a scene as the doors do."""
+    """Check a case or a scene as the entry points do."""
     if isinstance(given, Case):
         check_case(given)
         return

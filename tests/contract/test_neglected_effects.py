@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, PitchDeviation, Shaft, SteDatabase, analyze
-from fe_contact.analysis import assumptions, influences, request, request_check, table_places
+from fe_contact.analysis import assumptions, influences, operating_points, request, request_check
 from fe_contact.effects import EFFECTS
 from fe_contact.types import Json
 
@@ -28,7 +28,7 @@ SCENES: dict[str, tuple[GearPair, Json]] = {
     "plane": (IN_THE_PLANE, {}),
     "face": (ALL_OVER_THE_FACE, {"misalignments": [20e-6], "pitches": 2}),
 }
-REGISTRIES = (assumptions, influences, request, request_check, table_places)
+REGISTRIES = (assumptions, influences, request, request_check, operating_points)
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""A scene that cannot move is one clear error at every door, before anything is computed."""
+"""A scene that cannot move is one clear error at every entry point, before anything is computed."""
 
 from __future__ import annotations
 

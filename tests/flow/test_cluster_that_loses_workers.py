@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair, SteDatabase, analyze, study_sensitivity
-from fe_contact.analysis import contact_lines, solved_places
+from fe_contact.analysis import contact_lines, solved_operating_points
 from fe_contact.errors import WorkersLost
 from fe_contact.microgeometry import Tolerances, scatter
 from fe_contact.workers import ByDask, InProcess, OrHere, RunCost, Workers
@@ -98,7 +98,7 @@ def cluster() -> Iterator[Cluster]:
 @pytest.fixture(autouse=True)
 def small_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cut small tables as large ones are."""
-    for module in (contact_lines, solved_places):
+    for module in (contact_lines, solved_operating_points):
         monkeypatch.setattr(module, "TASK_SECONDS", 0.01)
 
 

@@ -1,4 +1,4 @@
-"""Inputs that nobody can compute, with the field at fault: in SI for Python, as a case for other doors."""
+"""Inputs that cannot be computed, with the field at fault: in SI for Python, as a case elsewhere."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class BadInput:
     changes : dict
         Dotted path in the case to the wrong value; `DROP` removes the field.
     case_field : str
-        The field that the case's doors name.
+        The field that the case's entry points name.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Scenes that cannot move, with the field at fault: in SI for Python, as a scene file for other doors."""
+"""Scenes that cannot move, with the field at fault: in SI for Python, as a scene file elsewhere."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from service.settings import Settings
 from service.store import ResultStore, identity_of, open_database, result_store
 
 REFERENCES = {"response": "document", "transmissionMode": "reference"}
-"""Parameters of a job's results: where they are, whatever form was asked for."""
+"""Parameters of a job's results: where they are, whatever form was requested."""
 PATIENCE_S = 300.0
 """Many times what a busy machine needs: a hang, not a speed, is what this finds."""
 

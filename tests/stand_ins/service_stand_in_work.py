@@ -71,7 +71,7 @@ def _write_slowly(file: Path, content: bytes, progress: Progress) -> None:
 
 
 def _misbehave(order: WorkOrder, mode: str) -> None:
-    """Fail in the way that is asked for."""
+    """Fail in the way that is requested."""
     if mode == "hang":
         grandchild = subprocess.Popen(["sleep", "600"])
         (order.data_directory / f"grandchild_{order.key[:8]}").write_text(str(grandchild.pid))

@@ -1,4 +1,4 @@
-"""The door: from a mesh element to an FMU file."""
+"""Entry point: from a mesh element to an FMU file."""
 
 from __future__ import annotations
 

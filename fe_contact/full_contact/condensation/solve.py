@@ -103,7 +103,7 @@ def contact_tables(
 
 
 def resolutions(resolution: Resolution, *, estimate_error: bool) -> tuple[Resolution, ...]:
-    """Return the meshes to solve on: the coarser one too where the error is asked for."""
+    """Return the meshes to solve on: the coarser one too where the error is requested."""
     return (resolution, resolution.coarser(COARSER)) if estimate_error else (resolution,)
 
 

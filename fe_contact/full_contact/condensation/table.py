@@ -41,7 +41,7 @@ class FullContactTable:
 
     @property
     def error_estimate(self) -> FloatArray:
-        """Error of it by the discretization (P, T), m; NaN where it was not asked for."""
+        """Error of it by the discretization (P, T), m; NaN where it was not requested."""
         return np.array([[point.error_estimate for point in row] for row in self.points])
 
     @property

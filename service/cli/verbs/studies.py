@@ -62,7 +62,7 @@ def ablate(
         Path | None, typer.Option("-o", "--output", help="File to write, ending in .png, .json or .html.")
     ] = None,
     only: Annotated[
-        str | None, typer.Option(help="Effects to switch over, separated by commas; default: all.")
+        str | None, typer.Option(help="Effects to toggle, separated by commas; default: all.")
     ] = None,
     json: AsJson = False,
 ) -> None:

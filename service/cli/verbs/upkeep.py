@@ -54,7 +54,7 @@ def gc(
     older_than: Annotated[
         float | None,
         typer.Option(
-            min=0.0, help="Also results and ended jobs not asked for in so many days [LOA_RETENTION_DAYS]."
+            min=0.0, help="Also results and ended jobs not requested in so many days [LOA_RETENTION_DAYS]."
         ),
     ] = None,
     json: AsJson = False,

@@ -44,7 +44,7 @@ def seven_decades() -> Sequence[Measured]:
 
 
 def zero_load() -> Sequence[Measured]:
-    """Go to zero load in the solver, in the table and at the door."""
+    """Go to zero load in the solver, in the table and at the entry point."""
     relief = FlankModification(tip_relief=20e-6, tip_relief_length=2e-3, profile_crowning=5e-6)
     pair = nominal_pair(modification=relief)
     case = posed(pair, NOMINAL_TORQUE * np.geomspace(1e-15, 1.0, 6))

@@ -180,7 +180,7 @@ TOLERANCES = HardScene(
     "tolerances_1e-2_and_1e-9",
     "dynamics",
     "A tolerance that lets every step through, and one of 7e-15 m, close to rounding.",
-    "The closed form of a damped oscillator to the tolerance asked for, by both integrators.",
+    "The closed form of a damped oscillator to the tolerance requested, by both integrators.",
     tolerances,
 )
 IMPLICIT_STEPS, EXPLICIT_STEPS = (

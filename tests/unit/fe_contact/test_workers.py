@@ -22,7 +22,7 @@ from fe_contact.microgeometry import (
     Search,
     Tolerances,
     ToleranceStudy,
-    optimise,
+    optimize,
     scatter,
 )
 from fe_contact.workers import ByExecutor, InProcess, Workers, dask_workers
@@ -73,7 +73,7 @@ def test_starts_searched_in_a_pool_find_the_same_designs(
     variables = [DesignVariable(f"{gear}.profile_crowning", 0.0, 2e-5) for gear in ("pinion", "wheel")]
     search = Search(NelderMead(), starts=3, evaluations=25, positions=16)
     here, there = (
-        optimise(
+        optimize(
             pair, [200.0], variables, search=search, workers=workers, map_torques=[200.0],
             cache=compliances, **DRAFT,
         )

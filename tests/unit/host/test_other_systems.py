@@ -1,4 +1,4 @@
-"""What systems that the tests do not run on are asked for, and what they are told."""
+"""What systems that the tests do not run on are requested, and what they are told."""
 
 from __future__ import annotations
 

@@ -61,7 +61,7 @@ def place(tmp_path: Path, on_servers: bool, request: pytest.FixtureRequest) -> s
 
 @pytest.fixture
 def first(tmp_path: Path, new_database: NewDatabase, place: str) -> Iterator[Bench]:
-    """A deployment with three results, all asked for some time ago."""
+    """A deployment with three results, all requested some time ago."""
     machine = bench(tmp_path / "first", REGISTRY, database_url=new_database(), results_url=place)
     for key in KEYS:
         put(machine, key)

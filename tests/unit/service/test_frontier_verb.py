@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from fe_contact.analysis.accuracy_study.full_contact import FULL_CONTACT, MEASURED_GEAR, known_full_contact
+from fe_contact.analysis.fidelity_result import FidelityResult
 from fe_contact.analysis.frontier import Frontier
-from fe_contact.analysis.ladder.full_contact import FULL_CONTACT, MEASURED_GEAR, known_full_contact
 from fe_contact.analysis.measured_full_contact import PLANE, MeasuredFullContact
-from fe_contact.analysis.rung_result import RungResult
 from fe_contact.full_contact import FullContactPoint, FullContactTable
 from fe_contact.geometry import FlankModification, GearPair
 from fe_contact.types import Status
@@ -24,9 +24,9 @@ from service.report.page import html
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 
 
-def ladder(name: str, seconds: float, error: float) -> RungResult:
+def ladder(name: str, seconds: float, error: float) -> FidelityResult:
     one = np.ones(1)
-    return RungResult(name, name, one, one, 0.1, error, 2.0 * error, seconds, {"contact": seconds}, 2**20)
+    return FidelityResult(name, name, one, one, 0.1, error, 2.0 * error, seconds, {"contact": seconds}, 2**20)
 
 
 @pytest.fixture

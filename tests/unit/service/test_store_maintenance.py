@@ -73,7 +73,7 @@ def done(machine: Bench, text: str) -> Job:
 
 
 def let_time_pass(machine: Bench, *kept: str) -> None:
-    """Let all have been asked for long ago, but the results and jobs of these keys."""
+    """Let all have been requested long ago, but the results and jobs of these keys."""
     with writing(machine.engine) as connection:
         connection.execute(update(results).where(results.c.key.not_in(kept)).values(used=LONG_AGO))
         connection.execute(update(computations).values(updated=LONG_AGO))

@@ -12,8 +12,8 @@ import pytest
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import check_request
 from fe_contact.analysis.model_choice import decide
+from fe_contact.analysis.operating_points import OperatingPoint, operating_points
 from fe_contact.analysis.solved_table import condensed_bodies
-from fe_contact.analysis.table_places import Place, table_places
 from fe_contact.contact import ContactModel, PatchRule, Slices, contact_candidates, solve_contact
 from fe_contact.stage_clock import StageClock
 
@@ -55,7 +55,7 @@ def test_a_curve_through_the_means_of_slices_keeps_parabolas_and_forces_their_mo
 
 def contact_of(
     shape: dict[str, float], corner: bool, cache: Path, helix: float = HELIX, level: str = "draft"
-) -> Place:
+) -> OperatingPoint:
     """Bodies that all shapes share."""
     checked = check_request(
         pair(helix, **shape),
@@ -64,10 +64,10 @@ def contact_of(
         effects={"corner_contact": "on" if corner else "off"},
     )
     bodies = condensed_bodies(checked, decide(checked).plan, StageClock(), lambda *_: None, cache)
-    return table_places(checked.request.scene, checked.request.choices, bodies).places[0]
+    return operating_points(checked.request.scene, checked.request.choices, bodies).places[0]
 
 
-def deflection(place: Place, slices: int) -> np.ndarray:
+def deflection(place: OperatingPoint, slices: int) -> np.ndarray:
     """STE in nm."""
     contact = place.contact.in_slices(slices)
     solution = contact.solve(place.model, np.arange(POSITIONS) / POSITIONS, LOAD)[1]

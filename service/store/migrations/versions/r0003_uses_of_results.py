@@ -1,4 +1,4 @@
-"""Names of the files of results, and when results and jobs were last asked for."""
+"""Names of the files of results, and when results and jobs were last requested."""
 
 from __future__ import annotations
 

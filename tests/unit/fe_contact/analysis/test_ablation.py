@@ -1,4 +1,4 @@
-"""Effects switched over one by one: the changes are those of the tables, beside their estimates."""
+"""Effects toggled one by one: the changes are those of the tables, beside their estimates."""
 
 from __future__ import annotations
 

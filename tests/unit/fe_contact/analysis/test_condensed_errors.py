@@ -129,7 +129,7 @@ def test_without_coarse_meshes_errors_are_those_usual_of_the_level(
     assert np.all((ratio > 1.0) & (ratio < 6.0))
 
 
-def test_a_pair_so_askew_that_it_leads_is_wrong_by_more_than_nothing(tmp_path: Path) -> None:
+def test_a_pair_so_misaligned_that_it_leads_is_wrong_by_more_than_nothing(tmp_path: Path) -> None:
     asked = {"level": "draft", "model": "3d", "positions": 8, "receipt": "minimal"}
     alone = condensed(analyze(PAIR, torques=TORQUES, cache=tmp_path, **asked), tmp_path)
     misaligned = alone.table(PAIR, TORQUES, 50e-6)

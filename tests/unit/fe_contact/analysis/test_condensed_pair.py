@@ -83,7 +83,7 @@ def test_another_center_distance_has_the_curve_of_its_own_analysis(cache: Path) 
     pair = condensed(PAIR, cache)
     for change in (1e-5, 3e-5, 2e-5):
         quick = pair.table(with_flank(PAIR, RELIEF), TORQUES, center_distance_change=change)
-    assert list(pair._apart) == [3e-5, 2e-5]  # those asked for last
+    assert list(pair._apart) == [3e-5, 2e-5]  # those requested last
     whole = table_of(with_flank(PAIR, RELIEF), cache, center_distance_changes=[2e-5])
     assert np.array_equal(quick.center_distance_change, whole.center_distance_change)
     assert np.array_equal(quick.static_transmission_error, whole.static_transmission_error)

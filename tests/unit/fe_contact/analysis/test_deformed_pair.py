@@ -14,7 +14,7 @@ import pytest
 from fe_contact import Gear, GearPair, deformed_pairs
 from fe_contact.analysis.deformed_pair import mesh_angles
 from fe_contact.analysis.request_check import check_request
-from fe_contact.analysis.solved_place import SolvedPlace, solve_place
+from fe_contact.analysis.solved_operating_point import SolvedOperatingPoint, solve_operating_point
 from fe_contact.contact import (
     contact_problem,
     face_contact_problem,
@@ -63,9 +63,9 @@ def internal_pair(hand: float = 0.0, **fields: Any) -> InternalGearPair:
     return InternalGearPair(pinion, ring, **fields)
 
 
-def solved(pair: GearPair | InternalGearPair, cache: Path, **request: Any) -> SolvedPlace:
+def solved(pair: GearPair | InternalGearPair, cache: Path, **request: Any) -> SolvedOperatingPoint:
     checked = check_request(pair, normal_forces=[2000.0], level="draft", **request)
-    return solve_place(
+    return solve_operating_point(
         checked, np.array([0.171875, 0.796875]), StageClock(), lambda _stage, _part: None, cache
     )
 
@@ -103,7 +103,7 @@ def test_the_work_of_the_forces_is_that_of_the_contact(cache: Path) -> None:
             assert turned == pytest.approx([2000.0, 2000.0], rel=0.05)
 
 
-def bare_compliance(place: SolvedPlace) -> np.ndarray:
+def bare_compliance(place: SolvedOperatingPoint) -> np.ndarray:
     """Compliance between the candidates without shafts and other additions."""
     contact, candidates = place.contact, place.problem.candidates
     if contact.face is not None:

@@ -64,7 +64,7 @@ def test_the_points_stand_in_the_middle_of_every_interval(coarse):
 
 
 def test_the_error_is_the_difference_to_a_table_computed_there(coarse, made):
-    """Another door to the same number: of the 32 positions half are assessed, the telling ones."""
+    """Another way to the same number: of the 32 positions half are assessed, the telling ones."""
     for k, change in enumerate((1e-4, 3e-4)):
         error = stated(coarse, "center_distance_change")[1][k]
         everywhere = missed(coarse, made(center_distance_changes=[change]))

@@ -262,7 +262,7 @@ def test_loads_between_which_a_table_misses_the_tolerance_are_named(tmp_path: Pa
     assert beyond["between"] == wide.force.tolist()
     assert beyond["used"] > 1.0
     assert wide.force.size == 2
-    assert receipt(wide)["tolerance"]["met"] is True  # of the loads that were asked for
+    assert receipt(wide)["tolerance"]["met"] is True  # of the loads that were requested
     assert receipt(dense)["tolerance"]["between_nodes"] == []
 
 

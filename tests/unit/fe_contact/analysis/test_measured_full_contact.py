@@ -1,4 +1,4 @@
-"""Full contact beside the ladder: errors where it was run, honest times, reasons."""
+"""Full contact beside the accuracy study: errors where it was run, honest times, reasons."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import pytest
 
 from fe_contact import FlankModification, Gear, GearPair
 from fe_contact.analysis import measured_full_contact as measuring
+from fe_contact.analysis.accuracy_study import THIN_SLICES
 from fe_contact.analysis.frontier import frontier
-from fe_contact.analysis.ladder import THIN_SLICES
 from fe_contact.analysis.measured_full_contact import full_contact_refusal, measure_full_contact, over_face
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_request
@@ -141,7 +141,7 @@ def test_what_needs_the_face_is_solved_over_it(table: SteDatabase, monkeypatch: 
 
 
 def fake_over_face(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, ...]]:
-    """Stand in for the solver by that of the plane; returns the misalignments asked for."""
+    """Stand in for the solver by that of the plane; returns the misalignments requested."""
     stand_in(table, monkeypatch, [])
     asked: list[tuple[float, ...]] = []
 
@@ -153,9 +153,9 @@ def fake_over_face(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> list[
     return asked
 
 
-def test_a_ladder_goes_on_without_it(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:
-    rungs = ["iso6336", "thin_slices"]
-    asked = {"normal_forces": FORCES, "positions": 32, "rungs": rungs}
+def test_an_accuracy_study_goes_on_without_it(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:
+    fidelities = ["iso6336", "thin_slices"]
+    asked = {"normal_forces": FORCES, "positions": 32, "fidelities": fidelities}
     stand_in(table, monkeypatch, [])
     beside = frontier(PAIR, **asked, full_contact=2).to_json()
     assert beside["full_contact"]["mean_error"] == pytest.approx(SOFTER - 1.0, rel=1e-3)
@@ -163,12 +163,12 @@ def test_a_ladder_goes_on_without_it(table: SteDatabase, monkeypatch: pytest.Mon
     failed = frontier(PAIR, **asked, full_contact=1)
     assert failed.full_contact is None
     assert failed.left_out == {"full_contact": "cut back too often"}
-    assert [result.name for result in failed.results] == rungs
+    assert [result.name for result in failed.results] == fidelities
     for wrong in (0, 65, True):
         with pytest.raises(InputError, match="full_contact"):
             frontier(PAIR, **asked, full_contact=wrong)
-    climbing = importlib.import_module("fe_contact.analysis.frontier")
-    monkeypatch.setattr(climbing, "full_contact_refusal", lambda _: "helical")
+    module = importlib.import_module("fe_contact.analysis.frontier")
+    monkeypatch.setattr(module, "full_contact_refusal", lambda _: "helical")
     assert frontier(PAIR, **asked, full_contact=1).left_out == {"full_contact": "helical"}
 
 
@@ -180,10 +180,14 @@ def test_no_solution_at_all_is_an_error_with_its_reason(
         measure_full_contact(checked, 2, lambda *_: None)
 
 
-def test_the_peer_runs_beside_the_ladder() -> None:
+def test_the_peer_runs_beside_the_accuracy_study() -> None:
     """The thing itself: our plane strain is within half a per cent of it."""
     found = frontier(
-        PAIR, torques=[2.0, 20.0], positions=32, rungs=["plane_strain", "corrected_draft"], full_contact=2
+        PAIR,
+        torques=[2.0, 20.0],
+        positions=32,
+        fidelities=["plane_strain", "corrected_draft"],
+        full_contact=2,
     )
     measured = found.full_contact
     assert measured is not None

@@ -13,7 +13,7 @@ from fe_contact import Gear, GearPair, RootStress, root_stress
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.root_stress import pair_histories
 from fe_contact.analysis.root_stress_history import crests
-from fe_contact.analysis.solved_place import SolvedPlace, solve_place
+from fe_contact.analysis.solved_operating_point import SolvedOperatingPoint, solve_operating_point
 from fe_contact.compliance import unit_root_stress, unit_root_stress_3d
 from fe_contact.errors import InputError
 from fe_contact.geometry import InternalGearPair, RingGear
@@ -41,12 +41,14 @@ def solved(pair: GearPair | InternalGearPair, cache: Path, **options: object) ->
     return root_stress(pair, cache=cache, **options)
 
 
-def place(pair: GearPair, cache: Path, model: str) -> SolvedPlace:
+def place(pair: GearPair, cache: Path, model: str) -> SolvedOperatingPoint:
     checked = check_request(pair, normal_forces=[FORCE], level="draft", model=model)
-    return solve_place(checked, np.array([0.1, 0.45, 0.8]), StageClock(), lambda _stage, _done: None, cache)
+    return solve_operating_point(
+        checked, np.array([0.1, 0.45, 0.8]), StageClock(), lambda _stage, _done: None, cache
+    )
 
 
-def with_forces(found: SolvedPlace, keep: np.ndarray, factor: float = 1.0) -> SolvedPlace:
+def with_forces(found: SolvedOperatingPoint, keep: np.ndarray, factor: float = 1.0) -> SolvedOperatingPoint:
     solution = found.solution
     return replace(found, solution=replace(solution, force=factor * np.where(keep, solution.force, 0.0)))
 

@@ -39,7 +39,7 @@ def test_the_curves_are_those_of_tables(pair, cache, corners):
     apart = wide.peak_to_peak(force=FORCE, center_distance_change=80e-6)
     assert found.misalignment.peak_to_peak[-1] == pytest.approx(skewed.value, rel=1e-9, abs=0.0)
     assert found.center_distance_change.peak_to_peak[-1] == pytest.approx(apart.value, rel=1e-9, abs=0.0)
-    # the worst interpolation of the assessed places stands for all of them
+    # the worst interpolation of the assessed operating points stands for all of them
     assert found.center_distance_change.error[-1] >= apart.error * (1.0 - 1e-6)
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from fe_contact.analysis import check_request
+from fe_contact.analysis.operating_points import operating_points
 from fe_contact.analysis.pair_contact import pair_contact
-from fe_contact.analysis.table_places import table_places
 from fe_contact.contact import ContactProblem, PatchRule, Slices, contact_candidates, in_pitches
 from fe_contact.contact.model import ContactModel
 from fe_contact.effects import EFFECTS, ContactScene, compose
@@ -46,7 +46,7 @@ def solved(cache):
         checked = check_request(pair, torques=torques, level="draft", effects=effects, whole_table=False)
         plan = make_plan(pair, checked.request.load, checked.request.accuracy, checked.model)
         contact = pair_contact(pair, plan, cache)
-        (place,) = table_places(checked.request.scene, checked.request.choices, contact).places
+        (place,) = operating_points(checked.request.scene, checked.request.choices, contact).places
         solution = place.solve(position, plan.load, np.repeat(pitches, position.size))[1]
         assert solution.converged
         return solution.deflection.reshape(len(pitches), position.size, -1)

@@ -24,7 +24,7 @@ def test_equilibrium_and_the_condensed_peer(gear: Gear) -> None:
     pair = GearPair(gear, gear, center_distance=80e-3)
     point = solve_position(CALCULIX, pair, float(pair.normal_force(TORQUE)), 0.0, 300.0, COARSE)
     assert point.status.usable, point.reason
-    assert abs(point.residual) < 1e-6  # moment of the contact forces is the torque that was asked for
+    assert abs(point.residual) < 1e-6  # moment of the contact forces is the torque that was requested
     assert point.torque_ratio == pytest.approx(1.0, abs=1e-3)  # on the line of action, equal base radii
     assert point.position * pair.base_pitch == pytest.approx(point.transmission_error, rel=1e-9, abs=0.0)
     own = solve_full_contact(pair, [TORQUE], [point.position], COARSE).transmission_error[0, 0]

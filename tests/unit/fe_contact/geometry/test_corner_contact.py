@@ -117,7 +117,7 @@ def test_bad_arguments_are_refused(pair: GearPair) -> None:
 
 
 def test_newton_ends_where_rounding_begins(pair: GearPair, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Asked for less than the rounding of a gap it would go to and fro in the last bits to its limit."""
+    """Requested less than the rounding of a gap it would go to and fro in the last bits to its limit."""
     module = importlib.import_module("fe_contact.geometry.corner_contact")
     calls, touch = [], module._touch
     monkeypatch.setattr(module, "_touch", lambda *given: calls.append(0) or touch(*given))

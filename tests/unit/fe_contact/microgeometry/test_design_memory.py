@@ -13,11 +13,11 @@ from fe_contact.microgeometry import (
     DesignVariable,
     DifferentialEvolution,
     Limits,
-    Optimisation,
+    Optimization,
     Search,
     WeightedMean,
     Worst,
-    optimise,
+    optimize,
 )
 from fe_contact.microgeometry.evaluator import Evaluator
 
@@ -41,9 +41,9 @@ def solved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return count
 
 
-def run(pair: GearPair, compliances: Path, memory: Path | None, **further: Any) -> Optimisation:
+def run(pair: GearPair, compliances: Path, memory: Path | None, **further: Any) -> Optimization:
     asked: dict[str, Any] = {"torques": [200.0], "variables": FREE, "search": SEARCH, **further}
-    return optimise(
+    return optimize(
         pair, asked.pop("torques"), asked.pop("variables"), map_torques=[200.0], level="draft",
         model="plane_strain", cache=compliances, memory=memory, **asked,
     )  # fmt: skip

@@ -20,7 +20,7 @@ from fe_contact.microgeometry import (
     Search,
     SearchRun,
     WeightedMean,
-    optimise,
+    optimize,
 )
 from fe_contact.microgeometry.design_problem import DesignProblem
 from fe_contact.microgeometry.design_study import Accuracies, design_study
@@ -153,9 +153,9 @@ def test_crowning_that_evens_the_load_grows_with_the_scatter(pair: GearPair, com
     assert found[0][1].assessed.objective < found[1][1].assessed.objective
 
 
-def test_a_pair_askew_is_assessed_by_whole_tables(pair: GearPair, compliances: Path) -> None:
+def test_a_misaligned_pair_is_assessed_by_whole_tables(pair: GearPair, compliances: Path) -> None:
     free = [DesignVariable(SLOPE, -30e-6, 30e-6), DesignVariable("wheel.profile_crowning", 0.0, 20e-6)]
-    best = optimise(
+    best = optimize(
         pair, [300.0], free, Scatter(5e-6, rule=GaussHermite(2)), misalignment=SKEW, map_torques=[300.0],
         search=Search(NelderMead(), evaluations=40, positions=POSITIONS), level="draft", cache=compliances,
     )  # fmt: skip

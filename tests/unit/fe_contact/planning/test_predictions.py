@@ -144,7 +144,7 @@ def test_a_time_takes_the_most_exact_mesh_that_fits():
 
 
 def test_a_plan_computes_nothing(monkeypatch):
-    """Neither a mesh nor a compliance nor a contact is asked for."""
+    """Neither a mesh nor a compliance nor a contact is requested."""
     for place in (
         "fe_contact.mesh.gmsh_child.subprocess.run",
         "fe_contact.analysis.pair_contact.solve_contact",

@@ -1,4 +1,4 @@
-"""Errors of mean, peak-to-peak and harmonics: how changes are measured, stored and asked for."""
+"""Errors of mean, peak-to-peak and harmonics: how changes are measured, stored and requested."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from fe_contact.analysis import Frontier
-from fe_contact.analysis.rung_result import RungResult
+from fe_contact.analysis.fidelity_result import FidelityResult
 from fe_contact.ste import SteDatabase
 from service.problems import NotFound
 from service.report.as_json import page_json, stored_figures
@@ -19,10 +19,10 @@ from service.report.inputs import read_inputs
 from service.report.stored_ladder import stored_ladder
 
 
-def rung(name: str, error: float, seconds: float) -> RungResult:
+def rung(name: str, error: float, seconds: float) -> FidelityResult:
     """Return a rung that is so far off."""
     ripple = np.array([1e-6, 2e-6])
-    return RungResult(
+    return FidelityResult(
         name, name, 4.0 * ripple, ripple, 0.01, error, 2.0 * error, seconds, {"contact": seconds}, 2**28
     )
 

@@ -11,7 +11,7 @@ import pytest
 from geared_scenes import gear_pair_scene
 
 from dynamics.ablation import ablate as ablate_scene
-from dynamics.accuracy import FidelityResult as SceneRung
+from dynamics.accuracy import FidelityResult as SceneFidelity
 from dynamics.accuracy import Frontier as SceneFrontier
 from dynamics.accuracy.vibration import Vibration
 from fe_contact.analysis import ablate
@@ -22,7 +22,7 @@ from fe_contact.microgeometry import (
     Scatter,
     Search,
     iso1328_tolerances,
-    optimise,
+    optimize,
     scatter,
 )
 from fe_contact.ste import SteDatabase
@@ -63,7 +63,7 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
     ]
     slopes = Scatter(modification={"wheel.profile_slope": 2e-6}, rule=GaussHermite(2))
     found, exact = (
-        optimise(
+        optimize(
             PAIR,
             [50.0, 100.0],
             variables,
@@ -78,7 +78,7 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
     drawn = scatter(PAIR, [50.0, 100.0], tolerances, samples=30, positions=16, cache=compliance, **QUICK)
     told = (("rigid", "model", 0.2, 0.1), ("coarse", "steps", 0.01, 1.0), ("fine", "steps", 1e-4, 9.0))
     rungs = tuple(
-        SceneRung(name, name, family, error, 2.0 * error, float("nan"), seconds)
+        SceneFidelity(name, name, family, error, 2.0 * error, float("nan"), seconds)
         for name, family, error, seconds in told
     )
     vibration = Vibration(np.ones((3, 1)), np.ones((3, 1, 5)), np.ones((3, 0, 5)))

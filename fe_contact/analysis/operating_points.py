@@ -1,4 +1,4 @@
-"""The sweep over misalignment and center distance: one contact problem per place of the table."""
+"""The sweep over misalignment and center distance: one contact problem per operating point of the table."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from fe_contact.workers import InProcess, Workers
 
 
 @dataclass(frozen=True)
-class Place:
+class OperatingPoint:
     """One misalignment at one change of the center distance."""
 
     contact: PairContact
@@ -43,23 +43,23 @@ class Place:
 
 
 @dataclass(frozen=True)
-class Places:
-    """All places of the table, center distance running fastest.
+class OperatingPoints:
+    """All operating points of the table, center distance running fastest.
 
     Attributes
     ----------
     shape : (int, int)
         Numbers of misalignments and center distances.
-    places : tuple of Place
+    places : tuple of OperatingPoint
         Those of one center distance share their compliance.
     nominal : PairContact
-        The pair at its nominal center distance, which may be no place of the table.
+        The pair at its nominal center distance, which may be no operating point of the table.
     workers : Workers
         Who solves them.
     """
 
     shape: tuple[int, int]
-    places: tuple[Place, ...]
+    places: tuple[OperatingPoint, ...]
     nominal: PairContact
     workers: Workers = InProcess()  # noqa: RUF009 (frozen)
 
@@ -69,7 +69,7 @@ class Places:
         return self.places[0].model.period
 
     @property
-    def assessed(self) -> tuple[Place, ...]:
+    def assessed(self) -> tuple[OperatingPoint, ...]:
         """First, middle and last place: by them the positions of the table are chosen."""
         return tuple(self.places[i] for i in self.assessed_indices)
 
@@ -80,20 +80,20 @@ class Places:
         return tuple(sorted({0, last // 2, last}))
 
     @property
-    def in_plane_strain(self) -> Places:
+    def in_plane_strain(self) -> OperatingPoints:
         """The same places without the correction for the finite width."""
         return self._with_contacts(lambda contact: contact.in_plane_strain)
 
-    def on_bodies(self, nominal: PairContact) -> Places:
+    def on_bodies(self, nominal: PairContact) -> OperatingPoints:
         """Return the same places over other compliances of the gears, those of `nominal`."""
         places = self._with_contacts(lambda contact: replace(nominal, pair=contact.pair, _problems={}))
         return replace(places, nominal=nominal)
 
-    def in_slices(self, count: int) -> Places:
+    def in_slices(self, count: int) -> OperatingPoints:
         """Return the same places in other slices."""
         return self._with_contacts(lambda contact: contact.in_slices(count))
 
-    def _with_contacts(self, change: Callable[[PairContact], PairContact]) -> Places:
+    def _with_contacts(self, change: Callable[[PairContact], PairContact]) -> OperatingPoints:
         """Return the same places with other contacts; those of one center distance share their compliance."""
         contacts = {id(place.contact): change(place.contact) for place in self.places}
         places = tuple(replace(place, contact=contacts[id(place.contact)]) for place in self.places)
@@ -105,12 +105,12 @@ class Places:
         return stacked.reshape(*stacked.shape[:2], *self.shape, *stacked.shape[3:])
 
 
-def table_places(
+def operating_points(
     scene: ContactScene,
     choices: Mapping[str, str],
     nominal: PairContact,
     workers: Workers = InProcess(),  # noqa: B008 (frozen)
-) -> Places:
+) -> OperatingPoints:
     """Lay out the places of a scene.
 
     Parameters
@@ -131,8 +131,8 @@ def table_places(
     for misalignment in scene.misalignment:
         for contact in contacts:
             here = ContactScene(contact.pair, scene.torque, np.array([misalignment]), pitches=scene.pitches)
-            places.append(Place(contact, compose(here, decided, EFFECTS)[0]))
-    return Places((scene.misalignment.size, len(contacts)), tuple(places), nominal, workers)
+            places.append(OperatingPoint(contact, compose(here, decided, EFFECTS)[0]))
+    return OperatingPoints((scene.misalignment.size, len(contacts)), tuple(places), nominal, workers)
 
 
 def _contacts(nominal: PairContact, changes: FloatArray) -> Iterator[PairContact]:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from fe_contact.analysis.contact_lines import TASK_SECONDS, Line, SolvedLine, deflections, solved_lines
-from fe_contact.analysis.table_places import Place, Places
+from fe_contact.analysis.operating_points import OperatingPoint, OperatingPoints
 from fe_contact.contact import Candidates, ContactModel, ContactProblem, ContactSolution
 from fe_contact.types import FloatArray, IntArray
 from fe_contact.workers import InProcess, Workers
@@ -16,14 +16,14 @@ Solved = list[tuple[ContactProblem, ContactSolution]]
 Lines = dict[tuple[object, ...], tuple[Line, list[int]]]
 
 
-def solve_places(
-    places: Places, position: FloatArray, loads: tuple[FloatArray, ...], *, conditioned: bool
+def solve_operating_points(
+    places: OperatingPoints, position: FloatArray, loads: tuple[FloatArray, ...], *, conditioned: bool
 ) -> tuple[list[Solved], FloatArray | None]:
     """Solve all places at the positions of all base pitches.
 
     Parameters
     ----------
-    places : Places
+    places : OperatingPoints
     position : ndarray, shape (P,)
         In [0, 1).
     loads : tuple of ndarray
@@ -51,8 +51,8 @@ def solve_places(
     return solved, np.concatenate(known) if known else None
 
 
-def deflected_places(
-    places: Sequence[Place],
+def deflected_operating_points(
+    places: Sequence[OperatingPoint],
     position: Sequence[FloatArray],
     load: FloatArray,
     pitches: IntArray | None,
@@ -63,13 +63,13 @@ def deflected_places(
 
     Parameters
     ----------
-    places : sequence of Place
+    places : sequence of OperatingPoint
     position : sequence of ndarray, shape (P,)
         Of each place, in [0, 1).
     load : ndarray, shape (L,)
         Normal forces, N.
     pitches : ndarray of int, shape (T,), or None
-        Base pitches; None: as `Place.solve` takes it.
+        Base pitches; None: as `OperatingPoint.solve` takes it.
     workers : Workers
     known : sequence of Candidates, optional
         Of plain involutes at the positions, for each place.
@@ -89,15 +89,19 @@ def deflected_places(
     return [by_place[k] for k in range(len(places))]
 
 
-def assemble_remotely(places: Places, models: Sequence[ContactModel], position: FloatArray) -> None:
+def assemble_remotely(places: OperatingPoints, models: Sequence[ContactModel], position: FloatArray) -> None:
     """Let workers assemble what places are about to be asked with other models; nothing without workers."""
-    asked = [Place(place.contact, model) for place, model in zip(places.places, models, strict=True)]
+    asked = [OperatingPoint(place.contact, model) for place, model in zip(places.places, models, strict=True)]
     lines = _sent_lines(places.workers, asked, [position] * len(asked), (), None)
     solved_lines([line for line, _ in lines.values()], places.workers)
 
 
 def _deflected(
-    place: Place, position: FloatArray, load: FloatArray, pitches: IntArray | None, known: Candidates | None
+    place: OperatingPoint,
+    position: FloatArray,
+    load: FloatArray,
+    pitches: IntArray | None,
+    known: Candidates | None,
 ) -> FloatArray:
     """Return the STE of one place, solved here."""
     if known is not None:
@@ -109,7 +113,7 @@ def _deflected(
 
 def _sent_lines(
     workers: Workers,
-    places: Sequence[Place],
+    places: Sequence[OperatingPoint],
     position: Sequence[FloatArray],
     loads: tuple[FloatArray, ...],
     pitches: IntArray | None,

@@ -1,4 +1,4 @@
-"""Places of a table over other bodies: what is known of the places stays."""
+"""Operating points of a table over other bodies: what is known of them stays."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from fe_contact import Gear, GearPair
+from fe_contact.analysis.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pair_contact import PairContact
 from fe_contact.analysis.request_check import check_request
-from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.planning import make_plan
 
 MISALIGNMENTS, CHANGES = (-2e-5, 0.0, 2e-5), (0.0, 1e-4)
 
 
 @pytest.fixture(scope="module")
-def laid_out() -> tuple[Places, Places, PairContact]:
-    """Places over the bodies of a draft, those laid out afresh over a standard mesh, and that mesh's pair."""
+def laid_out() -> tuple[OperatingPoints, OperatingPoints, PairContact]:
+    """Operating points over a draft, those laid out afresh over a standard mesh, and the pair on it."""
     gear = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)
     axes = {"misalignments": MISALIGNMENTS, "center_distance_changes": CHANGES}
     checked = check_request(GearPair(gear, gear, 80e-3), torques=[100.0], **axes)
@@ -26,7 +26,7 @@ def laid_out() -> tuple[Places, Places, PairContact]:
         for level in ("draft", "standard")
     ]
     draft, standard = (PairContact(request.pair, plan) for plan in plans)
-    first, second = (table_places(request.scene, request.choices, each) for each in (draft, standard))
+    first, second = (operating_points(request.scene, request.choices, each) for each in (draft, standard))
     return first, second, standard
 
 

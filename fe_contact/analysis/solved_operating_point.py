@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fe_contact.analysis.assumptions import check_one_place
+from fe_contact.analysis.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.pair_contact import PairContact, pair_contact
 from fe_contact.analysis.repetition import settled, with_effects
 from fe_contact.analysis.request import Checked
-from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.checks import finite
 from fe_contact.contact import ContactProblem, ContactSolution
 from fe_contact.errors import InputError, SolveError
@@ -24,11 +24,11 @@ from fe_contact.types import FloatArray, Json, Status
 
 
 @dataclass(frozen=True)
-class SolvedPlace:
+class SolvedOperatingPoint:
     """A converged solution with the pair it was made for, which stands at its center distance."""
 
     checked: Checked
-    places: Places
+    places: OperatingPoints
     problem: ContactProblem
     solution: ContactSolution
 
@@ -48,35 +48,35 @@ class SolvedPlace:
         return ((self.problem, self.solution),)
 
 
-def settled_place(
+def settled_operating_point(
     checked: Checked, position: FloatArray, clock: StageClock, report: Progress, cache: Path | None
-) -> tuple[SolvedPlace, Json]:
-    """Solve a place as `solve_place` does, check what it took for granted, and repeat it as asked.
+) -> tuple[SolvedOperatingPoint, Json]:
+    """Solve a place as `solve_operating_point` does, check what it took for granted, and repeat it as asked.
 
     Returns
     -------
-    SolvedPlace
+    SolvedOperatingPoint
     dict
         What the receipt says of it: `assumptions`, `repeated`.
 
     Raises
     ------
     MeshError, SolveError
-        As `solve_place`, or an assumption does not hold and `on_violation` is "fail".
+        As `solve_operating_point`, or an assumption does not hold and `on_violation` is "fail".
     """
 
-    def again(run: SolvedPlace, needed: Mapping[str, str]) -> SolvedPlace:
+    def again(run: SolvedOperatingPoint, needed: Mapping[str, str]) -> SolvedOperatingPoint:
         more = with_effects(run.checked, needed, whole_table=False)
-        return solve_place(more, position, clock, report, cache)
+        return solve_operating_point(more, position, clock, report, cache)
 
-    first = solve_place(checked, position, clock, report, cache)
+    first = solve_operating_point(checked, position, clock, report, cache)
     run, found, repeated = settled(first, check_one_place, again, clock)
     return run, {"assumptions": [one.to_json() for one in found], "repeated": repeated}
 
 
-def solve_place(
+def solve_operating_point(
     checked: Checked, position: FloatArray, clock: StageClock, report: Progress, cache: Path | None
-) -> SolvedPlace:
+) -> SolvedOperatingPoint:
     """Solve the one load and the one alignment of a request at positions (P,).
 
     Beyond the first base pitch pairs are counted from the one that is then at the place of pair 0.
@@ -93,14 +93,14 @@ def solve_place(
         nominal = pair_contact(request.pair, plan, cache, distance_changes=request.center_distance_change)
     report("compliance", 1.0)
     with clock.stage("contact"):
-        places = table_places(request.scene, request.choices, nominal)
+        places = operating_points(request.scene, request.choices, nominal)
         (place,) = places.places
         pitch = np.floor(position).astype(np.int64)
         problem, solution = place.solve(position - pitch, plan.load, pitch if pitch.any() else None)
     report("contact", 1.0)
     if not solution.converged:
         raise SolveError(_failure(position, solution), partial=solution)
-    return SolvedPlace(checked, places, problem, solution)
+    return SolvedOperatingPoint(checked, places, problem, solution)
 
 
 def _failure(position: FloatArray, solution: ContactSolution, shown: int = 5) -> str:
@@ -113,7 +113,7 @@ def _failure(position: FloatArray, solution: ContactSolution, shown: int = 5) ->
 
 
 def checked_positions(at: ArrayLike) -> FloatArray:
-    """Return the positions asked for.
+    """Return the positions requested.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The rungs of finite elements: `analyze` with a model and a mesh."""
+"""The fidelities of finite elements: `analyze` with a model and a mesh."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}
 
 
 @dataclass(frozen=True)
-class FiniteElementRung:
+class FiniteElementFidelity:
     """A model and a mesh of `analyze`.
 
     Attributes
@@ -43,16 +43,16 @@ class FiniteElementRung:
 
     @property
     def family(self) -> str:
-        """Rungs of one family differ by their mesh only."""
+        """Fidelities of one family differ by their mesh only."""
         return self.model
 
     @property
     def element_size(self) -> float:
-        """Size of the elements beside that of the other rungs of the family."""
+        """Size of the elements beside that of the other fidelities of the family."""
         return SECTOR_FLANK_SIZE[self.level] if self.model == "3d" else 1.0 / PLANE_REFINEMENT[self.level]
 
     def refusal(self, checked: Checked) -> str | None:
-        """Say why the rung is not valid: no plane holds what acts across the face."""
+        """Say why the fidelity is not valid: no plane holds what acts across the face."""
         try:
             self.as_asked(checked)
         except InputError as error:

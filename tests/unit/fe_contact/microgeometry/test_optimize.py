@@ -1,4 +1,4 @@
-"""Optimised micro-geometry against scans, known trends, and the analysis that assesses it in the end."""
+"""Optimized micro-geometry against scans, known trends, and the analysis that assesses it in the end."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from fe_contact.microgeometry import (
     DesignVariable,
     Limits,
     NelderMead,
-    Optimisation,
+    Optimization,
     Outcome,
     Scatter,
     Search,
     WeightedMean,
     Worst,
-    optimise,
+    optimize,
 )
 from fe_contact.microgeometry.design_study import Accuracies, design_study
 from fe_contact.microgeometry.variables import modified
@@ -41,12 +41,12 @@ NONE = {"map_torques": [TORQUE]}
 
 
 @pytest.fixture(scope="module")
-def found(long_reliefs: GearPair, compliances: Path) -> Optimisation:
-    return optimise(long_reliefs, [TORQUE], AMOUNTS, search=FEW, cache=compliances, **DRAFT, **NONE)
+def found(long_reliefs: GearPair, compliances: Path) -> Optimization:
+    return optimize(long_reliefs, [TORQUE], AMOUNTS, search=FEW, cache=compliances, **DRAFT, **NONE)
 
 
 def test_no_design_of_a_fine_scan_is_better(
-    found: Optimisation, long_reliefs: GearPair, compliances: Path
+    found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
     names = [one.name for one in AMOUNTS]
     study = design_study(
@@ -62,7 +62,7 @@ def test_no_design_of_a_fine_scan_is_better(
 
 
 def test_it_is_assessed_by_what_analyze_finds(
-    found: Optimisation, long_reliefs: GearPair, compliances: Path
+    found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
     for design in (found.start, found.optimum):
         made = modified(long_reliefs, design.values)
@@ -72,13 +72,13 @@ def test_it_is_assessed_by_what_analyze_finds(
         assert design.objective.error == pytest.approx(assessed.error, rel=1e-2, abs=0.0)
 
 
-def test_a_relieved_spur_pair_loses_most_of_its_ripple(found: Optimisation) -> None:
+def test_a_relieved_spur_pair_loses_most_of_its_ripple(found: Optimization) -> None:
     assert found.outcome is Outcome.IMPROVED
     assert found.gain.error < 0.15 * found.gain.value  # the finite width counts at both ends
     assert found.start.objective.value > 4.0 * found.optimum.objective.value
 
 
-def test_equal_gears_are_relieved_alike(found: Optimisation) -> None:
+def test_equal_gears_are_relieved_alike(found: Optimization) -> None:
     first, second = found.optimum.values.values()
     assert first == pytest.approx(second, rel=0.05)
 
@@ -89,7 +89,7 @@ def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(
     """Harris's rule: long linear reliefs about as deep as the teeth give way at the design load."""
     reliefs, deflections = [], []
     for torque in (100.0, 200.0):
-        best = optimise(
+        best = optimize(
             long_reliefs, [torque], AMOUNTS, search=FEW, map_torques=[torque], cache=compliances, **DRAFT
         ).optimum
         reliefs.append(np.mean(list(best.values.values())))
@@ -100,25 +100,25 @@ def test_optimum_relief_is_the_deflection_at_the_load_and_grows_with_it(
     assert reliefs[1] > 1.8 * reliefs[0]
 
 
-def test_wider_bounds_never_end_worse(found: Optimisation, long_reliefs: GearPair, compliances: Path) -> None:
+def test_wider_bounds_never_end_worse(found: Optimization, long_reliefs: GearPair, compliances: Path) -> None:
     narrow = [replace(one, low=5e-6, high=9e-6) for one in AMOUNTS]
-    held = optimise(long_reliefs, [TORQUE], narrow, search=QUICK, cache=compliances, **DRAFT, **NONE)
+    held = optimize(long_reliefs, [TORQUE], narrow, search=QUICK, cache=compliances, **DRAFT, **NONE)
     assert all(v.low <= held.optimum.values[v.name] <= v.high for v in held.variables)
     assert found.runs[0].assessed.objective < held.runs[0].assessed.objective
     assert "wider bounds of pinion.tip_relief, wheel.tip_relief" in held.not_tried[0]
     best = modified(long_reliefs, held.optimum.values)
     once = Search(NelderMead(), evaluations=1, positions=32)
-    further = optimise(best, [TORQUE], AMOUNTS, search=once, cache=compliances, **DRAFT, **NONE)
+    further = optimize(best, [TORQUE], AMOUNTS, search=once, cache=compliances, **DRAFT, **NONE)
     assert further.runs[0].assessed.objective == pytest.approx(
         held.runs[0].assessed.objective, rel=1e-9, abs=0.0
     )
 
 
 def test_equal_seeds_give_equal_results(
-    found: Optimisation, long_reliefs: GearPair, compliances: Path
+    found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
     again, other = (
-        optimise(
+        optimize(
             long_reliefs,
             [TORQUE],
             AMOUNTS,
@@ -137,7 +137,7 @@ def test_equal_seeds_give_equal_results(
 
 def test_the_best_of_all_starts_is_taken(pair: GearPair, compliances: Path) -> None:
     search = Search(NelderMead(), starts=3, evaluations=60, positions=32)
-    best = optimise(pair, [TORQUE], FREE, search=search, cache=compliances, **DRAFT, **NONE)
+    best = optimize(pair, [TORQUE], FREE, search=search, cache=compliances, **DRAFT, **NONE)
     reached = [run.assessed.objective for run in best.runs]
     assert len(set(reached)) > 1
     assert best.best_run == int(np.argmin(reached))
@@ -145,33 +145,33 @@ def test_the_best_of_all_starts_is_taken(pair: GearPair, compliances: Path) -> N
     assert ("all its evaluations" in best.reason) is not best.runs[best.best_run].converged
 
 
-def test_the_optimum_is_no_lower_to_either_side(found: Optimisation) -> None:
+def test_the_optimum_is_no_lower_to_either_side(found: Optimization) -> None:
     for step in found.sensitivity:
         assert step.low < found.optimum.values[step.name] < step.high
         assert min(step.change_low, step.change_high) > 0.0
 
 
 def test_tip_edges_can_be_kept_from_contact(
-    found: Optimisation, long_reliefs: GearPair, compliances: Path
+    found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
     assert found.start.figures.edge_load_share.max() > 0.05  # before A and after E
     limits = Limits(edge_load_share=0.0)
     small = [replace(one, high=12e-6) for one in AMOUNTS]
-    held = optimise(
+    held = optimize(
         long_reliefs, [TORQUE], small, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
     )
     assert held.start.violation == pytest.approx(held.start.figures.edge_load_share.max(), rel=1e-9, abs=0.0)
-    wide = optimise(
+    wide = optimize(
         long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
     )
     assert held.outcome is Outcome.LIMITS_EXCEEDED
     assert wide.outcome is Outcome.IMPROVED and wide.optimum.violation < 0.005
 
 
-def test_a_pressure_limit_is_kept(found: Optimisation, long_reliefs: GearPair, compliances: Path) -> None:
+def test_a_pressure_limit_is_kept(found: Optimization, long_reliefs: GearPair, compliances: Path) -> None:
     reached = float(found.optimum.figures.pressure.max())
     limits = Limits(max_pressure=0.9 * reached)
-    held = optimise(
+    held = optimize(
         long_reliefs, [TORQUE], AMOUNTS, search=QUICK, limits=limits, cache=compliances, **DRAFT, **NONE
     )
     assert held.optimum.figures.pressure.max() < reached
@@ -181,7 +181,7 @@ def test_a_pressure_limit_is_kept(found: Optimisation, long_reliefs: GearPair, c
 
 def test_a_gain_smaller_than_the_errors_is_not_claimed(pair: GearPair, compliances: Path) -> None:
     tiny = [DesignVariable("pinion.profile_slope", -1e-10, 1e-10)]
-    best = optimise(pair, [TORQUE], tiny, search=QUICK, cache=compliances, **DRAFT, **NONE)
+    best = optimize(pair, [TORQUE], tiny, search=QUICK, cache=compliances, **DRAFT, **NONE)
     assert best.outcome in (Outcome.WITHIN_ERROR, Outcome.NOT_IMPROVED)
     assert abs(best.gain.value) <= best.gain.error
     assert "what is varied makes no difference" in best.reason
@@ -192,7 +192,7 @@ def test_bounds_that_leave_the_start_out_are_told(long_reliefs: GearPair, compli
     good = {one.name: 8e-6 for one in AMOUNTS}
     poor = [replace(one, low=30e-6, high=31e-6) for one in AMOUNTS]
     asked: dict[str, Any] = {"cache": compliances, **DRAFT, **NONE}
-    best = optimise(modified(long_reliefs, good), [TORQUE], poor, search=QUICK, **asked)
+    best = optimize(modified(long_reliefs, good), [TORQUE], poor, search=QUICK, **asked)
     assert best.start.values == good
     assert all(30e-6 <= value <= 31e-6 for value in best.optimum.values.values())
     assert best.outcome is Outcome.NOT_IMPROVED and best.gain.value < 0.0
@@ -202,7 +202,7 @@ def test_bounds_that_leave_the_start_out_are_told(long_reliefs: GearPair, compli
 
 
 def test_an_interrupted_search_gives_the_best_so_far_in_full(
-    found: Optimisation, long_reliefs: GearPair, compliances: Path
+    found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
     asked = [0]
 
@@ -210,7 +210,7 @@ def test_an_interrupted_search_gives_the_best_so_far_in_full(
         asked[0] += 1
         return asked[0] > 61  # once before the start
 
-    best = optimise(
+    best = optimize(
         long_reliefs, [TORQUE], AMOUNTS, search=FEW, cancel=cancel, cache=compliances, **DRAFT, **NONE
     )
     assert "interrupted after 60 of at most 250 designs" in best.reason
@@ -222,10 +222,10 @@ def test_an_interrupted_search_gives_the_best_so_far_in_full(
 
 
 def test_few_positions_explore_as_well_as_many(
-    found: Optimisation, long_reliefs: GearPair, compliances: Path
+    found: Optimization, long_reliefs: GearPair, compliances: Path
 ) -> None:
     assert found.runs[0].explored > 0
-    full = optimise(
+    full = optimize(
         long_reliefs, [TORQUE], AMOUNTS, search=replace(FEW, exploration=FEW.positions), cache=compliances,
         **DRAFT, **NONE,
     )  # fmt: skip
@@ -233,7 +233,7 @@ def test_few_positions_explore_as_well_as_many(
     assert reached == pytest.approx(full.runs[0].assessed.objective, rel=0.01, abs=0.0)
 
 
-def test_what_was_not_tried_is_said(found: Optimisation) -> None:
+def test_what_was_not_tried_is_said(found: Optimization) -> None:
     told = "; ".join(found.not_tried)
     assert "scatter of anything" in told and "neglected effects: " in told and "pitch_error" in told
     kept = next(line for line in found.not_tried if line.startswith("other values of "))
@@ -246,7 +246,7 @@ def test_objectives_differ_over_loads(long_reliefs: GearPair, compliances: Path)
 
     def best(objective: Any) -> FloatArray:
         both: dict[str, Any] = {"objective": objective, "map_torques": torques}
-        result = optimise(long_reliefs, torques, AMOUNTS, search=QUICK, cache=compliances, **both, **DRAFT)
+        result = optimize(long_reliefs, torques, AMOUNTS, search=QUICK, cache=compliances, **both, **DRAFT)
         return result.optimum.harris_map.expected
 
     light, heavy, worst = best(WeightedMean((1.0, 0.0))), best(WeightedMean((0.0, 1.0))), best(Worst())
@@ -256,7 +256,7 @@ def test_objectives_differ_over_loads(long_reliefs: GearPair, compliances: Path)
 
 def test_the_map_runs_over_all_torques(pair: GearPair, compliances: Path) -> None:
     once = Search(NelderMead(), evaluations=2, positions=16)
-    best = optimise(pair, [100.0, 200.0], FREE, search=once, cache=compliances, **DRAFT)
+    best = optimize(pair, [100.0, 200.0], FREE, search=once, cache=compliances, **DRAFT)
     harris = best.optimum.harris_map
     assert {100.0, 200.0} <= set(harris.torque) and harris.torque[-1] == 250.0 and harris.torque.size > 8
     assert harris.ste.shape == (harris.position.size, harris.torque.size)
@@ -282,12 +282,12 @@ def test_the_map_runs_over_all_torques(pair: GearPair, compliances: Path) -> Non
         ({"misalignment": 30.0}, "misalignment"),
     ],
 )
-def test_what_cannot_be_optimised_is_refused_by_name(
+def test_what_cannot_be_optimized_is_refused_by_name(
     pair: GearPair, further: dict[str, Any], field: str
 ) -> None:
     asked: dict[str, Any] = {"torques": [TORQUE], "variables": FREE, **DRAFT, **further}
     with pytest.raises(InputError) as caught:
-        optimise(pair, asked.pop("torques"), asked.pop("variables"), asked.pop("scatter", Scatter()), **asked)
+        optimize(pair, asked.pop("torques"), asked.pop("variables"), asked.pop("scatter", Scatter()), **asked)
     assert caught.value.field == field, caught.value
 
 

@@ -1,4 +1,4 @@
-"""The accuracy ladder: closed forms, agreement of two solvers, errors that fall, what is refused."""
+"""The accuracy study: closed forms, agreement of two solvers, errors that fall, what is refused."""
 
 import dataclasses
 import math
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
-from fe_contact.analysis.frontier import chosen_rung, frontier
-from fe_contact.analysis.ladder import ISO6336, RUNGS, THIN_SLICES
+from fe_contact.analysis.accuracy_study import FIDELITIES, ISO6336, THIN_SLICES
+from fe_contact.analysis.frontier import chosen_fidelity, frontier
 from fe_contact.analysis.pareto import front_of, knee_of
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.slice_springs import SpringContact, slice_stiffness
@@ -33,9 +33,9 @@ def pair_of(helix: float = 0.0, width: float = 8e-3, **modification: float) -> G
     return GearPair(gear, mate, 40e-3 / math.cos(helix))
 
 
-def run(rung, pair, **asked):
+def run(fidelity, pair, **asked):
     checked = check_request(pair, normal_forces=[500.0], positions=64, **asked)
-    return rung.run(checked, lambda *_: None, None)
+    return fidelity.run(checked, lambda *_: None, None)
 
 
 def test_iso_stiffness_of_a_spur_pair_is_the_closed_form():
@@ -109,10 +109,10 @@ def test_thin_slices_have_the_mean_stiffness_of_the_standard_without_its_correct
 @pytest.fixture(scope="module")
 def spur():
     names = ["iso6336", "thin_slices", "plane_strain", "corrected_draft", "3d_draft", "3d_standard"]
-    return frontier(pair_of(width=4e-3), normal_forces=[500.0], positions=32, rungs=names)
+    return frontier(pair_of(width=4e-3), normal_forces=[500.0], positions=32, fidelities=names)
 
 
-def test_errors_of_a_spur_pair_fall_from_rung_to_rung(spur):
+def test_errors_of_a_spur_pair_fall_from_fidelity_to_fidelity(spur):
     errors = {result.name: result.mean_error for result in spur.results}
     falling = [errors[name] for name in ("iso6336", "plane_strain", "3d_draft")]
     assert falling == sorted(falling, reverse=True)
@@ -121,12 +121,12 @@ def test_errors_of_a_spur_pair_fall_from_rung_to_rung(spur):
     assert max(errors["corrected_draft"], errors["3d_draft"]) < 0.01
 
 
-def test_errors_of_a_helical_pair_fall_from_rung_to_rung():
+def test_errors_of_a_helical_pair_fall_from_fidelity_to_fidelity():
     found = frontier(
         pair_of(math.radians(15.0)),
         normal_forces=[500.0],
         positions=16,
-        rungs=["iso6336", "3d_draft", "3d_standard"],
+        fidelities=["iso6336", "3d_draft", "3d_standard"],
     )
     iso, draft, _ = found.results
     assert iso.mean_error > draft.mean_error > 0.0
@@ -139,14 +139,16 @@ def test_the_reference_states_what_its_mesh_leaves(spur):
     assert standard.mean_error == pytest.approx(draft.mean_error / ((0.2 / 0.15) ** 2 - 1.0), rel=1e-12)
 
 
-def test_a_rung_that_is_not_valid_says_why():
+def test_a_fidelity_that_is_not_valid_says_why():
     ring = RingGear(
         teeth=96, normal_module=2e-3, face_width=8e-3, rim_diameter=212e-3, addendum_coefficient=0.9
     )
     gear = Gear(teeth=36, normal_module=2e-3, face_width=8e-3, bore_diameter=30e-3)
     internal = check_request(InternalGearPair(gear, ring, 60e-3), normal_forces=[500.0])
     helical = check_request(pair_of(0.3), normal_forces=[500.0])
-    refused = {rung.name: (rung.refusal(internal), rung.refusal(helical)) for rung in RUNGS}
+    refused = {
+        fidelity.name: (fidelity.refusal(internal), fidelity.refusal(helical)) for fidelity in FIDELITIES
+    }
     assert all("external" in refused[name][0] for name in ("iso6336", "thin_slices"))
     plane = [name for name in refused if name.startswith(("plane", "corrected"))]
     assert all("helix" in refused[name][1] for name in plane)
@@ -155,17 +157,17 @@ def test_a_rung_that_is_not_valid_says_why():
 
 @pytest.mark.parametrize("level", ["draft", "standard", "fine"])
 @pytest.mark.parametrize("model", ["auto", "plane_strain", "3d"])
-def test_the_chosen_rung_is_the_model_and_the_mesh_asked_for(model, level):
+def test_the_chosen_fidelity_is_the_model_and_the_mesh_asked_for(model, level):
     checked = check_request(pair_of(), normal_forces=[500.0], model=model, level=level)
-    rung = next(rung for rung in RUNGS if rung.name == chosen_rung(checked))
-    made = rung.as_asked(checked)
+    fidelity = next(fidelity for fidelity in FIDELITIES if fidelity.name == chosen_fidelity(checked))
+    made = fidelity.as_asked(checked)
     assert made.model == checked.model
     assert made.request.accuracy.level == (level if model != "plane_strain" else "standard")
 
 
-def test_an_unknown_rung_is_refused_by_name():
-    with pytest.raises(InputError, match="rungs"):
-        frontier(pair_of(), normal_forces=[500.0], rungs=["4d"])
+def test_an_unknown_fidelity_is_refused_by_name():
+    with pytest.raises(InputError, match="fidelities"):
+        frontier(pair_of(), normal_forces=[500.0], fidelities=["4d"])
 
 
 def test_the_front_leaves_out_what_another_point_beats():

@@ -1,4 +1,4 @@
-"""What a rung of the accuracy ladder is."""
+"""What a fidelity of the accuracy study is."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fe_contact.progress import Progress
 from fe_contact.ste import SteDatabase
 
 
-class Rung(Protocol):
+class Fidelity(Protocol):
     """One way to a table of transmission error, coarse or fine.
 
     Attributes
@@ -33,22 +33,22 @@ class Rung(Protocol):
 
     @property
     def family(self) -> str:
-        """Rungs of one family differ by their mesh only."""
+        """Fidelities of one family differ by their mesh only."""
 
     @property
     def element_size(self) -> float:
-        """Size of the elements beside that of the other rungs of the family; 0 without elements."""
+        """Size of the elements beside that of the other fidelities of the family; 0 without elements."""
 
     def refusal(self, checked: Checked) -> str | None:
-        """Say why this rung is not valid for a request; None if it is."""
+        """Say why this fidelity is not valid for a request; None if it is."""
 
     def as_asked(self, checked: Checked) -> Checked:
-        """Return the request as this rung computes it: with its model and mesh.
+        """Return the request as this fidelity computes it: with its model and mesh.
 
         Raises
         ------
         InputError
-            The rung is not valid for it.
+            The fidelity is not valid for it.
         """
 
     def run(self, checked: Checked, progress: Progress, cache: Path | None) -> SteDatabase:

@@ -1,4 +1,4 @@
-"""What a rung of the ladder gave on a case, and how far it is from the finest one."""
+"""What a fidelity of the accuracy study gave on a case, and how far it is from the finest one."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from itertools import product
 
 import numpy as np
 
-from fe_contact.analysis.ladder import Rung
+from fe_contact.analysis.accuracy_study import Fidelity
 from fe_contact.ste import SteDatabase
 from fe_contact.types import FloatArray, Json
 
 
 @dataclass(frozen=True)
-class RungResult:
-    """What one rung gave on a case.
+class FidelityResult:
+    """What one fidelity gave on a case.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class RungResult:
         Of each curve (loads, then alignments), m.
     stated_error : float
         The error its table states: of mean and peak-to-peak, relative, the worst over the curves. That of the
-        positions is in it, which is the same for all rungs.
+        positions is in it, which is the same for all fidelities.
     mean_error, peak_to_peak_error : float
         Relative difference to the reference, the worst over the curves; of the reference what its mesh
         leaves, by the difference of the next coarser mesh and the second order of convergence (NaN if none
@@ -34,7 +34,7 @@ class RungResult:
     stages : dict
         CPU seconds by stage.
     peak_memory_bytes : int
-        Of the process by the end of the rung.
+        Of the process by the end of the fidelity.
     """
 
     name: str
@@ -69,12 +69,16 @@ class RungResult:
         }
 
 
-def rung_results(rungs: Sequence[Rung], tables: Mapping[str, SteDatabase]) -> tuple[RungResult, ...]:
+def fidelity_results(
+    fidelities: Sequence[Fidelity], tables: Mapping[str, SteDatabase]
+) -> tuple[FidelityResult, ...]:
     """Measure every table against the last one, and that one by its convergence."""
     figures = {name: _figures(table) for name, table in tables.items()}
-    reference = figures[rungs[-1].name]
-    found = [_result(rung, tables[rung.name], figures[rung.name], reference) for rung in rungs]
-    part, coarser = _remaining(rungs)
+    reference = figures[fidelities[-1].name]
+    found = [
+        _result(fidelity, tables[fidelity.name], figures[fidelity.name], reference) for fidelity in fidelities
+    ]
+    part, coarser = _remaining(fidelities)
     errors = (
         (found[coarser].mean_error, found[coarser].peak_to_peak_error) if coarser is not None else (0.0, 0.0)
     )
@@ -82,17 +86,17 @@ def rung_results(rungs: Sequence[Rung], tables: Mapping[str, SteDatabase]) -> tu
     return tuple(found)
 
 
-def _remaining(rungs: Sequence[Rung]) -> tuple[float, int | None]:
-    """Part of the difference to the next coarser mesh that the last rung leaves, and where that stands."""
-    last = rungs[-1]
+def _remaining(fidelities: Sequence[Fidelity]) -> tuple[float, int | None]:
+    """Part of the difference to the next coarser mesh that the last fidelity leaves, and its index."""
+    last = fidelities[-1]
     alike = [
         i
-        for i, rung in enumerate(rungs[:-1])
-        if rung.family == last.family and rung.element_size > last.element_size
+        for i, fidelity in enumerate(fidelities[:-1])
+        if fidelity.family == last.family and fidelity.element_size > last.element_size
     ]
     if not alike:
         return float("nan"), None
-    ratio = (rungs[alike[-1]].element_size / last.element_size) ** 2
+    ratio = (fidelities[alike[-1]].element_size / last.element_size) ** 2
     return 1.0 / (ratio - 1.0), alike[-1]
 
 
@@ -109,16 +113,16 @@ def _figures(table: SteDatabase) -> tuple[FloatArray, FloatArray, FloatArray]:
 
 
 def _result(
-    rung: Rung,
+    fidelity: Fidelity,
     table: SteDatabase,
     figures: tuple[FloatArray, FloatArray, FloatArray],
     reference: tuple[FloatArray, FloatArray, FloatArray],
-) -> RungResult:
-    """One rung against the reference."""
+) -> FidelityResult:
+    """One fidelity against the reference."""
     receipt = table.metadata.receipt
-    return RungResult(
-        name=rung.name,
-        title=rung.title,
+    return FidelityResult(
+        name=fidelity.name,
+        title=fidelity.title,
         mean=figures[0],
         peak_to_peak=figures[1],
         stated_error=float(figures[2].max()),

@@ -1,4 +1,4 @@
-"""The rungs without finite elements: tooth stiffness of ISO 6336-1 over the contact lines, and thin slices.
+"""The fidelities without finite elements: tooth stiffness of ISO 6336-1 over contact lines, thin slices.
 
 Both take the stiffness of the series of ISO 6336-1, method B, which was fitted to external steel pairs.
 
@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy as np
 
 from fe_contact.analysis.compute_database import SOLVER_VERSION, software_versions
+from fe_contact.analysis.operating_points import OperatingPoints, operating_points
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.slice_laws import mean_stiffness, parabolic_stiffness
 from fe_contact.analysis.slice_springs import SliceLaw, SpringContact
-from fe_contact.analysis.table_places import Places, table_places
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import Plan, make_plan
@@ -35,12 +35,12 @@ from fe_contact.types import FloatArray
 POSITIONS = 64
 
 ISO_ERROR, SLICE_ERROR = 0.45, 0.6
-"""Relative error of the mean stated for the rungs: above the worst of docs/frontier.md."""
+"""Relative error of the mean stated for the fidelities: above the worst of docs/frontier.md."""
 
 
 @dataclass(frozen=True)
-class ClosedFormRung:
-    """A rung of uncoupled slices.
+class ClosedFormFidelity:
+    """A fidelity of uncoupled slices.
 
     Attributes
     ----------
@@ -63,7 +63,7 @@ class ClosedFormRung:
         return self.name
 
     def refusal(self, checked: Checked) -> str | None:
-        """Say why the rung is not valid: the series is for external pairs, and shafts couple the slices."""
+        """Say why it is not valid: the series is for external pairs, and shafts couple the slices."""
         pair = checked.request.pair
         if pair.internal:
             return "the stiffness of ISO 6336-1 is for external pairs"
@@ -82,7 +82,7 @@ class ClosedFormRung:
         plan = make_plan(request.pair, request.load, request.accuracy, checked.model)
         with clock.stage("contact"):
             nominal = SpringContact(request.pair, plan, law=self.law)
-            places = table_places(request.scene, request.choices, nominal)
+            places = operating_points(request.scene, request.choices, nominal)
             table = self._table(checked, plan, places)
         progress("contact", 1.0)
         case = request.to_json() | {"rung": self.name}
@@ -91,7 +91,7 @@ class ClosedFormRung:
         name = content_hash(case, SOLVER_VERSION, SCHEMA_VERSION)
         return replace(table, metadata=Metadata(case, ledger, receipt, name, software_versions()))
 
-    def _table(self, checked: Checked, plan: Plan, places: Places) -> SteDatabase:
+    def _table(self, checked: Checked, plan: Plan, places: OperatingPoints) -> SteDatabase:
         """Solve all places at equally spaced positions."""
         request = checked.request
         count = plan.positions or POSITIONS
@@ -118,9 +118,9 @@ class ClosedFormRung:
         return self.relative_error * np.abs(solution.deflection - solution.no_load[:, None])
 
 
-ISO6336 = ClosedFormRung(
+ISO6336 = ClosedFormFidelity(
     "iso6336", "ISO 6336 stiffness over contact lines", SliceLaw(mean_stiffness, with_gaps=False), ISO_ERROR
 )
-THIN_SLICES = ClosedFormRung(
+THIN_SLICES = ClosedFormFidelity(
     "thin_slices", "thin slices", SliceLaw(parabolic_stiffness, with_gaps=True), SLICE_ERROR
 )

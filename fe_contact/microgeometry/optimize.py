@@ -11,8 +11,8 @@ from fe_contact.microgeometry.choice import Choice, choose, perturbation, posed
 from fe_contact.microgeometry.conclusion import conclusion, not_tried
 from fe_contact.microgeometry.design_study import Accuracies, DesignStudy, design_study
 from fe_contact.microgeometry.objective import NO_LIMITS, Limits, Objective, WeightedMean
-from fe_contact.microgeometry.optimisation import Optimisation, Perturbation
-from fe_contact.microgeometry.request import OptimisationRequest
+from fe_contact.microgeometry.optimization import Optimization, Perturbation
+from fe_contact.microgeometry.request import OptimizationRequest
 from fe_contact.microgeometry.scatter import NO_SCATTER, Scatter
 from fe_contact.microgeometry.search import Cancel, Search, never
 from fe_contact.microgeometry.search_starts import search_all
@@ -23,7 +23,7 @@ from fe_contact.types import FloatArray
 from fe_contact.workers import InProcess, Workers
 
 
-def optimise(
+def optimize(
     pair: ParallelAxes,
     torques: Sequence[float] | FloatArray,
     variables: Sequence[DesignVariable],
@@ -44,7 +44,7 @@ def optimise(
     progress: Progress | None = None,
     cache: Path | None = None,
     memory: Path | None = None,
-) -> Optimisation:
+) -> Optimization:
     """Minimize the expected peak-to-peak transmission error over torques under scatter.
 
     The compliance of both gears is computed once; every design is then a contact solve with other gaps. The
@@ -85,7 +85,7 @@ def optimise(
 
     Returns
     -------
-    Optimisation
+    Optimization
 
     Raises
     ------
@@ -97,7 +97,7 @@ def optimise(
     clock, report, cancelled = StageClock(), progress or silent, cancel or never
     accuracy = Accuracies(tolerance, level, time_budget, model, effects)
     assessed = scatter, misalignment, objective, limits
-    asked = OptimisationRequest(pair, torques, tuple(variables), *assessed, search, accuracy, map_torques)
+    asked = OptimizationRequest(pair, torques, tuple(variables), *assessed, search, accuracy, map_torques)
     asked.check()
     wanted = asked.acting, scatter, misalignment, search.positions, accuracy
     study = design_study(pair, torques, asked.further_torques, *wanted, clock, report, cache)
@@ -112,15 +112,15 @@ def optimise(
 
 
 def _result(
-    asked: OptimisationRequest,
+    asked: OptimizationRequest,
     study: DesignStudy,
     choice: Choice,
     aside: tuple[Perturbation, ...],
     clock: StageClock,
-) -> Optimisation:
+) -> Optimization:
     """Put together what was found."""
     outcome, reason = conclusion(choice, asked)
-    return Optimisation(
+    return Optimization(
         outcome=outcome,
         reason=reason,
         variables=asked.variables,

@@ -1,4 +1,4 @@
-"""What an optimisation found: both designs, the gain, and how it was come by."""
+"""What an optimization found: both designs, the gain, and how it was come by."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fe_contact.types import Estimate, FloatArray, Json
 
 
 class Outcome(StrEnum):
-    """What an optimisation came to."""
+    """What an optimization came to."""
 
     IMPROVED = "improved"  # by more than the errors of both designs
     WITHIN_ERROR = "within_error"  # lower, but no more than the errors
@@ -54,8 +54,8 @@ class Perturbation:
 
 
 @dataclass(frozen=True)
-class Optimisation:
-    """Result of `optimise`.
+class Optimization:
+    """Result of `optimize`.
 
     Attributes
     ----------
@@ -79,7 +79,7 @@ class Optimisation:
     cost : dict
         Evaluations and CPU seconds by stage; the search's are those of all its processes.
     asked : dict
-        What was asked for, in SI units.
+        What was requested, in SI units.
     """
 
     outcome: Outcome
