@@ -46,17 +46,12 @@ def contact_problem(
     sides = ((slices.patch_1, touch.lever_1), (slices.patch_2, touch.lever_2))
     for flank, (patch, lever), direction in zip(compliances, sides, (-1, 1), strict=True):
         blocks = _tooth_blocks(flank, direction * slices.pair)
+        rows = np.ascontiguousarray  # one order in memory: compiled once
+        center, half_width, edge_share = rows(patch.center), rows(patch.half_width), rows(patch.edge_share)
         _add_gear(
-            flank.s,
-            blocks,
-            patch.center,
-            patch.half_width,
-            patch.edge_share,
-            lever,
-            slices.present,
-            couple_teeth,
+            flank.s, blocks, center, half_width, edge_share, rows(lever), slices.present, couple_teeth,
             compliance,
-        )
+        )  # fmt: skip
     compliance /= slices.width
     first, second = (flank.contact_modulus for flank in compliances)
     contact_modulus = 1.0 / (1.0 / first + 1.0 / second)

@@ -39,7 +39,7 @@ def solve_contact(problem: ContactProblem, loads: FloatArray, start: Start | Non
     beyond = np.zeros((p, levels), dtype=np.bool_)
     first = np.zeros((0, 0, m)) if start is None else np.ascontiguousarray(start.on(c))
     _sweep(
-        point_problems(problem), loads, first,
+        point_problems(problem), np.array(loads, dtype=float), first,
         deflection, tangent, force, status, iterations, residuals, beyond,
     )  # fmt: skip
     return ContactSolution(

@@ -27,6 +27,7 @@ from bounds import DEPTHS, Direction, Kind
 from fe_contact.flank.modification import FlankModification
 from service.schemas.declared import figures
 
+SURFACES = True
 FIGURES = (
     "ste",
     "ripple",

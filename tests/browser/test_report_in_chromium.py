@@ -13,6 +13,7 @@ from playwright.sync_api import Browser, Page
 
 from service.report import write_report
 
+SURFACES = True
 # curves of every figure; all panels together
 CURVES = {
     "ste": 12,  # the ripple with the edges of its bands, and the whole

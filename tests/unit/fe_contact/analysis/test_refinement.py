@@ -57,11 +57,11 @@ def helical() -> Decided:
 
 def test_the_source_that_dominates_is_refined(helical):
     """And nothing else where that is predicted to be enough."""
-    mesh = refined(helical, discretization=1.5, slices=0.3, position=0.2)
+    mesh = refined(helical, discretisation=1.5, slices=0.3, position=0.2)
     assert (mesh.source, mesh.steps) == ("discretisation", ("mesh standard -> fine",))
-    slices = refined(helical, discretization=0.5, slices=1.2, position=0.2)
+    slices = refined(helical, discretisation=0.5, slices=1.2, position=0.2)
     assert (slices.source, slices.steps) == ("slices", ("slices 15 -> 23",))
-    positions = refined(helical, discretization=0.3, slices=0.3, position=2.0)
+    positions = refined(helical, discretisation=0.3, slices=0.3, position=2.0)
     assert positions.source == "position"
     assert positions.steps == ("positions 0.5 -> 0.12 % of the ripple",)
 
@@ -69,10 +69,10 @@ def test_the_source_that_dominates_is_refined(helical):
 def test_what_is_small_is_refined_where_nothing_larger_can_be(helical):
     """The finest mesh takes 0.98 of the tolerance, positions what is beyond it; alone they would be left."""
     finest = ran(pair(0.3), "fine", 31)
-    made = refined(finest, discretization=0.98, position=0.25)
+    made = refined(finest, discretisation=0.98, position=0.25)
     assert [step.split()[0] for step in made.steps] == ["positions"]
     assert made.expected < 1.0
-    larger = refined(helical, discretization=1.5, position=0.25)
+    larger = refined(helical, discretisation=1.5, position=0.25)
     assert larger.steps == ("mesh standard -> fine",)
 
 
@@ -100,7 +100,7 @@ def test_a_source_is_refined_as_far_as_is_predicted_to_be_needed(helical):
 
 
 def test_a_pass_refines_several_sources_where_one_is_not_enough(helical):
-    made = refined(helical, discretization=1.5, slices=1.4)
+    made = refined(helical, discretisation=1.5, slices=1.4)
     assert made.steps == ("mesh standard -> fine", "slices 15 -> 23")
     assert made.expected == pytest.approx(
         math.hypot(1.5 * MESH_STEP["face"]["standard"], 1.4 * (15 / 23) ** SLICE_ORDER)
@@ -109,7 +109,7 @@ def test_a_pass_refines_several_sources_where_one_is_not_enough(helical):
 
 def test_a_pass_goes_up_one_mesh_level_at_most():
     draft = ran(pair(0.3), "draft", 15)
-    made = refined(draft, discretization=3.0)
+    made = refined(draft, discretisation=3.0)
     assert made.decided.plan.level == "standard"
     assert made.expected == pytest.approx(3.0 * MESH_STEP["face"]["draft"])
 
@@ -140,33 +140,33 @@ def test_what_no_refinement_brings_ends_with_its_reason(helical, by_source, said
 
 def test_the_finest_is_tried_where_it_may_be_enough_and_not_twice(helical):
     """Predictions are right within a factor 2: 1.3 predicted is worth a pass, 1.3 measured is the end."""
-    assert refined(helical, discretization=2.9).expected == pytest.approx(2.9 * 0.45)
+    assert refined(helical, discretisation=2.9).expected == pytest.approx(2.9 * 0.45)
     fine = ran(pair(0.3), "fine", 31)
-    assert "mesh fine is the finest" in next_pass(fine, shares(discretization=1.3))
+    assert "mesh fine is the finest" in next_pass(fine, shares(discretisation=1.3))
 
 
 def test_what_stays_leaves_room_for_the_rest_or_ends_it(helical):
     """0.97 measured and 0.6 left of the mesh, at best 0.3, are too much; 0.9 and 0.3 may do."""
-    assert "mended by no refinement" in next_pass(helical, shares(contact_solver=0.97, discretization=1.34))
-    assert refined(helical, contact_solver=0.9, discretization=1.34).steps == ("mesh standard -> fine",)
+    assert "mended by no refinement" in next_pass(helical, shares(contact_solver=0.97, discretisation=1.34))
+    assert refined(helical, contact_solver=0.9, discretisation=1.34).steps == ("mesh standard -> fine",)
 
 
 def test_positions_that_were_asked_for_stay():
     fixed = ran(pair(0.3), "standard", 15, positions=16)
-    reason = next_pass(fixed, shares(position=3.0, discretization=0.5))
+    reason = next_pass(fixed, shares(position=3.0, discretisation=0.5))
     assert "16 positions were requested" in reason
 
 
 def test_what_lies_between_the_nodes_of_the_axes_is_the_callers(helical):
-    between = refined(helical, discretization=1.5, force=90.0, misalignment=90.0)
-    assert told(between) == told(refined(helical, discretization=1.5))
+    between = refined(helical, discretisation=1.5, force=90.0, misalignment=90.0)
+    assert told(between) == told(refined(helical, discretisation=1.5))
 
 
 def test_three_dimensions_replace_a_correction_only_where_they_are_expected_to_err_less():
     soft = Material(youngs_modulus=206e9, poissons_ratio=0.45)
     narrow, steel = pair(width=2e-3, material=soft), pair(width=2e-3)
     tolerance = {"tolerance": AllowedError(0.008, 0.0), "normal_forces": [100.0]}
-    made = refined(ran(narrow, "standard", **tolerance), finite_width=1.2, discretization=0.3)
+    made = refined(ran(narrow, "standard", **tolerance), finite_width=1.2, discretisation=0.3)
     assert made.source == "finite_width"
     assert made.decided.checked.model.across_face
     assert "-> three dimensions" in made.words

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from numba import typeof
 
 from fe_contact import Gear, GearPair
 from fe_contact.contact import (
@@ -18,6 +19,7 @@ from fe_contact.contact import (
     contact_candidates,
     solve_contact,
 )
+from fe_contact.contact.point_problem import point_problems
 from fe_contact.effects.influence.slice_model import Springs
 
 M = 3e-3
@@ -36,6 +38,17 @@ def candidates(slices: int, corner: bool = True) -> Candidates:
 @pytest.fixture(scope="module")
 def problem() -> ContactProblem:
     return Springs(PAIR)._springs(MODEL)
+
+
+def test_compiled_code_sees_one_order_in_memory(problem: ContactProblem) -> None:
+    """Candidates column by column or row by row: compiled once for both."""
+    touch, width = problem.candidates.touch, problem.candidates.width
+    kinds = set()
+    for order in "CF":
+        arrays = {name: np.copy(value, order) for name, value in vars(touch).items() if np.ndim(value) == 2}
+        here = replace(problem.candidates, touch=replace(touch, **arrays), width=np.copy(width, order))
+        kinds.add(typeof(point_problems(replace(problem, candidates=here))))
+    assert len(kinds) == 1
 
 
 def test_the_solution_is_the_same_wherever_it_starts(problem: ContactProblem) -> None:

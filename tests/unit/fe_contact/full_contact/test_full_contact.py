@@ -18,7 +18,7 @@ COARSE = Resolution(2.0)
 pytestmark = pytest.mark.skipif(CALCULIX is None, reason="CalculiX (ccx) is not installed")
 
 
-@pytest.mark.parametrize("gear", [GEAR, CROWNED])
+@pytest.mark.parametrize("gear", [pytest.param(GEAR, marks=pytest.mark.nightly), CROWNED])
 def test_equilibrium_and_the_condensed_peer(gear: Gear) -> None:
     assert CALCULIX is not None
     pair = GearPair(gear, gear, center_distance=80e-3)

@@ -1,0 +1,178 @@
+"""The command line in a process of its own: serving, stopping, interrupting."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from running_service import PATIENCE_S, lives, until
+from typer.testing import CliRunner, Result
+
+from service.cli.commands import app
+
+ROOT = Path(__file__).parents[3]
+
+
+def loa(*arguments: object) -> Result:
+    """Run the command line in this process."""
+    return CliRunner().invoke(app, [str(argument) for argument in arguments])
+
+
+def started(*arguments: str, **options: object) -> subprocess.Popen[str]:
+    """Run the command line in a process of its own."""
+    path = os.pathsep.join([str(ROOT), os.environ["PYTHONPATH"]])
+    return subprocess.Popen(
+        [sys.executable, "-m", "service.cli", *arguments],
+        env={**os.environ, "PYTHONPATH": path},
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        **options,  # type: ignore[call-overload]
+    )
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """A server process on a free port and its address."""
+    process = started("serve", "--port", "0", "--data-directory", str(tmp_path / "served"))
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    assert line, process.communicate()
+    yield process, line.rpartition(" ")[2].strip()
+    if process.poll() is None:
+        process.kill()
+    process.communicate()
+
+
+def test_who_reads_the_address_may_connect(server: tuple[subprocess.Popen[str], str]) -> None:
+    _, address = server
+    host, _, port = address.removeprefix("http://").rpartition(":")
+    socket.create_connection((host, int(port)), timeout=PATIENCE_S).close()
+
+
+def test_a_server_starts_serves_and_stops_clean(server: tuple[subprocess.Popen[str], str]) -> None:
+    process, address = server
+    until(lambda: _healthy(address))
+    until(lambda: _is_idle(process.pid))  # its libraries are loaded
+    before = _cpu_s(process.pid)
+    process.send_signal(signal.SIGTERM)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    assert process.returncode == 0
+    assert "Traceback" not in process.communicate()[1]
+    # what the promise of 5 s beside 20 busy processes on 2 cores leaves: a tenth of that
+    assert usage.ru_utime + usage.ru_stime - before < 0.25
+
+
+def _cpu_s(pid: int) -> float:
+    """Return the CPU time of a process, s."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def _is_idle(pid: int) -> bool:
+    """Whether a process takes next to no CPU time for a while, and not for want of a processor."""
+    before = _cpu_s(pid)
+    for _ in range(20):
+        time.sleep(0.05)
+        if any(_state(task) == "R" for task in Path(f"/proc/{pid}/task").iterdir()):
+            return False
+    return _cpu_s(pid) - before < 0.02
+
+
+def _state(task: Path) -> str:
+    """Return the state of a thread: R runs or waits for its turn."""
+    try:
+        return (task / "stat").read_text().rpartition(")")[2].split()[0]
+    except FileNotFoundError:  # it has ended
+        return ""
+
+
+def _healthy(address: str) -> bool:
+    """Whether the service answers."""
+    try:
+        with urllib.request.urlopen(f"{address}/health", timeout=PATIENCE_S) as answer:
+            return bool(answer.status == 200)
+    except OSError:
+        return False
+
+
+def test_a_stopped_server_leaves_no_worker(server: tuple[subprocess.Popen[str], str], tmp_path: Path) -> None:
+    process, address = server
+    until(lambda: _healthy(address))
+    job = loa("submit", ROOT / "examples/palermo_spur_20_20.toml", "--service", address, "--json")
+    assert json.loads(job.stdout)["process"] == "analyze"
+    workers: list[int] = []
+
+    def found() -> bool:
+        workers.extend(_children(process.pid))
+        return bool(workers)
+
+    until(found)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=PATIENCE_S)
+    assert process.returncode == 0
+    until(lambda: not any(lives(pid) for pid in workers))
+    modes = {
+        path: path.stat().st_mode & 0o777 for path in [tmp_path / "served", *(tmp_path / "served").rglob("*")]
+    }
+    assert {path: mode for path, mode in modes.items() if mode != (0o700 if path.is_dir() else 0o600)} == {}
+
+
+def _children(pid: int) -> list[int]:
+    """Return the children of all threads of a process."""
+    tasks = Path(f"/proc/{pid}/task").iterdir()
+    return [int(child) for task in tasks for child in (task / "children").read_text().split()]
+
+
+def test_a_second_server_in_the_same_directory_is_refused(
+    server: tuple[subprocess.Popen[str], str], tmp_path: Path
+) -> None:
+    until(lambda: _healthy(server[1]))
+    result = loa("serve", "--port", "0", "--data-directory", tmp_path / "served")
+    assert result.exit_code == 2
+    assert "another service works in it" in result.stderr
+
+
+def test_a_port_in_use_is_said(server: tuple[subprocess.Popen[str], str], tmp_path: Path) -> None:
+    until(lambda: _healthy(server[1]))
+    port = server[1].rpartition(":")[2]
+    result = loa("serve", "--port", port, "--data-directory", tmp_path / "other")
+    assert result.exit_code == 2
+    assert f"port = {port}: must be a free port" in result.stderr
+
+
+def test_interrupting_is_clean(tmp_path: Path) -> None:
+    fifo = tmp_path / "case.toml"
+    os.mkfifo(fifo)  # the command waits for its case, so the signal comes while it works
+    process = started("analyze", str(fifo), "-o", str(tmp_path / "ste.nc"))
+    writer: list[int] = []
+
+    def reads() -> bool:
+        assert process.poll() is None, process.communicate()
+        try:
+            writer.append(os.open(fifo, os.O_WRONLY | os.O_NONBLOCK))
+        except OSError as error:
+            assert error.errno == errno.ENXIO  # nobody reads yet
+        return bool(writer)
+
+    try:
+        until(reads)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=PATIENCE_S)
+    finally:
+        process.kill()
+        for descriptor in writer:
+            os.close(descriptor)
+    assert process.returncode == 130
+    assert said == "interrupted\n"
