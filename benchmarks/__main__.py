@@ -90,7 +90,7 @@ def main(arguments: Sequence[str]) -> int:
     if "--publish" in arguments:
         _publish(record, tuple(names))
         if "error_coverage" in record:
-            error_coverage.publish(error_coverage.assessed(), machine)
+            error_coverage.publish(error_coverage.assessed(), machine, error_coverage.in_full())
         if "full_contact_coverage" in record:
             full_contact_coverage.publish(full_contact_coverage.assessed(), machine)
             full_contact_picture.draw()

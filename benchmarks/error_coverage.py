@@ -35,11 +35,17 @@ def assessed() -> tuple[Assessed, ...]:
     return tuple(assess(case, level) for case in assessed_pairs() for level in LEVELS)
 
 
-def assess(case: PairCase, level: str) -> Assessed:
-    """Hold one table against the finest solution of its pair."""
+@cache
+def in_full() -> tuple[Assessed, ...]:
+    """Return the same tables with all that they state, the shared sources included."""
+    return tuple(assess(case, level, ()) for case in assessed_pairs() for level in LEVELS)
+
+
+def assess(case: PairCase, level: str, without: tuple[str, ...] = SHARED) -> Assessed:
+    """Hold one table against the finest solution of its pair, some of its sources left out."""
     run = table_run(case, level=level)
     true = np.abs(run.value - finest_run(case))
-    return Assessed(case.name, _kind(case, level), run.value, run.stated(*SHARED), true)
+    return Assessed(case.name, _kind(case, level), run.value, run.stated(*without), true)
 
 
 def _kind(case: PairCase, level: str) -> str:
@@ -49,9 +55,9 @@ def _kind(case: PairCase, level: str) -> str:
     return f"{'helical' if case.pair.base_helix_angle else 'spur over the face'}, {level}"
 
 
-def markdown(found: Sequence[Assessed]) -> str:
-    """Return the section of docs/accuracy.md."""
-    groups = {"all": list(found)}
+def markdown(found: Sequence[Assessed], whole: Sequence[Assessed]) -> str:
+    """Return the section of docs/accuracy.md; `whole` are the tables with all that they state."""
+    groups = {"all, with `model`": list(whole), "all": list(found)}
     groups |= {kind: [one for one in found if one.level == kind] for kind in sorted({o.level for o in found})}
     return coverage_table(groups) + "\n" + _worst(found)
 
@@ -68,7 +74,7 @@ def _worst(found: Sequence[Assessed]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def publish(found: Sequence[Assessed], machine: Mapping[str, str]) -> None:
-    """Write the section of the page between its marks."""
+def publish(found: Sequence[Assessed], machine: Mapping[str, str], whole: Sequence[Assessed] = ()) -> None:
+    """Write the section of the page between its marks; see `markdown`."""
     versions = ", ".join(f"{name} {machine[name]}" for name in ("lineofaction", "numpy", "scipy"))
-    replace_section(PAGE, SECTION, f"{markdown(found)}\nMeasured with {versions}.\n")
+    replace_section(PAGE, SECTION, f"{markdown(found, whole)}\nMeasured with {versions}.\n")

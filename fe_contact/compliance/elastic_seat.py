@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
+from fe_contact.body.bore_seat import BoreSeat
 from fe_contact.compliance.hanging_nodes import face_functions
 from fe_contact.geometry import Toothing
-from fe_contact.geometry.bore_seat import BoreSeat
 from fe_contact.mesh.hexahedra import LOWER_FACE
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.types import FloatArray

@@ -9,12 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from bounds import SiNote
+from fe_contact.body.bore_seat import CLAMPED, BoreSeat
+from fe_contact.body.gear_blank import GearBlank, Web
 from fe_contact.checks import integer, positive, within
 from fe_contact.flank.modification import UNMODIFIED, FlankModification
 from fe_contact.geometry.basic_rack import BasicRack
-from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
 from fe_contact.geometry.form_point import FormPoint, find_form_point
-from fe_contact.geometry.gear_blank import GearBlank, Web
 from fe_contact.geometry.gear_feasibility import refuse_infeasible_gear
 from fe_contact.geometry.pitch_deviation import NO_PITCH_DEVIATION, PitchDeviation
 from fe_contact.geometry.toothing import Toothing

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from bounds import LIMIT_SLACK, Quantity, Text, above, at_least, below, between
+from fe_contact.body.gear_blank import GearBlank
 from fe_contact.errors import InfeasibleGeometry
-from fe_contact.geometry.gear_blank import GearBlank
 from fe_contact.geometry.seated_gear import refuse_misfit_seat
 from fe_contact.geometry.toothing import Toothing
 

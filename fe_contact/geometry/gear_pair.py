@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from fe_contact.body.shaft import Shafts
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.pair_feasibility import refuse_infeasible_pair, refuse_strangers
 from fe_contact.geometry.parallel_axes import ParallelAxes
-from fe_contact.geometry.shaft import Shafts
 
 
 @dataclass(frozen=True)

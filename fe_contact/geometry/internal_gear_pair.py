@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from fe_contact.body.shaft import Shafts
 from fe_contact.geometry.backlash import reference_center_distance
 from fe_contact.geometry.gear import Gear
 from fe_contact.geometry.internal_interference import tip_clearances
@@ -16,7 +17,6 @@ from fe_contact.geometry.internal_pair_feasibility import (
 from fe_contact.geometry.pair_feasibility import refuse_strangers
 from fe_contact.geometry.parallel_axes import ParallelAxes
 from fe_contact.geometry.ring_gear import RingGear
-from fe_contact.geometry.shaft import Shafts
 from fe_contact.geometry.trimming import radial_clearance
 
 

@@ -21,8 +21,8 @@ from fe_contact.geometry.printed_data import backlash_rounding
 from fe_contact.types import FloatArray
 
 if TYPE_CHECKING:
+    from fe_contact.body.shaft import Shafts
     from fe_contact.geometry.gear import Gear
-    from fe_contact.geometry.shaft import Shafts
     from fe_contact.geometry.toothing import Toothing
 
 

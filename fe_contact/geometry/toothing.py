@@ -11,14 +11,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, Self
 
+from fe_contact.body.bore_seat import CLAMPED, BoreSeat
 from fe_contact.flank.involute import involute_function, roll_length_at_radius
-from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
 
 if TYPE_CHECKING:
+    from fe_contact.body.gear_blank import Web
     from fe_contact.flank.modification import FlankModification
     from fe_contact.geometry.fillet_curve import FilletCurve
     from fe_contact.geometry.form_point import FormPoint
-    from fe_contact.geometry.gear_blank import Web
     from fe_contact.geometry.pitch_deviation import PitchDeviation
     from fe_contact.material import Material
     from fe_contact.types import Json

@@ -8,9 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
+from fe_contact.body.bore_seat import CLAMPED, BoreSeat
+from fe_contact.body.gear_blank import ROUNDING
 from fe_contact.geometry import Toothing
-from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
-from fe_contact.geometry.gear_blank import ROUNDING
 from fe_contact.mesh.sector_grid import SectorGrid
 from fe_contact.types import BoolArray, FloatArray
 

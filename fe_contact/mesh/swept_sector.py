@@ -14,9 +14,9 @@ from functools import cached_property
 
 import numpy as np
 
+from fe_contact.body.bore_seat import CLAMPED, BoreSeat
+from fe_contact.body.gear_blank import ROUNDING, Web
 from fe_contact.errors import InputError
-from fe_contact.geometry.bore_seat import CLAMPED, BoreSeat
-from fe_contact.geometry.gear_blank import ROUNDING, Web
 from fe_contact.mesh.bore_support import BoreSupport, ClampedBore
 from fe_contact.mesh.hexahedra import Batch, stacked, with_seat
 from fe_contact.mesh.layers import Layers, layers_across, layers_to_mid_face

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from fe_contact.body.bore_seat import BoreSeat, Key
+from fe_contact.body.gear_blank import GearBlank
+from fe_contact.body.shaft import Shaft
 from fe_contact.flank.modification import FlankModification
-from fe_contact.geometry.bore_seat import BoreSeat, Key
-from fe_contact.geometry.gear_blank import GearBlank
-from fe_contact.geometry.shaft import Shaft
 from fe_contact.material import Material
 from service.schemas.declared import figures
 

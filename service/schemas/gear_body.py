@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from fe_contact.geometry.bore_seat import BoreSeat, Key
-from fe_contact.geometry.gear_blank import GearBlank
-from fe_contact.geometry.shaft import Shaft
+from fe_contact.body.bore_seat import BoreSeat, Key
+from fe_contact.body.gear_blank import GearBlank
+from fe_contact.body.shaft import Shaft
 from fe_contact.material import Material
 from service.schemas.declared import declared_in, with_fields
 from service.schemas.model import BoundaryModel

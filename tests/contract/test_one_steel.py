@@ -4,7 +4,7 @@ import pytest
 
 from dynamics.bodies import BeamSection
 from fe_contact import STEEL
-from fe_contact.geometry.shaft import Shaft
+from fe_contact.body.shaft import Shaft
 from service.schemas.gear_body import MaterialInput
 from service.schemas.scene_shafts import SectionInput
 
