@@ -101,8 +101,7 @@ STUDIES: dict[str, Study] = {
             "ablate",
             "case or scene",
             "What each effect of a case or a scene changes",
-            "Switch each effect of a case or a scene over: what it changes, what was estimated, what it "
-            "costs.",
+            "Toggle each effect of a case or a scene: what it changes, what was estimated, what it costs.",
             "examples/palermo_spur_20_20.toml -o ablation.png",
             kind="ablation",
             collection="ablations",
@@ -112,7 +111,7 @@ STUDIES: dict[str, Study] = {
             "frontier",
             "case or scene",
             "What accuracy costs in time on a case or a scene",
-            "Run the ladder on a case (ISO 6336 to fine finite elements) or on a scene: error against time.",
+            "Study the accuracy of a case (ISO 6336 to fine finite elements) or a scene: error against time.",
             "examples/palermo_spur_20_20.toml -o frontier",
             kind="frontier",
             collection="frontiers",

@@ -29,7 +29,7 @@ _KINDS = {
 }
 _BOUND = (
     "an STE database, flank results, a study (sensitivity, modes, response, steady states; as JSON an "
-    "ablation, a ladder, an optimisation, a tolerance Monte Carlo) or a run"
+    "ablation, an accuracy study, an optimisation, a tolerance Monte Carlo) or a run"
 )
 _READERS: dict[str, Callable[[Path], Any]] = {
     "database": SteDatabase.from_netcdf,

@@ -1,4 +1,4 @@
-"""The accuracy ladder of cases and scenes as jobs: the real process over HTTP, and through the client."""
+"""The accuracy study of cases and scenes as jobs: the real process over HTTP, and through the client."""
 
 from __future__ import annotations
 

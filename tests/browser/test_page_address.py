@@ -91,7 +91,7 @@ def test_a_job_under_way_goes_on_after_a_reload_and_is_left_by_the_way_back(
         job = client.submit("frontier", {"case": LONG})
         page.goto(f"{address}/#frontier={job.id}")
         card = page.locator(".study").filter(has=page.get_by_role("heading", name="Accuracy frontier"))
-        expect(card.get_by_role("button", name="Climb")).to_be_disabled()
+        expect(card.get_by_role("button", name="Run the accuracy study")).to_be_disabled()
         page.reload()
         expect(card.locator("progress")).to_be_visible()
         page.go_back()

@@ -14,9 +14,9 @@ from running_service import until
 # title, button, what is typed or chosen by label, figures, whether the result is netCDF
 STUDIES = {
     "flank": ("Flank pressure", "Compute flank pressure", {}, ["contact_pattern"], True),
-    "ablate": ("Effects", "Switch every effect over", {}, ["ablation"], False),
+    "ablate": ("Effects", "Toggle every effect", {}, ["ablation"], False),
     "frontier": (
-        "Accuracy frontier", "Climb the accuracy ladder",
+        "Accuracy frontier", "Run the accuracy study",
         {"Up to": "2-D finite elements; with a helix draft 3-D"}, ["frontier"], False,
     ),
     "sensitivity": (

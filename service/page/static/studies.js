@@ -1,4 +1,4 @@
-/** Jobs on the pair beside its analysis: flank pressure, effects, accuracy ladder, sensitivity, search of flanks, tolerances. */
+/** Jobs on the pair beside its analysis: flank pressure, effects, accuracy study, sensitivity, search of flanks, tolerances. */
 
 import { card } from "./card.js";
 import { byId } from "./elements.js";
@@ -24,12 +24,12 @@ export const STUDIES = [
     inputs: (found, values) => ({ case: found, ...values }),
   },
   {
-    process: "ablate", title: "Effects", action: "Switch every effect over",
-    text: "What each effect changes, switched over by itself, beside what the ledger estimated, and what it costs.",
+    process: "ablate", title: "Effects", action: "Toggle every effect",
+    text: "What each effect changes, toggled by itself, beside what the ledger estimated, and what it costs.",
     inputs: (found) => ({ case: found }),
   },
   {
-    process: "frontier", title: "Accuracy frontier", action: "Climb the accuracy ladder",
+    process: "frontier", title: "Accuracy frontier", action: "Run the accuracy study",
     text: "Error against time of every way to compute this case, from closed forms to the finest mesh.",
     fields: [{
       name: "reach", label: "Up to",

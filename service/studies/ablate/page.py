@@ -237,7 +237,7 @@ def ablation_page(found: Ablation | SceneAblation) -> Page:
     if found.effects:
         name, change = largest_change(found)
         heads.append(Headline(f"without {name.replace('_', ' ')}", change, "of peak to peak, most of all"))
-    left = Table("Effects that were not switched", ("effect", "because"), tuple(found.left_out.items()))
+    left = Table("Effects that were not toggled", ("effect", "because"), tuple(found.left_out.items()))
     tables = (rows, *([left] if found.left_out else []))
     section = Section("Effects", "", (replace(figure, table=None),) if found.effects else (), tables)
     lead = f"{len(found.effects)} effects of the {what}, each toggled by itself"
@@ -245,10 +245,10 @@ def ablation_page(found: Ablation | SceneAblation) -> Page:
 
 
 def _text(found: Ablation | SceneAblation) -> Iterator[Table | str]:
-    """Every effect, and what was not switched."""
+    """Every effect, and what was not toggled."""
     yield _table(found)
     for name, reason in found.left_out.items():
-        yield f"not switched: {name}: {reason}"
+        yield f"not toggled: {name}: {reason}"
 
 
 PAGE = Presentation(_figure, ablation_page, _text)

@@ -36,7 +36,7 @@ Json = dict[str, Any]
 
 
 def ablation_of(subject: Case | Scene, inputs: Inputs, means: Means) -> Ablation | SceneAblation:
-    """Switch the effects of a case, at its nominal center distance, or of a scene over.
+    """Toggle the effects of a case, at its nominal center distance, or of a scene.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def effects_asked(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
         known = [*(effect.name for effect in SCENE_EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
     for name in only or ():
         if name not in known:
-            raise BadInput.of("only", name, f"among {', '.join(known)}", "Or leave it out: all are switched.")
+            raise BadInput.of("only", name, f"among {', '.join(known)}", "Or leave it out: all are toggled.")
     return [name for name in known if only is None or name in only]
 
 

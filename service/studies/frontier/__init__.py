@@ -1,4 +1,4 @@
-"""The accuracy ladder of a case or a scene: error against time."""
+"""The accuracy study of a case or a scene: error against time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Inputs(BoundaryModel):
         default=None,
         ge=1,
         le=MOST_FULL_CONTACT,
-        description="Positions of a case at which full finite-element contact is run beside the ladder, "
+        description="Positions of a case at which full finite-element contact is run beside the study, "
         "about 3 CPU s each in plane strain, 70 or more over the face",
         examples=[4],
     )

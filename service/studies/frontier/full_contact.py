@@ -1,4 +1,4 @@
-"""Full finite-element contact beside the accuracy ladder: what it is known to cost, and took on the case."""
+"""Full finite-element contact beside the accuracy study: what it is known to cost, and took on the case."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Error against time of the accuracy ladder, with the peer: full finite-element contact."""
+"""Error against time of the accuracy study, with the peer: full finite-element contact."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def frontier_table(found: Frontier) -> Table:
         )
         for result in found.results
     ]
-    return Table("Accuracy ladder", _HEAD, (*rows, *full_contact.rows(found)))
+    return Table("Accuracy study", _HEAD, (*rows, *full_contact.rows(found)))
 
 
 def _panel(

@@ -1,4 +1,4 @@
-"""Error against time of the ladder of dynamics on one scene."""
+"""Error against time of the accuracy study of one scene."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def run_frontier_table(found: Frontier) -> Table:
         )
         for result in found.results
     ]
-    return Table("Ladder of dynamics", _HEAD, tuple(rows))
+    return Table("Accuracy study of the scene", _HEAD, tuple(rows))
 
 
 def _panel(found: Frontier, title: str, label: str, which: int) -> Panel:

@@ -1,4 +1,4 @@
-"""An accuracy ladder: what was chosen, the knee, the plot, every rung, and what was not run."""
+"""An accuracy study: what was chosen, the knee, the plot, every fidelity, and what was not run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from service.studies.presentation import Presentation
 
 
 def frontier_page(found: Frontier | SceneFrontier) -> Page:
-    """Return the page of a ladder."""
+    """Return the page of an accuracy study."""
     if isinstance(found, Frontier):
         lead = f"{len(found.results)} ways to the same table of {found.solves} positions x loads"
         chosen = "chosen for the asked accuracy"

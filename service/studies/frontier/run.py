@@ -1,4 +1,4 @@
-"""Accuracy ladder of a case or a scene."""
+"""Accuracy study of a case or a scene."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LEAST = 2
 
 
 def frontier_of(subject: Case | Scene, inputs: Inputs, means: Means) -> Frontier | SceneFrontier:
-    """Run the ladder on a case, over all pitches that differ and with the whole receipt, or on a scene.
+    """Study the accuracy of a case, over all pitches that differ and with the whole receipt, or of a scene.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def check(subject: Case | SceneInput, inputs: Inputs) -> None:
 
 
 def rungs_asked(names: Sequence[str] | None, *, of_scene: bool) -> list[str]:
-    """Return the rungs that a ladder is asked for, once each, in its order.
+    """Return the fidelities that are requested, once each, in its order.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def normalized(subject: Case | SceneInput, inputs: Inputs) -> Json:
 
 
 def read(file: Path) -> Frontier | SceneFrontier:
-    """Return the ladder in a file of `Frontier.to_json` of either library.
+    """Return the study in a file of `Frontier.to_json` of either library.
 
     Not stored, and so not in it: what full finite-element contact gave on a case; the orders of the vibration
     that the rungs of a scene were compared to, which are NaN.

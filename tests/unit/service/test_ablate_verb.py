@@ -69,7 +69,7 @@ def test_a_case_gives_table_json_and_picture(case: Path, tmp_path: Path) -> None
         assert 0.5 < entry["estimate"]["mean_um"] / entry["mean_change_um"][1] < 2.0
     text = CliRunner().invoke(app, ["ablate", str(case), "--only", only])
     assert "tooth_coupling" in text.stdout
-    assert "not switched: misalignment: the gears are aligned" in text.stdout
+    assert "not toggled: misalignment: the gears are aligned" in text.stdout
 
 
 def test_a_scene_gives_orders_of_errors_and_bearing_forces() -> None:
