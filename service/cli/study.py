@@ -32,9 +32,9 @@ Writer = Callable[[Any, Path], object]
 
 def run_study(study: Study, given: Json) -> None:
     """Run a study as its verb was called; `given` holds argument and options by their names."""
+    subject, folder = _read(study, given[study.argument])
     inputs = _inputs(study, given)
     targets = _targets(study, given["output"])
-    subject, folder = _read(study, given[study.argument])
     study.run.check(subject, inputs)
     executor = ExecutorChoice(given.get("workers", 1), given.get("dask"))
     stopping = until_interrupted if study.run.interruptible else nullcontext
@@ -117,7 +117,7 @@ def _written(study: Study, targets: list[Path]) -> Json:
     names = [str(target) for target in targets]
     if study.folder:
         return {"written": names}
-    return {"written": names[0], "file": names[0]} if names else {"written": None}
+    return {"written": names[0], "file": names[0]} if names else {}
 
 
 def _show(study: Study, found: Any, targets: list[Path]) -> None:

@@ -47,7 +47,7 @@ def solved(cache):
         checked = check_request(
             pair,
             TableAxes(torques=torques),
-            AnalysisOptions(level="draft", effects=effects),
+            AnalysisOptions(level="draft", effects=effects or {}),
             whole_table=False,
         )
         plan = make_plan(pair, checked.request.load, checked.request.options, checked.model)

@@ -203,11 +203,14 @@ def test_without_shafts_the_problem_is_untouched_and_with_ever_stiffer_ones_noth
     assert model == ContactModel()
     problem = problem_of(bare.pair)
     assert with_added(bare.pair, problem, model) is problem
-    stiff = scene(replace(SHAFT, diameter=1e8, bearing_stiffness=None), None)
-    model = ShaftDeflection().contribute(stiff, ContactModel())
-    assert len(model.compliances) == 1
-    added = with_added(stiff.pair, problem, model).compliance - problem.compliance
-    assert np.abs(added).max() < 1e-14 * problem.compliance.max()
+    added = []
+    for diameter in (0.1, 1.0, 10.0):
+        stiff = scene(replace(SHAFT, diameter=diameter, bearing_stiffness=None), None)
+        model = ShaftDeflection().contribute(stiff, ContactModel())
+        assert len(model.compliances) == 1
+        added.append(np.abs(with_added(stiff.pair, problem, model).compliance - problem.compliance).max())
+    assert added[1] < 1e-2 * added[0]  # shear falls with the square of the diameter, bending faster
+    assert added[2] < 1.01e-2 * added[1] < 1e-4 * problem.compliance.max()
 
 
 def test_the_term_is_added_between_all_slices_once():

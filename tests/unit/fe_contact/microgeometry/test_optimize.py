@@ -202,8 +202,8 @@ def test_bounds_that_leave_the_start_out_are_told(long_reliefs: GearPair, compli
     """The start is the pair as it is, though no design of the search may be like it."""
     good = {one.name: 8e-6 for one in AMOUNTS}
     poor = [replace(one, low=30e-6, high=31e-6) for one in AMOUNTS]
-    asked: dict[str, Any] = {"cache": compliances, **DRAFT, **NONE}
-    best = optimize(design_request(modified(long_reliefs, good), [TORQUE], poor, search=QUICK, **asked))
+    request = design_request(modified(long_reliefs, good), [TORQUE], poor, search=QUICK, **DRAFT, **NONE)
+    best = optimize(request, Run(cache=compliances))
     assert best.start.values == good
     assert all(30e-6 <= value <= 31e-6 for value in best.optimum.values.values())
     assert best.outcome is Outcome.NOT_IMPROVED and best.gain.value < 0.0
