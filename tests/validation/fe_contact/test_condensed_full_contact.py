@@ -32,7 +32,7 @@ def rows(torque: float) -> dict[float, tuple[float, float]]:
 
 @pytest.mark.parametrize(
     "torque",
-    [t if t in (10.0, 100.0) else pytest.param(t, marks=pytest.mark.nightly) for t in TARGETS],
+    [t if t == 100.0 else pytest.param(t, marks=pytest.mark.nightly) for t in TARGETS],
 )
 def test_positions_under_one_load(torque: float, record_figure) -> None:
     expected = [rows(torque)[driven] for driven in DRIVEN]

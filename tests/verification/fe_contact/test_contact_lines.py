@@ -93,7 +93,10 @@ def test_the_reference_length_parts_and_does_not_decide(cache):
 
 @pytest.mark.parametrize(
     ("corner", "shape"),
-    [(False, {"helix_crowning": 5e-6}), (True, {"helix_crowning": 4e-6, "profile_crowning": 5e-6})],
+    [
+        pytest.param(False, {"helix_crowning": 5e-6}, marks=pytest.mark.nightly),
+        (True, {"helix_crowning": 4e-6, "profile_crowning": 5e-6}),
+    ],
 )
 def test_ripple_converges_with_the_square_of_the_slices(corner, shape, cache, record_figure):
     """0.16 and 0.35 um of it; slices that are in or out by their middle leave 50 nm in twelve.

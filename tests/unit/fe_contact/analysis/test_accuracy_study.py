@@ -125,6 +125,7 @@ def test_errors_of_a_spur_pair_fall_from_fidelity_to_fidelity(spur):
     assert max(errors["corrected_draft"], errors["3d_draft"]) < 0.01
 
 
+@pytest.mark.nightly
 def test_errors_of_a_helical_pair_fall_from_fidelity_to_fidelity():
     found = frontier(
         pair_of(math.radians(15.0)),

@@ -95,6 +95,7 @@ def test_gears_alike_are_mirror_images_in_position(cache: Path) -> None:
         assert np.abs(mine - theirs).max() < 1e-6 * np.abs(mine).max()
 
 
+@pytest.mark.nightly
 def test_opposite_hands_are_mirror_images_along_the_face(cache: Path) -> None:
     swapped = GearPair(*(replace(g, helix_angle=-g.helix_angle) for g in (HELICAL.pinion, HELICAL.wheel)))
     options = {"at": [0.2, 0.7], "misalignment": 10e-6}

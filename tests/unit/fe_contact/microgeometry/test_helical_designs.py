@@ -100,6 +100,7 @@ def test_mirrored_in_everything_a_design_is_as_good(pair: GearPair, compliances:
     assert abs(unlike.peak_to_peak / one.peak_to_peak - 1.0).max() > 0.05
 
 
+@pytest.mark.nightly
 def test_mirrored_hand_and_misalignment_give_the_mirrored_design(pair: GearPair, compliances: Path) -> None:
     crowning, scatter = DesignVariable(CROWNING, 0.0, 20e-6), Scatter(5e-6, rule=GaussHermite(3))
     right, left = (
