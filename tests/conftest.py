@@ -21,7 +21,7 @@ SERVICES = ("api", "browser", "flow")
 RecordFigure = Callable[..., None]
 
 # The same examples on every machine with every change; random ones, and more of them, at night.
-settings.register_profile("suite", deadline=None, derandomize=True, max_examples=40)
+settings.register_profile("suite", deadline=None, derandomize=True, max_examples=24)
 settings.register_profile("nightly", deadline=None, max_examples=640)
 settings.load_profile("suite")
 
