@@ -8,10 +8,10 @@ from benchmarks.figures import Figure
 from benchmarks.fresh_process import measure
 
 STEPS = 10_000_000
-_STAND_INS = Path(__file__).parents[1] / "tests" / "stand_ins"
+_FAKES = Path(__file__).parents[1] / "tests" / "fakes"
 _RUN = """
 import sys, time
-sys.path.insert(0, {stand_ins!r})
+sys.path.insert(0, {fakes!r})
 from rotating_trains import accelerating, imposed, phase_error
 measured = {{}}
 for make in (imposed, accelerating):
@@ -24,7 +24,7 @@ for make in (imposed, accelerating):
 
 def figures() -> list[Figure]:
     """Return the errors and what the runs took."""
-    found = measure(_RUN.format(stand_ins=str(_STAND_INS), steps=STEPS))
+    found = measure(_RUN.format(fakes=str(_FAKES), steps=STEPS))
     subject = "phase after 1e7 integrated steps"
     return [
         figure

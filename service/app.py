@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
+from typing import Any
 
 from fastapi import FastAPI
 
@@ -79,26 +80,11 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
             lock.release()
         raise
 
-    @asynccontextmanager
-    async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
-        if lock is not None:
-            lock.acquire()
-        context.scheduler.start()
-        warm_up()
-        try:
-            yield
-        finally:
-            context.stop_waiting()
-            context.scheduler.stop()
-            context.close()
-            if lock is not None:
-                lock.release()
-
     app = FastAPI(
         title="lineofaction",
         version=solver_version(),
         description=_DESCRIPTION,
-        lifespan=lifespan,
+        lifespan=_lifespan(context, lock),
         docs_url=None,
         redoc_url=None,
     )
@@ -115,6 +101,27 @@ def create_app(settings: Settings, registry: Registry | None = None, *, works: b
     app.include_router(page.router)
     app.include_router(health.router)
     return app
+
+
+def _lifespan(context: Context, lock: DirectoryLock | None) -> Callable[[FastAPI], Any]:
+    """Return what runs the scheduler while the application runs, in a directory that is its own."""
+
+    @asynccontextmanager
+    async def lifespan(_app: FastAPI) -> AsyncIterator[None]:
+        if lock is not None:
+            lock.acquire()
+        context.scheduler.start()
+        warm_up()
+        try:
+            yield
+        finally:
+            context.stop_waiting()
+            context.scheduler.stop()
+            context.close()
+            if lock is not None:
+                lock.release()
+
+    return lifespan
 
 
 def _context(settings: Settings, registry: Registry, works: bool) -> Context:

@@ -42,7 +42,7 @@ def hollow_cylinder(
     Parameters
     ----------
     outer_diameter, length, bore_diameter : float
-        m. For a gear, reference diameter and face width are the usual stand-ins for its teeth and rim.
+        m. For a gear, reference diameter and face width are the usual fakes for its teeth and rim.
     density : float
         kg/m^3.
 

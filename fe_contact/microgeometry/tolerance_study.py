@@ -136,8 +136,15 @@ def scatter(
     MeshError, SolveError
         No acceptable mesh, or the contact of a pair cannot be solved.
     """
-    clock = StageClock()
     space = toleranced(pair, tolerances, sampling, options, misalignment)
+    return _sampled(space, torques, tolerances, sampling, run)
+
+
+def _sampled(
+    space: DesignSpace, torques: Levels, tolerances: Tolerances, sampling: Sampling, run: Run
+) -> ToleranceStudy:
+    """Sample a space of designs within tolerances; see `scatter`."""
+    clock, misalignment = StageClock(), space.misalignment
     study = design_study(space, torques, [], clock, run)
     deviation = tolerances.sample(sampling.samples, sampling.seed)
     names, nominal = tuple(tolerances.widths), replace(study.evaluator, nodes=ONE_NODE)

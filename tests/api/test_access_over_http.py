@@ -10,7 +10,7 @@ import structlog.contextvars
 import structlog.testing
 from fastapi.testclient import TestClient
 from httpx2 import Response
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.access import KeyFile
 from service.app import create_app
@@ -118,12 +118,12 @@ def test_the_client_takes_its_key_from_its_caller_or_the_environment(
         return LineOfActionClient("http://testserver", cache_dir=tmp_path, transport=http._transport, key=key)
 
     with client(None) as without, pytest.raises(Unauthorised, match="Authorization"):
-        without.submit("standin", {"wish": {}})
+        without.submit("fake", {"wish": {}})
     with client(secret) as given:
-        assert given.submit("standin", {"wish": {"text": "table"}}).process == "standin"
+        assert given.submit("fake", {"wish": {"text": "table"}}).process == "fake"
     monkeypatch.setenv("LOA_KEY", secret)
     with client(None) as found:
-        assert found.submit("standin", {"wish": {"text": "table"}}).process == "standin"
+        assert found.submit("fake", {"wish": {"text": "table"}}).process == "fake"
 
 
 def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(settings: Settings) -> None:
@@ -132,7 +132,7 @@ def test_a_key_has_as_many_unfinished_jobs_as_it_may_and_leaves_room_for_others(
 
     def enter(number: float, who: dict[str, str]) -> Response:
         wish = {"mode": "hang", "number": number}
-        return http.post("/v1/processes/standin/execution", json={"inputs": {"wish": wish}}, headers=who)
+        return http.post("/v1/processes/fake/execution", json={"inputs": {"wish": wish}}, headers=who)
 
     with TestClient(create_app(settings, REGISTRY), raise_server_exceptions=False) as http:
         first, second = enter(1.0, few), enter(2.0, few)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.app import create_app
 from service.routes import events
@@ -28,7 +28,7 @@ def client(tmp_path: Path) -> Iterator[TestClient]:
 
 def execute(client: TestClient, **wish: Any) -> str:
     """Enter a job; return its path."""
-    answer = client.post("/v1/processes/standin/execution", json={"inputs": {"wish": wish}})
+    answer = client.post("/v1/processes/fake/execution", json={"inputs": {"wish": wish}})
     return str(answer.headers["location"])
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import pytest
 import uvicorn
 from running_service import PATIENCE_S, until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.app import create_app
 from service.cli import bounded_http

@@ -10,13 +10,13 @@ import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
 from running_service import REFERENCES, until
-from service_stand_in_work import SECRET
-from service_stand_ins import REGISTRY
+from service_fake_work import SECRET
+from service_fakes import REGISTRY
 
 from service.app import create_app
 from service.settings import Settings
 
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 OGC = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
 
 
@@ -56,7 +56,7 @@ def test_a_job_runs_from_execution_to_result(client: TestClient) -> None:
     answer = execute(client, text="table")
     assert answer.status_code == 201
     status = ended(client, answer.headers["location"])
-    assert (status["processID"], status["type"], status["status"]) == ("standin", "process", "successful")
+    assert (status["processID"], status["type"], status["status"]) == ("fake", "process", "successful")
     assert status["progress"] == 100
     reference = client.get(f"{answer.headers['location']}/results", params=REFERENCES).json()["database"]
     file = client.get(reference["href"], headers={"Accept": "application/x-netcdf"})
@@ -237,7 +237,7 @@ def test_the_standards_pages(client: TestClient) -> None:
     assert any(
         "ogcapi-processes-1/1.0/conf/core" in c for c in client.get("/v1/conformance").json()["conformsTo"]
     )
-    description = client.get("/v1/processes/standin").json()
+    description = client.get("/v1/processes/fake").json()
     assert description["inputs"]["wish"]["schema"]
     assert description["jobControlOptions"] == ["async-execute", "dismiss"]
 

@@ -103,7 +103,7 @@ def test_nothing_is_lost_when_parts_are_killed_at_random_moments(
 
 def test_the_witness_knows_a_partial_file_and_a_second_result() -> None:
     """The test above can fail: results of two attempts differ, and a part of one is none."""
-    from service_stand_in_work import is_slow_content, slow_content  # noqa: PLC0415
+    from service_fake_work import is_slow_content, slow_content  # noqa: PLC0415
 
     one, other = slow_content("case 0"), slow_content("case 0")
     assert one != other and is_slow_content(one, "case 0") and is_slow_content(other, "case 0")

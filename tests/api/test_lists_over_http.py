@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from running_service import until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from small_table import small_table
 from sqlalchemy import delete, update
 
@@ -20,7 +20,7 @@ from service.jobs.tables import computations, jobs
 from service.settings import Settings
 from service.store import writing
 
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 
 
 @pytest.fixture
@@ -78,7 +78,7 @@ def test_filters_add_up_and_stay_on_the_next_page(client: TestClient) -> None:
     newest_first = submit(client, 6)
     for job in newest_first[:3]:
         client.delete(f"/v1/jobs/{job}")
-    wish = {"status": ["dismissed", "failed"], "processID": "standin", "limit": 2}
+    wish = {"status": ["dismissed", "failed"], "processID": "fake", "limit": 2}
     page = client.get("/v1/jobs", params=wish).json()
     assert identifiers(page) == newest_first[:2]
     assert identifiers(client.get(following(page)).json()) == newest_first[2:3]  # type: ignore[arg-type]

@@ -10,13 +10,13 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from running_service import until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.app import create_app
 from service.cli.log import log_to_standard_error
 from service.settings import Settings
 
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 
 
 def grep(log: Path, text: str) -> list[dict[str, Any]]:
@@ -63,7 +63,7 @@ def test_a_request_is_followed_to_its_worker_and_what_that_took(log: Path, tmp_p
     started, ended = only(trail, "worker started"), only(trail, "worker ended")
     (worker,) = (tmp_path / "data").glob(f"started_{entered['hog']['key'][:8]}")
     assert started["pid"] == ended["pid"] == int(worker.read_text().split()[0])
-    assert (ended["outcome"], ended["attempt"], ended["process"]) == ("done", 1, "standin")
+    assert (ended["outcome"], ended["attempt"], ended["process"]) == ("done", 1, "fake")
     assert ended["peak_mb"] > 300.0  # what it held
     assert ended["cpu_s"] > 0.0 and ended["seconds"] > 0.0
     again = [

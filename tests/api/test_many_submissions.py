@@ -20,13 +20,13 @@ from killed_service import KilledService
 from postgres_server import PostgresServer, migrated
 from prometheus_client.parser import text_string_to_metric_families
 from running_service import PATIENCE_S, REFERENCES, until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.access.key_file import KeyFile
 from service.app import create_app
 from service.settings import Settings
 
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 SUBMISSIONS_PER_CASE, QUEUE = 10, 4
 FILE = {"Accept": "application/x-netcdf"}
 Client = TestClient | httpx2.Client

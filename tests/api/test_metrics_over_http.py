@@ -11,14 +11,14 @@ from postgres_server import running_server
 from prometheus_client import Metric
 from prometheus_client.parser import text_string_to_metric_families
 from running_service import until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.app import create_app
 from service.settings import Settings
 from service.store.database import database_engine
 from service.store.schema import Schema
 
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def test_figures_are_valid_and_tell_what_was_done(client: TestClient) -> None:
     taken, attempts = found["loa_computation_seconds"], found["loa_computation_attempts"]
     assert (taken.type, attempts.type) == ("histogram", "counter")
     for outcome, number, tries in (("successful", 2, 2), ("failed", 1, 2)):
-        which = {"process": "standin", "outcome": outcome}
+        which = {"process": "fake", "outcome": outcome}
         assert value(taken, "_count", **which) == value(taken, "_bucket", **which, le="+Inf") == number
         assert value(taken, "_sum", **which) > 0.0
         assert value(attempts, "_total", **which) == tries

@@ -13,7 +13,7 @@ import pytest
 from fastapi.testclient import TestClient
 from httpx2 import Response
 from running_service import until
-from service_stand_ins import REPORT, STAND_IN
+from service_fakes import FAKE, REPORT
 
 from service.app import create_app
 from service.jobs.process import Registry
@@ -22,7 +22,7 @@ from service.settings import Settings
 BASE = "http://www.opengis.net/spec/ogcapi-processes-1/1.0/conf/"
 REL = "http://www.opengis.net/def/rel/ogc/1.0/"
 EXCEPTIONS = "http://www.opengis.net/def/exceptions/ogcapi-processes-1/1.0/"
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 REQUIREMENTS: dict[str, Callable[[TestClient], None]] = {}
 Check = Callable[[TestClient], None]
 
@@ -42,7 +42,7 @@ def requirement(*names: str) -> Callable[[Check], Check]:
 def client(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A client of a running service with one job that succeeded and one that failed."""
     settings = Settings(data_directory=tmp_path_factory.mktemp("ogc"))
-    with TestClient(create_app(settings, Registry(STAND_IN, REPORT))) as found:
+    with TestClient(create_app(settings, Registry(FAKE, REPORT))) as found:
         yield found
 
 
@@ -54,7 +54,7 @@ def link(document: dict[str, Any], relation: str) -> str:
 
 def executed(client: TestClient, **wish: Any) -> dict[str, Any]:
     """Enter a job and wait for its end."""
-    return ended(client, "standin", {"inputs": {"wish": wish}})
+    return ended(client, "fake", {"inputs": {"wish": wish}})
 
 
 def ended(client: TestClient, process: str, body: dict[str, Any]) -> dict[str, Any]:
@@ -118,7 +118,7 @@ def process_list_limit(client: TestClient) -> None:
 
 @requirement("/req/core/process", "/req/core/process-success", "/req/ogc-process-description/json-encoding")
 def process_description(client: TestClient) -> None:
-    description = client.get("/v1/processes/standin").json()
+    description = client.get("/v1/processes/fake").json()
     assert set(description["jobControlOptions"]) <= {"sync-execute", "async-execute", "dismiss"}
     assert set(description["outputTransmission"]) <= {"value", "reference"}
     assert link(description, f"{REL}execute") == EXECUTION
@@ -131,7 +131,7 @@ def process_description(client: TestClient) -> None:
     "/req/ogc-process-description/output-def",
 )
 def inputs_and_outputs(client: TestClient) -> None:
-    description = client.get("/v1/processes/standin").json()
+    description = client.get("/v1/processes/fake").json()
     for part in ("inputs", "outputs"):
         assert description[part]
         for entry in description[part].values():
@@ -156,7 +156,7 @@ def no_such_process(client: TestClient) -> None:
 )
 def execution(client: TestClient) -> None:
     body = {"inputs": {"wish": {"text": "ogc"}}, "outputs": {}, "response": "document"}
-    options = client.get("/v1/processes/standin").json()["jobControlOptions"]
+    options = client.get("/v1/processes/fake").json()["jobControlOptions"]
     assert "sync-execute" not in options and "async-execute" in options
     for prefer in (
         {},
@@ -218,7 +218,7 @@ def raw_value(client: TestClient) -> None:
     """Also of an execution that leaves everything out: raw and value are the defaults of the standard."""
     wanted = {"response": "raw", "outputs": {"database": {"transmissionMode": "value"}}}
     for form in ({}, wanted, {"outputs": {}}):
-        answer = delivered(client, "standin", "results", **form)
+        answer = delivered(client, "fake", "results", **form)
         assert (answer.status_code, answer.content) == (200, b"results")
         assert answer.headers["content-type"] == "application/x-netcdf"
         where = client.get(answer.headers["content-location"], headers={"Accept": "application/x-netcdf"})
@@ -230,7 +230,7 @@ def raw_value(client: TestClient) -> None:
 
 @requirement("/req/core/job-results-async-raw-ref")
 def raw_reference(client: TestClient) -> None:
-    for process, name in (("standin", "database"), ("report", "ablation")):
+    for process, name in (("fake", "database"), ("report", "ablation")):
         outputs = {name: {"transmissionMode": "reference"}}
         answer = delivered(client, process, "raw", outputs=outputs)
         assert (answer.status_code, answer.content) == (204, b"")
@@ -244,7 +244,7 @@ def raw_reference(client: TestClient) -> None:
 def document(client: TestClient) -> None:
     """Of netCDF a link, of JSON a qualified value, as the standard's schema of results has objects."""
     for outputs in ({}, {"database": {"transmissionMode": "reference"}}):
-        answer = delivered(client, "standin", "document", response="document", outputs=outputs)
+        answer = delivered(client, "fake", "document", response="document", outputs=outputs)
         assert answer.headers["content-type"] == "application/json"
         reference = answer.json()["database"]
         found = client.get(reference["href"], headers={"Accept": reference["type"]})
@@ -314,10 +314,10 @@ def job_list_filters(client: TestClient) -> None:
     definition = client.get("/openapi.json").json()["paths"]["/v1/jobs"]["get"]["parameters"]
     offered = {entry["name"] for entry in definition if entry["in"] == "query"}
     assert {"type", "processID", "status", "datetime", "minDuration", "maxDuration", "limit"} <= offered
-    assert status["processID"] == "standin"
+    assert status["processID"] == "fake"
     for matching in (
         {"type": "process"},
-        {"processID": "standin"},
+        {"processID": "fake"},
         {"status": status["status"]},
         {"datetime": status["created"]},
         {"minDuration": 0},
@@ -343,7 +343,7 @@ def dismissal(client: TestClient) -> None:
 
 @requirement("/req/json/definition")
 def json_everywhere(client: TestClient) -> None:
-    for path in ("/v1/", "/v1/conformance", "/v1/processes", "/v1/processes/standin", "/v1/jobs"):
+    for path in ("/v1/", "/v1/conformance", "/v1/processes", "/v1/processes/fake", "/v1/jobs"):
         assert client.get(path).headers["content-type"] == "application/json"
 
 
@@ -385,7 +385,7 @@ def test_a_callback_is_refused_with_its_reason(client: TestClient) -> None:
 
 
 def test_a_request_for_results_may_ask_for_another_form(client: TestClient) -> None:
-    status = ended(client, "standin", {"inputs": {"wish": {"text": "other form"}}})
+    status = ended(client, "fake", {"inputs": {"wish": {"text": "other form"}}})
     path = link(status, f"{REL}results")
     assert client.get(path, params={"response": "document"}).json()["database"]["href"]
     assert client.get(path, params={"transmissionMode": "reference"}).status_code == 204

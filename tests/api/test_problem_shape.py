@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.app import create_app
 from service.settings import Settings

@@ -1,7 +1,7 @@
 """The OpenAPI document holds for generated requests: no 500, answers as documented, bad data refused.
 
 With every change: some requests of every operation, but for plans and live questions, which have a worker of
-their own, to a service whose processes are stand-ins. With `LOA_GENERATED_BODIES` (scripts/nightly, in one
+their own, to a service whose processes are fakes. With `LOA_GENERATED_BODIES` (scripts/nightly, in one
 process): at least so many bodies in one run, right and wrong, to all processes, plans, live questions and
 force queries of a table that exists, with an access key; counts in out/generated_bodies.json.
 """
@@ -21,7 +21,7 @@ import pytest
 import schemathesis
 from hypothesis import HealthCheck, given, settings
 from schemathesis.core import NotSet
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from whole_service import WholeService, whole_service
 
 from service.app import create_app
@@ -43,8 +43,8 @@ def _service() -> WholeService:
     """Return the service that is asked."""
     if BODIES:
         return whole_service(Path(_directory.name))
-    stand_ins = create_app(Settings(data_directory=Path(_directory.name), queue_limit=10_000), REGISTRY)
-    return WholeService(stand_ins, {}, "", "")
+    fakes = create_app(Settings(data_directory=Path(_directory.name), queue_limit=10_000), REGISTRY)
+    return WholeService(fakes, {}, "", "")
 
 
 service = _service()

@@ -18,7 +18,7 @@ from anyio import CapacityLimiter
 from anyio.to_thread import current_default_thread_limiter
 from fastapi.testclient import TestClient
 from running_service import PATIENCE_S, until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import update
 from sqlalchemy.exc import DBAPIError
 from structlog.testing import LogCapture
@@ -30,7 +30,7 @@ from service.store import BRIEF_MS, reading, writing
 from service.store.database import database_engine
 from service.store.results import results
 
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 HOLD = """
 import sys
 from service.store import writing

@@ -156,7 +156,7 @@ def test_print_shows_the_images_and_all_numbers(visit: Visit) -> None:
     visit.page.emulate_media(media="screen")
 
 
-def test_without_scripts_the_images_stand_in(browser: Browser, report: Path) -> None:
+def test_without_scripts_the_images_fake(browser: Browser, report: Path) -> None:
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto(report.as_uri())

@@ -1,4 +1,4 @@
-"""The stand-ins of the service are importable here too."""
+"""The fakes of the service are importable here too."""
 
 from service_surroundings import quiet_log
 

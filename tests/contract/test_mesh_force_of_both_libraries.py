@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "stand_ins"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "fakes"))
 
 from geared_scenes import spring_table, square_wave_table
 

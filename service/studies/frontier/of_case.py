@@ -13,6 +13,7 @@ from service.report import palette
 from service.report.figure import Axis, Figure, FloatArray, Line, Note, Panel, Table, number
 from service.report.note_places import placed
 from service.studies.frontier import full_contact
+from service.studies.frontier.marks import mark, marked_name, per_cent, quickest
 
 _HEAD = (
     "rung", "CPU time, s", "mean error, %", "peak-to-peak error, %", "memory, MiB", "mark",
@@ -34,7 +35,7 @@ def frontier_figure(found: Frontier) -> Figure:
         caption=f"Largest relative difference to the finest rung ({reference}) over all curves of the table "
         f"of {found.solves} positions x loads; the point of that rung is what its mesh leaves by its "
         f"convergence, and nothing below it can be told apart. {full_contact.caption(found)}".strip(),
-        alternative=_words(found),
+        alternative=quickest(found),
         content=(
             _panel(found, "Mean", "error of the mean, %", lambda r: r.mean_error, with_peer=True),
             _panel(found, "Peak to peak", "error of peak to peak, %", lambda r: r.peak_to_peak_error),
@@ -49,10 +50,10 @@ def frontier_table(found: Frontier) -> Table:
         (
             result.title,
             number(result.cpu_seconds, 3),
-            _per_cent(result.mean_error),
-            _per_cent(result.peak_to_peak_error),
+            per_cent(result.mean_error),
+            per_cent(result.peak_to_peak_error),
             number(result.peak_memory_bytes / 2**20, 3),
-            _mark(found, result),
+            mark(found, result.name),
         )
         for result in found.results
     ]
@@ -74,7 +75,11 @@ def _panel(
     assessed = float("nan") if found.full_contact is None else error(found.full_contact)
     live, named = full_contact.live_point(found, assessed)
     lines += live
-    notes = [Note(r.cpu_seconds, 100.0 * error(r), _note(found, r)) for r in found.results if error(r) > 0.0]
+    notes = [
+        Note(r.cpu_seconds, 100.0 * error(r), marked_name(found, r.name))
+        for r in found.results
+        if error(r) > 0.0
+    ]
     notes += named
     drawn = np.concatenate([line.y for line in lines])
     limits = 0.6 * float(drawn.min()), 1.7 * float(drawn.max())  # room for the texts of the outermost points
@@ -89,34 +94,6 @@ def _time_axis(found: Frontier) -> Axis:
     return Axis("CPU time of the table, s", "log", (0.5 * min(times), 3.0 * max(times)))
 
 
-def _note(found: Frontier, result: FidelityResult) -> str:
-    """Name of a rung and its marks."""
-    mark = _mark(found, result)
-    return f"{result.name.replace('_', ' ')} ({mark})" if mark else result.name.replace("_", " ")
-
-
-def _mark(found: Frontier, result: FidelityResult) -> str:
-    """Knee, chosen, reference."""
-    marks = (("knee", found.knee), ("chosen", found.chosen), ("reference", found.reference.name))
-    return ", ".join(mark for mark, name in marks if name == result.name)
-
-
 def _percent(values: list[float]) -> FloatArray:
     """Per cent."""
     return 100.0 * np.array(values, dtype=float)
-
-
-def _per_cent(value: float) -> str:
-    """Write a relative error in per cent; nothing if it is not known."""
-    return number(100.0 * value, 2) if np.isfinite(value) else ""
-
-
-def _words(found: Frontier) -> str:
-    """Say the quickest rungs below one per cent and one per mille."""
-    parts = []
-    for limit, text in ((0.01, "1 %"), (0.001, "0.1 %")):
-        good = [r for r in found.results[:-1] if r.error <= limit]
-        if good:
-            best = min(good, key=lambda r: r.cpu_seconds)
-            parts.append(f"within {text}: {best.title}, {number(best.cpu_seconds, 2)} CPU s")
-    return f"Quickest rung {'; '.join(parts)}." if parts else "No rung comes within 1 % of the finest."

@@ -18,7 +18,7 @@ def test_the_quantities_are_those_of_the_curve() -> None:
     assert found[4] < 1e-10
 
 
-def test_the_neighbors_stand_in_for_a_position_that_failed() -> None:
+def test_the_neighbors_fake_for_a_position_that_failed() -> None:
     failed = np.where(np.arange(128) == 90, np.nan, CURVE)
     assert _quantities(POSITION, failed) == pytest.approx(_quantities(POSITION, CURVE), rel=1e-4, abs=1e-10)
 

@@ -49,7 +49,7 @@ def test_published_results_come_first_and_unknown_kinds_last(script: ModuleType)
     assert titles == ["## Against published and independently computed results", "## Parts", "## Odd"]
 
 
-def test_loads_stand_in_the_order_of_their_size(script: ModuleType) -> None:
+def test_loads_fake_the_order_of_their_size(script: ModuleType) -> None:
     page = script.page([figure(f"mean, {load} N m") for load in (100, 50, 400, 10)])
     places = [page.index(f"mean, {load} N m") for load in (10, 50, 100, 400)]
     assert places == sorted(places)

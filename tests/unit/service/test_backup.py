@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from postgres_server import PostgresServer, program
 from running_service import Bench, bench, until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.store.maintenance import verify_store
 

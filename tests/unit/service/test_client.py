@@ -14,7 +14,7 @@ import httpx2
 import numpy as np
 import pytest
 from running_service import until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from small_table import small_table
 from starlette.testclient import TestClient
 
@@ -47,7 +47,7 @@ CASE: dict[str, Any] = {
 
 @pytest.fixture
 def service(tmp_path: Path) -> Iterator[TestClient]:
-    """A running app with the stand-in and one table in its store."""
+    """A running app with the fake and one table in its store."""
     app = create_app(Settings(data_directory=tmp_path / "data"), REGISTRY)
     file = tmp_path / "table.nc"
     small_table().to_netcdf(file)
@@ -76,13 +76,13 @@ def against(answer: Answer, tmp_path: Path, attempts: int = 4) -> LineOfActionCl
 
 
 def wish(**facts: Any) -> dict[str, Any]:
-    """Return inputs of the stand-in."""
+    """Return inputs of the fake."""
     return {"wish": facts}
 
 
 def test_submit_wait_result(client: LineOfActionClient) -> None:
     seen: list[JobState] = []
-    result = client.wait(client.submit("standin", wish(text="x")).id, seen.append, interval=0.02)
+    result = client.wait(client.submit("fake", wish(text="x")).id, seen.append, interval=0.02)
     assert (result.kind, len(result.key)) == ("database", 64)
     assert seen[-1].status == "successful" and seen[-1].progress == 100
     assert client.fetch_file(result.key).read_text() == "x"
@@ -127,18 +127,18 @@ def test_a_job_that_fails_raises_what_it_failed_of(
     client: LineOfActionClient, mode: str, error: type[ServiceError]
 ) -> None:
     with pytest.raises(error):
-        client.wait(client.submit("standin", wish(mode=mode)).id, interval=0.02)
+        client.wait(client.submit("fake", wish(mode=mode)).id, interval=0.02)
 
 
 def test_a_dismissed_job_raises(client: LineOfActionClient) -> None:
-    job = client.submit("standin", wish(mode="hang"))
+    job = client.submit("fake", wish(mode="hang"))
     assert client.dismiss(job.id).status == "dismissed"
     with pytest.raises(JobDismissed):
         client.wait(job.id)
 
 
 def test_waiting_ends_after_the_time_given_and_the_job_goes_on(client: LineOfActionClient) -> None:
-    job = client.submit("standin", wish(mode="hang"))
+    job = client.submit("fake", wish(mode="hang"))
     with pytest.raises(StillRunning, match="It goes on"):
         client.wait(job.id, timeout=0.1, interval=0.02)
     assert not client.status(job.id).ended
@@ -264,7 +264,7 @@ def test_threads_share_one_client(client: LineOfActionClient) -> None:
     """Eight threads submit the same job, query and fetch: one computation, equal answers, sound files."""
 
     def ask(number: int) -> tuple[str, bool, list[float]]:
-        result = client.wait(client.submit("standin", wish(text="shared")).id, interval=0.02)
+        result = client.wait(client.submit("fake", wish(text="shared")).id, interval=0.02)
         return (
             client.fetch_file(result.key).read_text(),
             client.fetch(KEY).identical(small_table()),

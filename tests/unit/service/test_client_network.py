@@ -293,5 +293,5 @@ def test_a_full_queue_is_asked_again_before_it_is_told(tmp_path: Path, slept: li
         return httpx2.Response(429, json=body, headers={"Retry-After": "7"})
 
     with pytest.raises(QueueFull, match="100 computations"):
-        against(full, tmp_path, attempts=3).submit("standin", {})
+        against(full, tmp_path, attempts=3).submit("fake", {})
     assert slept == [7.0, 7.0]

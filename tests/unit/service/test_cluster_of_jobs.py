@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from running_service import bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from structlog.testing import capture_logs
 
 from fe_contact.analysis import contact_lines, solved_operating_points

@@ -11,7 +11,7 @@ import pytest
 import structlog
 from fastapi.testclient import TestClient
 from running_service import until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import event
 from structlog.testing import LogCapture
 from typer.testing import CliRunner
@@ -22,7 +22,7 @@ from service.problems import EXIT_FAILED, DatabaseDamaged
 from service.settings import Settings
 from service.store.deployment import NOTE
 
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 PAGE = 4096
 
 

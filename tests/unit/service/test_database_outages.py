@@ -14,7 +14,7 @@ from cut_connections import relay
 from fastapi.testclient import TestClient
 from postgres_server import PostgresServer, migrated, running_server
 from running_service import Bench, bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import Connection, event, false
 
 from service.app import create_app
@@ -71,7 +71,7 @@ def test_an_answer_to_a_commit_that_is_lost_enters_no_job_twice(machine: Bench) 
     """The transaction was committed; the connection broke before the answer came: the step runs again."""
     submit = machine.submissions._submit.__wrapped__  # type: ignore[attr-defined]
     identifier = "7a8a9f0e-26f4-4f55-9e0b-3a3e3a3f3a3f"
-    arguments = (identifier, "standin", "ab" * 32, {"wish": {}}, False, false(), ANYBODY, AS_IT_IS)
+    arguments = (identifier, "fake", "ab" * 32, {"wish": {}}, False, false(), ANYBODY, AS_IT_IS)
     for _ in range(2):
         submit(machine.submissions, *arguments)
     assert len(machine.submissions.page(10)) == 1

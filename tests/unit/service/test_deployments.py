@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from postgres_server import PostgresServer, migrated
 from running_service import Bench, bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import delete, update
 from typer.testing import CliRunner
 

@@ -56,7 +56,7 @@ def test_a_file_is_read_beside_the_case_whatever_the_order_of_its_rows(tmp_path:
     assert gear_pair(case).wheel.modification.flank_grid is None
 
 
-def test_columns_may_stand_in_any_order(tmp_path: Path) -> None:
+def test_columns_may_fake_any_order(tmp_path: Path) -> None:
     turned = [",".join(line.split(",")[::-1]) for line in (HEADING, *ROWS)]
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 from running_service import Bench, bench, lives, until
-from service_stand_in_work import SECRET
-from service_stand_ins import REGISTRY
+from service_fake_work import SECRET
+from service_fakes import REGISTRY
 
 from service.directories import cache_home, data_home
 from service.jobs.memory import machine_memory_mb

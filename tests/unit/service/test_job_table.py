@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from running_service import Bench, bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.problems import NoSuchJob, QueueFull
 from service.store import Mark, now
@@ -70,15 +70,15 @@ def test_stored_results_are_successful_at_once(machine: Bench, tmp_path: Path) -
 def test_work_that_ends_while_its_result_is_looked_for_is_not_done_again(machine: Bench) -> None:
     """The store did not have the result yet, and the table has the computation no more as running."""
     key, inputs = "ab" * 32, {"wish": {}}
-    machine.submissions.submit("standin", key, inputs, stored=False)
+    machine.submissions.submit("fake", key, inputs, stored=False)
     claim = machine.claims.claim()
     assert claim is not None
     looked = now()
     machine.claims.succeed(claim)
-    shared = machine.submissions.submit("standin", key, inputs, stored=False, looked=looked)
+    shared = machine.submissions.submit("fake", key, inputs, stored=False, looked=looked)
     assert shared.status == "successful"
     assert machine.submissions.counts() == {"successful": 1}
-    lost = machine.submissions.submit("standin", key, inputs, stored=False)
+    lost = machine.submissions.submit("fake", key, inputs, stored=False)
     assert lost.status == "accepted"  # it ended before we looked, and its result is gone
 
 

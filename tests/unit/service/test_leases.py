@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 from running_service import REFERENCES, Bench, bench, lives, until
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import select, update
 
 from service.app import create_app
@@ -109,7 +109,7 @@ SCHEDULER = """
 import sys
 from pathlib import Path
 from running_service import bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import select, update
 directory, database, results = sys.argv[1:]
 machine = bench(Path(directory), REGISTRY, results=Path(results), database_url=database, lease_s=20.0)
@@ -170,7 +170,7 @@ def test_a_process_that_only_serves_leaves_the_work_to_another(
     elsewhere = schedulers("elsewhere")
     settings = Settings(data_directory=tmp_path, database_url=elsewhere.settings.database_url)
     with TestClient(create_app(settings, REGISTRY, works=False)) as client:
-        execution = "/v1/processes/standin/execution"
+        execution = "/v1/processes/fake/execution"
         location = client.post(execution, json={"inputs": {"wish": {"text": "far"}}}).headers["location"]
         assert client.get("/ready").json()["computations"] == {"accepted": 1}
         elsewhere.scheduler.start()

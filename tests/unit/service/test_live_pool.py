@@ -23,7 +23,7 @@ from service.jobs.live_order import LiveOrder
 from service.jobs.live_pool import LiveLimits, LivePool
 from service.problems import LiveUnavailable, QueueFull, ServiceError, Superseded, Unexpected
 
-WORK = "live_stand_in_work"
+WORK = "live_fake_work"
 GEAR = {"teeth": 20, "face_width_mm": 4.0, "bore_diameter_mm": 10.0}
 CASE = {
     "pair": {"normal_module_mm": 1.0, "center_distance_mm": 20.0, "pinion": GEAR, "wheel": GEAR},
@@ -140,7 +140,7 @@ import sys
 from pathlib import Path
 import service.routes.live as live
 from service.cli.serve import run_serve
-live.PLAN = "live_stand_in_work:hang"
+live.PLAN = "live_fake_work:hang"
 run_serve(data_directory=Path(sys.argv[1]), port=0)
 """
 
@@ -238,9 +238,9 @@ from pathlib import Path
 from service.jobs.live_pool import LivePool
 from service.jobs.live_order import LiveOrder
 pool = LivePool(Path(sys.argv[1]), 512)
-pool.ask(LiveOrder("live_stand_in_work:echo", {"word": "a"})).result()
+pool.ask(LiveOrder("live_fake_work:echo", {"word": "a"})).result()
 print("worker", pool.worker_pid, flush=True)
-pool.ask(LiveOrder("live_stand_in_work:hang", {})).result()
+pool.ask(LiveOrder("live_fake_work:hang", {})).result()
 """
 
 

@@ -40,7 +40,7 @@ def test_every_example_can_be_computed(name: str) -> None:
     check_case(CASES[name])
 
 
-def test_examples_that_stand_in_the_folder_too_are_the_same() -> None:
+def test_examples_that_fake_the_folder_too_are_the_same() -> None:
     for file in (ROOT / "service" / "page" / "examples").glob("*.toml"):
         twin = ROOT / "examples" / file.name
         assert file.name == "helical_automotive.toml" or file.read_bytes() == twin.read_bytes()

@@ -322,7 +322,7 @@ def test_a_ring_gear_may_drive() -> None:
 
 
 def test_the_planetary_example_is_a_system() -> None:
-    """On stand-in tables with the facts of its pairs: six meshes, all torques carried, planets that fit."""
+    """On fake tables with the facts of its pairs: six meshes, all torques carried, planets that fit."""
     from dataclasses import replace  # noqa: PLC0415
 
     from dynamics.assembly.assemble import assemble  # noqa: PLC0415

@@ -13,7 +13,7 @@ from alembic.config import Config
 from alembic.script import ScriptDirectory
 from postgres_server import PostgresServer
 from running_service import bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import Engine, inspect, text
 
 import service.jobs.tables
@@ -54,7 +54,7 @@ def fill(file: Path, results: Path) -> None:
     with closing(sqlite3.connect(file)) as old:
         old.executescript(OLD)
         for n, (key, state) in enumerate(zip(KEYS, states, strict=True)):
-            facts = (f"c{n}", "standin", key, '{"wish": {}}', state, "", 0.0, 0.5, "m", "[]", "", n)
+            facts = (f"c{n}", "fake", key, '{"wish": {}}', state, "", 0.0, 0.5, "m", "[]", "", n)
             old.execute(
                 f"INSERT INTO computation VALUES ({','.join('?' * 16)})", (*facts, TIME, None, None, TIME)
             )

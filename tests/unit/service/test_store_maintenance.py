@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from running_service import Bench, bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import update
 from typer.testing import CliRunner
 

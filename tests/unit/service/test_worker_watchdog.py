@@ -19,7 +19,7 @@ SERVICE = """
 import sys
 from pathlib import Path
 from running_service import bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 machine = bench(Path(sys.argv[1]), REGISTRY)
 machine.scheduler.start()
 machine.submit(mode="hang")
@@ -50,7 +50,7 @@ def test_a_worker_ends_at_the_end_of_its_lease_however_late_it_started(
     inputs = {"wish": {"mode": "hang"}}
     now = time.monotonic()
     order = WorkOrder(
-        "service_stand_in_work:work", inputs, "a" * 64, tmp_path, tmp_path, lease_until=now + granted_s
+        "service_fake_work:work", inputs, "a" * 64, tmp_path, tmp_path, lease_until=now + granted_s
     )
     worker = Worker(order, tmp_path / "log")
     if renewed_s is not None:

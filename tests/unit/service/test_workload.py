@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 from running_service import Bench, bench
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 from sqlalchemy import update
 
 from service.jobs.claims import Claim
@@ -50,7 +50,7 @@ def begun(machine: Bench, text: str, seconds: float = 0.0) -> Claim:
 def ended(machine: Bench) -> dict[str, Durations]:
     """Return the histograms by outcome."""
     found = WorkloadReader(machine.engine).read().durations
-    assert {one.process for one in found} <= {"standin"}
+    assert {one.process for one in found} <= {"fake"}
     return {one.outcome: one for one in found}
 
 

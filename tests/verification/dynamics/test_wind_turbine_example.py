@@ -162,7 +162,7 @@ def test_the_balance_of_energy_closes(record_figure):
     scene = wind_turbine(lambda table: table["drives"][0].update(time_s=[0.0, 0.1], speed_rpm=[50.0, 55.0]))
     result = simulate(replace(scene, duration=0.1))
     assert result.status.usable
-    name = "energy balance, wind turbine on stand-in tables"
+    name = "energy balance, wind turbine on fake tables"
     record_figure(name, 100.0 * result.energy.relative, "below 0.1 %", "%", "energy audit")
     assert result.energy.relative < 1e-3
     assert result.energy.bushings > 0.0

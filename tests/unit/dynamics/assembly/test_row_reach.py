@@ -5,7 +5,7 @@ import numpy as np
 from benchmarks.stages import stages
 from dynamics.assembly.assemble import assemble
 from dynamics.bodies import TimeLaw
-from tests.stand_ins.geared_scenes import spring_table
+from tests.fakes.geared_scenes import spring_table
 
 SPAN = 1e-5
 

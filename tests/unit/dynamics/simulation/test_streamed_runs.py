@@ -30,7 +30,7 @@ from dynamics.scene import Integration, Outputs
 from dynamics.simulation import interrupted_run, simulate, simulate_to_file
 from dynamics.types import RunStatus
 
-STAND_INS = Path(__file__).parents[3] / "stand_ins"
+FAKES = Path(__file__).parents[3] / "fakes"
 
 
 def run_up(duration=0.2, **changes):
@@ -124,7 +124,7 @@ def test_a_run_in_memory_can_be_cancelled():
 _CHILD = """
 import sys, time
 from pathlib import Path
-sys.path.insert(0, {stand_ins!r})
+sys.path.insert(0, {fakes!r})
 from flexible_scenes import flexible_pair
 from geared_scenes import RPM, gear_pair_scene
 from dynamics.bodies import TimeLaw
@@ -140,7 +140,7 @@ simulate_to_file(scene, {path!r}, progress=hold, checkpoint_every=0.0)
 
 def test_a_killed_run_resumes_to_the_same_file(tmp_path):
     path, folder = tmp_path / "run.nc", interrupted_run(tmp_path / "run.nc")
-    code = _CHILD.format(stand_ins=str(STAND_INS), path=str(path), folder=str(folder))
+    code = _CHILD.format(fakes=str(FAKES), path=str(path), folder=str(folder))
     child = subprocess.Popen([sys.executable, "-c", code])
     states, checkpoint = folder / "run.states", folder / "run.checkpoint"
     while not checkpoint.exists() or states.stat().st_size < 500 * 8 * 12:

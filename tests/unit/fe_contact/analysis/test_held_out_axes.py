@@ -55,7 +55,7 @@ def test_axes_of_one_node_have_no_error(made):
     assert set(made().metadata.receipt["held_out"]) == {"force"}
 
 
-def test_the_points_stand_in_the_middle_of_every_interval(coarse):
+def test_the_points_fake_the_middle_of_every_interval(coarse):
     assert stated(coarse, "center_distance_change")[0] == pytest.approx([1e-4, 3e-4])
     at, error = stated(coarse, "force")
     assert at == pytest.approx(np.sqrt(coarse.force[:-1] * coarse.force[1:]))

@@ -40,7 +40,7 @@ def table(checked: Checked) -> SteDatabase:
     return THIN_SLICES.run(checked, lambda *_: None, None)
 
 
-def stand_in(table: SteDatabase, monkeypatch: pytest.MonkeyPatch, failed: Sequence[int]) -> list[list[float]]:
+def fake(table: SteDatabase, monkeypatch: pytest.MonkeyPatch, failed: Sequence[int]) -> list[list[float]]:
     """One per cent softer at the least load, two at the others; some positions fail. Returns the torques."""
     asked: list[list[float]] = []
 
@@ -71,7 +71,7 @@ def stand_in(table: SteDatabase, monkeypatch: pytest.MonkeyPatch, failed: Sequen
 def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(
     checked: Checked, table: SteDatabase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked = stand_in(table, monkeypatch, [FAILED])
+    asked = fake(table, monkeypatch, [FAILED])
     found = measure_full_contact(checked, 5, lambda *_: None).compared(table, table)
     assert asked == [pytest.approx(PAIR.torque(FORCES))]  # all loads at once
     assert [row[0].status.usable for row in found.tables[0].points] == [True, True, True, False, True]
@@ -90,7 +90,7 @@ def test_errors_are_those_of_the_positions_that_were_solved_at_the_worst_load(
 def test_a_table_costs_its_solves_at_the_mean_of_those_that_were_run(
     checked: Checked, table: SteDatabase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    stand_in(table, monkeypatch, [])
+    fake(table, monkeypatch, [])
     found = measure_full_contact(checked, 4, lambda *_: None)
     assert found.seconds(768) == pytest.approx(768 * 5.0 / len(FORCES))
     assert found.to_json(768)["cpu_seconds_measured"] == pytest.approx(20.0)
@@ -99,7 +99,7 @@ def test_a_table_costs_its_solves_at_the_mean_of_those_that_were_run(
 def test_one_position_has_no_peak_to_peak(
     checked: Checked, table: SteDatabase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    stand_in(table, monkeypatch, [])
+    fake(table, monkeypatch, [])
     found = measure_full_contact(checked, 1, lambda *_: None).compared(table, None)
     assert found.mean_error > 0.0
     assert np.isnan([found.peak_to_peak_error, found.plane_strain_mean]).all()
@@ -146,7 +146,7 @@ def test_what_needs_the_face_is_solved_over_it(table: SteDatabase, monkeypatch: 
 
 def fake_over_face(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> list[tuple[float, ...]]:
     """Stand in for the solver by that of the plane; returns the misalignments requested."""
-    stand_in(table, monkeypatch, [])
+    fake(table, monkeypatch, [])
     asked: list[tuple[float, ...]] = []
 
     def solved(pair, torques, positions, misalignments, **_):  # type: ignore[no-untyped-def]
@@ -160,10 +160,10 @@ def fake_over_face(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> list[
 def test_an_accuracy_study_goes_on_without_it(table: SteDatabase, monkeypatch: pytest.MonkeyPatch) -> None:
     fidelities = ["iso6336", "thin_slices"]
     asked = {"normal_forces": FORCES, "positions": 32}
-    stand_in(table, monkeypatch, [])
+    fake(table, monkeypatch, [])
     beside = frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=2).to_json()
     assert beside["full_contact"]["mean_error"] == pytest.approx(SOFTER - 1.0, rel=1e-3)
-    stand_in(table, monkeypatch, [0])
+    fake(table, monkeypatch, [0])
     failed = frontier(PAIR, *table_request(**asked), fidelities=fidelities, full_contact=1)
     assert failed.full_contact is None
     assert failed.left_out == {"full_contact": "cut back too often"}
@@ -181,7 +181,7 @@ def test_an_accuracy_study_goes_on_without_it(table: SteDatabase, monkeypatch: p
 def test_no_solution_at_all_is_an_error_with_its_reason(
     checked: Checked, table: SteDatabase, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    stand_in(table, monkeypatch, [0, 1])
+    fake(table, monkeypatch, [0, 1])
     with pytest.raises(SolveError, match="cut back too often"):
         measure_full_contact(checked, 2, lambda *_: None)
 

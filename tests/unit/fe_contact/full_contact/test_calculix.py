@@ -13,7 +13,7 @@ from fe_contact.types import Status
 
 def program(folder: Path, body: str) -> str:
     """A program that does `body` in the folder of the job."""
-    path = folder / "stand_in"
+    path = folder / "fake"
     path.write_text(f"#!/bin/sh\n{body}\n")
     path.chmod(path.stat().st_mode | stat.S_IXUSR)
     return str(path)

@@ -90,7 +90,7 @@ def test_harmonics_of_a_longer_period_are_those_of_the_mesh() -> None:
 
 @pytest.fixture
 def assessed(spur: SteDatabase) -> SteDatabase:
-    """The stand-in table with errors of every source: source number in nm, times the load's number."""
+    """The fake table with errors of every source: source number in nm, times the load's number."""
     shape = spur.static_transmission_error.shape[1:]
     errors = np.zeros((len(SOURCES), QUANTITIES, *shape))
     errors[:5] = np.arange(1, 6).reshape(5, 1, 1, 1, 1) * 1e-9

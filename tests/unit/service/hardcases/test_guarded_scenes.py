@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-import scenes_that_break as stand_in
+import scenes_that_break as fake
 from typer.testing import CliRunner
 
 import service.cli.hardcases as verb
@@ -15,7 +15,7 @@ from service.problems import EXIT_BAD_INPUT, EXIT_FAILED
 
 
 def test_crash_hang_and_exception_each_end_one_scene_only() -> None:
-    scenes = [stand_in.CRASHING, stand_in.GOOD, stand_in.HANGING, stand_in.RAISING, stand_in.GOOD]
+    scenes = [fake.CRASHING, fake.GOOD, fake.HANGING, fake.RAISING, fake.GOOD]
     crashed, good, hung, raised, last = run_scenes(scenes)
     assert not crashed.passed and "code 7" in crashed.failure
     assert not hung.passed and "limit of 0.2 s" in hung.failure
@@ -26,9 +26,9 @@ def test_crash_hang_and_exception_each_end_one_scene_only() -> None:
 @pytest.mark.parametrize(
     ("scene", "failure"),
     [
-        (stand_in.OUT_OF_BOUNDS, "two 2 (<= 1)"),
-        (stand_in.NO_NUMBER, "nothing nan"),
-        (stand_in.UNBOUNDED, "nothing was measured"),
+        (fake.OUT_OF_BOUNDS, "two 2 (<= 1)"),
+        (fake.NO_NUMBER, "nothing nan"),
+        (fake.UNBOUNDED, "nothing was measured"),
     ],
 )
 def test_a_scene_passes_by_its_figures_alone(scene, failure) -> None:
@@ -45,14 +45,14 @@ def test_what_meets_its_bound_exactly_is_no_margin() -> None:
 
 
 def test_cpu_time_counts_what_a_scene_starts() -> None:
-    outcome = stand_in.STARTING.run()
+    outcome = fake.STARTING.run()
     assert (
         0.08 <= outcome.cpu_seconds < 60.0
     )  # the child takes 0.1 by its own clock, times are told in ticks of 0.01
 
 
 def test_the_verb_prints_json_and_fails_with_its_scenes(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
-    monkeypatch.setattr(verb, "HARD_SCENES", (stand_in.GOOD, stand_in.OUT_OF_BOUNDS, stand_in.NO_NUMBER))
+    monkeypatch.setattr(verb, "HARD_SCENES", (fake.GOOD, fake.OUT_OF_BOUNDS, fake.NO_NUMBER))
     page = tmp_path / "page.html"
     result = CliRunner().invoke(loa, ["hardcases", "--json", "-o", str(page)])
     assert result.exit_code == EXIT_FAILED
@@ -65,7 +65,7 @@ def test_the_verb_prints_json_and_fails_with_its_scenes(monkeypatch: pytest.Monk
 
 
 def test_the_verb_ends_well_with_what_is_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(verb, "HARD_SCENES", (stand_in.GOOD, stand_in.OUT_OF_BOUNDS))
+    monkeypatch.setattr(verb, "HARD_SCENES", (fake.GOOD, fake.OUT_OF_BOUNDS))
     result = CliRunner().invoke(loa, ["hardcases", "--only", "good"])
     assert result.exit_code == 0, result.output
     assert "1 of 1 scenes passed" in result.stdout

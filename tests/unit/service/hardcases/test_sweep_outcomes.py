@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-import scenes_that_break as stand_in
+import scenes_that_break as fake
 
 from fe_contact.errors import InputError
 from service.hardcases import Outcome
@@ -29,13 +29,13 @@ REFUSAL = str(InputError("teeth", 3, "at least 4", "Add teeth."))
     ],
 )
 def test_only_a_clear_refusal_is_as_good_as_a_table(ended_by: str, end: str) -> None:
-    assert kind_of_end(Outcome(stand_in.GOOD, (), 1.0, ended_by)) == end
+    assert kind_of_end(Outcome(fake.GOOD, (), 1.0, ended_by)) == end
 
 
 def test_a_table_must_be_sound() -> None:
-    assert kind_of_end(stand_in.GOOD.run()) == "table"
-    assert kind_of_end(stand_in.OUT_OF_BOUNDS.run()) == "unsound"
-    assert kind_of_end(stand_in.NO_NUMBER.run()) == "unsound"
+    assert kind_of_end(fake.GOOD.run()) == "table"
+    assert kind_of_end(fake.OUT_OF_BOUNDS.run()) == "unsound"
+    assert kind_of_end(fake.NO_NUMBER.run()) == "unsound"
 
 
 @pytest.mark.parametrize("kind", ["plane", "face"])

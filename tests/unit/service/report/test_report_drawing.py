@@ -89,7 +89,7 @@ def test_long_names_get_the_rows_of_the_legend_they_need(length: int, rows: int)
     assert above == 62 + 22 * (rows - 1)
 
 
-def test_references_stand_in_their_own_panel() -> None:
+def test_references_fake_their_own_panel() -> None:
     shapes = plotly_figure(stacked())["layout"]["shapes"]
     assert [(s["xref"], s["yref"]) for s in shapes] == [
         ("x", "y domain"), ("x domain", "y"), ("x2", "y2 domain"), ("x2 domain", "y2"),

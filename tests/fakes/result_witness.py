@@ -11,7 +11,7 @@ from contextlib import suppress
 
 import httpx2
 from running_service import PATIENCE_S, REFERENCES
-from service_stand_in_work import is_slow_content
+from service_fake_work import is_slow_content
 
 FILE = {"Accept": "application/x-netcdf"}
 LOST = (httpx2.TransportError, ConnectionError)

@@ -14,7 +14,7 @@ from service.store import ResultStore
 
 
 class Wish(BoundaryModel):
-    """What the stand-in is to do."""
+    """What the fake is to do."""
 
     mode: Literal[
         "write",
@@ -34,34 +34,32 @@ class Wish(BoundaryModel):
     number: float = Field(default=0.0, ge=0.0, le=10.0)
 
 
-class StandInInputs(BoundaryModel):
-    """Inputs of the stand-in."""
+class FakeInputs(BoundaryModel):
+    """Inputs of the fake."""
 
     wish: Wish
 
 
 def prepare(inputs: BoundaryModel, _store: ResultStore) -> dict[str, Any]:
     """Refuse on request, as an infeasible pair is refused."""
-    assert isinstance(inputs, StandInInputs)
+    assert isinstance(inputs, FakeInputs)
     if inputs.wish.mode == "refuse":
         raise BadInput.of("mode", "refuse", "anything else", "Try write.")
     return inputs.model_dump(mode="json")
 
 
-STAND_IN = Process(
-    id="standin",
-    title="Stand-in",
+FAKE = Process(
+    id="fake",
+    title="Fake",
     description="Ends, fails, hangs or dies on request",
     version="1",
-    inputs=StandInInputs,
+    inputs=FakeInputs,
     output="database",
     kind="database",
     prepare=prepare,
-    entry="service_stand_in_work:work",
+    entry="service_fake_work:work",
     stages=(Stage("first", 0.25), Stage("second", 0.75)),
 )
-REGISTRY = Registry(STAND_IN)
-REPORT = replace(
-    STAND_IN, id="report", output="ablation", kind="ablation", entry="service_stand_in_work:report"
-)
+REGISTRY = Registry(FAKE)
+REPORT = replace(FAKE, id="report", output="ablation", kind="ablation", entry="service_fake_work:report")
 """One whose results are JSON."""

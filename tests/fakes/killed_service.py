@@ -19,7 +19,7 @@ from killed_part import Part
 from result_witness import LOST, Witness
 from running_service import PATIENCE_S, lives, until
 
-EXECUTION = "/v1/processes/standin/execution"
+EXECUTION = "/v1/processes/fake/execution"
 _MARK = "LOA_TEST_MARK"
 _BACKLOG = 3
 _ROOT = Path(__file__).resolve().parents[2]
@@ -167,7 +167,7 @@ class KilledService:
         return found
 
     def _workers(self) -> list[int]:
-        """Return the processes that do stand-in work."""
+        """Return the processes that do fake work."""
         found = []
         for pid in self.marked():
             with suppress(OSError):

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 import structlog.testing
 
-STAND_INS = str(Path(__file__).resolve().parent)
+FAKES = str(Path(__file__).resolve().parent)
 
 
 @pytest.fixture(autouse=True)
-def workers_find_stand_ins(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Let workers import the stand-ins, and keep caches out of the home directory."""
-    path = os.pathsep.join(part for part in (STAND_INS, os.environ.get("PYTHONPATH", "")) if part)
+def workers_find_fakes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Let workers import the fakes, and keep caches out of the home directory."""
+    path = os.pathsep.join(part for part in (FAKES, os.environ.get("PYTHONPATH", "")) if part)
     monkeypatch.setenv("PYTHONPATH", path)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))

@@ -46,7 +46,7 @@ def starting() -> list[Measured]:
 
 
 def scene(measure, time_limit: float = 60.0) -> HardScene:
-    return HardScene(measure.__name__, "stand-in", "It is.", "It holds.", measure, time_limit)
+    return HardScene(measure.__name__, "fake", "It is.", "It holds.", measure, time_limit)
 
 
 GOOD, OUT_OF_BOUNDS, NO_NUMBER, UNBOUNDED = map(scene, (good, out_of_bounds, no_number, unbounded))

@@ -1,4 +1,4 @@
-"""The work of the stand-in process; imports little, as its worker starts often."""
+"""The work of the fake process; imports little, as its worker starts often."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stand-ins for live questions: they answer, wait, die, fail or hog memory on request."""
+"""Fakes for live questions: they answer, wait, die, fail or hog memory on request."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ class Part:
 
     def start(self) -> None:
         """Start it."""
-        script = str(Path(__file__).with_name("stand_in_process.py"))
+        script = str(Path(__file__).with_name("fake_process.py"))
         listener = [] if self.descriptor is None else [str(self.descriptor)]
         fds = () if self.descriptor is None else (self.descriptor,)
         with self.log.open("ab") as log:

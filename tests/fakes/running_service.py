@@ -38,9 +38,9 @@ class Bench:
     def submit(self, **wish: Any) -> Job:
         """Enter a wish as the execution route does."""
         inputs = {"wish": {"mode": "write", "text": "", "number": 0.0, **wish}}
-        key = self._registry()["standin"].key(inputs)
+        key = self._registry()["fake"].key(inputs)
         stored = self.store.find(key, "database") is not None
-        job = self.submissions.submit("standin", key, inputs, stored=stored)
+        job = self.submissions.submit("fake", key, inputs, stored=stored)
         self.scheduler.wake()
         return job
 

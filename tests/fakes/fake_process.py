@@ -1,6 +1,6 @@
-"""The service with stand-in work as processes of their own: all in one, serving only, or working only.
+"""The service with fake work as processes of their own: all in one, serving only, or working only.
 
-Started as ``python stand_in_process.py ROLE [DESCRIPTOR]``: DESCRIPTOR is the socket to listen on, which its
+Started as ``python fake_process.py ROLE [DESCRIPTOR]``: DESCRIPTOR is the socket to listen on, which its
 parent keeps, so that the address outlives the process. Settings come from the environment.
 """
 
@@ -12,7 +12,7 @@ import sys
 import threading
 
 import structlog
-from service_stand_ins import REGISTRY
+from service_fakes import REGISTRY
 
 from service.app import create_app
 from service.cli.serve import http_server
