@@ -60,7 +60,11 @@ def _sweep(
     residuals: FloatArray,
     beyond: BoolArray,
 ) -> None:
-    """Fill the result arrays, started from the `first` forces, or each load from the one below it."""
+    """Fill the result arrays, started from the `first` forces, or each load from the one below it.
+
+    Forces of a much smaller load press on too few points: where no solution is found from them, the search
+    begins again from a guess of its own.
+    """
     for p in range(every.gap.shape[0]):
         point, here = problem_at(every, p)
         start = np.zeros(here.size)
@@ -69,7 +73,12 @@ def _sweep(
                 start = first[p, k][here]
             elif k > 0:
                 start *= loads[k] / loads[k - 1]
+            guessed = not start.any()
             d, t, code, count, over = solve_point(point, loads[k], start, residuals[p, k])
+            if code != CONVERGED and not guessed:
+                start = np.zeros(here.size)
+                d, t, code, further, over = solve_point(point, loads[k], start, residuals[p, k])
+                count += further
             status[p, k], iterations[p, k], beyond[p, k] = code, count, over
             if code == CONVERGED:
                 deflection[p, k], tangent[p, k] = d, t

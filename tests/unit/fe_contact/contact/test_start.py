@@ -63,6 +63,21 @@ def test_the_solution_is_the_same_wherever_it_starts(problem: ContactProblem) ->
         assert warm.residuals.max() < 1e-9
 
 
+def test_a_misleading_start_is_given_up(problem: ContactProblem) -> None:
+    """Where bodies are barely definite, forces on a few points may lead nowhere: a guess of its own does."""
+    present = problem.candidates.slices.present
+    least = np.linalg.eigvalsh(problem.bodies[0][np.ix_(present[0], present[0])])[0]
+    compliance, at = problem.compliance.copy(), np.arange(present.shape[1])
+    compliance[:, at, at] -= np.where(present, 2.7 * least, 0.0)
+    barely = replace(problem, compliance=compliance)
+    cold = solve_contact(barely, LOADS)
+    assert cold.converged
+    few = np.where(np.random.default_rng(3).uniform(size=cold.force.shape) > 0.99, 3e4, 0.0)
+    warm = solve_contact(barely, LOADS, Start(barely.candidates, few))
+    assert warm.converged
+    assert warm.deflection == pytest.approx(cold.deflection, rel=1e-9, abs=0.0)
+
+
 def test_a_start_beside_the_solution_spares_iterations(problem: ContactProblem) -> None:
     cold = solve_contact(problem, LOADS)
     rng = np.random.default_rng(4)
