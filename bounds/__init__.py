@@ -22,7 +22,7 @@ from bounds.bound import (
 )
 from bounds.checks import Checks
 from bounds.declared import DEPTHS, Declared, Direction, Kind, declarations, declared, described, required
-from bounds.plausibility import Check, Finding, PlausibilityWarning, finding_of, warn_of
+from bounds.plausibility import Check, Checklist, Finding, PlausibilityWarning, finding_of, warn_of
 from bounds.reader import Reader
 from bounds.refused import RefusedValue, inside
 from bounds.text import Quantity, SiNote, Text, Words
@@ -33,6 +33,7 @@ __all__ = [
     "LIMIT_SLACK",
     "Bound",
     "Check",
+    "Checklist",
     "Checks",
     "Choice",
     "Declared",

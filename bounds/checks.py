@@ -8,14 +8,12 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bounds.bound import Bound, Choice, above, at_least, between, integers, one_of
 from bounds.declared import declarations
 from bounds.refused import RefusedValue
 from bounds.text import SiNote, Words
-
-FloatArray = NDArray[np.float64]
+from bounds.types import FloatArray
 
 
 @dataclass(frozen=True)
@@ -72,6 +70,14 @@ class Checks:
         if value not in names:
             raise self.refused(field, value, one_of(names), suggestion)
         return value
+
+    def chosen(
+        self, field: str, names: Sequence[str] | None, known: Sequence[str], suggestion: Words = ""
+    ) -> list[str]:
+        """Return those of the `known` names that are in `names`, in the order of `known`; all if None."""
+        for name in names or ():
+            self.one_of(field, name, known, suggestion)
+        return [name for name in known if names is None or name in names]
 
     def declared_fields(self, thing: Any) -> None:
         """Check the declared fields of a dataclass, whatever the others are; what is left out passes."""

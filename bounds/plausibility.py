@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from bounds.suspected_unit import SI_UNITS, suspected_unit
+from bounds.types import Json
 from bounds.unit import Unit
-
-Json = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -101,6 +99,33 @@ class Finding:
             "whole": self.whole,
             "message": self.message(),
         }
+
+
+@dataclass(frozen=True)
+class Checklist:
+    """The checks of a library, by name."""
+
+    checks: Mapping[str, Check]
+
+    def assessed(
+        self,
+        check: str,
+        field: str,
+        value: float,
+        unit: str,
+        *,
+        scale: float = 1.0,
+        reason: str | None = None,
+        whole: str = "",
+        skip_zero: bool = False,
+    ) -> Iterator[Finding]:
+        """Yield a finding if |value| is out of the bounds of a check, times `scale` in `unit`."""
+        rule = self.checks[check]
+        low = 0.0 if rule.low is None else rule.low * scale
+        high = math.inf if rule.high is None else rule.high * scale
+        if not low <= abs(value) <= high and not (skip_zero and value == 0.0):
+            words = reason or f"implausible {rule.quantity}"
+            yield Finding(check, field, float(value), low, high, unit, words, rule.source, whole)
 
 
 def finding_of(content: Json) -> Finding:

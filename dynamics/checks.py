@@ -16,6 +16,7 @@ within = _CHECKS.within
 integer = _CHECKS.integer
 one_of = _CHECKS.one_of
 increasing = _CHECKS.increasing
+chosen = _CHECKS.chosen
 
 
 def distinct(field: str, names: Sequence[str]) -> None:

@@ -3,15 +3,10 @@
 from __future__ import annotations
 
 from enum import IntEnum
-from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
+from bounds.types import BoolArray, FloatArray, IntArray, Json
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
-Json = dict[str, Any]
+__all__ = ["BoolArray", "FloatArray", "IntArray", "Json", "RunStatus", "StaticStatus"]
 
 
 class RunStatus(IntEnum):

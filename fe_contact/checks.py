@@ -12,4 +12,5 @@ positive = _CHECKS.positive
 within = _CHECKS.within
 integer = _CHECKS.integer
 increasing = _CHECKS.increasing
+chosen = _CHECKS.chosen
 declared_fields = _CHECKS.declared_fields

@@ -4,15 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
+from bounds.types import BoolArray, FloatArray, IntArray, Json
 
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-BoolArray = NDArray[np.bool_]
-Json = dict[str, Any]
+__all__ = ["BoolArray", "Estimate", "FloatArray", "IntArray", "Json", "Status"]
 
 
 class Status(IntEnum):

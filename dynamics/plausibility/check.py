@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bounds import Check
+from bounds import Check, Checklist
 
 _STEEL = "from foamed plastics to tungsten"
 _CHECKS = (
@@ -140,3 +140,5 @@ _CHECKS = (
 )
 CHECKS: dict[str, Check] = {check.name: check for check in _CHECKS}
 """All checks by name."""
+
+assessed = Checklist(CHECKS).assessed

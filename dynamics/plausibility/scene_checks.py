@@ -12,7 +12,7 @@ from bounds import Finding
 from dynamics.bodies import GearBody, Inertia, Shaft
 from dynamics.joints import Bushing, PlanetBearing
 from dynamics.mechanism.mechanism import Mechanism, gather_mechanism
-from dynamics.plausibility.check import CHECKS
+from dynamics.plausibility.check import CHECKS, assessed
 from dynamics.scene import Scene
 from dynamics.types import FloatArray
 
@@ -38,25 +38,6 @@ def scene_findings(scene: Scene) -> tuple[Finding, ...]:
         *_supports(mechanism),
         *_loads(mechanism),
     )
-
-
-def assessed(
-    check: str,
-    field: str,
-    value: float,
-    unit: str,
-    *,
-    scale: float = 1.0,
-    reason: str | None = None,
-    skip_zero: bool = False,
-) -> Iterator[Finding]:
-    """Yield a finding if |value| is out of the bounds of a check, times `scale` in `unit`."""
-    rule = CHECKS[check]
-    low = 0.0 if rule.low is None else rule.low * scale
-    high = math.inf if rule.high is None else rule.high * scale
-    if not low <= abs(value) <= high and not (skip_zero and value == 0.0):
-        words = reason or f"implausible {rule.quantity}"
-        yield Finding(check, field, float(value), low, high, unit, words, rule.source)
 
 
 def _speeds(mechanism: Mechanism) -> Iterator[Finding]:

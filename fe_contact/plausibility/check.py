@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bounds import Check
+from bounds import Check, Checklist
 
 _PARTS = (
     Check("module", "normal module", 0.05e-3, 0.1, "m", "DIN 780-1 and ISO 54: 0.05 to 60 mm"),
@@ -167,3 +167,5 @@ _LOADS = (
 )
 CHECKS: dict[str, Check] = {check.name: check for check in (*_PARTS, *_DEVIATIONS, *_SHAFTS, *_LOADS)}
 """All checks by name."""
+
+assessed = Checklist(CHECKS).assessed

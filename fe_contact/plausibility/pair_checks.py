@@ -13,7 +13,7 @@ from fe_contact.flank.modification import FLANK_FIELDS, fields_of
 from fe_contact.geometry import ParallelAxes, Shaft
 from fe_contact.geometry.toothing import Toothing
 from fe_contact.material import Material
-from fe_contact.plausibility.check import CHECKS
+from fe_contact.plausibility.check import CHECKS, assessed
 from fe_contact.plausibility.nominal_load import (
     nominal_deflection,
     nominal_root_stress,
@@ -56,25 +56,6 @@ def pair_findings(
         *_deviations(pair, np.asarray(misalignment), np.asarray(center_distance_change)),
         *_loads(pair, np.asarray(load, dtype=float), loads_as),
     )
-
-
-def assessed(
-    check: str,
-    field: str,
-    value: float,
-    unit: str,
-    *,
-    scale: float = 1.0,
-    reason: str | None = None,
-    whole: str = "",
-) -> Iterator[Finding]:
-    """Yield a finding if |value| is out of the bounds of a check, times `scale` in `unit`."""
-    rule = CHECKS[check]
-    low = 0.0 if rule.low is None else rule.low * scale
-    high = math.inf if rule.high is None else rule.high * scale
-    if not low <= abs(value) <= high:
-        words = reason or f"implausible {rule.quantity}"
-        yield Finding(check, field, float(value), low, high, unit, words, rule.source, whole)
 
 
 def _sizes(pair: ParallelAxes) -> Iterator[Finding]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from bounds import Finding
-from fe_contact.plausibility.pair_checks import assessed
+from fe_contact.plausibility.check import assessed
 from fe_contact.types import FloatArray
 
 
