@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict, Unpack
 
 from numpy.typing import ArrayLike
 
@@ -22,6 +22,15 @@ from fe_contact.types import Estimate, FloatArray
 
 if TYPE_CHECKING:
     import xarray
+
+
+class StoredPoint(TypedDict, total=False):
+    """The arguments of `SteDatabase.curve` by which a curve is chosen."""
+
+    torque: float | None
+    force: float | None
+    misalignment: float | None
+    center_distance_change: float | None
 
 
 class SteDatabase(SteFields):
@@ -102,69 +111,21 @@ class SteDatabase(SteFields):
         point = operating_point(table, torque, force, misalignment, center_distance_change)
         return curves.curve(table, table._mesh_force, point, at)
 
-    def mean(
-        self,
-        *,
-        torque: float | None = None,
-        force: float | None = None,
-        misalignment: float | None = None,
-        center_distance_change: float | None = None,
-    ) -> Estimate:
+    def mean(self, **point: Unpack[StoredPoint]) -> Estimate:
         """Mean transmission error over one period, m; raises as `curve`."""
-        return self.curve(
-            torque=torque,
-            force=force,
-            misalignment=misalignment,
-            center_distance_change=center_distance_change,
-        ).mean
+        return self.curve(**point).mean
 
-    def peak_to_peak(
-        self,
-        *,
-        torque: float | None = None,
-        force: float | None = None,
-        misalignment: float | None = None,
-        center_distance_change: float | None = None,
-    ) -> Estimate:
+    def peak_to_peak(self, **point: Unpack[StoredPoint]) -> Estimate:
         """Peak-to-peak transmission error over one period, m; raises as `curve`."""
-        return self.curve(
-            torque=torque,
-            force=force,
-            misalignment=misalignment,
-            center_distance_change=center_distance_change,
-        ).peak_to_peak
+        return self.curve(**point).peak_to_peak
 
-    def harmonics(
-        self,
-        *,
-        torque: float | None = None,
-        force: float | None = None,
-        misalignment: float | None = None,
-        center_distance_change: float | None = None,
-    ) -> tuple[Estimate, ...]:
+    def harmonics(self, **point: Unpack[StoredPoint]) -> tuple[Estimate, ...]:
         """Amplitudes of the mesh harmonics, first one first, m; raises as `curve`."""
-        return self.curve(
-            torque=torque,
-            force=force,
-            misalignment=misalignment,
-            center_distance_change=center_distance_change,
-        ).harmonics
+        return self.curve(**point).harmonics
 
-    def spectrum(
-        self,
-        *,
-        torque: float | None = None,
-        force: float | None = None,
-        misalignment: float | None = None,
-        center_distance_change: float | None = None,
-    ) -> Spectrum:
+    def spectrum(self, **point: Unpack[StoredPoint]) -> Spectrum:
         """All orders over the table's period, m; raises as `curve`."""
-        return self.curve(
-            torque=torque,
-            force=force,
-            misalignment=misalignment,
-            center_distance_change=center_distance_change,
-        ).spectrum
+        return self.curve(**point).spectrum
 
     def force_table(self, *, allow_failed: bool = False) -> ForceTable:
         """Return the table of plain arrays that dynamics takes; raises as `extraction.force_table`."""
