@@ -5,7 +5,6 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
-from pathlib import Path
 
 import numpy as np
 
@@ -16,11 +15,9 @@ from dynamics.linearize.harmonic_response import HarmonicResponse, harmonic_resp
 from dynamics.linearize.linear_system import about_running, linearize
 from dynamics.linearize.modes import natural_modes
 from dynamics.linearize.speeds import checked_speeds, leading_law
-from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import FloatArray, Json
-
-SCHEMA = "lineofaction forced response"
 
 STORED = {
     "speed": Stored(("speed",), "rad s-1", "speed of the leading shaft"),
@@ -44,7 +41,7 @@ STORED = {
 
 
 @dataclass(frozen=True)
-class ForcedResponse(HarmonicResponse):
+class ForcedResponse(HarmonicResponse, ArrayFile):
     """Harmonic response over S speeds with a measure of its validity.
 
     Attributes
@@ -59,24 +56,12 @@ class ForcedResponse(HarmonicResponse):
         Plain JSON: `leading_shaft`, `time`, `equilibrium`, `seconds` (CPU by stage), `effect_ledger`.
     """
 
+    SCHEMA = "lineofaction forced response"
+    ARRAYS = STORED
+
     excitation_difference: FloatArray = field(default_factory=lambda: np.empty((0, 0)))
     natural_frequency: FloatArray = field(default_factory=lambda: np.empty(0))
     facts: Json = field(default_factory=dict)
-
-    def to_netcdf(self, path: str | Path) -> None:
-        """Write a netCDF-4 file; it appears whole or not at all."""
-        write_fields(self, Path(path), SCHEMA, STORED)
-
-    @classmethod
-    def from_netcdf(cls, path: str | Path) -> ForcedResponse:
-        """Read what `to_netcdf` wrote, bit by bit the same.
-
-        Raises
-        ------
-        ResultError
-            If the file is no forced response of this schema, or damaged.
-        """
-        return read_fields(cls, Path(path), SCHEMA, STORED)
 
 
 def forced_response(

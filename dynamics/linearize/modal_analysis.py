@@ -5,7 +5,6 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
@@ -20,11 +19,10 @@ from dynamics.linearize.modes import Modes, natural_modes
 from dynamics.linearize.resolution import resolved_to, with_shafts_to
 from dynamics.linearize.speeds import checked_speeds, leading_law, mesh_frequencies
 from dynamics.linearize.whirl import ComplexArray
-from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import FloatArray, IntArray, Json
 
-SCHEMA = "lineofaction modal analysis"
 MOST_ORDERS = 100
 LARGE = 1.0 / 3.0  # share of the energy from which a motion or a spring gives a mode its name
 
@@ -54,7 +52,7 @@ STORED = {
 
 
 @dataclass(frozen=True)
-class ModalAnalysis:
+class ModalAnalysis(ArrayFile):
     """Modes of a system about its static equilibrium.
 
     n freedoms, p springs, m meshes, S speeds, A whirl modes, C crossings; S = A = C = 0 without speeds.
@@ -85,6 +83,9 @@ class ModalAnalysis:
         `seconds` (CPU by stage), `effect_ledger`, `highest_frequency` (Hz, to which shafts that bend are
         resolved).
     """
+
+    SCHEMA = "lineofaction modal analysis"
+    ARRAYS = STORED
 
     freedom: tuple[str, ...]
     mesh: tuple[str, ...]
@@ -131,21 +132,6 @@ class ModalAnalysis:
         motion = _named(_summed([kind for _, kind in freedom_parts(self.freedom)], kinetic_energy), "-")
         held = _summed(self.spring_kind, strain_energy)
         return f"{motion} on {_named(held, ' and ')}" if sum(held.values()) > 0.0 else f"{motion}, free"
-
-    def to_netcdf(self, path: str | Path) -> None:
-        """Write a netCDF-4 file; it appears whole or not at all."""
-        write_fields(self, Path(path), SCHEMA, STORED)
-
-    @classmethod
-    def from_netcdf(cls, path: str | Path) -> ModalAnalysis:
-        """Read what `to_netcdf` wrote, bit by bit the same.
-
-        Raises
-        ------
-        ResultError
-            If the file is no modal analysis of this schema, or damaged.
-        """
-        return read_fields(cls, Path(path), SCHEMA, STORED)
 
 
 def modal_analysis(

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
@@ -13,16 +12,14 @@ from dynamics.assembly.assemble import System
 from dynamics.errors import InputError
 from dynamics.linearize.speeds import checked_speeds, leading_law
 from dynamics.periodic.continuation import Branch, follow_branch
-from dynamics.periodic.floquet import ComplexArray
 from dynamics.periodic.period_map import PeriodicProblem, periodic_problem
 from dynamics.periodic.shooting import Orbit
 from dynamics.periodic.steady_figures import KINDS, MotionFigures, figures_of
 from dynamics.periodic.sweep import SETTLING, sweep
-from dynamics.results.array_file import Stored, read_fields, write_fields
+from dynamics.results.array_file import ArrayFile, Stored
 from dynamics.results.force_check import checked_ledger
 from dynamics.types import FloatArray, IntArray, Json
 
-SCHEMA = "lineofaction steady states"
 UP, DOWN, BRANCH = 0, 1, 2
 CURVES = ("up", "down", "branch")
 SAME = 0.02  # of the rms of the transmission error: motions nearer than that are one
@@ -53,7 +50,7 @@ STORED = {
 
 
 @dataclass(frozen=True)
-class SteadyStates:
+class SteadyStates(MotionFigures, ArrayFile):
     """P periodic motions on three curves: at rising speeds, at falling ones, and along the branch.
 
     m meshes, b bearings, n freedoms. Figures of motions that were not found are NaN; their status says why.
@@ -86,44 +83,17 @@ class SteadyStates:
         `freedoms`, `seconds` (CPU by stage), `effect_ledger`.
     """
 
+    SCHEMA = "lineofaction steady states"
+    ARRAYS = STORED
+
     mesh: tuple[str, ...]
     bearing: tuple[str, ...]
     curve: IntArray
-    speed: FloatArray
-    status: IntArray
-    residual: FloatArray
-    iterations: IntArray
-    step_error: FloatArray
-    instability: IntArray
-    multiplier: ComplexArray
-    mean_error: FloatArray
-    rms_error: FloatArray
-    peak_to_peak_error: FloatArray
-    least_force: FloatArray
-    largest_force: FloatArray
-    parted: FloatArray
-    coasting: FloatArray
-    rms_bearing_force: FloatArray
     bifurcation_speed: FloatArray
     bifurcation_kind: IntArray
     jump_curve: IntArray
     jump_speed: FloatArray
     facts: Json = field(default_factory=dict)
-
-    def to_netcdf(self, path: str | Path) -> None:
-        """Write a netCDF-4 file; it appears whole or not at all."""
-        write_fields(self, Path(path), SCHEMA, STORED)
-
-    @classmethod
-    def from_netcdf(cls, path: str | Path) -> SteadyStates:
-        """Read what `to_netcdf` wrote, bit by bit the same.
-
-        Raises
-        ------
-        ResultError
-            If the file holds no steady states of this schema, or is damaged.
-        """
-        return read_fields(cls, Path(path), SCHEMA, STORED)
 
 
 def steady_states(
@@ -215,10 +185,10 @@ def _study(
         **problem.system.corrections,
     }
     return SteadyStates(
-        tuple(mesh.name for mesh in scene.meshes),
-        problem.system.supports.name,
-        np.repeat(np.arange(len(curves)), [len(orbits) for orbits in curves]),
         **vars(figures),
+        mesh=tuple(mesh.name for mesh in scene.meshes),
+        bearing=problem.system.supports.name,
+        curve=np.repeat(np.arange(len(curves)), [len(orbits) for orbits in curves]),
         bifurcation_speed=np.array([abs(b.speed) for b in found]),
         bifurcation_kind=np.array([KINDS.index(b.kind) for b in found], dtype=np.int64),
         jump_curve=np.array([curve for curve, _ in jumps], dtype=np.int64),

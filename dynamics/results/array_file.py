@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar, Self
 
 import h5netcdf
 import numpy as np
@@ -21,8 +21,6 @@ SCHEMA_VERSION = 1
 PARTS = "part"  # dimension of the real and the imaginary part
 DOCUMENTS = "documents"
 
-Result = TypeVar("Result")
-
 
 @dataclass(frozen=True)
 class Stored:
@@ -33,11 +31,45 @@ class Stored:
     long_name: str
 
 
-def write_fields(result: Any, path: Path, schema: str, stored: Mapping[str, Stored]) -> None:
-    """Write the arrays in `stored`, and all other fields (names, plain JSON), of the dataclass `result`.
+class ArrayFile:
+    """A frozen dataclass of arrays, names and plain JSON that is kept as a netCDF-4 file.
 
-    Complex arrays get a last dimension of real and imaginary part. The file appears whole or not at all.
+    Attributes
+    ----------
+    SCHEMA : str
+        What a file of it is.
+    ARRAYS : mapping of str to Stored
+        The fields that are arrays; all others are written as JSON.
     """
+
+    SCHEMA: ClassVar[str]
+    ARRAYS: ClassVar[Mapping[str, Stored]]
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write a netCDF-4 file; it appears whole or not at all.
+
+        Complex arrays get a last dimension of real and imaginary part.
+        """
+        _write(self, Path(path), self.SCHEMA, self.ARRAYS)
+
+    @classmethod
+    def from_netcdf(cls, path: str | Path) -> Self:
+        """Read what `to_netcdf` wrote, bit by bit the same.
+
+        Raises
+        ------
+        ResultError
+            If the file is missing, no netCDF-4 file, of another schema, or damaged.
+        """
+        arrays, rest = _read(Path(path), cls.SCHEMA, cls.ARRAYS)
+        try:
+            return cls(**arrays, **rest)
+        except TypeError as error:
+            raise ResultError(f"{path}: damaged, {error!r}") from error
+
+
+def _write(result: Any, path: Path, schema: str, stored: Mapping[str, Stored]) -> None:
+    """Write the arrays in `stored`, and all other fields, of the dataclass `result`."""
     arrays = {name: np.asarray(getattr(result, name)) for name in stored}
     rest = {f.name: getattr(result, f.name) for f in fields(result) if f.name not in stored}
     documents = json.dumps({"shapes": _shapes(arrays), "fields": rest}, allow_nan=False)
@@ -62,14 +94,8 @@ def write_fields(result: Any, path: Path, schema: str, stored: Mapping[str, Stor
         part.unlink(missing_ok=True)
 
 
-def read_fields(kind: type[Result], path: Path, schema: str, stored: Mapping[str, Stored]) -> Result:
-    """Read what `write_fields` wrote of a `kind`, bit by bit the same.
-
-    Raises
-    ------
-    ResultError
-        If the file is missing, no netCDF-4 file, of another schema, or damaged.
-    """
+def _read(path: Path, schema: str, stored: Mapping[str, Stored]) -> tuple[Json, Json]:
+    """Read the arrays and all other fields."""
     if not path.is_file():
         raise ResultError(f"{path}: no such file")
     try:
@@ -88,7 +114,7 @@ def read_fields(kind: type[Result], path: Path, schema: str, stored: Mapping[str
         arrays = {name: _restored(raw.get(name), content["shapes"][name]) for name in stored}
         if attributes["sha256"] != _digest(documents, arrays):
             raise ResultError(f"{path}: damaged, its contents do not match their checksum")
-        return kind(**arrays, **{name: _plain(value) for name, value in content["fields"].items()})
+        return arrays, {name: _plain(value) for name, value in content["fields"].items()}
     except (KeyError, ValueError, TypeError) as error:
         raise ResultError(f"{path}: damaged, {error!r}") from error
 

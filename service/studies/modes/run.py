@@ -8,7 +8,6 @@ import numpy as np
 
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ModalAnalysis, modal_analysis
-from dynamics.linearize.modal_analysis import SCHEMA
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
@@ -108,5 +107,9 @@ def _crossing(found: ModalAnalysis, index: int) -> Json:
 
 
 RUN = Computation(
-    modes_of, facts, ModalAnalysis.from_netcdf, marks={"schema": SCHEMA}, write=ModalAnalysis.to_netcdf
+    modes_of,
+    facts,
+    ModalAnalysis.from_netcdf,
+    marks={"schema": ModalAnalysis.SCHEMA},
+    write=ModalAnalysis.to_netcdf,
 )

@@ -8,7 +8,6 @@ import numpy as np
 
 from dynamics.assembly.assemble import assemble
 from dynamics.linearize import ForcedResponse, Peak, forced_response, peaks
-from dynamics.linearize.forced_response import SCHEMA
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
@@ -82,5 +81,9 @@ def _peak_json(peak: Peak) -> Json:
 
 
 RUN = Computation(
-    response_of, facts, ForcedResponse.from_netcdf, marks={"schema": SCHEMA}, write=ForcedResponse.to_netcdf
+    response_of,
+    facts,
+    ForcedResponse.from_netcdf,
+    marks={"schema": ForcedResponse.SCHEMA},
+    write=ForcedResponse.to_netcdf,
 )

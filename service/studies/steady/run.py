@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.assembly.assemble import assemble
 from dynamics.periodic import OrbitStatus, SteadyStates, steady_states
-from dynamics.periodic.steady_states import BRANCH, CURVES, SCHEMA, UP
+from dynamics.periodic.steady_states import BRANCH, CURVES, UP
 from dynamics.scene import Scene
 from service.convert.case import boundary_errors
 from service.studies.computation import Computation, Means
@@ -121,7 +121,7 @@ RUN = Computation(
     steady_of,
     facts,
     SteadyStates.from_netcdf,
-    marks={"schema": SCHEMA},
+    marks={"schema": SteadyStates.SCHEMA},
     write=SteadyStates.to_netcdf,
     failure=not_found,
 )
