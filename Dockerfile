@@ -18,6 +18,7 @@ RUN pip install --no-compile --require-hashes -r requirements.lock
 COPY pyproject.toml README.md LICENSE ./
 COPY host host
 COPY bounds bounds
+COPY model_studies model_studies
 COPY fe_contact fe_contact
 COPY dynamics dynamics
 COPY service service

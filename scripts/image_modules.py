@@ -10,7 +10,7 @@ from pathlib import Path
 import service.jobs
 
 LOADED_AT_THE_START = ("service.cli", "service.app", "uvicorn.protocols.http.auto", "uvicorn.lifespan.on")
-OURS = ("host", "bounds", "fe_contact", "dynamics", "service")
+OURS = ("host", "bounds", "model_studies", "fe_contact", "dynamics", "service")
 
 
 def main() -> None:

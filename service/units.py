@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 from bounds import DEPTHS, Declared, Unit
@@ -70,16 +71,26 @@ def boundary_text(value: float) -> str:
     return f"{value:.7g}"
 
 
-def in_um(value: Any, *, meters: bool = False) -> Any:
-    """Turn every field that ends in _m (and no torque) into one that ends in _um."""
-    if isinstance(value, dict):
-        return dict(_field(name, inner) for name, inner in value.items())
+def in_um(plain: Any) -> Any:
+    """Turn every field of plain JSON that ends in _m (and no torque) into one that ends in _um."""
+    return _converted(plain, "_m", "_um", lambda meters: meters / UM)
+
+
+def in_m(plain: Any) -> Any:
+    """Turn every field of plain JSON that ends in _um into one that ends in _m."""
+    return _converted(plain, "_um", "_m", lambda micrometers: micrometers * UM)
+
+
+def _converted(value: Any, old: str, new: str, length: Callable[[float], float], *, own: bool = False) -> Any:
+    """Convert the fields whose names end in `old`, and rename them; `own`: the value is of such a field."""
     if isinstance(value, list):
-        return [in_um(inner, meters=meters) for inner in value]
-    return value / UM if meters and value is not None else value
-
-
-def _field(name: str, value: Any) -> tuple[str, Any]:
-    """One field."""
-    meters = name.endswith("_m") and not name.endswith("_n_m")
-    return (f"{name.removesuffix('_m')}_um" if meters else name), in_um(value, meters=meters)
+        return [_converted(entry, old, new, length, own=own) for entry in value]
+    if not isinstance(value, dict):
+        return length(value) if own and value is not None else value
+    lengths = {name for name in value if name.endswith(old) and not name.endswith("_n_m")}
+    return {
+        name.removesuffix(old) + new if name in lengths else name: _converted(
+            entry, old, new, length, own=name in lengths
+        )
+        for name, entry in value.items()
+    }

@@ -4,129 +4,82 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
+import model_studies
 from dynamics.ablation.figures import SETTLED, RunFigures, run_figures
 from dynamics.assembly.assemble import assemble
-from dynamics.checks import one_of
+from dynamics.checks import chosen
 from dynamics.effects import EFFECTS, MESH_EFFECTS
 from dynamics.errors import InputError, SolveError
 from dynamics.influence import Influence, decide_effects, estimate_influences
-from dynamics.integrators import Progress
 from dynamics.results import RunResult
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from dynamics.types import FloatArray, Json
+from model_studies import LeftOut, Progress, called, run_variants, silent
 
 WARM_UP = 0.01
 """Part of the duration that a scene runs for before it is timed."""
 
 
 @dataclass(frozen=True)
-class EffectAblation:
+class EffectAblation(model_studies.EffectAblation[RunFigures, Influence]):
     """One effect toggled in all parts of a scene.
 
     Attributes
     ----------
-    name : str
-    on : bool
-        Whether the scene has it on anywhere.
-    reason : str
-        Of the first part that has it, from the ledger.
+    name, on, reason, with_effect, without_effect, estimate
+        Of every ablation; on if any part has it on, the reason is that of the first such part. The estimate
+        is of the part of the run that is compared.
     influence : float
         Largest static displacement that the ledger states, m.
-    estimate : Influence or None
-        What leaving it out is estimated to change in that part of the run; None: nothing is known.
-    with_effect, without_effect : RunFigures
-        One of them is the scene itself.
     """
 
-    name: str
-    on: bool
-    reason: str
-    influence: float
-    estimate: Influence | None
-    with_effect: RunFigures
-    without_effect: RunFigures
+    FIGURES = RunFigures
 
-    @property
-    def mean_change(self) -> FloatArray:
-        """Change (m,) of the mean transmission error by leaving the effect out, m."""
-        return self.without_effect.mean - self.with_effect.mean
-
-    @property
-    def peak_to_peak_change(self) -> FloatArray:
-        """Change (m,) of its peak-to-peak value, m."""
-        return self.without_effect.peak_to_peak - self.with_effect.peak_to_peak
+    influence: float = field(metadata=called("worth_m"))
 
     @property
     def order_change(self) -> FloatArray:
-        """Change (m, 5) of its mesh orders, m."""
-        return self.without_effect.orders - self.with_effect.orders
+        """Change (m, 5) of the mesh orders by leaving the effect out, m."""
+        return self.change("orders")
 
     @property
     def bearing_order_change(self) -> FloatArray:
         """Change (b, 5) of the mesh orders of bearing forces, N."""
-        return self.without_effect.bearing_orders - self.with_effect.bearing_orders
+        return self.change("bearing_orders")
 
-    @property
-    def cost_ratio(self) -> float:
-        """CPU time of the run with the effect over that without."""
-        return self.with_effect.seconds / self.without_effect.seconds
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "name": self.name,
-            "on": self.on,
-            "reason": self.reason,
-            "worth_m": self.influence,
-            "estimate": None if self.estimate is None else self.estimate.to_json(),
-            "with": self.with_effect.to_json(),
-            "without": self.without_effect.to_json(),
-            "mean_change_m": self.mean_change.tolist(),
-            "peak_to_peak_change_m": self.peak_to_peak_change.tolist(),
-            "order_change_m": self.order_change.tolist(),
-            "bearing_order_change_n": self.bearing_order_change.tolist(),
-            "cost_ratio": self.cost_ratio,
-        }
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the effect that `to_json` wrote."""
+        stored = content["estimate"]
+        estimate = None if stored is None else Influence.from_json(stored | {"on": content["on"]})
+        return super().from_json(content | {"estimate": estimate})
 
 
 @dataclass(frozen=True)
-class Ablation:
+class Ablation(model_studies.Ablation[RunFigures, EffectAblation]):
     """All effects of a scene, each toggled by itself.
 
     Attributes
     ----------
+    nominal, effects, left_out
+        Of every ablation.
     mesh, bearing : tuple of str
         What the rows of the figures are.
-    nominal : RunFigures
-        Of the scene.
-    effects : tuple of EffectAblation
-    left_out : dict of str to str
-        Effects that were not toggled, and why.
     """
+
+    EFFECT = EffectAblation
 
     mesh: tuple[str, ...]
     bearing: tuple[str, ...]
-    nominal: RunFigures
-    effects: tuple[EffectAblation, ...]
-    left_out: dict[str, str]
-
-    def to_json(self) -> Json:
-        """Return plain JSON in SI units."""
-        return {
-            "mesh": list(self.mesh),
-            "bearing": list(self.bearing),
-            "nominal": self.nominal.to_json(),
-            "effects": [entry.to_json() for entry in self.effects],
-            "left_out": self.left_out,
-        }
 
 
-def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress | None = None) -> Ablation:
+def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress = silent) -> Ablation:
     """Toggle each effect of a scene in all its parts and report the change.
 
     Parameters
@@ -137,7 +90,7 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
     only : sequence of str, optional
         Effects to toggle; default all.
     progress : callable, optional
-        Called with the fraction done and what is being done.
+        Called with "ablation" and the fraction done.
 
     Returns
     -------
@@ -153,40 +106,37 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
         The scene itself has no equilibrium or stops early.
     """
     known = [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
-    for name in only or ():
-        one_of("only", name, known)
-    requested = known if only is None else [name for name in known if name in only]
+    names = chosen("only", only, known)
     scene = assemble(decide_effects(scene).scene).resolved_scene  # one output grid for all runs
     scene = replace(scene, on_violation="report", tolerance=None)
     result, seconds = _timed(scene)
     influences = estimate_influences(scene, SETTLED)
-    nominal, found, left_out = run_figures(result, seconds), [], {}
-    for count, name in enumerate(requested):
-        if progress is not None:
-            progress(count / len(requested), name)
-        parts = [one for one in result.effect_ledger["entries"] if one["effect"] == name]
-        able = [one for one in parts if one["possible"]]
-        if not able:
-            left_out[name] = parts[0]["reason"] if parts else "no part of the scene has it"
-            continue
-        try:
-            found.append(_switched(scene, name, able, nominal, influences.get(name)))
-        except (InputError, SolveError) as error:
-            left_out[name] = str(error)
-    return Ablation(result.mesh, result.bearing, nominal, tuple(found), left_out)
+    nominal = run_figures(result, seconds)
+    parts = {name: [e for e in result.effect_ledger["entries"] if e["effect"] == name] for name in names}
+
+    def toggle(name: str) -> EffectAblation:
+        return _toggled(scene, name, parts[name], nominal, influences.get(name))
+
+    effects, left_out = run_variants(
+        "ablation", {name: name for name in names}, toggle, (InputError, SolveError), progress
+    )
+    return Ablation(nominal, tuple(effects.values()), left_out, result.mesh, result.bearing)
 
 
-def _switched(
+def _toggled(
     scene: Scene, name: str, parts: Sequence[Json], nominal: RunFigures, estimate: Influence | None
 ) -> EffectAblation:
     """Run with one effect toggled; what is on anywhere goes off everywhere."""
-    on = any(part["on"] for part in parts)
+    able = [part for part in parts if part["possible"]]
+    if not able:
+        raise LeftOut(parts[0]["reason"] if parts else "no part of the scene has it")
+    on = any(part["on"] for part in able)
     choice = "off" if on else "on"
     other = run_figures(*_timed(replace(scene, effects={**scene.effects, name: choice})))
-    first = next((part for part in parts if part["on"] == on), parts[0])
-    influence = float(np.max([part["worth"] for part in parts]))
-    both = (nominal, other) if on else (other, nominal)
-    return EffectAblation(name, on, first["reason"], influence, estimate, *both)
+    first = next((part for part in able if part["on"] == on), able[0])
+    influence = float(np.max([part["worth"] for part in able]))
+    states = (nominal, other) if on else (other, nominal)
+    return EffectAblation(name, on, first["reason"], *states, estimate, influence)
 
 
 def _timed(scene: Scene) -> tuple[RunResult, float]:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from dynamics.influence.linear_figures import COMPARED
 from dynamics.orders import order_track
 from dynamics.results import RunResult
-from dynamics.types import FloatArray, Json
+from dynamics.types import FloatArray
+from model_studies import Figures, in_unit
 
 HIGHEST = COMPARED
 """Mesh orders that are compared."""
@@ -19,36 +20,23 @@ SETTLED = 0.5
 
 
 @dataclass(frozen=True)
-class RunFigures:
+class RunFigures(Figures):
     """Figures of the settled part of a run.
 
     Attributes
     ----------
     mean, peak_to_peak : (m,) arrays
         Of the dynamic transmission error of every mesh, m.
+    cpu_seconds : float
+        Of the run.
     orders : (m, 5) array
         Largest amplitude along the run of the mesh orders 1 to 5 of the transmission error, m.
     bearing_orders : (b, 5) array
         Of the bearing forces, root of the sum of squares of their components, N; b = 0 if not stored.
-    seconds : float
-        CPU time of the run.
     """
 
-    mean: FloatArray
-    peak_to_peak: FloatArray
-    orders: FloatArray
-    bearing_orders: FloatArray
-    seconds: float
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "mean_m": self.mean.tolist(),
-            "peak_to_peak_m": self.peak_to_peak.tolist(),
-            "orders_m": self.orders.tolist(),
-            "bearing_orders_n": self.bearing_orders.tolist(),
-            "cpu_seconds": self.seconds,
-        }
+    orders: FloatArray = field(metadata=in_unit("m"))
+    bearing_orders: FloatArray = field(metadata=in_unit("n"))
 
 
 def run_figures(result: RunResult, seconds: float) -> RunFigures:
@@ -69,9 +57,9 @@ def run_figures(result: RunResult, seconds: float) -> RunFigures:
     return RunFigures(
         np.mean(error, axis=1),
         np.ptp(error, axis=1),
+        seconds,
         transmission,
         bearings,
-        seconds,
     )
 
 

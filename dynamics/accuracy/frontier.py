@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-import time as clock
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Self
 
 import numpy as np
 
+import model_studies
 from dynamics.accuracy.fidelity import Fidelity
-from dynamics.accuracy.knee import knee_of
 from dynamics.accuracy.registry import FIDELITIES
 from dynamics.accuracy.time_integration import TimeIntegration
 from dynamics.accuracy.vibration import Blocks, Vibration, blocks_of
 from dynamics.assembly.assemble import assemble
-from dynamics.checks import one_of
+from dynamics.checks import chosen
 from dynamics.errors import InputError, SolveError
 from dynamics.integrators import integrate, static_equilibrium
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
+from model_studies import Outcome, Progress, against_finest, in_unit, knee_above, run_fidelities, silent
+from model_studies.fidelity import Errors
 
 FIGURES = ("rms_error", "transmission_error_orders", "bearing_force_orders")
+NAN = float("nan")
 WARM_UP = 1e-4  # s: what a run before the measured ones lasts, so that everything is compiled
 HALF, TABLE_REST = "table_half", 1.0 / 3.0
 """The fidelity of every second position node, and what of its error the whole table leaves: second order."""
@@ -29,94 +32,67 @@ LEAST_RATE = 1.5  # by which errors must fall from fidelity to fidelity to say w
 
 
 @dataclass(frozen=True)
-class FidelityResult:
+class FidelityResult(model_studies.FidelityResult):
     """Errors and time of a fidelity.
 
     Attributes
     ----------
-    name, title, family : str
+    name, title : str
+    cpu_seconds : float
+        One thread, assembly included.
+    family : str
     rms_error : float
         Of the rms of the transmission errors, relative: over all blocks and meshes, root of the sum of
         squares over that of the reference. NaN: not known.
     transmission_error_orders, bearing_force_orders : float
         Likewise of the amplitudes at the orders.
-    cpu_seconds : float
-        One thread, assembly included.
     """
 
-    name: str
-    title: str
+    FIGURES = FIGURES
+
     family: str
-    rms_error: float
-    transmission_error_orders: float
-    bearing_force_orders: float
-    cpu_seconds: float
-
-    @property
-    def error(self) -> float:
-        """The worst of those that are known."""
-        known = [value for value in self.errors if np.isfinite(value)]
-        return max(known, default=float("nan"))
-
-    @property
-    def errors(self) -> tuple[float, float, float]:
-        """In the order of FIGURES."""
-        return self.rms_error, self.transmission_error_orders, self.bearing_force_orders
+    rms_error: float = NAN
+    transmission_error_orders: float = NAN
+    bearing_force_orders: float = NAN
 
     def to_json(self) -> Json:
         """Return plain JSON; errors that are not known are left out."""
-        known = {name: value for name, value in zip(FIGURES, self.errors, strict=True) if np.isfinite(value)}
-        facts = {"name": self.name, "title": self.title, "family": self.family}
-        return {**facts, "errors": known, "cpu_seconds": self.cpu_seconds}
+        facts = {name: value for name, value in super().to_json().items() if name not in FIGURES}
+        return {**facts, "errors": self.errors}
+
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the result that `to_json` wrote."""
+        return super().from_json(content | content["errors"])
 
 
 @dataclass(frozen=True)
-class Frontier:
+class Frontier(model_studies.Frontier[FidelityResult]):
     """The accuracy study of one scene.
 
     Attributes
     ----------
-    results : tuple of FidelityResult
-        In the order of `FIDELITIES`; the last one is the reference, its errors are those left by its steps.
-    left_out : dict
-        Name of a fidelity to the reason why it says nothing here.
+    results, left_out, knee, chosen
+        Of every accuracy study; the errors of the reference are those left by its steps, chosen is what the
+        scene's own settings are nearest to, from above; None with a fixed step.
     orders, blocks : int
         Orders that were compared, and blocks of the run.
-    reference : Vibration
-        Of the finest fidelity.
-    knee : str or None
-        The fidelity after which time buys least, by the worst of the errors.
-    chosen : str or None
-        The fidelity that the scene's own settings are nearest to, from above; None with a fixed step.
+    transmission_error_rms : (blocks, meshes) array
+        Of the reference, m.
     """
 
-    results: tuple[FidelityResult, ...]
-    left_out: dict[str, str]
+    RESULT = FidelityResult
+
     orders: int
     blocks: int
-    reference: Vibration
-    knee: str | None
-    chosen: str | None
-
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "rungs": [result.to_json() for result in self.results],
-            "left_out": self.left_out,
-            "reference": self.results[-1].name,
-            "knee": self.knee,
-            "chosen": self.chosen,
-            "orders": self.orders,
-            "blocks": self.blocks,
-            "transmission_error_rms_m": self.reference.rms.tolist(),
-        }
+    transmission_error_rms: FloatArray = field(metadata=in_unit("m"))
 
 
 def frontier(
     scene: Scene,
     *,
     fidelities: Sequence[str] | None = None,
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress = silent,
 ) -> Frontier:
     """Run every fidelity that says something about `scene`, and compare each to the finest.
 
@@ -138,34 +114,24 @@ def frontier(
     """
     system = assemble(scene)
     blocks, scene = blocks_of(system), system.resolved_scene
-    requested = _selected(fidelities)
-    refusals = {fidelity.name: fidelity.refusal(scene) for fidelity in requested}
-    left_out = {name: reason for name, reason in refusals.items() if reason is not None}
-    requested = [fidelity for fidelity in requested if fidelity.name not in left_out]
-    _warm_up(scene, requested, blocks)
-    found: list[tuple[Fidelity, Vibration, float]] = []
-    for count, fidelity in enumerate(requested):
-        if progress is not None:
-            progress("ladder", count / len(requested))
-        try:
-            found.append((fidelity, *_timed(fidelity, scene, blocks)))
-        except (InputError, SolveError) as error:
-            left_out[fidelity.name] = str(error)
-        except MemoryError:
-            left_out[fidelity.name] = "out of memory"
-    if progress is not None:
-        progress("ladder", 1.0)
-    if len(found) < 2:
-        raise SolveError(f"an error needs two fidelities to compare; left out: {left_out}")
-    results = _compared(found)
+    names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
+    outcomes, left_out = run_fidelities(
+        [fidelity for fidelity in FIDELITIES if fidelity.name in names],
+        scene,
+        lambda valid: _warm_up(scene, valid, blocks),
+        lambda fidelity: fidelity.run(scene, blocks),
+        (InputError, SolveError),
+        progress,
+    )
+    results = _compared(outcomes)
     return Frontier(
         results,
         left_out,
+        knee_of_results(results),
+        chosen_fidelity(scene, [outcome.fidelity for outcome in outcomes]),
         blocks.orders,
         len(blocks.bounds),
-        found[-1][1],
-        knee_of_results(results),
-        chosen_fidelity(scene, [fidelity for fidelity, _, _ in found]),
+        outcomes[-1].result.rms,
     )
 
 
@@ -176,13 +142,6 @@ def chosen_fidelity(scene: Scene, fidelities: Sequence[Fidelity]) -> str | None:
         if tolerance is not None and tolerance <= scene.integration.tolerance * (1.0 + 1e-9):
             return fidelity.name
     return None
-
-
-def _selected(names: Sequence[str] | None) -> list[Fidelity]:
-    """Fidelities of these names in the order of `FIDELITIES`."""
-    for name in names or ():
-        one_of("fidelities", name, [fidelity.name for fidelity in FIDELITIES])
-    return [fidelity for fidelity in FIDELITIES if names is None or fidelity.name in names]
 
 
 def _warm_up(scene: Scene, fidelities: Sequence[Fidelity], blocks: Blocks) -> None:
@@ -198,56 +157,52 @@ def _warm_up(scene: Scene, fidelities: Sequence[Fidelity], blocks: Blocks) -> No
                 fidelity.run(scene, replace(blocks, bounds=blocks.bounds[:1]))
 
 
-def _timed(fidelity: Fidelity, scene: Scene, blocks: Blocks) -> tuple[Vibration, float]:
-    """Run a fidelity and take its CPU time."""
-    began = clock.process_time()
-    found = fidelity.run(scene, blocks)
-    return found, clock.process_time() - began
-
-
-def _compared(found: Sequence[tuple[Fidelity, Vibration, float]]) -> tuple[FidelityResult, ...]:
+def _compared(outcomes: Sequence[Outcome[Fidelity, Vibration]]) -> tuple[FidelityResult, ...]:
     """Measure every fidelity against the last, and that one by how the errors fell towards it."""
-    reference = found[-1][1]
-    errors = [_errors(vibration, reference) for _, vibration, _ in found]
-    steps = [i for i, (fidelity, _, _) in enumerate(found[:-1]) if fidelity.family == found[-1][0].family]
-    errors[-1] = _left(errors[steps[-2]], errors[steps[-1]]) if len(steps) > 1 else (float("nan"),) * 3
     return tuple(
-        FidelityResult(fidelity.name, fidelity.title, fidelity.family, *error, seconds)
-        for (fidelity, _, seconds), error in zip(found, errors, strict=True)
+        FidelityResult(
+            outcome.fidelity.name,
+            outcome.fidelity.title,
+            outcome.cpu_seconds,
+            outcome.fidelity.family,
+            **error,
+        )
+        for outcome, error in zip(outcomes, against_finest(outcomes, _errors, _remaining), strict=True)
     )
 
 
-def _errors(found: Vibration, reference: Vibration) -> tuple[float, float, float]:
-    """Relative errors in the order of FIGURES."""
+def _errors(vibration: Vibration, reference: Vibration) -> Errors:
+    """Return the relative errors."""
     pairs = (
-        (found.rms, reference.rms),
-        (found.error_orders, reference.error_orders),
-        (found.force_orders, reference.force_orders),
+        (vibration.rms, reference.rms),
+        (vibration.error_orders, reference.error_orders),
+        (vibration.force_orders, reference.force_orders),
     )
-    rms, errors, forces = (_apart(one, other) for one, other in pairs)
-    return rms, errors, forces
+    return {name: _apart(*pair) for name, pair in zip(FIGURES, pairs, strict=True)}
 
 
-def _apart(one: FloatArray, other: FloatArray) -> float:
+def _apart(values: FloatArray, reference: FloatArray) -> float:
     """Root of the sum of squared differences over that of the reference; NaN where there is nothing."""
-    size = float(np.linalg.norm(other))
-    if one.shape != other.shape or size == 0.0:
-        return float("nan")
-    return float(np.linalg.norm(one - other)) / size
+    size = float(np.linalg.norm(reference))
+    if values.shape != reference.shape or size == 0.0:
+        return NAN
+    return float(np.linalg.norm(values - reference)) / size
 
 
-def _left(coarse: Sequence[float], fine: Sequence[float]) -> tuple[float, float, float]:
-    """Return what a sequence of errors leaves behind its last step, by the rate at which they fell."""
-    left = []
-    for far, near in zip(coarse, fine, strict=True):
-        rate = far / near if near > 0.0 else float("nan")
-        left.append(near / (rate - 1.0) if rate > LEAST_RATE else near)
-    return left[0], left[1], left[2]
+def _remaining(coarser: Sequence[tuple[Fidelity, Errors]], _finest: Fidelity) -> Errors:
+    """Return what the errors of two fidelities leave behind the finer one, by the rate at which they fell."""
+    if len(coarser) < 2:
+        return dict.fromkeys(FIGURES, NAN)
+    (_, far), (_, near) = coarser[-2:]
+    return {name: _left_behind(far[name], near[name]) for name in FIGURES}
+
+
+def _left_behind(far: float, near: float) -> float:
+    """Return what a sequence of errors leaves behind its last step."""
+    rate = far / near if near > 0.0 else NAN
+    return near / (rate - 1.0) if rate > LEAST_RATE else near
 
 
 def knee_of_results(results: Sequence[FidelityResult]) -> str | None:
     """Return the knee; differences below what steps and tables of the reference leave say nothing."""
-    own = [results[-1].error, *(TABLE_REST * r.error for r in results if r.name == HALF)]
-    floor = max((error for error in own if np.isfinite(error)), default=0.0)
-    known = [result for result in results if np.isfinite(result.error)]
-    return knee_of({result.name: (result.cpu_seconds, max(result.error, floor)) for result in known})
+    return knee_above(results, *(TABLE_REST * result.error for result in results if result.name == HALF))

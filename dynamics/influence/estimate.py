@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,13 +14,14 @@ from dynamics.influence.operating_conditions import operating_conditions
 from dynamics.linearize.speeds import leading_law
 from dynamics.scene import Scene
 from dynamics.types import FloatArray, Json
+from model_studies import Record, in_unit
 
 ROUNDING = 1e-8
 """Relative change below which an estimate says nothing."""
 
 
 @dataclass(frozen=True)
-class Influence:
+class Influence(Record):
     """What leaving one effect out, in all parts of a scene, is estimated to change; m meshes, b bearings.
 
     Attributes
@@ -37,20 +38,17 @@ class Influence:
         That it adds: freedoms, and local coordinates of force elements.
     on : bool
         Whether the scene has it on anywhere.
-    expected : LinearFigures
-        Of the scene with the effect.
     """
 
-    mean: FloatArray
-    peak_to_peak: FloatArray
-    bearing_force: FloatArray
+    mean: FloatArray = field(metadata=in_unit("m"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m"))
+    bearing_force: FloatArray = field(metadata=in_unit("n"))
     relative_mean: float
     relative_peak_to_peak: float
     relative_bearing_force: float
     freedoms: int
     rows: int
     on: bool
-    expected: LinearFigures
 
     @property
     def largest(self) -> float:
@@ -68,17 +66,9 @@ class Influence:
 
     def to_json(self) -> Json:
         """Return plain JSON."""
-        return {
-            "words": self.words,
-            "mean_m": self.mean.tolist(),
-            "peak_to_peak_m": self.peak_to_peak.tolist(),
-            "bearing_force_n": self.bearing_force.tolist(),
-            "relative_mean": self.relative_mean,
-            "relative_peak_to_peak": self.relative_peak_to_peak,
-            "relative_bearing_force": self.relative_bearing_force,
-            "freedoms": self.freedoms,
-            "rows": self.rows,
-        }
+        facts = super().to_json()
+        del facts["on"]  # whoever shows an estimate says it beside it
+        return {"words": self.words, **facts}
 
 
 def estimate_influences(scene: Scene, settled: float = 0.0) -> dict[str, Influence]:
@@ -148,7 +138,6 @@ def influence_of(system: System, on: bool, whole: LinearFigures, without: Linear
         whole.freedoms - without.freedoms,
         whole.rows - without.rows,
         on,
-        whole,
     )
 
 

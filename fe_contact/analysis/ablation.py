@@ -1,19 +1,22 @@
-"""Ablation: every effect toggled by itself, the change beside what it was estimated at."""
+"""Ablation of a case: every effect toggled by itself, the change beside what it was estimated at."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
+import model_studies
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.effect_ledger import toggled
 from fe_contact.analysis.influences import estimated_influences
 from fe_contact.analysis.model_choice import decide
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_asked, check_request
+from fe_contact.checks import chosen
 from fe_contact.effects import EFFECTS, LedgerEntry
 from fe_contact.effects.influence import Influence
 from fe_contact.errors import InputError, MeshError, SolveError
@@ -21,130 +24,89 @@ from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Run, TableAxes
 from fe_contact.planning import planned, predict_run
 from fe_contact.types import FloatArray, Json
+from model_studies import LeftOut, in_unit, run_variants
 
 HARMONICS = 5
 """Mesh harmonics that are compared."""
+FAILURES = (InputError, MeshError, SolveError)
+"""Errors of a case with an effect toggled that leave the effect out."""
 
 
 @dataclass(frozen=True)
-class Figures:
-    """What a table says of its curves at each load (L,), m, at the largest of its misalignments in size.
+class Figures(model_studies.Figures):
+    """What a table says of its curves at each load (L,), at the largest of its misalignments in size.
 
     Attributes
     ----------
     mean, peak_to_peak : ndarray, shape (L,)
-    harmonics : ndarray, shape (L, 5)
-        Amplitudes of the mesh harmonics, the first one first.
+        m.
     cpu_seconds : float
         Of the contact, measured.
+    harmonics : ndarray, shape (L, 5)
+        Amplitudes of the mesh harmonics, the first one first, m.
     predicted_cpu_seconds : float
         Of the whole run with nothing in the cache.
     """
 
-    mean: FloatArray
-    peak_to_peak: FloatArray
-    harmonics: FloatArray
-    cpu_seconds: float
+    harmonics: FloatArray = field(metadata=in_unit("m"))
     predicted_cpu_seconds: float
 
-    def to_json(self) -> Json:
-        """Return plain JSON."""
-        return {
-            "mean_m": self.mean.tolist(),
-            "peak_to_peak_m": self.peak_to_peak.tolist(),
-            "harmonics_m": self.harmonics.tolist(),
-            "cpu_seconds": self.cpu_seconds,
-            "predicted_cpu_seconds": self.predicted_cpu_seconds,
-        }
+    @property
+    def cost(self) -> float:
+        """The predicted CPU seconds: those that were measured depend on the cache."""
+        return self.predicted_cpu_seconds
 
 
 @dataclass(frozen=True)
-class EffectAblation:
-    """One effect toggled.
+class EffectAblation(model_studies.EffectAblation[Figures, Influence]):
+    """One effect toggled; its estimate is that of the ledger, at the nominal load."""
 
-    Attributes
-    ----------
-    name : str
-    on : bool
-        Whether the case has it on.
-    reason : str
-        Why, from the ledger.
-    with_effect, without_effect : Figures
-        One of them is the case itself.
-    estimate : Influence or None
-        What leaving it out changes at the nominal load, as the ledger says; None where it has no estimate.
-    """
-
-    name: str
-    on: bool
-    reason: str
-    with_effect: Figures
-    without_effect: Figures
-    estimate: Influence | None
-
-    @property
-    def mean_change(self) -> FloatArray:
-        """Change (L,) of the mean STE by leaving the effect out, m."""
-        return self.without_effect.mean - self.with_effect.mean
-
-    @property
-    def peak_to_peak_change(self) -> FloatArray:
-        """Change (L,) of the peak-to-peak STE by leaving the effect out, m."""
-        return self.without_effect.peak_to_peak - self.with_effect.peak_to_peak
+    FIGURES = Figures
 
     @property
     def harmonic_change(self) -> FloatArray:
         """Change (L, 5) of the amplitudes by leaving the effect out, m."""
-        return self.without_effect.harmonics - self.with_effect.harmonics
-
-    @property
-    def cost_ratio(self) -> float:
-        """Predicted CPU time with the effect over that without, nothing cached."""
-        return self.with_effect.predicted_cpu_seconds / self.without_effect.predicted_cpu_seconds
+        return self.change("harmonics")
 
     def to_json(self) -> Json:
         """Return plain JSON: changes in m and in parts of the value with the effect."""
-        return {
-            "name": self.name,
-            "on": self.on,
-            "reason": self.reason,
-            "with": self.with_effect.to_json(),
-            "without": self.without_effect.to_json(),
-            "mean_change_m": self.mean_change.tolist(),
-            "peak_to_peak_change_m": self.peak_to_peak_change.tolist(),
-            "harmonic_change_m": self.harmonic_change.tolist(),
-            "relative_mean_change": (self.mean_change / self.with_effect.mean).tolist(),
-            "relative_peak_to_peak_change": (
-                self.peak_to_peak_change / self.with_effect.peak_to_peak
-            ).tolist(),
-            "estimate": None if self.estimate is None else self.estimate.to_json(),
-            "cost_ratio": self.cost_ratio,
+        relative = {
+            f"relative_{name}_change": (self.change(name) / getattr(self.with_effect, name)).tolist()
+            for name in ("mean", "peak_to_peak")
         }
+        return super().to_json() | relative
+
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the effect that `to_json` wrote; estimates of older versions are of another kind."""
+        stored, estimate = content["estimate"], None
+        if stored is not None and "whole_mean_m" in stored:
+            names = ("misalignment", "mean", "peak_to_peak", "whole_mean", "whole_peak_to_peak")
+            estimate = Influence(stored["torque_n_m"], *(stored[f"{name}_m"] for name in names))
+        return super().from_json(content | {"estimate": estimate})
 
 
 @dataclass(frozen=True)
-class Ablation:
+class Ablation(model_studies.Ablation[Figures, EffectAblation]):
     """All effects of a case, each toggled by itself.
 
     Attributes
     ----------
-    torque, normal_force : ndarray, shape (L,)
-        N m on the driving gear, and N.
+    nominal, effects, left_out
+        Of every ablation.
+    torque : ndarray, shape (L,)
+        On the driving gear, N m.
+    normal_force : ndarray, shape (L,)
+        N.
     misalignment : float
         At which the figures are, m.
-    nominal : Figures
-        Of the case.
-    effects : tuple of EffectAblation
-    left_out : dict of str to str
-        Effects that were not toggled, and why.
     """
 
-    torque: FloatArray
-    normal_force: FloatArray
-    misalignment: float
-    nominal: Figures
-    effects: tuple[EffectAblation, ...]
-    left_out: dict[str, str]
+    EFFECT = EffectAblation
+
+    torque: FloatArray = field(metadata=in_unit("n_m"))
+    normal_force: FloatArray = field(metadata=in_unit("n"))
+    misalignment: float = field(metadata=in_unit("m"))
 
     def measured(self, entry: EffectAblation) -> Influence:
         """Return what leaving an effect out changes at the nominal load, as the two tables have it."""
@@ -153,17 +115,6 @@ class Ablation:
         return Influence(
             float(self.torque[-1]), self.misalignment, *(float(values[-1]) for values in changes)
         )
-
-    def to_json(self) -> Json:
-        """Return plain JSON in SI units."""
-        return {
-            "torque_n_m": self.torque.tolist(),
-            "normal_force_n": self.normal_force.tolist(),
-            "misalignment_m": self.misalignment,
-            "nominal": self.nominal.to_json(),
-            "effects": [entry.to_json() for entry in self.effects],
-            "left_out": self.left_out,
-        }
 
 
 def ablate(
@@ -174,7 +125,7 @@ def ablate(
     *,
     only: Sequence[str] | None = None,
 ) -> Ablation:
-    """Switch each effect of a case over and report what that changes.
+    """Toggle each effect of a case and report the change.
 
     Parameters
     ----------
@@ -192,7 +143,7 @@ def ablate(
     Returns
     -------
     Ablation
-        Of every effect that the scene holds and that can be switched.
+        Of every effect that the scene holds and that can be toggled.
 
     Raises
     ------
@@ -206,28 +157,27 @@ def ablate(
         replace(axes, center_distance_changes=(0.0,)),
         replace(options, receipt="minimal", on_violation="report"),
     )
-    return ablate_checked(checked, _selected(only), run)
+    return ablate_checked(checked, chosen("only", only, [effect.name for effect in EFFECTS]), run)
 
 
 def ablate_checked(checked: Checked, names: Sequence[str], run: Run) -> Ablation:
-    """Switch the named effects of a checked request over; parameters of `ablate`."""
+    """Toggle the named effects of a checked request; parameters of `ablate`."""
     checked = _on_one_mesh(checked, run.cache)
     nominal = _figures(checked, run)
     estimates = estimated_influences(checked, names)
-    found, left_out = [], {}
-    for count, entry in enumerate(ledger := [one for one in checked.ledger if one.name in names]):
-        run.progress("ablation", count / len(ledger))
+
+    def toggle(entry: LedgerEntry) -> EffectAblation:
         if entry.verdict.neutral:
-            left_out[entry.name] = entry.verdict.reason
-            continue
-        try:
-            found.append(_switched(checked, entry, nominal, estimates[entry.name], run))
-        except (InputError, MeshError, SolveError) as error:
-            left_out[entry.name] = str(error)
-    run.progress("ablation", 1.0)
+            raise LeftOut(entry.verdict.reason)
+        other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), run)
+        states = (nominal, other) if entry.on else (other, nominal)
+        return EffectAblation(entry.name, entry.on, entry.verdict.reason, *states, estimates[entry.name])
+
+    ledger = {entry.name: entry for entry in checked.ledger if entry.name in names}
+    effects, left_out = run_variants("ablation", ledger, toggle, FAILURES, run.progress)
     request = checked.request
-    skew = request.whole_scene.largest_misalignment
-    return Ablation(request.torque, request.load, skew, nominal, tuple(found), left_out)
+    misalignment = request.whole_scene.largest_misalignment
+    return Ablation(nominal, tuple(effects.values()), left_out, request.torque, request.load, misalignment)
 
 
 def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
@@ -235,24 +185,6 @@ def _on_one_mesh(checked: Checked, cache: Path | None) -> Checked:
     decided = decide(checked, cache)
     request = decided.checked.request
     return check_asked(replace(request, options=request.options.at_level(decided.mesh.level)), spare=False)
-
-
-def _selected(only: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the names requested, all if None."""
-    known = tuple(effect.name for effect in EFFECTS)
-    for name in only or ():
-        if name not in known:
-            raise InputError("only", name, f"among {', '.join(known)}")
-    return known if only is None else tuple(only)
-
-
-def _switched(
-    checked: Checked, entry: LedgerEntry, nominal: Figures, estimate: Influence | None, run: Run
-) -> EffectAblation:
-    """Compute the case with one effect toggled."""
-    other = _figures(toggled(checked, entry.name, "off" if entry.on else "on"), run)
-    whole, without = (nominal, other) if entry.on else (other, nominal)
-    return EffectAblation(entry.name, entry.on, entry.verdict.reason, whole, without, estimate)
 
 
 def _figures(checked: Checked, run: Run) -> Figures:
@@ -267,7 +199,7 @@ def _figures(checked: Checked, run: Run) -> Figures:
     return Figures(
         np.array([curve.mean.value for curve in curves]),
         np.array([curve.peak_to_peak.value for curve in curves]),
-        np.array([[one.value for one in curve.harmonics[:HARMONICS]] for curve in curves]),
         float(table.metadata.receipt["stages"]["contact"]["cpu_seconds"]),
+        np.array([[harmonic.value for harmonic in curve.harmonics[:HARMONICS]] for curve in curves]),
         predicted.cpu_seconds,
     )

@@ -13,10 +13,10 @@ from fe_contact.analysis.request_check import check_request
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, Levels, Run, TableAxes
 from fe_contact.plausibility import unexpected
-from fe_contact.progress import Progress, silent
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
 from fe_contact.workers import InProcess, Workers
+from model_studies import Progress, silent
 
 
 def analyze(

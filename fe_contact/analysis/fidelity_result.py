@@ -2,133 +2,101 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 
+import model_studies
 from fe_contact.analysis.accuracy_study import Fidelity
 from fe_contact.ste import SteDatabase
-from fe_contact.types import FloatArray, Json
+from fe_contact.types import FloatArray
+from model_studies import Outcome, against_finest, in_unit
+from model_studies.fidelity import Errors
+
+FIGURES = ("mean_error", "peak_to_peak_error")
+NAN = float("nan")
 
 
 @dataclass(frozen=True)
-class FidelityResult:
+class FidelityResult(model_studies.FidelityResult):
     """What one fidelity gave on a case.
 
     Attributes
     ----------
     name, title : str
+    cpu_seconds : float
+        Of the whole run, its error estimate included.
     mean, peak_to_peak : ndarray, shape (C,)
         Of each curve (loads, then alignments), m.
     stated_error : float
         The error its table states: of mean and peak-to-peak, relative, the worst over the curves. That of the
         positions is in it, which is the same for all fidelities.
-    mean_error, peak_to_peak_error : float
-        Relative difference to the reference, the worst over the curves; of the reference what its mesh
-        leaves, by the difference of the next coarser mesh and the second order of convergence (NaN if none
-        was run).
-    cpu_seconds : float
-        Of the whole run, its error estimate included.
     stages : dict
         CPU seconds by stage.
     peak_memory_bytes : int
         Of the process by the end of the fidelity.
+    mean_error, peak_to_peak_error : float
+        Relative difference to the reference, the worst over the curves; of the reference what its mesh
+        leaves, by the difference of the next coarser mesh and the second order of convergence (NaN if none
+        was run).
     """
 
-    name: str
-    title: str
-    mean: FloatArray
-    peak_to_peak: FloatArray
+    FIGURES = FIGURES
+
+    mean: FloatArray = field(metadata=in_unit("m"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m"))
     stated_error: float
-    mean_error: float
-    peak_to_peak_error: float
-    cpu_seconds: float
     stages: dict[str, float]
     peak_memory_bytes: int
-
-    @property
-    def error(self) -> float:
-        """The worse of both errors, which a tolerance speaks of."""
-        return max(self.mean_error, self.peak_to_peak_error)
-
-    def to_json(self) -> Json:
-        """Return plain JSON; errors that are not known are left out."""
-        errors = {"mean_error": self.mean_error, "peak_to_peak_error": self.peak_to_peak_error}
-        known = {name: error for name, error in errors.items() if np.isfinite(error)}
-        return known | {
-            "name": self.name,
-            "title": self.title,
-            "mean_m": self.mean.tolist(),
-            "peak_to_peak_m": self.peak_to_peak.tolist(),
-            "stated_error": self.stated_error,
-            "cpu_seconds": self.cpu_seconds,
-            "stages": self.stages,
-            "peak_memory_bytes": self.peak_memory_bytes,
-        }
+    mean_error: float = NAN
+    peak_to_peak_error: float = NAN
 
 
-def fidelity_results(
-    fidelities: Sequence[Fidelity], tables: Mapping[str, SteDatabase]
-) -> tuple[FidelityResult, ...]:
+def fidelity_results(outcomes: Sequence[Outcome[Fidelity, SteDatabase]]) -> tuple[FidelityResult, ...]:
     """Measure every table against the last one, and that one by its convergence."""
-    figures = {name: _figures(table) for name, table in tables.items()}
-    reference = figures[fidelities[-1].name]
-    found = [
-        _result(fidelity, tables[fidelity.name], figures[fidelity.name], reference) for fidelity in fidelities
-    ]
-    part, coarser = _remaining(fidelities)
-    errors = (
-        (found[coarser].mean_error, found[coarser].peak_to_peak_error) if coarser is not None else (0.0, 0.0)
+    read = [Outcome(outcome.fidelity, _result(outcome), outcome.cpu_seconds) for outcome in outcomes]
+    errors = against_finest(read, _errors, _remaining)
+    return tuple(
+        replace(outcome.result, **dict[str, Any](error)) for outcome, error in zip(read, errors, strict=True)
     )
-    found[-1] = replace(found[-1], mean_error=part * errors[0], peak_to_peak_error=part * errors[1])
-    return tuple(found)
 
 
-def _remaining(fidelities: Sequence[Fidelity]) -> tuple[float, int | None]:
-    """Part of the difference to the next coarser mesh that the last fidelity leaves, and its index."""
-    last = fidelities[-1]
-    alike = [
-        i
-        for i, fidelity in enumerate(fidelities[:-1])
-        if fidelity.family == last.family and fidelity.element_size > last.element_size
-    ]
-    if not alike:
-        return float("nan"), None
-    ratio = (fidelities[alike[-1]].element_size / last.element_size) ** 2
-    return 1.0 / (ratio - 1.0), alike[-1]
+def _errors(result: FidelityResult, reference: FidelityResult) -> Errors:
+    """Return the relative differences, the worst over the curves."""
+    pairs = (result.mean, reference.mean), (result.peak_to_peak, reference.peak_to_peak)
+    worst = (float(np.max(np.abs(coarse / finest - 1.0))) for coarse, finest in pairs)
+    return dict(zip(FIGURES, worst, strict=True))
 
 
-def _figures(table: SteDatabase) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Mean, peak-to-peak (C,) in m of every curve, and the worse of their stated relative errors."""
+def _remaining(coarser: Sequence[tuple[Fidelity, Errors]], finest: Fidelity) -> Errors:
+    """Return the part of the difference to the next coarser mesh that the finest one leaves: second order."""
+    if not coarser:
+        return dict.fromkeys(FIGURES, NAN)
+    fidelity, errors = coarser[-1]
+    part = 1.0 / ((fidelity.element_size / finest.element_size) ** 2 - 1.0)
+    return {name: part * error for name, error in errors.items()}
+
+
+def _result(outcome: Outcome[Fidelity, SteDatabase]) -> FidelityResult:
+    """Read a table; time and memory are those of its receipt, which has those of child processes too."""
+    fidelity, table = outcome.fidelity, outcome.result
     axes = (table.force, table.misalignment, table.center_distance_change)
     curves = [
         table.curve(force=float(force), misalignment=float(skew), center_distance_change=float(change))
         for force, skew, change in product(*axes)
     ]
-    mean, swing = ([getattr(curve, name) for curve in curves] for name in ("mean", "peak_to_peak"))
-    stated = [max(abs(a.error / a.value), abs(b.error / b.value)) for a, b in zip(mean, swing, strict=True)]
-    return np.array([m.value for m in mean]), np.array([p.value for p in swing]), np.array(stated)
-
-
-def _result(
-    fidelity: Fidelity,
-    table: SteDatabase,
-    figures: tuple[FloatArray, FloatArray, FloatArray],
-    reference: tuple[FloatArray, FloatArray, FloatArray],
-) -> FidelityResult:
-    """One fidelity against the reference."""
+    figures = [(curve.mean, curve.peak_to_peak) for curve in curves]
     receipt = table.metadata.receipt
     return FidelityResult(
         name=fidelity.name,
         title=fidelity.title,
-        mean=figures[0],
-        peak_to_peak=figures[1],
-        stated_error=float(figures[2].max()),
-        mean_error=float(np.max(np.abs(figures[0] / reference[0] - 1.0))),
-        peak_to_peak_error=float(np.max(np.abs(figures[1] / reference[1] - 1.0))),
         cpu_seconds=float(receipt["cpu_seconds"]),
+        mean=np.array([mean.value for mean, _ in figures]),
+        peak_to_peak=np.array([swing.value for _, swing in figures]),
+        stated_error=max(abs(each.error / each.value) for pair in figures for each in pair),
         stages={name: stage["cpu_seconds"] for name, stage in receipt["stages"].items()},
         peak_memory_bytes=int(receipt["peak_memory_bytes"]),
     )

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Self
 
-import numpy as np
-
+import model_studies
 from fe_contact.analysis.accuracy_study import FIDELITIES, Fidelity
 from fe_contact.analysis.accuracy_study.full_contact import ORIGIN, FullContactLevel, known_full_contact
 from fe_contact.analysis.fidelity_result import FidelityResult, fidelity_results
@@ -17,76 +17,60 @@ from fe_contact.analysis.measured_full_contact import (
     measure_full_contact,
 )
 from fe_contact.analysis.model_choice import decide
-from fe_contact.analysis.pareto import knee_of
 from fe_contact.analysis.request import Checked
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.warm_up import warm_up
-from fe_contact.checks import integer
-from fe_contact.errors import InputError, MeshError, SolveError
+from fe_contact.checks import chosen, integer
+from fe_contact.errors import MeshError, SolveError
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import AnalysisOptions, TableAxes
-from fe_contact.progress import Progress, silent
 from fe_contact.ste import SteDatabase
 from fe_contact.types import Json
+from model_studies import Progress, called, knee_above, run_fidelities, silent
 
 POSITIONS = 64
 MOST_FULL_CONTACT = 64
 
 
 @dataclass(frozen=True)
-class Frontier:
+class Frontier(model_studies.Frontier[FidelityResult]):
     """The accuracy study of one case.
 
     Attributes
     ----------
-    results : tuple of FidelityResult
-        In the order of their cost; the last one is the reference.
-    left_out : dict
-        Name of a fidelity to the reason why it was not run.
+    results, left_out, knee, chosen
+        Of every accuracy study.
     solves : int
         Positions x loads x alignments of every table.
-    knee : str or None
-        The fidelity after which time buys least; None with fewer than three fidelities on the front.
-    chosen : str or None
-        The fidelity that the case's accuracy asks for.
     full_contact : MeasuredFullContact, optional
         Full finite-element contact of the same case, if it was requested and could be run.
     known_full_contact : tuple of FullContactLevel
         What full finite-element contact is known to cost on this very pair; empty on any other.
     """
 
-    results: tuple[FidelityResult, ...]
-    left_out: dict[str, str]
-    solves: int
-    knee: str | None
-    chosen: str | None
-    full_contact: MeasuredFullContact | None = None
-    known_full_contact: tuple[FullContactLevel, ...] = ()
+    RESULT = FidelityResult
 
-    @property
-    def reference(self) -> FidelityResult:
-        """The finest fidelity that was run."""
-        return self.results[-1]
+    solves: int
+    full_contact: MeasuredFullContact | None = field(default=None, metadata=called(None))
+    known_full_contact: tuple[FullContactLevel, ...] = field(default=(), metadata=called(None))
 
     def to_json(self) -> Json:
         """Return plain JSON."""
+        known = [level.to_json(self.solves) for level in self.known_full_contact]
+        measured = {} if self.full_contact is None else {NAME: self.full_contact.to_json(self.solves)}
         return {
-            "rungs": [result.to_json() for result in self.results],
-            "left_out": self.left_out,
-            "reference": self.reference.name,
-            "knee": self.knee,
-            "chosen": self.chosen,
-            "solves": self.solves,
-            "full_finite_element_contact": [
-                {
-                    "unknowns": level.unknowns,
-                    "cpu_seconds": level.seconds(self.solves),
-                    "mean_error": level.relative_error,
-                }
-                for level in self.known_full_contact
-            ],
+            **super().to_json(),
+            "full_finite_element_contact": known,
             "full_finite_element_contact_origin": ORIGIN,
-        } | ({} if self.full_contact is None else {NAME: self.full_contact.to_json(self.solves)})
+            **measured,
+        }
+
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the study that `to_json` wrote, without full finite-element contact of the case itself."""
+        entries = content.get("full_finite_element_contact", ())
+        known = tuple(FullContactLevel.from_json(entry, content["solves"]) for entry in entries)
+        return replace(super().from_json(content), known_full_contact=known)
 
 
 def frontier(
@@ -125,81 +109,50 @@ def frontier(
     checked = check_request(pair, axes, replace(options, positions=options.positions or POSITIONS))
     if full_contact is not None:
         integer("full_contact", full_contact, 1, MOST_FULL_CONTACT)
-    asked = selected(fidelities)
-    left_out = {
-        fidelity.name: reason for fidelity in asked if (reason := fidelity.refusal(checked)) is not None
-    }
-    valid = [fidelity for fidelity in asked if fidelity.name not in left_out]
-    return _run_study(checked, valid, left_out, full_contact, progress)
-
-
-def selected(names: Sequence[str] | None) -> tuple[Fidelity, ...]:
-    """Return the fidelities of these names in the order of their cost, all if None.
-
-    Raises
-    ------
-    InputError
-        There is no such fidelity.
-    """
-    known = [fidelity.name for fidelity in FIDELITIES]
-    for name in names or ():
-        if name not in known:
-            raise InputError("fidelities", name, f"among {', '.join(known)}")
-    return tuple(fidelity for fidelity in FIDELITIES if names is None or fidelity.name in names)
-
-
-def _run_study(
-    checked: Checked,
-    fidelities: Sequence[Fidelity],
-    left_out: dict[str, str],
-    full_contact: int | None,
-    progress: Progress,
-) -> Frontier:
-    """Run the fidelities, compare, mark."""
-    warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in fidelities))
-    tables: dict[str, SteDatabase] = {}
-    for count, fidelity in enumerate(fidelities):
-        progress("ladder", count / len(fidelities))
-        try:
-            table = fidelity.run(checked, silent, None)
-            table.require_complete()
-            tables[fidelity.name] = table
-        except (MeshError, SolveError) as error:
-            left_out = left_out | {fidelity.name: str(error)}
-        except MemoryError:
-            left_out = left_out | {fidelity.name: "out of memory"}
-    progress("ladder", 1.0)
-    if len(tables) < 2:
-        raise SolveError(f"an error needs two fidelities to compare; left out: {left_out}")
-    results = fidelity_results([fidelity for fidelity in fidelities if fidelity.name in tables], tables)
-    solves = tables[results[-1].name].status.size
-    known = known_full_contact(checked.request.pair)
-    found = Frontier(
-        results, left_out, solves, _knee(results), chosen_fidelity(checked), known_full_contact=known
+    names = chosen("fidelities", fidelities, [fidelity.name for fidelity in FIDELITIES])
+    outcomes, left_out = run_fidelities(
+        [fidelity for fidelity in FIDELITIES if fidelity.name in names],
+        checked,
+        _warm_up,
+        lambda fidelity: _whole_table(fidelity, checked),
+        (MeshError, SolveError),
+        progress,
     )
-    return found if full_contact is None else _beside(found, checked, full_contact, tables, progress)
+    results = fidelity_results(outcomes)
+    solves = outcomes[-1].result.status.size
+    known = known_full_contact(checked.request.pair)
+    study = Frontier(
+        results, left_out, knee_above(results), chosen_fidelity(checked), solves, known_full_contact=known
+    )
+    tables = {outcome.fidelity.name: outcome.result for outcome in outcomes}
+    return study if full_contact is None else _beside(study, checked, full_contact, tables, progress)
+
+
+def _warm_up(fidelities: Sequence[Fidelity]) -> None:
+    """Load and compile what the fidelities run."""
+    warm_up(across_face=any(fidelity.name.startswith("3d") for fidelity in fidelities))
+
+
+def _whole_table(fidelity: Fidelity, checked: Checked) -> SteDatabase:
+    """Return the table of a fidelity, of which no point is missing."""
+    table = fidelity.run(checked, silent, None)
+    table.require_complete()
+    return table
 
 
 def _beside(
-    found: Frontier, checked: Checked, positions: int, tables: dict[str, SteDatabase], progress: Progress
+    study: Frontier, checked: Checked, positions: int, tables: dict[str, SteDatabase], progress: Progress
 ) -> Frontier:
     """Add full contact of the case, or why there is none."""
     reason = full_contact_refusal(checked)
     if reason is None:
         try:
             measured = measure_full_contact(checked, positions, progress)
-            compared = measured.compared(tables[found.reference.name], tables.get("plane_strain"))
-            return replace(found, full_contact=compared)
+            compared = measured.compared(tables[study.reference.name], tables.get("plane_strain"))
+            return replace(study, full_contact=compared)
         except SolveError as error:
             reason = str(error)
-    return replace(found, left_out=found.left_out | {NAME: reason})
-
-
-def _knee(results: Sequence[FidelityResult]) -> str | None:
-    """Return the knee; differences below the reference's own error say nothing."""
-    floor = results[-1].error if np.isfinite(results[-1].error) else 0.0
-    pairs = [result for result in results if np.isfinite(result.error)]
-    return knee_of({result.name: (result.cpu_seconds, max(result.error, floor)) for result in pairs})
+    return replace(study, left_out=study.left_out | {NAME: reason})
 
 
 def chosen_fidelity(checked: Checked) -> str | None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from fe_contact.progress import Progress, silent
 from fe_contact.workers import InProcess, Workers
+from model_studies import Progress, silent
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any
 
 from fe_contact.analysis import LoadDistribution, flank_results
 from fe_contact.options import Run
-from fe_contact.progress import Progress, silent
+from model_studies import Progress, silent
 from service.convert.case import analysis_options, boundary_errors, case_json, gear_pair, operating_point
 from service.schemas import Case, ErrorsInput, LoadInput
 from service.schemas.flank import FlankPoint

@@ -9,7 +9,7 @@ from typing import Any
 from fe_contact.analysis import RootStress, RootStressHistory, root_stress
 from fe_contact.analysis.root_stress_history import ROOTS, RootPeak
 from fe_contact.options import Run
-from fe_contact.progress import Progress, silent
+from model_studies import Progress, silent
 from service.convert.case import analysis_options, boundary_errors, gear_pair, operating_point
 from service.schemas import Case
 from service.units import MM, UM

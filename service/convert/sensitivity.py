@@ -11,8 +11,8 @@ from fe_contact.analysis import check_request
 from fe_contact.analysis.sensitivity import RippleCurve, Sensitivity, study_sensitivity
 from fe_contact.geometry import ParallelAxes
 from fe_contact.options import Run, TableAxes
-from fe_contact.progress import Progress, silent
 from fe_contact.workers import InProcess, Workers
+from model_studies import Progress, silent
 from service.convert.case import boundary_errors, gear_pair, study_options
 from service.schemas import Case
 from service.units import MM, UM

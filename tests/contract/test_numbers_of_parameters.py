@@ -36,7 +36,7 @@ def exported(package: Path) -> set[str]:
     return names
 
 
-@pytest.mark.parametrize("package", ["host", "bounds", "fe_contact", "dynamics"])
+@pytest.mark.parametrize("package", ["host", "bounds", "model_studies", "fe_contact", "dynamics"])
 def test_no_function_takes_many_parameters(package: str) -> None:
     public = exported(ROOT / package) - WRAPPERS
     found = {

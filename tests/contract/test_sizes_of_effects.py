@@ -23,7 +23,7 @@ from service.report.inputs import read_inputs
 from service.report.page import html
 from service.schemas import Case
 from service.studies.ablate import Inputs
-from service.studies.ablate.page import case_ablation_table
+from service.studies.ablate.page import ablation_table
 from service.studies.ablate.run import ablation_of, facts
 from service.studies.computation import Means
 
@@ -157,11 +157,11 @@ def test_five_outputs_tell_one_number(name: str, tmp_path: Path, monkeypatch: py
 def ablated(case: Json, home: Path, monkeypatch: pytest.MonkeyPatch) -> Json:
     """The JSON of an ablation of all effects; what it computes is not of interest here, and is not."""
     one = np.ones(len(case["load"]["torque_n_m"]))
-    figures = Figures(1e-5 * one, 1e-6 * one, np.ones((one.size, 5)), 1.0, 1.0)
+    figures = Figures(1e-5 * one, 1e-6 * one, 1.0, np.ones((one.size, 5)), 1.0)
     monkeypatch.setattr(ablation, "_figures", lambda *_: figures)
     means = Means(home, lambda *_: None)
     found = ablation_of(Case.model_validate_json(json.dumps(case)), Inputs(), means)
-    rows = {row[0]: row for row in case_ablation_table(found).rows}
+    rows = {row[0]: row for row in ablation_table(found).rows}
     content = facts(found)
     for entry in content["effects"]:
         if entry["estimate"] is not None and not entry["estimate"]["trifle"]:

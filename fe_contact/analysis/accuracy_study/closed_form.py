@@ -25,12 +25,12 @@ from fe_contact.analysis.slice_springs import SliceLaw, SpringContact
 from fe_contact.analysis.tabulate import pair_facts, table_fields, table_support
 from fe_contact.contact import ContactSolution
 from fe_contact.planning import Plan, make_plan
-from fe_contact.progress import Progress
 from fe_contact.stage_clock import StageClock
 from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import FloatArray
+from model_studies import Progress
 
 POSITIONS = 64
 

@@ -13,8 +13,8 @@ from fe_contact.effects import FaceLoadDistribution, FiniteWidth
 from fe_contact.errors import InputError
 from fe_contact.options import Run
 from fe_contact.planning.discretization import PLANE_REFINEMENT
-from fe_contact.progress import Progress
 from fe_contact.ste import SteDatabase
+from model_studies import Progress
 
 SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}
 """Modules; of `SectorRecipe`."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from fe_contact.geometry import Gear, ParallelAxes
+from fe_contact.types import Json
 
 ORIGIN = (
     "full finite-element contact: our own measurement on the 20/20 spur pair in plane strain, one core, with "
@@ -29,6 +30,19 @@ class FullContactLevel:
     def seconds(self, solves: int) -> float:
         """CPU seconds of a table of so many positions x loads."""
         return self.seconds_per_solve * solves
+
+    def to_json(self, solves: int) -> Json:
+        """Return what a table of so many positions x loads costs as plain JSON."""
+        return {
+            "unknowns": self.unknowns,
+            "cpu_seconds": self.seconds(solves),
+            "mean_error": self.relative_error,
+        }
+
+    @classmethod
+    def from_json(cls, content: Json, solves: int) -> FullContactLevel:
+        """Return the level that `to_json` wrote."""
+        return cls(content["unknowns"], content["cpu_seconds"] / solves, content["mean_error"])
 
 
 MEASURED_GEAR = Gear(teeth=20, normal_module=4e-3, face_width=25e-3, bore_diameter=40e-3)

@@ -13,13 +13,13 @@ MOST_FULL_CONTACT = 64
 
 
 class Inputs(BoundaryModel):
-    """The rungs to run, and full contact beside those of a case."""
+    """The fidelities to run, and full contact beside those of a case."""
 
     rungs: Annotated[tuple[Name, ...], Strict(False)] | None = Field(
         default=None,
         min_length=1,
         max_length=64,
-        description="Rungs to run, by name, at least two; left out: all that are valid",
+        description="Fidelities to run, by name, at least two; left out: all that are valid",
         examples=[["thin_slices", "corrected", "3d_standard"]],
     )
     full_contact: int | None = Field(

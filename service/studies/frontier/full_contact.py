@@ -8,59 +8,37 @@ from fe_contact.analysis.accuracy_study.full_contact import ORIGIN
 from fe_contact.analysis.frontier import Frontier
 from fe_contact.analysis.measured_full_contact import PLANE, PROGRAM, MeasuredFullContact
 from service.report import palette
-from service.report.figure import Line, Note, number
+from service.report.figure import number
+from service.studies.frontier.peer import Peer
 
 LIVE = "full contact, run on this case"
 
 
-def known_cost(found: Frontier) -> list[Line]:
-    """Return the known cost of as many positions x loads, with its errors in per cent, if it is known."""
-    if not found.known_full_contact:
+def peers(study: Frontier) -> list[Peer]:
+    """Return the known cost of as many positions x loads, and the point of the case itself."""
+    known, measured = _known_cost(study), study.full_contact
+    return known if measured is None else [*known, _of_case(measured, study.solves)]
+
+
+def _known_cost(study: Frontier) -> list[Peer]:
+    """Return what is known of this very pair, if anything is."""
+    levels = study.known_full_contact
+    if not levels:
         return []
-    time = np.array([level.seconds(found.solves) for level in found.known_full_contact])
-    size = 100.0 * np.array([level.relative_error for level in found.known_full_contact])
-    return [Line("full contact, 2-D", time, size, palette.VERMILLION, markers=True)]
+    titles = tuple(f"full contact, {level.unknowns // 1000} k unknowns" for level in levels)
+    time = np.array([level.seconds(study.solves) for level in levels])
+    errors = {"mean_error": np.array([level.relative_error for level in levels])}
+    return [Peer("full contact, 2-D", titles, time, errors, "known cost", palette.VERMILLION, 1.8)]
 
 
-def live_point(found: Frontier, error: float) -> tuple[list[Line], list[Note]]:
-    """Return the point of the case itself, with an error as a fraction, and its name; nothing without one."""
-    measured = found.full_contact
-    if measured is None or not error > 0.0:
-        return [], []
-    time = measured.seconds(found.solves)
-    line = Line(LIVE, np.array([time]), np.array([100.0 * error]), palette.PURPLE, width=0, markers=True)
-    return [line], [Note(time, 100.0 * error, "full contact")]
-
-
-def times(found: Frontier) -> list[float]:
-    """Return the CPU times of all of them, s."""
-    live = [] if found.full_contact is None else [found.full_contact.seconds(found.solves)]
-    return [*(level.seconds(found.solves) for level in found.known_full_contact), *live]
-
-
-def rows(found: Frontier) -> list[tuple[str, ...]]:
-    """Return the rows of the table, errors in per cent."""
-    known: list[tuple[str, ...]] = [
-        (
-            f"full contact, {level.unknowns // 1000} k unknowns",
-            number(level.seconds(found.solves), 3),
-            number(100.0 * level.relative_error, 2),
-            "",
-            "",
-            "known cost",
-        )
-        for level in found.known_full_contact
-    ]
-    return known if found.full_contact is None else [*known, _live_row(found, found.full_contact)]
-
-
-def _live_row(found: Frontier, measured: MeasuredFullContact) -> tuple[str, ...]:
-    """One row for the case itself."""
-    errors = (measured.mean_error, measured.peak_to_peak_error)
-    mean, swing = (number(100.0 * error, 2) if np.isfinite(error) else "" for error in errors)
+def _of_case(measured: MeasuredFullContact, solves: int) -> Peer:
+    """Return what it took on the case."""
     title = f"full contact of this case, {measured.unknowns // 1000} k unknowns"
     mark = f"{len(measured.solved)} of {len(measured.points)} positions x loads solved"
-    return title, number(measured.seconds(found.solves), 3), mean, swing, "", mark
+    names = ("mean_error", "peak_to_peak_error")
+    errors = {name: np.array([getattr(measured, name)]) for name in names}
+    time = np.array([measured.seconds(solves)])
+    return Peer(LIVE, (title,), time, errors, mark, palette.PURPLE, 0.0, "full contact")
 
 
 def _own(measured: MeasuredFullContact) -> str:
@@ -75,11 +53,11 @@ def _left_out(measured: MeasuredFullContact) -> str:
     return ", and hold what plane strain leaves out" if measured.solved_in == PLANE else ""
 
 
-def caption(found: Frontier) -> str:
+def caption(study: Frontier) -> str:
     """Say where the points come from, and what was measured of them."""
-    times = f"Peer: {ORIGIN}; times for the same {found.solves} positions x loads."
-    known = f"{times} " if found.known_full_contact else ""
-    measured = found.full_contact
+    times = f"Peer: {ORIGIN}; times for the same {study.solves} positions x loads."
+    known = f"{times} " if study.known_full_contact else ""
+    measured = study.full_contact
     if measured is None:
         return known.strip()
     own = measured.plane_strain_mean
@@ -92,6 +70,6 @@ def caption(found: Frontier) -> str:
         f"{known}On this case {PROGRAM} solved {measured.positions} positions under all loads in "
         f"{measured.solved_in} ({measured.unknowns // 1000} k unknowns, {number(measured.cpu_seconds, 3)} "
         f"CPU s): its errors are those at these positions, the worst of all loads{_left_out(measured)}; its "
-        f"time is extrapolated, the mean of a position and load times {found.solves}."
+        f"time is extrapolated, the mean of a position and load times {study.solves}."
         f"{_own(measured)}{beside}"
     )

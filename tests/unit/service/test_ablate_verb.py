@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from dynamics.ablation import ablate
 from service.cli.commands import app
 from service.report.image import png
-from service.studies.ablate.page import scene_ablation_figure, scene_ablation_table
+from service.studies.ablate.page import ablation_figure, ablation_table
 from service.studies.ablate.run import facts
 
 CASE = """
@@ -80,11 +80,11 @@ def test_a_scene_gives_orders_of_errors_and_bearing_forces() -> None:
     assert np.shape(lateral["order_change_um"]) == (1, 5)
     assert np.shape(lateral["bearing_order_change_n"]) == (4, 5)
     assert lateral["worth_um"] == pytest.approx(1e6 * made.effects[0].influence, rel=1e-12)
-    figure = scene_ablation_figure(made)
+    figure = ablation_figure(made)
     assert [panel.title for panel in figure.content] == ["Transmission error", "Bearing force"]
     assert [line.name for line in figure.content[0].lines] == ["as decided", "without lateral"]
     assert png(figure).startswith(b"\x89PNG")
-    ((name, state, *_),) = scene_ablation_table(made).rows
+    ((name, state, *_),) = ablation_table(made).rows
     assert (name, state) == ("lateral", "on")
 
 

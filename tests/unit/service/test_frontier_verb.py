@@ -19,21 +19,21 @@ from service.cli.commands import app
 from service.report.image import png
 from service.report.interactive import plotly_figure
 from service.report.page import html
-from service.studies.frontier.of_case import frontier_figure, frontier_table
-from service.studies.frontier.page import frontier_page
+from service.studies.frontier.page import frontier_figure, frontier_page, frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_spur_20_20.toml"
 
 
 def ladder(name: str, seconds: float, error: float) -> FidelityResult:
     one = np.ones(1)
-    return FidelityResult(name, name, one, one, 0.1, error, 2.0 * error, seconds, {"contact": seconds}, 2**20)
+    stages = {"contact": seconds}
+    return FidelityResult(name, name, seconds, one, one, 0.1, stages, 2**20, error, 2.0 * error)
 
 
 @pytest.fixture
 def found() -> Frontier:
     rungs = (ladder("iso6336", 1e-2, 0.3), ladder("corrected", 1.0, 1e-3), ladder("3d_fine", 9.0, 5e-4))
-    return Frontier(rungs, {"3d_draft": "no mesh"}, 64, "corrected", "3d_fine")
+    return Frontier(rungs, {"3d_draft": "no mesh"}, "corrected", "3d_fine", 64)
 
 
 def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
@@ -117,10 +117,10 @@ def test_the_page_says_what_was_not_run(found: Frontier) -> None:
 
 def test_an_error_that_is_not_known_is_left_out(found: Frontier) -> None:
     lonely = ladder("3d_fine", 9.0, float("nan"))
-    whole = Frontier((*found.results[:2], lonely), {}, 64, None, None).to_json()
+    whole = Frontier((*found.results[:2], lonely), {}, None, None, 64).to_json()
     json.dumps(whole, allow_nan=False)
     assert "mean_error" not in whole["rungs"][2]
-    frontier_figure(Frontier((*found.results[:2], lonely), {}, 64, None, None))
+    frontier_figure(Frontier((*found.results[:2], lonely), {}, None, None, 64))
 
 
 def test_the_verb_writes_what_it_prints(tmp_path: Path) -> None:

@@ -10,12 +10,10 @@ import pytest
 from typer.testing import CliRunner
 
 from dynamics.accuracy import FidelityResult, Frontier
-from dynamics.accuracy.vibration import Vibration
 from service.cli.commands import app
 from service.report.image import png
 from service.report.page import html
-from service.studies.frontier.of_scene import run_frontier_figure, run_frontier_table
-from service.studies.frontier.page import frontier_page
+from service.studies.frontier.page import frontier_figure, frontier_page, frontier_table
 
 EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
 
@@ -24,17 +22,16 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "palermo_scene.toml"
 def found() -> Frontier:
     nothing = float("nan")
     rungs = (
-        FidelityResult("quasi_static", "quasi-static", "model", 0.1, 0.2, 1.0, 0.01),
-        FidelityResult("torsion", "torsion only", "model", 0.05, 0.05, nothing, 0.2),
-        FidelityResult("1_nm", "tolerance 1 nm", "steps", 1e-3, 1e-3, 2e-3, 0.5),
-        FidelityResult("0.1_nm", "tolerance 0.1 nm", "steps", 1e-4, 1e-4, 2e-4, 1.0),
+        FidelityResult("quasi_static", "quasi-static", 0.01, "model", 0.1, 0.2, 1.0),
+        FidelityResult("torsion", "torsion only", 0.2, "model", 0.05, 0.05, nothing),
+        FidelityResult("1_nm", "tolerance 1 nm", 0.5, "steps", 1e-3, 1e-3, 2e-3),
+        FidelityResult("0.1_nm", "tolerance 0.1 nm", 1.0, "steps", 1e-4, 1e-4, 2e-4),
     )
-    whole = Vibration(np.ones((1, 1)), np.ones((1, 1, 5)), np.ones((1, 1, 5)))
-    return Frontier(rungs, {"in_plane": "nothing more"}, 5, 6, whole, "1_nm", "1_nm")
+    return Frontier(rungs, {"in_plane": "nothing more"}, "1_nm", "1_nm", 5, 6, np.ones((1, 1)))
 
 
 def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
-    figure = run_frontier_figure(found)
+    figure = frontier_figure(found)
     texts = [note.text for note in figure.content[0].notes]
     assert texts == ["quasi static", "torsion", "1 nm (knee, chosen)", "0.1 nm (reference)"]
     assert [note.text for note in figure.content[2].notes] == [t for t in texts if t != "torsion"]
@@ -43,7 +40,7 @@ def test_the_picture_marks_knee_chosen_and_reference(found: Frontier) -> None:
 
 def test_the_page_says_what_was_not_run_and_leaves_unknown_errors_out(found: Frontier) -> None:
     assert "nothing more" in html(frontier_page(found), {"run_frontier": b""})
-    assert run_frontier_table(found).rows[1][4] == ""
+    assert frontier_table(found).rows[1][4] == ""
 
 
 def test_the_verb_finds_a_scene_and_writes_what_it_prints(tmp_path: Path) -> None:

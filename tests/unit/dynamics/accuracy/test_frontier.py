@@ -10,8 +10,7 @@ import pytest
 from geared_scenes import RPM, gear_pair_scene, spring_table, square_wave_table, with_mesh
 
 from dynamics.accuracy import FIDELITIES, frontier
-from dynamics.accuracy.frontier import knee_of_results
-from dynamics.accuracy.knee import knee_of
+from dynamics.accuracy.frontier import FIGURES, knee_of_results
 from dynamics.accuracy.time_integration import TimeIntegration
 from dynamics.accuracy.vibration import blocks_of
 from dynamics.assembly.assemble import assemble
@@ -33,8 +32,8 @@ def by_name(found):
 
 def test_errors_fall_with_the_tolerance(found):
     steps = [r for r in found.results if r.family == "steps"]
-    for which in range(3):
-        errors = [result.errors[which] for result in steps]
+    for figure in FIGURES:
+        errors = [result.errors[figure] for result in steps]
         assert errors[0] > 5.0 * errors[2] > 50.0 * errors[-1] > 0.0
     assert steps[-1].cpu_seconds > steps[0].cpu_seconds
 
@@ -110,9 +109,3 @@ def test_blocks_hold_whole_parts_of_the_run():
     assert blocks.bounds[0, 0] == 0
     assert blocks.bounds[-1, 1] == round(0.4 * system.sampling.rate) + 1
     np.testing.assert_array_equal(blocks.bounds[1:, 0], blocks.bounds[:-1, 1])
-
-
-def test_no_knee_with_two_points_or_on_a_straight_line():
-    line = {str(k): (10.0**k, 10.0**-k) for k in range(4)}
-    assert knee_of({"a": (1.0, 1.0), "b": (2.0, 0.1)}) is None
-    assert knee_of(line | {"corner": (1.1, 2e-3)}) == "corner"

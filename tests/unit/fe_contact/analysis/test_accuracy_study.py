@@ -11,7 +11,6 @@ from analysis_requests import table_request
 from fe_contact import FlankModification, Gear, GearPair, InternalGearPair, RingGear
 from fe_contact.analysis.accuracy_study import FIDELITIES, ISO6336, THIN_SLICES
 from fe_contact.analysis.frontier import chosen_fidelity, frontier
-from fe_contact.analysis.pareto import front_of, knee_of
 from fe_contact.analysis.request_check import check_request
 from fe_contact.analysis.slice_springs import SpringContact, slice_stiffness
 from fe_contact.contact import solve_contact
@@ -175,19 +174,3 @@ def test_the_chosen_fidelity_is_the_model_and_the_mesh_asked_for(model, level):
 def test_an_unknown_fidelity_is_refused_by_name():
     with pytest.raises(InputError, match="fidelities"):
         frontier(pair_of(), TableAxes(normal_forces=[500.0]), fidelities=["4d"])
-
-
-def test_the_front_leaves_out_what_another_point_beats():
-    points = {"a": (1.0, 1.0), "b": (2.0, 0.1), "slow": (3.0, 0.2), "c": (10.0, 0.05)}
-    assert front_of(points) == ("a", "b", "c")
-
-
-def test_the_knee_is_where_time_stops_buying_accuracy():
-    """Times a decade apart buy two decades of error, then a tenth of one."""
-    points = {"a": (1.0, 1.0), "b": (10.0, 1e-2), "c": (100.0, 8e-3), "d": (1000.0, 7e-3)}
-    assert knee_of(points) == "b"
-    scaled = {name: (7.0 * time, 0.3 * error) for name, (time, error) in points.items()}
-    assert knee_of(scaled) == "b"
-    assert knee_of({name: points[name] for name in "ab"}) is None
-    straight = {"a": (1.0, 1.0), "b": (10.0, 0.1), "c": (100.0, 0.01)}
-    assert knee_of(straight) is None

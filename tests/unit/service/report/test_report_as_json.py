@@ -21,16 +21,16 @@ def rung(name: str, error: float, seconds: float) -> FidelityResult:
     """Return a rung that is so far off."""
     ripple = np.array([1e-6, 2e-6])
     return FidelityResult(
-        name, name, 4.0 * ripple, ripple, 0.01, error, 2.0 * error, seconds, {"contact": seconds}, 2**28
+        name, name, seconds, 4.0 * ripple, ripple, 0.01, {"contact": seconds}, 2**28, error, 2.0 * error
     )
 
 
 LADDER = Frontier(
     (rung("iso6336", 0.2, 0.01), rung("plane_strain", 0.04, 0.3), rung("3d_fine", float("nan"), 60.0)),
     {"corrected": "not asked for"},
+    "plane_strain",
+    "plane_strain",
     128,
-    "plane_strain",
-    "plane_strain",
 )
 
 

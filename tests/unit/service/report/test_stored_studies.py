@@ -14,7 +14,6 @@ from geared_scenes import gear_pair_scene
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.accuracy import FidelityResult as SceneFidelity
 from dynamics.accuracy import Frontier as SceneFrontier
-from dynamics.accuracy.vibration import Vibration
 from fe_contact.analysis import ablate
 from fe_contact.geometry import FlankModification, Gear, GearPair
 from fe_contact.microgeometry import (
@@ -89,11 +88,10 @@ def studies(compliance: Path) -> dict[str, tuple[str, dict[str, Any], Page]]:
     )
     told = (("rigid", "model", 0.2, 0.1), ("coarse", "steps", 0.01, 1.0), ("fine", "steps", 1e-4, 9.0))
     rungs = tuple(
-        SceneFidelity(name, name, family, error, 2.0 * error, float("nan"), seconds)
+        SceneFidelity(name, name, seconds, family, error, 2.0 * error)
         for name, family, error, seconds in told
     )
-    vibration = Vibration(np.ones((3, 1)), np.ones((3, 1, 5)), np.ones((3, 0, 5)))
-    ladder = SceneFrontier(rungs, {"modes": "no bearings"}, 5, 3, vibration, "coarse", None)
+    ladder = SceneFrontier(rungs, {"modes": "no bearings"}, "coarse", None, 5, 3, np.ones((3, 1)))
     return {
         "ablation of a case": ("ablation", ablation_json(of_case), ablation_page(of_case)),
         "ablation of a scene": ("ablation", ablation_json(of_scene), ablation_page(of_scene)),

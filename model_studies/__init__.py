@@ -1,0 +1,36 @@
+"""Studies of a model by its variants: the accuracy study over fidelities, the ablation over effects.
+
+A library hands in what its variants compute and by which figures they are compared.
+"""
+
+from __future__ import annotations
+
+from model_studies.ablation import Ablation, EffectAblation, Figures
+from model_studies.fidelity import Fidelity, Outcome, against_finest, run_fidelities
+from model_studies.frontier import FidelityResult, Frontier, knee_above
+from model_studies.pareto import front_of, knee_of
+from model_studies.progress import Progress, silent
+from model_studies.record import Record, called, in_unit
+from model_studies.variants import LeftOut, run_variants
+
+__all__ = [
+    "Ablation",
+    "EffectAblation",
+    "Fidelity",
+    "FidelityResult",
+    "Figures",
+    "Frontier",
+    "LeftOut",
+    "Outcome",
+    "Progress",
+    "Record",
+    "against_finest",
+    "called",
+    "front_of",
+    "in_unit",
+    "knee_above",
+    "knee_of",
+    "run_fidelities",
+    "run_variants",
+    "silent",
+]

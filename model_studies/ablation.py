@@ -1,0 +1,145 @@
+"""Ablation: every effect of a model toggled by itself, the change beside its estimate."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar, Generic, Protocol, Self, TypeVar
+
+import numpy as np
+
+from bounds.types import FloatArray, Json
+from model_studies.record import Record, called, in_unit
+
+
+@dataclass(frozen=True)
+class Figures(Record):
+    """What variants of a model are compared by; a library adds its own arrays.
+
+    Attributes
+    ----------
+    mean, peak_to_peak : ndarray, shape (n,)
+        Of the transmission error under every load, or of every mesh, m.
+    cpu_seconds : float
+        Measured.
+    """
+
+    mean: FloatArray = field(metadata=in_unit("m"))
+    peak_to_peak: FloatArray = field(metadata=in_unit("m"))
+    cpu_seconds: float
+
+    @property
+    def cost(self) -> float:
+        """CPU seconds that variants are compared by."""
+        return self.cpu_seconds
+
+
+class Estimate(Protocol):
+    """What leaving an effect out is estimated to change."""
+
+    def to_json(self) -> Json:
+        """Return plain JSON in SI units."""
+
+
+F = TypeVar("F", bound=Figures)
+E = TypeVar("E", bound=Estimate)
+
+
+@dataclass(frozen=True)
+class EffectAblation(Record, Generic[F, E]):
+    """One effect toggled.
+
+    Attributes
+    ----------
+    FIGURES : type
+        Of the figures.
+    name : str
+    on : bool
+        Whether the request has it on.
+    reason : str
+        Why, from the ledger.
+    with_effect, without_effect : Figures
+        One of them is the request itself.
+    estimate : optional
+        What leaving it out is estimated to change; None: nothing is known.
+    """
+
+    FIGURES: ClassVar[type[Figures]]
+
+    name: str
+    on: bool
+    reason: str
+    with_effect: F = field(metadata=called("with"))
+    without_effect: F = field(metadata=called("without"))
+    estimate: E | None
+
+    @property
+    def toggled(self) -> F:
+        """The figures of the request with this effect toggled."""
+        return self.without_effect if self.on else self.with_effect
+
+    @property
+    def mean_change(self) -> FloatArray:
+        """Change (n,) of the mean transmission error by leaving the effect out, m."""
+        return self.change("mean")
+
+    @property
+    def peak_to_peak_change(self) -> FloatArray:
+        """Change (n,) of the peak-to-peak transmission error by leaving the effect out, m."""
+        return self.change("peak_to_peak")
+
+    @property
+    def cost_ratio(self) -> float:
+        """CPU time with the effect over that without."""
+        return self.with_effect.cost / self.without_effect.cost
+
+    def change(self, figure: str) -> FloatArray:
+        """Return the change of an array of the figures by leaving the effect out, in its unit."""
+        without, whole = (getattr(each, figure) for each in (self.without_effect, self.with_effect))
+        return np.asarray(without - whole)
+
+    def to_json(self) -> Json:
+        """Return plain JSON in SI units: the figures, their changes, the ratio of the times."""
+        units = {each.name: each.metadata["unit"] for each in fields(self.FIGURES) if each.metadata}
+        changes = {
+            f"{name.removesuffix('s')}_change_{unit}": self.change(name).tolist()
+            for name, unit in units.items()
+        }
+        return {**super().to_json(), **changes, "cost_ratio": self.cost_ratio}
+
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the effect that `to_json` wrote; the estimate is a record or None in `content`."""
+        figures = {key: cls.FIGURES.from_json(content[key]) for key in ("with", "without")}
+        return super().from_json(content | figures)
+
+
+A = TypeVar("A", bound=EffectAblation[Any, Any])
+
+
+@dataclass(frozen=True)
+class Ablation(Record, Generic[F, A]):
+    """All effects of a request, each toggled by itself.
+
+    Attributes
+    ----------
+    EFFECT : type
+        Of the effects.
+    nominal : Figures
+        Of the request.
+    effects : tuple of EffectAblation
+    left_out : dict of str to str
+        Effects that were not toggled, and why.
+    """
+
+    EFFECT: ClassVar[type[EffectAblation[Any, Any]]]
+
+    nominal: F
+    effects: tuple[A, ...]
+    left_out: dict[str, str]
+
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the ablation that `to_json` wrote."""
+        nominal = cls.EFFECT.FIGURES.from_json(content["nominal"])
+        effects = tuple(cls.EFFECT.from_json(entry) for entry in content["effects"])
+        return super().from_json({**content, "nominal": nominal, "effects": effects})

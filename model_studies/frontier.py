@@ -1,0 +1,96 @@
+"""Error against time of the fidelities of a model: the results, their front and its knee."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import ClassVar, Generic, Self, TypeVar
+
+import numpy as np
+
+from bounds.types import Json
+from model_studies.pareto import knee_of
+from model_studies.record import Record, called
+
+
+@dataclass(frozen=True)
+class FidelityResult(Record):
+    """What one fidelity gave; a library adds its errors and what else it has to say.
+
+    Attributes
+    ----------
+    FIGURES : tuple of str
+        The fields that are relative errors; NaN: not known.
+    name, title : str
+    cpu_seconds : float
+        Of the whole computation.
+    """
+
+    FIGURES: ClassVar[tuple[str, ...]]
+
+    name: str
+    title: str
+    cpu_seconds: float
+
+    @property
+    def errors(self) -> dict[str, float]:
+        """The errors that are known, by figure."""
+        errors = {name: getattr(self, name) for name in self.FIGURES}
+        return {name: error for name, error in errors.items() if np.isfinite(error)}
+
+    @property
+    def error(self) -> float:
+        """The worst of the errors that are known, which a tolerance speaks of; NaN without any."""
+        return max(self.errors.values(), default=float("nan"))
+
+
+R_co = TypeVar("R_co", bound=FidelityResult, covariant=True)
+
+
+@dataclass(frozen=True)
+class Frontier(Record, Generic[R_co]):
+    """An accuracy study.
+
+    Attributes
+    ----------
+    RESULT : type
+        Of the results.
+    results : tuple of FidelityResult
+        In the order of their usual cost; the last one is the reference, whose errors are its own.
+    left_out : dict
+        Name of a fidelity to the reason why it has no result.
+    knee : str or None
+        The fidelity after which time buys least, by the worst of the errors; None with fewer than three
+        fidelities, or where the front does not bend.
+    chosen : str or None
+        The fidelity that the request asks for.
+    """
+
+    RESULT: ClassVar[type[FidelityResult]]
+
+    results: tuple[R_co, ...] = field(metadata=called("rungs"))
+    left_out: dict[str, str]
+    knee: str | None
+    chosen: str | None
+
+    @property
+    def reference(self) -> R_co:
+        """The finest fidelity that was run."""
+        return self.results[-1]
+
+    def to_json(self) -> Json:
+        """Return plain JSON in SI units."""
+        return {**super().to_json(), "reference": self.reference.name}
+
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the study that `to_json` wrote."""
+        return super().from_json(content | {"rungs": tuple(map(cls.RESULT.from_json, content["rungs"]))})
+
+
+def knee_above(results: Sequence[FidelityResult], *shared: float) -> str | None:
+    """Return the knee; differences below the reference's own error, or below `shared` ones, say nothing."""
+    own = [error for error in (results[-1].error, *shared) if np.isfinite(error)]
+    floor = max(own, default=0.0)
+    known = [result for result in results if np.isfinite(result.error)]
+    return knee_of({result.name: (result.cpu_seconds, max(result.error, floor)) for result in known})

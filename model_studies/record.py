@@ -1,0 +1,76 @@
+"""Records: dataclasses whose JSON follows from their fields.
+
+A field is called in JSON what it is called here, unless its metadata say otherwise::
+
+    mean: FloatArray = field(metadata=in_unit("m"))  # "mean_m"
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import MISSING, Field, dataclass, fields
+from typing import Any, Self
+
+import numpy as np
+
+from bounds.types import Json
+
+
+def in_unit(unit: str) -> dict[str, str]:
+    """Return the metadata of numbers in a unit, such as "m"; it ends their name. Lists are read as arrays."""
+    return {"unit": unit}
+
+
+def called(key: str | None) -> dict[str, str | None]:
+    """Return the metadata of a field that has another name in JSON; None: it is not written."""
+    return {"key": key}
+
+
+@dataclass(frozen=True)
+class Record:
+    """Numbers, names, arrays and records; a number that is not known is NaN, and left out of the JSON."""
+
+    def to_json(self) -> Json:
+        """Return plain JSON in SI units."""
+        values = {_key(each): getattr(self, each.name) for each in fields(self)}
+        return {key: _plain(value) for key, value in values.items() if key and _known(value)}
+
+    @classmethod
+    def from_json(cls, content: Json) -> Self:
+        """Return the record that `to_json` wrote; values that are records must be records in `content`.
+
+        Raises
+        ------
+        KeyError
+            A field without a default is missing.
+        """
+        stored = [each for each in fields(cls) if each.default is MISSING or _key(each) in content]
+        return cls(**{each.name: _read(each, content[_key(each)]) for each in stored})
+
+
+def _key(of: Field[Any]) -> str:
+    """Return what a field is called in JSON; empty: it is not written."""
+    if "unit" in of.metadata:
+        return f"{of.name}_{of.metadata['unit']}"
+    return of.metadata.get("key", of.name) or ""
+
+
+def _known(value: object) -> bool:
+    """Whether a value can be written."""
+    return not isinstance(value, float) or math.isfinite(value)
+
+
+def _plain(value: Any) -> Any:
+    """Return what JSON takes."""
+    if isinstance(value, tuple):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value.to_json() if hasattr(value, "to_json") else value
+
+
+def _read(of: Field[Any], value: Any) -> Any:
+    """Return lists of numbers as arrays, those of names as tuples."""
+    if not isinstance(value, list):
+        return value
+    return np.asarray(value, dtype=float) if "unit" in of.metadata else tuple(value)
