@@ -70,10 +70,10 @@ class TimeIntegration:
         start = static_equilibrium(system)
         if not start.status.usable:
             raise SolveError(f"no static equilibrium at t = 0: {start.status.name.lower()}")
-        found = integrate(system, start, system.scene.integration)
-        if not found.status.usable:
-            raise SolveError(f"run ended early, {found.status.name.lower()} at {found.end:.6g} s")
-        return vibration_of(blocks, *_series(system, found))
+        trajectory = integrate(system, start, system.scene.integration)
+        if not trajectory.status.usable:
+            raise SolveError(f"run ended early, {trajectory.status.name.lower()} at {trajectory.end:.6g} s")
+        return vibration_of(blocks, *_series(system, trajectory))
 
 
 def _decided(scene: Scene) -> set[tuple[str, str]]:
@@ -81,10 +81,10 @@ def _decided(scene: Scene) -> set[tuple[str, str]]:
     return {(entry.effect, entry.part) for entry in assemble(scene).ledger.entries if entry.on}
 
 
-def _series(system: System, found: Trajectory) -> tuple[FloatArray, FloatArray]:
+def _series(system: System, trajectory: Trajectory) -> tuple[FloatArray, FloatArray]:
     """Transmission errors (m, T) and bearing forces in their own frames (b, 3, T)."""
-    seen = observe(system.arrays, found.time, found.q, found.v, found.moved)
-    force = system.bearing_force(seen.force, found.q, found.v)[:, :3]
+    observed = observe(system.arrays, trajectory.time, trajectory.q, trajectory.v, trajectory.moved)
+    force = system.bearing_force(observed.force, trajectory.q, trajectory.v)[:, :3]
     if system.freedoms.column.size and not np.any(system.bearing_stiffness) and not system.bearings:
         force = np.full_like(force, np.nan)  # bearings hold nothing here: no freedom moves them
-    return seen.coordinate[system.driving_rows], force
+    return observed.coordinate[system.driving_rows], force

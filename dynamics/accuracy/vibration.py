@@ -101,7 +101,7 @@ def vibration_of(blocks: Blocks, error: FloatArray, force: FloatArray) -> Vibrat
         position, series = blocks.position[:, part], error[:, part]
         rms.append(series.std(axis=1))
         by_error.append(
-            [order_amplitudes(at, one, blocks.orders) for at, one in zip(position, series, strict=True)]
+            [order_amplitudes(at, line, blocks.orders) for at, line in zip(position, series, strict=True)]
         )
         by_force.append(
             np.linalg.norm(order_amplitudes(position[0], force[..., part], blocks.orders), axis=1)

@@ -43,9 +43,9 @@ class QuasiStatic:
                 raise SolveError(f"no static equilibrium at {middle:.6g} s")
             for f, force in enumerate(rest.mesh_force):
                 position = np.ascontiguousarray(blocks.position[f, first:stop])
-                found = np.empty_like(position)
-                static_deflections(system.flanks.static, f, position, float(force), found)
-                error[f, first:stop] = found
+                deflection = np.empty_like(position)
+                static_deflections(system.flanks.static, f, position, float(force), deflection)
+                error[f, first:stop] = deflection
         return vibration_of(blocks, error, np.zeros((len(system.supports.name), 3, blocks.time.size)))
 
 
@@ -66,13 +66,13 @@ class LinearResponse:
         system = assemble(scene)
         speeds = np.abs(observe_laws(system.arrays, blocks.middle)[2])
         law = int(np.flatnonzero(np.max(speeds, axis=1) > 0.0)[0])
-        found = [
+        parts = [
             _of_one_speed(
                 harmonic_response(system, np.array([speed]), 4 * blocks.orders, float(time)), system, blocks
             )
             for speed, time in zip(speeds[law], blocks.middle, strict=True)
         ]
-        return Vibration(*(np.array([getattr(part, name) for part in found]) for name in _FIELDS))
+        return Vibration(*(np.array([getattr(part, name) for part in parts]) for name in _FIELDS))
 
 
 _FIELDS = ("rms", "error_orders", "force_orders")
@@ -94,6 +94,6 @@ def _of_one_speed(response: HarmonicResponse, system: System, blocks: Blocks) ->
 
 def _at(order: FloatArray, amplitude: FloatArray, ratio: float, orders: int) -> FloatArray:
     """Amplitudes at the multiples 1 to `orders` of `ratio`; 0 where nothing is excited."""
-    wanted = ratio * np.arange(1, orders + 1)
-    match = np.abs(order[None, :] - wanted[:, None]) <= ORDER_MATCH * wanted[:, None]
+    own = ratio * np.arange(1, orders + 1)
+    match = np.abs(order[None, :] - own[:, None]) <= ORDER_MATCH * own[:, None]
     return np.asarray(np.sum(np.where(match, amplitude[None, :], 0.0), axis=1))

@@ -135,7 +135,7 @@ def _warm_up(fidelities: Sequence[Fidelity]) -> None:
 
 def _whole_table(fidelity: Fidelity, checked: Checked) -> SteDatabase:
     """Return the table of a fidelity, of which no point is missing."""
-    table = fidelity.run(checked, silent, None)
+    table = fidelity.run(checked)
     table.require_complete()
     return table
 

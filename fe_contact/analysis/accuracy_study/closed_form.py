@@ -13,7 +13,6 @@ Both take the stiffness of the series of ISO 6336-1, method B, which was fitted 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -30,7 +29,6 @@ from fe_contact.ste import Metadata, SteDatabase
 from fe_contact.ste.content_hash import content_hash
 from fe_contact.ste.facts import SCHEMA_VERSION
 from fe_contact.types import FloatArray
-from model_studies import Progress
 
 POSITIONS = 64
 
@@ -71,12 +69,12 @@ class ClosedFormFidelity:
             return "shafts that bend couple the slices"
         return None
 
-    def as_asked(self, checked: Checked) -> Checked:
+    def as_computed(self, checked: Checked) -> Checked:
         """Return the request as it is: there is no mesh to choose."""
         return checked
 
-    def run(self, checked: Checked, progress: Progress, cache: Path | None) -> SteDatabase:
-        """Compute the table; nothing is read from or written to the cache."""
+    def run(self, checked: Checked) -> SteDatabase:
+        """Compute the table."""
         clock = StageClock()
         request = checked.request
         plan = make_plan(request.pair, request.load, request.options, checked.model)
@@ -84,7 +82,6 @@ class ClosedFormFidelity:
             nominal = SpringContact(request.pair, plan, law=self.law)
             places = operating_points(request.scene, request.choices, nominal)
             table = self._table(checked, plan, places)
-        progress("contact", 1.0)
         case = request.to_json() | {"rung": self.name}
         ledger = [entry.to_json() for entry in checked.ledger]
         receipt = clock.to_json() | {"plan": {"model": self.name, "positions": table.position.size}}

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Protocol
 
 import model_studies
 from fe_contact.analysis.request import Checked
 from fe_contact.ste import SteDatabase
-from model_studies import Progress
 
 
 class Fidelity(model_studies.Fidelity[Checked], Protocol):
@@ -24,7 +22,7 @@ class Fidelity(model_studies.Fidelity[Checked], Protocol):
     def element_size(self) -> float:
         """Size of the elements beside that of the other fidelities of the family; 0 without elements."""
 
-    def as_asked(self, checked: Checked) -> Checked:
+    def as_computed(self, checked: Checked) -> Checked:
         """Return the request as this fidelity computes it: with its model and mesh.
 
         Raises
@@ -33,5 +31,5 @@ class Fidelity(model_studies.Fidelity[Checked], Protocol):
             The fidelity is not valid for it.
         """
 
-    def run(self, checked: Checked, progress: Progress, cache: Path | None) -> SteDatabase:
-        """Compute the table, with its time, memory and error in the receipt."""
+    def run(self, checked: Checked) -> SteDatabase:
+        """Compute the table without a cache, with its time, memory and error in the receipt."""

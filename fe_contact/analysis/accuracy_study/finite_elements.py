@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 from fe_contact.analysis.compute_database import compute_database
 from fe_contact.analysis.model_choice import decide
@@ -14,7 +13,6 @@ from fe_contact.errors import InputError
 from fe_contact.options import Run
 from fe_contact.planning.discretization import PLANE_REFINEMENT
 from fe_contact.ste import SteDatabase
-from model_studies import Progress
 
 SECTOR_FLANK_SIZE = {"draft": 0.2, "standard": 0.15, "fine": 0.1}
 """Modules; of `SectorRecipe`."""
@@ -54,12 +52,12 @@ class FiniteElementFidelity:
     def refusal(self, checked: Checked) -> str | None:
         """Say why the fidelity is not valid: no plane holds what acts across the face."""
         try:
-            self.as_asked(checked)
+            self.as_computed(checked)
         except InputError as error:
             return f"{error.field} must be {error.bound}"
         return None
 
-    def as_asked(self, checked: Checked) -> Checked:
+    def as_computed(self, checked: Checked) -> Checked:
         """Return the request with this model and mesh; explicit choices of other effects stay."""
         request = checked.request
         own = (FaceLoadDistribution.name, FiniteWidth.name)
@@ -70,10 +68,10 @@ class FiniteElementFidelity:
         options = replace(options, model=self.model, effects=effects, receipt="full")
         return check_asked(replace(request, options=options))
 
-    def run(self, checked: Checked, progress: Progress, cache: Path | None) -> SteDatabase:
+    def run(self, checked: Checked) -> SteDatabase:
         """Compute the table."""
-        asked = self.as_asked(checked)
-        decided = decide(asked, cache)
+        computed = self.as_computed(checked)
+        decided = decide(computed)
         if self.slices is not None:
             decided = decided.in_slices(self.slices)
-        return compute_database(asked, asked.request.to_json(), Run(cache=cache, progress=progress), decided)
+        return compute_database(computed, computed.request.to_json(), Run(), decided)

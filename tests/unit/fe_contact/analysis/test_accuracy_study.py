@@ -36,7 +36,7 @@ def pair_of(helix: float = 0.0, width: float = 8e-3, **modification: float) -> G
 
 def run(fidelity, pair, **asked):
     checked = check_request(pair, *table_request(normal_forces=[500.0], positions=64, **asked))
-    return fidelity.run(checked, lambda *_: None, None)
+    return fidelity.run(checked)
 
 
 def test_iso_stiffness_of_a_spur_pair_is_the_closed_form():
@@ -166,7 +166,7 @@ def test_the_chosen_fidelity_is_the_model_and_the_mesh_asked_for(model, level):
         pair_of(), TableAxes(normal_forces=[500.0]), AnalysisOptions(model=model, level=level)
     )
     fidelity = next(fidelity for fidelity in FIDELITIES if fidelity.name == chosen_fidelity(checked))
-    made = fidelity.as_asked(checked)
+    made = fidelity.as_computed(checked)
     assert made.model == checked.model
     assert made.request.options.level == (level if model != "plane_strain" else "standard")
 

@@ -37,7 +37,7 @@ def checked() -> Checked:
 @pytest.fixture(scope="module")
 def table(checked: Checked) -> SteDatabase:
     """Of thin slices, which take no mesh."""
-    return THIN_SLICES.run(checked, lambda *_: None, None)
+    return THIN_SLICES.run(checked)
 
 
 def fake(table: SteDatabase, monkeypatch: pytest.MonkeyPatch, failed: Sequence[int]) -> list[list[float]]:
