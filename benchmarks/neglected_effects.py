@@ -14,7 +14,9 @@ from unittest import mock
 from benchmarks.example_pair import TORQUES
 from benchmarks.figures import Figure
 from benchmarks.run_up import SCENE
-from dynamics.effects import ledger
+from dynamics.assembly import assemble
+from dynamics.effects import EFFECTS as SCENE_EFFECTS
+from dynamics.effects import RotorEffect
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze
@@ -58,7 +60,8 @@ def _table() -> tuple[float, float]:
 def _run() -> tuple[float, float]:
     """Compare the start of the example run-up, the effects of meshes off."""
     scene = _scene()
-    patches = [mock.patch.object(ledger, "MESH_EFFECTS", ())]
+    on_rotors = tuple(effect for effect in SCENE_EFFECTS if isinstance(effect, RotorEffect))
+    patches = [mock.patch.object(assemble, "EFFECTS", on_rotors)]
     return _compared(lambda: simulate(scene), patches)
 
 

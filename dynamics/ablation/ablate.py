@@ -11,7 +11,7 @@ import numpy as np
 from dynamics.ablation.figures import SETTLED, RunFigures, run_figures
 from dynamics.assembly.assemble import assemble
 from dynamics.checks import one_of
-from dynamics.effects import EFFECTS, MESH_EFFECTS
+from dynamics.effects import EFFECTS
 from dynamics.errors import InputError, SolveError
 from dynamics.influence import Influence, decide_effects, estimate_influences
 from dynamics.integrators import Progress
@@ -152,7 +152,7 @@ def ablate(scene: Scene, only: Sequence[str] | None = None, progress: Progress |
     SolveError
         The scene itself has no equilibrium or stops early.
     """
-    known = [*(effect.name for effect in EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
+    known = [effect.name for effect in EFFECTS]
     for name in only or ():
         one_of("only", name, known)
     requested = known if only is None else [name for name in known if name in only]

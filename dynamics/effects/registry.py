@@ -7,7 +7,7 @@ from dynamics.effects.backlash import Backlash
 from dynamics.effects.bearing_clearance import BearingClearance
 from dynamics.effects.dynamic_center_distance import DynamicCenterDistance
 from dynamics.effects.dynamic_misalignment import DynamicMisalignment
-from dynamics.effects.effect import Effect, MeshEffect
+from dynamics.effects.effect import Effect
 from dynamics.effects.flexible_shafts import FlexibleShafts
 from dynamics.effects.friction import Friction
 from dynamics.effects.gyroscopic import Gyroscopic
@@ -22,9 +22,6 @@ EFFECTS: tuple[Effect, ...] = (
     BearingClearance(),
     Gyroscopic(),
     FlexibleShafts(),
-)
-
-MESH_EFFECTS: tuple[MeshEffect, ...] = (
     Backlash(),
     DynamicMisalignment(),
     DynamicCenterDistance(),

@@ -15,7 +15,6 @@ from dynamics.ablation import EffectAblation as SceneEffect
 from dynamics.ablation import RunFigures
 from dynamics.ablation import ablate as ablate_scene
 from dynamics.effects import EFFECTS as SCENE_EFFECTS
-from dynamics.effects import MESH_EFFECTS
 from dynamics.influence import Influence as SceneInfluence
 from dynamics.influence.linear_figures import LinearFigures
 from dynamics.scene import Scene
@@ -70,7 +69,7 @@ def effects_asked(only: Sequence[str] | None, *, of_scene: bool) -> list[str]:
     """
     known = [effect.name for effect in EFFECTS]
     if of_scene:
-        known = [*(effect.name for effect in SCENE_EFFECTS), *(effect.name for effect in MESH_EFFECTS)]
+        known = [effect.name for effect in SCENE_EFFECTS]
     for name in only or ():
         if name not in known:
             raise BadInput.of("only", name, f"among {', '.join(known)}", "Or leave it out: all are toggled.")

@@ -12,7 +12,7 @@ from benchmarks.assessed_influence import AssessedEffect
 from benchmarks.dynamic_influence_estimates import STUDY, assess, markdown
 from dynamics.ablation import ablate
 from dynamics.assembly.assemble import assemble
-from dynamics.effects import EFFECTS, MESH_EFFECTS
+from dynamics.effects import EFFECTS
 from dynamics.forces import straight_table
 
 
@@ -51,6 +51,6 @@ def test_every_effect_can_be_on_in_some_scene(monkeypatch: pytest.MonkeyPatch) -
         for entry in assemble(scene).ledger.entries
         if entry.on
     }
-    names = {effect.name for effect in EFFECTS} | {effect.name for effect in MESH_EFFECTS}
+    names = {effect.name for effect in EFFECTS}
     by_tables = {"dynamic_misalignment", "dynamic_center_distance", "moving_application_point", "friction"}
     assert on >= names - by_tables - {"backlash"}
