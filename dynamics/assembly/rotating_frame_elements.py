@@ -8,7 +8,7 @@ import numpy as np
 
 from dynamics.arrays.elements import Element
 from dynamics.assembly.model import Model
-from dynamics.effects.frame_term import FrameTerm, frame_lever
+from dynamics.effects.frame_term import FrameTerm, frame_laws, frame_lever
 from dynamics.forces.element_laws import Law
 from dynamics.forces.rotating_frame import RotatingFrameLaws
 from dynamics.mechanism.freedoms import ROTATION, Freedoms
@@ -36,11 +36,7 @@ def rotating_frame_elements(model: Model) -> tuple[tuple[Element, ...], Rotating
         _element(mechanism, vectors, entry, index, term.rows, lever if free[index] else 0.0)
         for entry, (index, term) in enumerate(found)
     )
-    return elements, RotatingFrameLaws(
-        np.array([term.factors for _, term in found], dtype=float).reshape(-1, 5),
-        np.full(len(found), lever),
-        np.array([free[index] for index, _ in found], dtype=np.bool_),
-    )
+    return elements, frame_laws([term for _, term in found], lever, [bool(free[index]) for index, _ in found])
 
 
 def _merged(terms: Sequence[FrameTerm], freedoms: Freedoms) -> list[FrameTerm]:
