@@ -5,6 +5,7 @@ from __future__ import annotations
 from dynamics.effects.axial import Axial
 from dynamics.effects.backlash import Backlash
 from dynamics.effects.bearing_clearance import BearingClearance
+from dynamics.effects.centrifugal_load import CentrifugalLoad
 from dynamics.effects.dynamic_center_distance import DynamicCenterDistance
 from dynamics.effects.dynamic_misalignment import DynamicMisalignment
 from dynamics.effects.effect import Effect
@@ -21,6 +22,7 @@ EFFECTS: tuple[Effect, ...] = (
     Tilt(),
     BearingClearance(),
     Gyroscopic(),
+    CentrifugalLoad(),
     FlexibleShafts(),
     Backlash(),
     DynamicMisalignment(),
@@ -30,7 +32,6 @@ EFFECTS: tuple[Effect, ...] = (
 )
 
 LEFT_OUT: dict[str, str] = {
-    "centrifugal loads": "of planets on their pins; the terms of displacements are in the effect gyroscopic",
     "gravity": "weights are small against mesh forces",
     "friction of bearings": "bearings turn without loss",
     "point of application along the path of contact": "the mesh force acts at the operating pitch point",
