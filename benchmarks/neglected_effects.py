@@ -20,7 +20,7 @@ from dynamics.effects import RotorEffect
 from dynamics.scene import Scene
 from dynamics.simulation import simulate
 from fe_contact import Gear, GearPair, analyze
-from fe_contact.analysis import assumptions, influences, operating_points, request, request_check
+from fe_contact.analysis import request
 from fe_contact.effects import EFFECTS
 from service.client.portable import scene_of
 from service.convert.scene import dynamic_scene
@@ -53,8 +53,7 @@ def _table() -> tuple[float, float]:
         def run() -> None:
             analyze(PAIR, torques=[10.0, 100.0], level="draft", receipt="minimal", cache=Path(folder))
 
-        modules = (assumptions, influences, request, request_check, operating_points)
-        return _compared(run, [mock.patch.object(module, "EFFECTS", remaining) for module in modules])
+        return _compared(run, [mock.patch.object(request, "EFFECTS", remaining)])
 
 
 def _run() -> tuple[float, float]:
